@@ -1,0 +1,71 @@
+# Everything runs in a local .venv built from requirements.lock. Needs python3 (3.11 or newer), its venv module and make.
+
+SHELL := /bin/bash
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+LOCKED := $(VENV)/.locked
+READY := $(VENV)/.ready
+UV_VERSION := 0.13.8
+
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+.DEFAULT_GOAL := help
+.PHONY: help setup run test test-nojit lint format bench docs lock clean
+
+help:  ## show this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+setup: $(READY)  ## install cagepose and all of its tools into .venv
+	@echo "Ready: $(BIN)/cagepose"
+
+$(LOCKED): requirements.lock
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+	    echo "cagepose needs Python 3.11 or newer, and $(PYTHON) is not one; try: make setup PYTHON=python3.12" >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
+	    echo "$(PYTHON) cannot make virtual environments; on Debian and Ubuntu: apt install python3-venv" >&2; exit 1; }
+	@echo "Creating $(VENV) and installing the locked packages (a minute or two, once) ..."
+	@$(PYTHON) -m venv --clear $(VENV)
+	@$(BIN)/python -m pip install -qq --require-hashes -r requirements.lock
+	@touch $@
+
+$(READY): $(LOCKED) pyproject.toml
+	@$(BIN)/python -m pip install -qq --no-deps --no-build-isolation -e .
+	@touch $@
+
+run: $(READY)  ## run the sample scene
+	@$(BIN)/cagepose run scenes/sample.yaml
+
+test: $(READY)  ## run all tests and the examples in docstrings
+	@$(BIN)/python -m pytest
+
+test-nojit: $(READY)  ## run the kernels' tests as plain Python, without compiling
+	@NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest tests/kernels tests/stepwise
+
+lint: $(READY)  ## check style, types and the floors' import contract
+	@$(BIN)/ruff check
+	@$(BIN)/ruff format --check
+	@$(BIN)/python -m mypy
+	@$(BIN)/lint-imports --no-logo
+
+format: $(READY)  ## put all code into the project's style
+	@$(BIN)/ruff check --fix
+	@$(BIN)/ruff format
+
+bench: $(READY)  ## measure how long the scenes take
+	@$(BIN)/python bench/bench.py
+
+docs: $(READY)  ## build the documentation into build/docs
+	@$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --builder html docs build/docs
+	@echo "Open build/docs/index.html"
+
+lock:  ## renew requirements.lock from pyproject.toml
+	@$(PYTHON) -m venv build/lock
+	@build/lock/bin/python -m pip install -qq uv==$(UV_VERSION)
+	@build/lock/bin/uv pip compile pyproject.toml --group dev --group docs --output-file requirements.lock --upgrade \
+	    --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-annotate --no-emit-index-url \
+	    --no-config --custom-compile-command "make lock" --quiet
+
+clean:  ## remove .venv and all that was built
+	@rm -rf $(VENV) build dist .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis
+	@find src tests docs bench -name __pycache__ -type d -prune -exec rm -rf {} +
