@@ -1,0 +1,108 @@
+"""First contact of all cage points with all boxes: the least entry of equations (2.1) to (2.3).
+
+Only points that can be hit matter, so there is no in-face test to get wrong: a face hidden inside another box cannot be
+reached without entering that box first.
+"""
+
+from __future__ import annotations
+
+import math
+
+from cagepose.kernels.geometry import Geometry, Placement, point_in_box, vector_in_box
+from cagepose.kernels.jit import kernel
+from cagepose.kernels.screw import screw_entry
+from cagepose.kernels.tolerances import KernelTolerances
+from cagepose.kernels.travel import travel_entry
+from cagepose.kernels.turn import turn_entry
+from cagepose.kernels.vector import Vector, row
+
+
+@kernel
+def allowed_depth(depth_m: float, tolerances: KernelTolerances) -> float:
+    """Return how deep a point may go that starts at ``depth_m``: no deeper than it is, rounding apart.
+
+    The depth is that in the whole object, not in one box: a point that slides a rounding below the common face of two
+    flush boxes is not caught by the seam between them.
+    """
+    return max(tolerances.resolution_m, depth_m + tolerances.rounding_m)
+
+
+@kernel
+def first_contact_travel(
+    geometry: Geometry, placement: Placement, direction: Vector, tolerances: KernelTolerances
+) -> tuple[float, int]:
+    """Return (distance, point index) of the first contact on a travel along ``direction``; (inf, -1): none ahead."""
+    least, first_point = math.inf, -1
+    for box in range(len(geometry.half_sizes)):
+        half_size = row(geometry.half_sizes, box)
+        velocity_box = vector_in_box(placement, box, direction)
+        for point in range(len(geometry.points_world)):
+            entry = travel_entry(
+                row(placement.points_box[box], point),
+                velocity_box,
+                half_size,
+                allowed_depth(placement.depths[point], tolerances),
+                tolerances.resolution_m,
+            )
+            if entry < least:
+                least, first_point = entry, point
+    return least, first_point
+
+
+@kernel
+def first_contact_turn(
+    geometry: Geometry, placement: Placement, through: Vector, axis: Vector, tolerances: KernelTolerances
+) -> tuple[float, int]:
+    """Return (key, point index) of the first contact on a right-handed turn; (inf, -1): none in a full turn.
+
+    Keys are c = -cot(s/2), see `cagepose.kernels.turn`; -inf: blocked at once.
+    """
+    least, first_point = math.inf, -1
+    for box in range(len(geometry.half_sizes)):
+        half_size = row(geometry.half_sizes, box)
+        through_box = point_in_box(placement, box, through)
+        axis_box = vector_in_box(placement, box, axis)
+        for point in range(len(geometry.points_world)):
+            entry = turn_entry(
+                row(placement.points_box[box], point),
+                through_box,
+                axis_box,
+                half_size,
+                allowed_depth(placement.depths[point], tolerances),
+                tolerances.resolution_m,
+            )
+            if entry < least:
+                least, first_point = entry, point
+    return least, first_point
+
+
+@kernel
+def first_contact_screw(
+    geometry: Geometry,
+    placement: Placement,
+    through: Vector,
+    axis: Vector,
+    pitch_m: float,
+    angle_end_rad: float,
+    tolerances: KernelTolerances,
+) -> tuple[float, int]:
+    """Return (angle, point index) of the first contact on a screw before ``angle_end_rad``; (inf, -1): none."""
+    least, first_point = math.inf, -1
+    for box in range(len(geometry.half_sizes)):
+        half_size = row(geometry.half_sizes, box)
+        through_box = point_in_box(placement, box, through)
+        axis_box = vector_in_box(placement, box, axis)
+        for point in range(len(geometry.points_world)):
+            entry = screw_entry(
+                row(placement.points_box[box], point),
+                through_box,
+                axis_box,
+                pitch_m,
+                angle_end_rad,
+                half_size,
+                allowed_depth(placement.depths[point], tolerances),
+                tolerances.resolution_m,
+            )
+            if entry < least:
+                least, first_point = entry, point
+    return least, first_point

@@ -1,0 +1,336 @@
+"""The stepwise method: the paper's rules as one compiled state machine (docs/theory, rules R1 to R11).
+
+Phase A (gravity alone): A-1 travel, A-2 turn about one contact, A-3 turn about two, A-4 stable or a new axis. Phase B
+(a push): the same, after slip has been looked at (B-5): contacts that all slip on one or two faces slide (Slp-1,
+Slp-2) instead.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.kernels.contacts import steepest_contact
+from cagepose.kernels.first_contact import first_contact_travel
+from cagepose.kernels.geometry import FloatArray, Geometry, Placement, empty_placement, place_object
+from cagepose.kernels.jit import entry_kernel, kernel
+from cagepose.kernels.pose import Quaternion, rotated
+from cagepose.kernels.slip import SlipRules, load_angle, slip_step
+from cagepose.kernels.support import PointLoad, SupportRules, pairwise_stability, turn_about_one, turn_about_two
+from cagepose.kernels.tolerances import KernelTolerances
+from cagepose.kernels.trace import (
+    CYCLING,
+    ESCAPES,
+    LIMIT,
+    NONE,
+    SPINS,
+    STABLE,
+    TRAVEL,
+    Step,
+    Trace,
+    empty_trace,
+    pose_after,
+    write_event,
+)
+from cagepose.kernels.vector import Vector, minus, norm, plus, row
+
+RULE_NAMES = ("A-1", "A-2", "A-3", "A-4", "B-1", "B-2", "B-3", "B-4", "Slp-1", "Slp-2")
+PHASE_A, PHASE_B = 0, 4  # codes of A-1 and B-1; steps 2, 3 and 4 follow
+
+
+class StepwiseRules(NamedTuple):
+    """All numbers of the method.
+
+    Attributes
+    ----------
+    support, slip
+        See `SupportRules` and `SlipRules`.
+    event_limit
+        Greatest number of events in a phase.
+    """
+
+    support: SupportRules
+    slip: SlipRules
+    event_limit: int
+
+
+class PhaseLoads(NamedTuple):
+    """One row for each phase.
+
+    Attributes
+    ----------
+    directions_world
+        Unit vectors, (n_phases, 3).
+    points_object
+        Application points in the object's frame, (n_phases, 3), metres.
+    is_push
+        True: phase B (a force); False: phase A (gravity alone), (n_phases,).
+    """
+
+    directions_world: FloatArray
+    points_object: FloatArray
+    is_push: NDArray[np.bool_]
+
+
+class Touching(NamedTuple):
+    """The contacts at the present pose.
+
+    Attributes
+    ----------
+    order
+        Indices of the points that touch, the longest touching first, (n_points,), of which `n_touching` are used.
+    n_touching
+        How many points touch, (1,).
+    is_touching, was_touching
+        Which points touch now, and which touched before the last motion, (n_points,).
+    alphas
+        Angle between each touching point's normal and the load, (n_points,), radians.
+    normals
+        Normal of each touching point, (n_points, 3).
+    chosen
+        Room for the contacts that a rule works on, (n_points,).
+    """
+
+    order: NDArray[np.int64]
+    n_touching: NDArray[np.int64]
+    is_touching: NDArray[np.bool_]
+    was_touching: NDArray[np.bool_]
+    alphas: FloatArray
+    normals: FloatArray
+    chosen: NDArray[np.int64]
+
+
+@kernel
+def empty_touching(n_points: int) -> Touching:
+    return Touching(
+        np.empty(n_points, np.int64),
+        np.zeros(1, np.int64),
+        np.zeros(n_points, np.bool_),
+        np.zeros(n_points, np.bool_),
+        np.empty(n_points),
+        np.empty((n_points, 3)),
+        np.empty(n_points, np.int64),
+    )
+
+
+@kernel
+def find_touching(
+    geometry: Geometry, placement: Placement, load: PointLoad, touch_m: float, touching: Touching
+) -> None:
+    """Step (*): find all contacts again. Points that still touch keep their place in the order, new ones come after."""
+    touching.was_touching[:] = touching.is_touching
+    for point in range(len(geometry.points_world)):
+        touches, normal = steepest_contact(geometry, placement, point, load.direction, touch_m)
+        touching.is_touching[point] = touches
+        touching.alphas[point] = load_angle(normal, load.direction)
+        for k in range(3):
+            touching.normals[point, k] = normal[k]
+    n_listed = 0
+    for i in range(touching.n_touching[0]):
+        point = touching.order[i]
+        if touching.is_touching[point]:
+            touching.order[n_listed] = point
+            n_listed += 1
+    for point in range(len(geometry.points_world)):
+        if touching.is_touching[point] and not touching.was_touching[point]:
+            touching.order[n_listed] = point
+            n_listed += 1
+    touching.n_touching[0] = n_listed
+
+
+@kernel
+def choose_below(touching: Touching, angle_rad: float) -> int:
+    """Write the contacts whose angle to the load is at most ``angle_rad`` into ``chosen``; return how many."""
+    n_chosen = 0
+    for i in range(touching.n_touching[0]):
+        point = touching.order[i]
+        if touching.alphas[point] <= angle_rad:
+            touching.chosen[n_chosen] = point
+            n_chosen += 1
+    return n_chosen
+
+
+@kernel
+def turn_or_hold(
+    geometry: Geometry,
+    placement: Placement,
+    touching: Touching,
+    n_chosen: int,
+    load: PointLoad,
+    phase_code: int,
+    rules: StepwiseRules,
+    tolerances: KernelTolerances,
+) -> Step:
+    """Steps 2 to 4 of a phase: one chosen contact turns (R1), two turn (R2), three or more are tested (R3)."""
+    chosen = touching.chosen
+    if n_chosen == 1:
+        return turn_about_one(geometry, placement, chosen[0], load, phase_code + 1, phase_code + 3, tolerances)
+    if n_chosen == 2:
+        return turn_about_two(geometry, placement, chosen[0], chosen[1], load, phase_code + 2, tolerances)
+    return pairwise_stability(
+        geometry, placement, chosen, n_chosen, load, phase_code + 2, phase_code + 3, rules.support, tolerances
+    )
+
+
+@kernel
+def next_step(
+    geometry: Geometry,
+    placement: Placement,
+    touching: Touching,
+    load: PointLoad,
+    is_push: bool,
+    rules: StepwiseRules,
+    tolerances: KernelTolerances,
+) -> Step:
+    """One decision of the method. Under gravity (phase A) every contact counts and none slips."""
+    phase_code = PHASE_B if is_push else PHASE_A
+    n_chosen = choose_below(touching, rules.slip.contactless_angle_rad if is_push else math.inf)
+    if n_chosen == 0:
+        distance, hit_point = first_contact_travel(geometry, placement, load.direction, tolerances)
+        return Step(phase_code, TRAVEL, load.direction, (0.0, 0.0, 0.0), distance, hit_point, False)
+    if is_push:
+        slide = slip_step(
+            geometry,
+            placement,
+            touching.chosen,
+            n_chosen,
+            touching.alphas,
+            touching.normals,
+            load,
+            rules.slip,
+            tolerances,
+        )
+        if slide.motion != NONE:
+            return slide
+    step = turn_or_hold(geometry, placement, touching, n_chosen, load, phase_code, rules, tolerances)
+    if step.amount == -math.inf and n_chosen < touching.n_touching[0]:
+        # R8: blocked at once by points that were taken for contactless, so they are contacts after all.
+        n_chosen = choose_below(touching, math.inf)
+        step = turn_or_hold(geometry, placement, touching, n_chosen, load, phase_code, rules, tolerances)
+    return step
+
+
+@kernel
+def was_met(trace: Trace, first: int, last: int, size_m: float, resolution_m: float) -> bool:
+    """Whether an event from ``first`` to before ``last`` ended at the pose and with the contacts of ``last`` (R10).
+
+    The method has no other memory, so it would repeat itself for ever.
+    """
+    for event in range(first, last):
+        offset = norm(minus(row(trace.positions, event), row(trace.positions, last)))
+        overlap = 0.0
+        for k in range(4):
+            overlap += trace.quaternions[event, k] * trace.quaternions[last, k]
+        sign = math.copysign(1.0, overlap)
+        turned = 0.0
+        for k in range(4):
+            turned = max(turned, abs(trace.quaternions[event, k] - sign * trace.quaternions[last, k]))
+        if offset <= resolution_m and turned * size_m <= resolution_m:
+            same_contacts = True
+            for point in range(trace.touching.shape[1]):
+                same_contacts = same_contacts and trace.touching[event, point] == trace.touching[last, point]
+            if same_contacts:
+                return True
+    return False
+
+
+@kernel
+def load_at(loads: PhaseLoads, phase: int, position: Vector, quaternion: Quaternion) -> PointLoad:
+    """Return the load of a phase on the object at a pose: the direction is the world's, the point the object's."""
+    point = plus(position, rotated(quaternion, row(loads.points_object, phase)))
+    return PointLoad(row(loads.directions_world, phase), point)
+
+
+@kernel
+def phase_run(
+    geometry: Geometry,
+    placement: Placement,
+    touching: Touching,
+    position: Vector,
+    quaternion: Quaternion,
+    loads: PhaseLoads,
+    phase: int,
+    rules: StepwiseRules,
+    size_m: float,
+    tolerances: KernelTolerances,
+    trace: Trace,
+    first_event: int,
+) -> tuple[int, int, Vector, Quaternion]:
+    """Run one phase; return (verdict code, number of events so far, position, quaternion)."""
+    load = load_at(loads, phase, position, quaternion)
+    place_object(geometry, position, quaternion, placement)
+    find_touching(geometry, placement, load, tolerances.touch_m, touching)
+    for event in range(first_event, first_event + rules.event_limit):
+        step = next_step(geometry, placement, touching, load, loads.is_push[phase], rules, tolerances)
+        position, quaternion = pose_after(step, position, quaternion)
+        write_event(trace, event, phase, step, position, quaternion)
+        load = load_at(loads, phase, position, quaternion)
+        place_object(geometry, position, quaternion, placement)
+        find_touching(geometry, placement, load, tolerances.touch_m, touching)
+        for point in range(len(geometry.points_world)):
+            is_new = not touching.was_touching[point] or point == step.hit_point
+            trace.touching[event, point] = touching.is_touching[point]
+            trace.hit[event, point] = touching.is_touching[point] and is_new
+        if step.motion == NONE:
+            return STABLE, event + 1, position, quaternion
+        if step.amount == math.inf:
+            return (ESCAPES if step.motion == TRAVEL else SPINS), event + 1, position, quaternion
+        if was_met(trace, first_event, event, size_m, tolerances.resolution_m):
+            return CYCLING, event + 1, position, quaternion
+    return LIMIT, first_event + rules.event_limit, position, quaternion
+
+
+@entry_kernel
+def stepwise_run(
+    geometry: Geometry,
+    start_position: Vector,
+    start_quaternion: Quaternion,
+    loads: PhaseLoads,
+    rules: StepwiseRules,
+    size_m: float,
+    tolerances: KernelTolerances,
+) -> tuple[Trace, NDArray[np.int64], int, int]:
+    """Run the phases one after the other; return (trace, verdict of each phase, phases run, events).
+
+    Parameters
+    ----------
+    geometry, loads
+        The scene.
+    start_position, start_quaternion
+        Pose of the object at the start: metres, unit quaternion (w, x, y, z).
+    rules, tolerances
+        Numbers of the method and of the kernels.
+    size_m
+        The scene's size, metres.
+
+    A phase that does not end stable is the last one that is run.
+    """
+    n_points = len(geometry.points_world)
+    n_phases = len(loads.is_push)
+    placement = empty_placement(geometry)
+    touching = empty_touching(n_points)
+    trace = empty_trace(n_phases * rules.event_limit, n_points)
+    verdicts = np.empty(n_phases, np.int64)
+    position, quaternion = start_position, start_quaternion
+    n_events = int(np.int64(0))  # a plain 0 would compile `phase_run` twice, once for the literal
+    for phase in range(n_phases):
+        verdicts[phase], n_events, position, quaternion = phase_run(
+            geometry,
+            placement,
+            touching,
+            position,
+            quaternion,
+            loads,
+            phase,
+            rules,
+            size_m,
+            tolerances,
+            trace,
+            n_events,
+        )
+        if verdicts[phase] != STABLE:
+            return trace, verdicts, phase + 1, n_events
+    return trace, verdicts, n_phases, n_events

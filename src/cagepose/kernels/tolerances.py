@@ -1,0 +1,48 @@
+"""Every tolerance of the kernels, with its unit and reason.
+
+Numba freezes module globals into cached code, so kernels take these as an argument.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class KernelTolerances(NamedTuple):
+    """Lengths are metres; whoever builds this scales them by the scene's size.
+
+    Attributes
+    ----------
+    touch_m
+        A cage point within this distance of a face touches it. Set by the user, 1e-9 of the scene's size by default.
+    resolution_m
+        Depths up to this are rounding, not penetration. 1e-12 of the size: a thousand times the rounding of one pose
+        (about 1e-15), a thousand times below the default touch tolerance. Motions end at a gap of exactly zero, so
+        results do not carry this error.
+    rounding_m
+        A point that starts deeper than ``resolution_m`` (a start pose drawn by hand) may not go deeper by more than
+        this. 1e-14 of the size.
+    tie
+        A moment below this fraction of force times distance is zero (rules R1, R2, Slp-1, Slp-2): in a turned frame
+        an exact zero comes out as 1e-17 to 1e-15. No unit.
+    """
+
+    touch_m: float
+    resolution_m: float
+    rounding_m: float
+    tie: float
+
+
+RESOLUTION_OF_SIZE = 1e-12
+ROUNDING_OF_SIZE = 1e-14
+TIE = 1e-9
+
+
+def kernel_tolerances(size_m: float, touch: float) -> KernelTolerances:
+    """Scale the tolerances to a scene of size ``size_m``; ``touch`` is the user's fraction of it."""
+    return KernelTolerances(
+        touch_m=touch * size_m,
+        resolution_m=RESOLUTION_OF_SIZE * size_m,
+        rounding_m=ROUNDING_OF_SIZE * size_m,
+        tie=TIE,
+    )

@@ -1,0 +1,1 @@
+"""The things a scene is made of: frozen, checked once, SI inside."""

@@ -1,0 +1,43 @@
+"""Nouns as the arrays that kernels take."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cagepose.kernels.geometry import Geometry
+from cagepose.nouns.cage import Cage
+from cagepose.nouns.checks import FloatArray
+from cagepose.nouns.parts import Object
+from cagepose.nouns.seams import PlacedBox, seam_bridges
+
+
+def scene_geometry(held: Object, cage: Cage, touch_m: float, origin_world: FloatArray | None = None) -> Geometry:
+    """Return the boxes in the object's frame and the cage points in the world, seen from ``origin_world`` (default: 0).
+
+    Bridges over the seams between flush boxes (within ``touch_m``) come after the object's own boxes.
+    """
+    own = [
+        PlacedBox(box.size_m / 2.0, box.pose_object_box.position_m, box.pose_object_box.rotation) for box in held.boxes
+    ]
+    placed = own + seam_bridges(own, touch_m)
+    points = cage.points_world()
+    return Geometry(
+        half_sizes=np.array([box.half_size for box in placed]),
+        box_positions=np.array([box.position for box in placed]),
+        box_rotations=np.array([box.rotation for box in placed]),
+        n_own_boxes=len(own),
+        points_world=np.ascontiguousarray(points if origin_world is None else points - origin_world),
+    )
+
+
+def scene_size(held: Object, cage: Cage) -> float:
+    """The scene's length scale, metres: the diameter of the object or of the cage, whichever is greater.
+
+    Each is measured as twice the greatest distance from the middle, so the size does not depend on any frame.
+    """
+    corners = np.concatenate([box.corners_object() for box in held.boxes])
+    return 2.0 * max(_radius(corners), _radius(cage.points_cage))
+
+
+def _radius(points: FloatArray) -> float:
+    return float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())

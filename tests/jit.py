@@ -1,0 +1,27 @@
+"""Running kernels from tests, compiled or not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numba
+
+JIT_IS_OFF = bool(numba.config.DISABLE_JIT)
+
+
+def callable_kernel(kernel: Callable[..., Any]) -> Callable[..., Any]:
+    """A kernel that only kernels call has no Python wrapper: give it one."""
+    if JIT_IS_OFF:
+        return kernel
+
+    @numba.njit
+    def call(*arguments):
+        return kernel(*arguments)
+
+    return call
+
+
+def cases(n_compiled: int) -> int:
+    """How many random cases to run: interpreted kernels are a hundred to a thousand times slower."""
+    return max(10, n_compiled // 20) if JIT_IS_OFF else n_compiled
