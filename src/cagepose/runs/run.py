@@ -1,0 +1,221 @@
+"""What happened: `Run`, its phases, events, motions and contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from cagepose.kernels.pose import moved_pose
+from cagepose.nouns.checks import FloatArray, as_vector
+from cagepose.nouns.pose import Pose
+from cagepose.nouns.scene import Scene
+
+MotionKind = Literal["travel", "turn", "screw"]
+Verdict = Literal["stable", "rests", "may rest", "moves", "escapes", "spins", "cycling", "stalled", "limit"]
+
+FAILURES: frozenset[Verdict] = frozenset({"spins", "cycling", "stalled", "limit"})
+"""Verdicts that name a run which did not find an end. None of them is a rest."""
+
+AT_REST: frozenset[Verdict] = frozenset({"stable", "rests", "may rest"})
+"""Verdicts after which the next phase starts."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A travel, a turn or a screw, exactly: the object moves ``distance_m`` along and ``angle_rad`` about one line.
+
+    Attributes
+    ----------
+    kind
+        "travel" (no angle), "turn" (no distance along the axis) or "screw".
+    direction_world
+        Unit vector of a travel, (3,); None for a turn or a screw.
+    axis_world, through_world
+        Unit vector of the axis and a point on it, (3,) each, metres; None for a travel. Turns are right-handed.
+    """
+
+    kind: MotionKind
+    direction_world: FloatArray | None
+    axis_world: FloatArray | None
+    through_world: FloatArray | None
+    distance_m: float
+    angle_rad: float
+
+    def pose_at(self, start: Pose, fraction: float) -> Pose:
+        """Return where an object is that was at ``start``, after ``fraction`` (0 to 1) of the motion."""
+        along = self.direction_world if self.axis_world is None else self.axis_world
+        assert along is not None
+        through = np.zeros(3) if self.through_world is None else self.through_world
+        moved = moved_pose(
+            *start.as_tuples(),
+            as_vector(along),
+            as_vector(through),
+            self.distance_m * fraction,
+            self.angle_rad * fraction,
+        )
+        return Pose(*moved)
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """One cage point on one face at the end of a phase.
+
+    Attributes
+    ----------
+    point, box
+        Names.
+    normal_world
+        Outward unit normal of the face, (3,): from the object towards the point. The contact pushes the object along
+        -n.
+    gap_m
+        Distance from the face, within the touch tolerance; below zero: inside.
+    near_edge
+        The point lies within the touch tolerance of an edge of the face.
+    force_normal_n, force_tangential_n
+        What the contact carries; None where the method does not compute forces.
+    """
+
+    point: str
+    box: str
+    normal_world: FloatArray
+    gap_m: float
+    near_edge: bool
+    force_normal_n: float | None = None
+    force_tangential_n: FloatArray | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Event:
+    """The end of one motion, or a finding without one.
+
+    Attributes
+    ----------
+    rule
+        The rule that chose the motion: "A-1" ... "B-4", "Slp-1", "Slp-2".
+    motion
+        None for a finding without motion (such as "stable" by A-4).
+    hit
+        Names of the points reached by this motion.
+    contacts
+        Names of all points that touch after it.
+    pose_world_object
+        Where the object is after it.
+    tie
+        The rule met a tie: the load has no moment about the axis, so the sense of turning was decided by convention.
+    """
+
+    rule: str
+    motion: Motion | None
+    hit: tuple[str, ...]
+    contacts: tuple[str, ...]
+    pose_world_object: Pose
+    tie: bool
+
+
+@dataclass(frozen=True, eq=False)
+class PhaseRun:
+    """One load from its start to its verdict."""
+
+    name: str
+    verdict: Verdict
+    start_pose: Pose
+    events: tuple[Event, ...]
+    contacts: tuple[Contact, ...]
+
+    @property
+    def pose(self) -> Pose:
+        """The object's pose at the end of the phase."""
+        return self.events[-1].pose_world_object if self.events else self.start_pose
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One picture of a run.
+
+    Attributes
+    ----------
+    phase_index, event_index
+        Where in the run; ``event_index`` is -1 for the start pose.
+    fraction
+        How much of the event's motion is done, above 0 to 1.
+    pose_world_object
+        Where the object is.
+    """
+
+    phase_index: int
+    event_index: int
+    fraction: float
+    pose_world_object: Pose
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """The answer to a scene.
+
+    Attributes
+    ----------
+    scene, method
+        What was asked, and how it was answered.
+    phases
+        One for each load that was run: a phase that does not end at rest stops the run.
+    warnings
+        What a careful reader of the result should know.
+    solve_s
+        Wall time of the compiled run, seconds.
+    """
+
+    scene: Scene
+    method: str
+    phases: tuple[PhaseRun, ...]
+    warnings: tuple[str, ...]
+    solve_s: float
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict of the last phase that was run."""
+        return self.phases[-1].verdict
+
+    @property
+    def failed(self) -> bool:
+        """Whether the run ended without an answer (spins, cycling, stalled, limit)."""
+        return self.verdict in FAILURES
+
+    @property
+    def pose(self) -> Pose:
+        """The object's pose at the end."""
+        return self.phases[-1].pose
+
+    @property
+    def contacts(self) -> tuple[Contact, ...]:
+        """The contacts at the end."""
+        return self.phases[-1].contacts
+
+    @property
+    def center_of_gravity_world(self) -> FloatArray:
+        """The centre of gravity at the end, (3,), metres."""
+        return self.pose.transform(self.scene.object.center_of_gravity_m)
+
+    def frames(self, per_turn: int = 10) -> Iterator[Frame]:
+        """Yield the start pose, then ``per_turn`` pictures of each turn and one of each travel (the paper's steps).
+
+        Raises
+        ------
+        ValueError
+            ``per_turn`` below 1.
+        """
+        if per_turn < 1:
+            raise ValueError(f"per_turn is {per_turn}; give at least 1")
+        yield Frame(0, -1, 1.0, self.phases[0].start_pose)
+        for phase_index, phase in enumerate(self.phases):
+            pose = phase.start_pose
+            for event_index, event in enumerate(phase.events):
+                if event.motion is not None:
+                    n_frames = 1 if event.motion.kind == "travel" else per_turn
+                    for step in range(1, n_frames):
+                        fraction = step / n_frames
+                        yield Frame(phase_index, event_index, fraction, event.motion.pose_at(pose, fraction))
+                    yield Frame(phase_index, event_index, 1.0, event.pose_world_object)
+                pose = event.pose_world_object

@@ -1,0 +1,55 @@
+"""The friendly call: `run`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from cagepose.errors import Problem, SceneError
+from cagepose.kernels.jit import is_compiled
+from cagepose.nouns.scene import Scene
+from cagepose.runs.run import Run
+from cagepose.runs.stepwise import run_stepwise
+
+_SOLVERS: dict[str, tuple[Callable[[Scene], Run], str]] = {"stepwise": (run_stepwise, "stepwise_run")}
+"""For each method what runs it, and the kernel that is compiled for it."""
+
+METHODS = tuple(_SOLVERS)
+DEFAULT_METHOD = "stepwise"
+
+
+def run(scene: Scene, method: str | None = None) -> Run:
+    """Say where the object comes to rest, or how it gets away.
+
+    Parameters
+    ----------
+    scene
+        What to run.
+    method
+        One of `METHODS`; None: the scene's own choice, else "stepwise".
+
+    Raises
+    ------
+    SceneError
+        An unknown method.
+    """
+    solver, _ = _SOLVERS[chosen_method(scene, method)]
+    return solver(scene)
+
+
+def chosen_method(scene: Scene, method: str | None = None) -> str:
+    """Return the name of the method that `run` uses.
+
+    Raises
+    ------
+    SceneError
+        An unknown method.
+    """
+    chosen = method or scene.method or DEFAULT_METHOD
+    if chosen not in _SOLVERS:
+        raise SceneError([Problem(("method",), f"is {chosen!r}; known methods: {', '.join(METHODS)}")])
+    return chosen
+
+
+def kernels_are_compiled(method: str = DEFAULT_METHOD) -> bool:
+    """Whether the machine code of a method lies on disk already, so that the first run starts at once."""
+    return is_compiled(_SOLVERS[method][1])

@@ -1,0 +1,168 @@
+"""The stepwise method as seen from a scene: cast, call the compiled state machine, name what it did."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+
+from cagepose.kernels.contacts import contact_rows
+from cagepose.kernels.geometry import Geometry
+from cagepose.kernels.jit import is_loaded
+from cagepose.kernels.slip import SlipRules
+from cagepose.kernels.stepwise import RULE_NAMES, PhaseLoads, StepwiseRules, stepwise_run
+from cagepose.kernels.support import SupportRules
+from cagepose.kernels.tolerances import kernel_tolerances
+from cagepose.kernels.trace import MOTION_NAMES, NONE, TRAVEL, VERDICT_NAMES, Trace
+from cagepose.kernels.turn import key_of_angle
+from cagepose.nouns.checks import FloatArray, as_vector
+from cagepose.nouns.geometry import scene_geometry
+from cagepose.nouns.pose import Pose
+from cagepose.nouns.scene import Scene
+from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run, Verdict
+
+NO_SLIP_ANGLE_DEFAULT_RAD = 0.1
+"""The paper's threshold, from the friction of metal on metal."""
+BLOCKED_ANGLE_RAD = math.pi / 10000.0
+"""A turn that ends within 0.018 deg is blocked (R3)."""
+LEAST_MOMENT = 1e-3
+"""Least moment, as a fraction of force times distance, that drives a turn (R3)."""
+EQUAL_DISTANCE_OF_SIZE = 1e-6
+"""Distances closer than this fraction of the scene's size are equal (R3, R6)."""
+PARALLEL_SINE = 1e-6
+"""Normals closer than this angle (radians) are one direction."""
+EVENT_LIMIT = 200
+"""Events in a phase after which a run is named "limit". The rail takes 8; of 20,000 random scenes none needs 100."""
+SMALL_POSE_RAD = math.radians(45.0)
+"""Assumption E of the paper: the method is meant for smaller angles per axis (R11)."""
+
+
+def run_stepwise(scene: Scene) -> Run:
+    """Run a scene by the paper's rules (docs/theory)."""
+    origin = scene.cage.points_world().mean(axis=0)  # so that a cage far from the world's origin loses no digits
+    geometry = scene_geometry(scene.object, scene.cage, scene.touch_m, origin)
+    position, quaternion = scene.object.pose_world_object.as_tuples()
+    start = (position[0] - origin[0], position[1] - origin[1], position[2] - origin[2])
+    loads, rules = _phase_loads(scene), _rules(scene)
+    tolerances = kernel_tolerances(scene.size_m, scene.tolerances.touch)
+    arguments = (geometry, start, quaternion, loads, rules, scene.size_m, tolerances)
+    if not is_loaded(stepwise_run):
+        stepwise_run(*arguments)  # so that the time measured is that of the run
+    began = time.perf_counter()
+    trace, verdicts, n_phases, n_events = stepwise_run(*arguments)
+    solve_s = time.perf_counter() - began
+
+    phases: list[PhaseRun] = []
+    pose = scene.object.pose_world_object
+    for phase in range(n_phases):
+        events = tuple(_event(scene, trace, event, origin) for event in range(n_events) if trace.phases[event] == phase)
+        contacts = _contacts(scene, geometry, events[-1].pose_world_object, origin)
+        verdict: Verdict = VERDICT_NAMES[verdicts[phase]]
+        phases.append(PhaseRun(scene.loads[phase].name, verdict, pose, events, contacts))
+        pose = events[-1].pose_world_object
+    return Run(scene, "stepwise", tuple(phases), tuple(_warnings(scene, phases)), solve_s)
+
+
+def _rules(scene: Scene) -> StepwiseRules:
+    friction = scene.friction_coefficient
+    equal_distance_m = EQUAL_DISTANCE_OF_SIZE * scene.size_m
+    return StepwiseRules(
+        SupportRules(LEAST_MOMENT, key_of_angle(BLOCKED_ANGLE_RAD), equal_distance_m),
+        SlipRules(
+            NO_SLIP_ANGLE_DEFAULT_RAD if friction is None else math.atan(friction),
+            math.pi / 2.0 + scene.tolerances.grazing_band_rad,
+            PARALLEL_SINE,
+            equal_distance_m,
+        ),
+        EVENT_LIMIT,
+    )
+
+
+def _phase_loads(scene: Scene) -> PhaseLoads:
+    """Gravity acts at the centre of gravity; beside a force it is ignored (R8b)."""
+    directions, points = [], []
+    for load in scene.loads:
+        if load.force is not None:
+            directions.append(load.force.direction_world)
+            points.append(load.force.at_object_m)
+        else:
+            assert load.gravity_world is not None
+            directions.append(load.gravity_world / np.linalg.norm(load.gravity_world))
+            points.append(scene.object.center_of_gravity_m)
+    return PhaseLoads(
+        np.array(directions), np.array(points), np.array([load.force is not None for load in scene.loads])
+    )
+
+
+def _event(scene: Scene, trace: Trace, event: int, origin: FloatArray) -> Event:
+    return Event(
+        rule=RULE_NAMES[trace.rules[event]],
+        motion=_motion(trace, event, origin),
+        hit=_names(scene, trace.hit[event]),
+        contacts=_names(scene, trace.touching[event]),
+        pose_world_object=Pose(trace.positions[event] + origin, trace.quaternions[event]),
+        tie=bool(trace.ties[event]),
+    )
+
+
+def _motion(trace: Trace, event: int, origin: FloatArray) -> Motion | None:
+    code = trace.motions[event]
+    if code == NONE:
+        return None
+    is_travel = code == TRAVEL
+    return Motion(
+        kind=MOTION_NAMES[code],
+        direction_world=trace.along[event].copy() if is_travel else None,
+        axis_world=None if is_travel else trace.along[event].copy(),
+        through_world=None if is_travel else trace.through[event] + origin,
+        distance_m=float(trace.distances[event]),
+        angle_rad=float(trace.angles[event]),
+    )
+
+
+def _names(scene: Scene, chosen: np.ndarray) -> tuple[str, ...]:
+    return tuple(scene.cage.names[index] for index in np.nonzero(chosen)[0])
+
+
+def _contacts(scene: Scene, geometry: Geometry, pose: Pose, origin: FloatArray) -> tuple[Contact, ...]:
+    rows = contact_rows(geometry, as_vector(pose.position_m - origin), pose.as_tuples()[1], scene.touch_m)
+    return tuple(
+        Contact(
+            point=scene.cage.names[rows.points[i]],
+            box=str(scene.object.boxes[rows.boxes[i]].name),
+            normal_world=rows.normals_world[i].copy(),
+            gap_m=float(rows.gaps[i]),
+            near_edge=bool(rows.near_edge[i]),
+        )
+        for i in range(len(rows.points))
+    )
+
+
+def _warnings(scene: Scene, phases: list[PhaseRun]) -> list[str]:
+    """What a careful reader should know: ties, conventions, poses beyond the method's range, contacts on edges."""
+    warnings = []
+    largest = 0.0
+    start = scene.object.pose_world_object.inverse()
+    for phase, load in zip(phases, scene.loads, strict=False):
+        if load.force is not None and load.gravity_world is not None:
+            warnings.append(f"{phase.name}: gravity is ignored beside a force (the paper's assumption C)")
+        for number, event in enumerate(phase.events, start=1):
+            largest = max(largest, *(abs(angle) for angle in (start @ event.pose_world_object).euler_zyx))
+            if event.tie:
+                warnings.append(
+                    f"{phase.name}, event {number} ({event.rule}): tie: the load has no moment about the axis through"
+                    " the two contacts, so the sense of turning was decided by convention (R2)"
+                )
+        if phase.verdict == "stable" and len(phase.events[-1].contacts) < 3:
+            names = " and ".join(phase.events[-1].contacts)
+            warnings.append(f"{phase.name}: balanced on {names} alone; the least disturbance may move it")
+        edges = sorted({contact.point for contact in phase.contacts if contact.near_edge})
+        if edges:
+            warnings.append(f"{phase.name}: {', '.join(edges)} within the touch tolerance of a face's edge")
+    if largest > SMALL_POSE_RAD:
+        warnings.append(
+            f"turned by {math.degrees(largest):.1f} deg about one axis from the start; the paper's rules are meant for"
+            " at most 45 deg (assumption E)"
+        )
+    return warnings

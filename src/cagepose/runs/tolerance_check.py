@@ -1,0 +1,45 @@
+"""Does the verdict hang on the touch tolerance? Run again with a ten times larger and a ten times smaller one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from cagepose.errors import SceneError
+from cagepose.nouns.scene import Scene
+from cagepose.nouns.tolerances import TOUCH_GREATEST, TOUCH_LEAST
+from cagepose.runs import solve
+from cagepose.runs.run import Run
+
+FACTORS = (10.0, 0.1)
+
+
+def verdict_changes(checked: Run) -> tuple[str, ...]:
+    """Return a warning for each of the two tolerances that gives another verdict than ``checked`` has; none is good."""
+    touch = checked.scene.tolerances.touch
+    warnings = []
+    for factor in FACTORS:
+        other = min(max(touch * factor, TOUCH_LEAST), TOUCH_GREATEST)
+        try:
+            found = f"the verdict is {solve.run(_with_touch(checked.scene, other), checked.method).verdict!r}"
+        except SceneError as error:
+            found = f"the scene cannot be run ({error.problems[0]})"
+        if found != f"the verdict is {checked.verdict!r}":
+            warnings.append(
+                f"with a touch tolerance of {other:g} instead of {touch:g} {found}, not {checked.verdict!r};"
+                " do not rely on it: look for a point that only just touches"
+            )
+    return tuple(warnings)
+
+
+def _with_touch(scene: Scene, touch: float) -> Scene:
+    return Scene(
+        scene.object,
+        scene.cage,
+        scene.loads,
+        name=scene.name,
+        friction_coefficient=scene.friction_coefficient,
+        method=scene.method,
+        metric=scene.metric,
+        tolerances=replace(scene.tolerances, touch=touch),
+        adjustable=scene.adjustable,
+    )
