@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
@@ -31,6 +32,8 @@ class Motion:
     ----------
     kind
         "travel" (no angle), "turn" (no distance along the axis) or "screw".
+    distance_m, angle_rad
+        How far; a travel that meets nothing has an infinite distance (the object escapes).
     direction_world
         Unit vector of a travel, (3,); None for a turn or a screw.
     axis_world, through_world
@@ -45,7 +48,15 @@ class Motion:
     angle_rad: float
 
     def pose_at(self, start: Pose, fraction: float) -> Pose:
-        """Return where an object is that was at ``start``, after ``fraction`` (0 to 1) of the motion."""
+        """Return where an object is that was at ``start``, after ``fraction`` (0 to 1) of the motion.
+
+        Raises
+        ------
+        ValueError
+            A travel without end (the object escapes) has no fractions.
+        """
+        if math.isinf(self.distance_m):
+            raise ValueError("this travel has no end, so there is no pose at a fraction of it")
         along = self.direction_world if self.axis_world is None else self.axis_world
         assert along is not None
         through = np.zeros(3) if self.through_world is None else self.through_world

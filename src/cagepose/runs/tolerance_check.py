@@ -20,14 +20,17 @@ def verdict_changes(checked: Run) -> tuple[str, ...]:
     for factor in FACTORS:
         other = min(max(touch * factor, TOUCH_LEAST), TOUCH_GREATEST)
         try:
-            found = f"the verdict is {solve.run(_with_touch(checked.scene, other), checked.method).verdict!r}"
+            verdict = solve.run(_with_touch(checked.scene, other), checked.method).verdict
         except SceneError as error:
             found = f"the scene cannot be run ({error.problems[0]})"
-        if found != f"the verdict is {checked.verdict!r}":
-            warnings.append(
-                f"with a touch tolerance of {other:g} instead of {touch:g} {found}, not {checked.verdict!r};"
-                " do not rely on it: look for a point that only just touches"
-            )
+        else:
+            if verdict == checked.verdict:
+                continue
+            found = f"the verdict is {verdict}"
+        warnings.append(
+            f"with a touch tolerance of {other:g} instead of {touch:g} {found}, not {checked.verdict};"
+            " do not rely on it: look for a point that only just touches"
+        )
     return tuple(warnings)
 
 

@@ -1,0 +1,109 @@
+"""Where a loosely held part comes to rest, through which contacts, and why.
+
+    import cagepose
+    run = cagepose.run(cagepose.load_scene("scene.yaml"))
+    print(run.verdict, run.pose.position_m)
+
+Everything is in SI units and radians; scene files and ``--json`` documents have their own units. Names are loaded when
+they are first used, so that ``cagepose --help`` need not wait for Numba.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from cagepose.errors import CageposeError as CageposeError
+    from cagepose.errors import Problem as Problem
+    from cagepose.errors import RunFileError as RunFileError
+    from cagepose.errors import SceneError as SceneError
+    from cagepose.errors import SceneFileError as SceneFileError
+    from cagepose.files.run_file import load_run as load_run
+    from cagepose.files.run_file import save_run as save_run
+    from cagepose.files.scene_file import load_scene as load_scene
+    from cagepose.nouns.cage import Cage as Cage
+    from cagepose.nouns.load import Force as Force
+    from cagepose.nouns.load import Load as Load
+    from cagepose.nouns.parts import Box as Box
+    from cagepose.nouns.parts import Object as Object
+    from cagepose.nouns.pose import Pose as Pose
+    from cagepose.nouns.scene import Adjustable as Adjustable
+    from cagepose.nouns.scene import Scene as Scene
+    from cagepose.nouns.tolerances import Tolerances as Tolerances
+    from cagepose.runs.run import Contact as Contact
+    from cagepose.runs.run import Event as Event
+    from cagepose.runs.run import Frame as Frame
+    from cagepose.runs.run import Motion as Motion
+    from cagepose.runs.run import PhaseRun as PhaseRun
+    from cagepose.runs.run import Run as Run
+    from cagepose.runs.solve import run as run
+
+    __version__: str
+
+_HOMES = {
+    "cagepose.errors": ("CageposeError", "Problem", "RunFileError", "SceneError", "SceneFileError"),
+    "cagepose.nouns.cage": ("Cage",),
+    "cagepose.nouns.load": ("Force", "Load"),
+    "cagepose.nouns.parts": ("Box", "Object"),
+    "cagepose.nouns.pose": ("Pose",),
+    "cagepose.nouns.scene": ("Adjustable", "Scene"),
+    "cagepose.nouns.tolerances": ("Tolerances",),
+    "cagepose.runs.run": ("Contact", "Event", "Frame", "Motion", "PhaseRun", "Run"),
+    "cagepose.runs.solve": ("run",),
+    "cagepose.files.run_file": ("load_run", "save_run"),
+    "cagepose.files.scene_file": ("load_scene",),
+}
+_HOME = {name: module for module, names in _HOMES.items() for name in names}
+
+__all__ = [
+    "Adjustable",
+    "Box",
+    "Cage",
+    "CageposeError",
+    "Contact",
+    "Event",
+    "Force",
+    "Frame",
+    "Load",
+    "Motion",
+    "Object",
+    "PhaseRun",
+    "Pose",
+    "Problem",
+    "Run",
+    "RunFileError",
+    "Scene",
+    "SceneError",
+    "SceneFileError",
+    "Tolerances",
+    "__version__",
+    "load_run",
+    "load_scene",
+    "run",
+    "save_run",
+]
+
+
+def __getattr__(name: str) -> object:
+    if name == "__version__":
+        value: object = _version()
+    elif name in _HOME:
+        value = getattr(import_module(_HOME[name]), name)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version  # 20 ms, needed by --version alone
+
+    try:
+        return version("cagepose")
+    except PackageNotFoundError:  # run from a source tree that was never installed
+        return "0+unknown"

@@ -1,0 +1,119 @@
+"""The command ``cagepose``: which commands there are, and what becomes of an error.
+
+Exit codes: 0 a verdict was reached, 1 the run failed by name, 2 bad input, 3 a bug of ours.
+The overview is printed without loading any command, and each command loads only what it needs.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from cyclopts import CycloptsError
+
+BAD_INPUT = 2
+BUG = 3
+INTERRUPTED = 130  # 128 + SIGINT, as shells have it
+BROKEN_PIPE = 141  # 128 + SIGPIPE
+
+PURPOSE = "Where a loosely held part comes to rest in its cage of points, through which contacts, and why."
+COMMANDS = {
+    "run": ("cagepose.cli.run_command:run_command", "Run a scene: events, final pose, verdict."),
+    "check": ("cagepose.cli.check_command:check_command", "Check a scene file without running it."),
+    "schema": ("cagepose.cli.schema_command:schema_command", "Print the JSON Schema of scene files, for editors."),
+    "init": ("cagepose.cli.init_command:init_command", "Write a commented scene to start from."),
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code; ``arguments`` are those of the process if left out."""
+    tokens = list(sys.argv[1:] if arguments is None else arguments)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # a name that the terminal cannot show is no reason to stop
+    try:
+        code = _dispatch(tokens)
+        sys.stdout.flush()
+        return code
+    except KeyboardInterrupt:
+        sys.stderr.write("cagepose: stopped\n")
+        return INTERRUPTED
+    except BrokenPipeError:
+        # Whoever read our output has left. Python would complain once more when it closes the pipe at its end.
+        with contextlib.suppress(OSError, ValueError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return BROKEN_PIPE
+    except Exception:
+        import traceback  # 10 ms that only this branch needs
+
+        traceback.print_exc()
+        sys.stderr.write("cagepose: this is a bug of ours; please report it with the lines above and the scene file\n")
+        return BUG
+
+
+def _dispatch(tokens: list[str]) -> int:
+    if tokens in ([], ["-h"], ["--help"]):
+        sys.stdout.write(overview())
+        return 0
+    if tokens == ["--version"]:
+        from cagepose import __version__
+
+        sys.stdout.write(f"cagepose {__version__}\n")
+        return 0
+
+    from cyclopts import App, CycloptsError
+
+    from cagepose.errors import CageposeError
+
+    app = App(
+        name="cagepose",
+        help=PURPOSE,
+        version_flags=[],
+        help_format="plaintext",  # our help texts need no Markdown parser, which costs 0.05 s
+        suppress_keyboard_interrupt=False,
+    )
+    for name, (home, summary) in COMMANDS.items():
+        app.command(home, name=name, help=summary)
+    try:
+        code = app(tokens, exit_on_error=False, print_error=False, result_action="return_value")
+    except CycloptsError as error:
+        help_command = f"cagepose {tokens[0]} --help" if tokens[0] in COMMANDS else "cagepose --help"
+        sys.stderr.write(f"cagepose: {_usage_message(error)} See: {help_command}\n")
+        return BAD_INPUT
+    except CageposeError as error:
+        sys.stderr.write(f"{error}\n")
+        return BAD_INPUT
+    return int(code or 0)  # help returns None
+
+
+def _usage_message(error: CycloptsError) -> str:
+    from cyclopts import UnusedCliTokensError
+
+    if isinstance(error, UnusedCliTokensError):
+        return f"too many arguments: {' '.join(error.unused_tokens or [])}; each change needs its own --set."
+    return " ".join(str(error).split())
+
+
+def overview() -> str:
+    """Return what ``cagepose --help`` prints."""
+    width = max(len(name) for name in (*COMMANDS, "--version"))
+    lines = [f"  {name:{width}}  {summary}" for name, (_, summary) in COMMANDS.items()]
+    return "\n".join(
+        (
+            "Usage: cagepose COMMAND",
+            "",
+            PURPOSE,
+            "",
+            "Commands:",
+            *lines,
+            f"  {'--version':{width}}  Print the version.",
+            f"  {'--help':{width}}  Print this, or the help of a command: cagepose run --help",
+            "",
+            "Begin with: cagepose init myscene, then cagepose run myscene.yaml",
+            "",
+        )
+    )

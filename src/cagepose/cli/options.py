@@ -1,0 +1,19 @@
+"""Flags that several commands share."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from cyclopts import Parameter
+
+SceneArgument = Annotated[str, Parameter(help="Scene file (YAML or JSON).")]
+SetOption = Annotated[
+    tuple[str, ...],
+    Parameter(
+        name="--set",
+        negative="",
+        show_default=False,
+        help="Change one value: key.path=value, such as object.boxes[0].size[2]=12. May be given again.",
+    ),
+]
+Switch = Parameter(negative="", show_default=False)

@@ -1,0 +1,132 @@
+"""A run as text: a table of events, then pose, contacts, warnings and verdict."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Iterable, Sequence
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from cagepose.errors import printable
+from cagepose.files.units import LengthUnit, from_metres
+from cagepose.runs.run import AT_REST, FAILURES, Event, Motion, Run
+
+PIPED_WIDTH = 100_000
+"""Columns when nobody looks at a screen: nothing wraps, nothing is cut; tables still take only what they need."""
+
+
+def print_report(run: Run, unit: LengthUnit, notes: Sequence[str] = ()) -> None:
+    """Print ``run`` to standard output, lengths in ``unit``; ``notes`` stand below the warnings."""
+    on_screen = sys.stdout.isatty()
+    console = Console(
+        file=sys.stdout,
+        width=None if on_screen else PIPED_WIDTH,
+        force_terminal=on_screen,
+        highlight=False,
+        markup=False,
+        emoji=False,
+    )
+    writer = _Writer(run, unit)
+    with console.capture() as captured:
+        console.print(writer.title(), "", writer.events(), "", writer.summary(), sep="\n")
+        for warning in run.warnings:
+            console.print(Text(f"warning: {printable(warning)}", style="yellow"))
+        for note in notes:
+            console.print(Text(note))
+    text = captured.get()
+    sys.stdout.write(text if on_screen else "".join(f"{line.rstrip()}\n" for line in text.splitlines()))
+
+
+class _Writer:
+    def __init__(self, run: Run, unit: LengthUnit) -> None:
+        self.run = run
+        self.unit: LengthUnit = unit
+        self.noise = 1e-12 * float(from_metres(run.scene.size_m, unit))  # lengths below are rounding, shown as 0
+
+    def title(self) -> Text:
+        solve_ms = self.run.solve_s * 1000.0
+        title = Text(f"{self.run.scene.name}: ")
+        title.append(self.run.verdict, style=_style(self.run.verdict))
+        return title.append(f"  ({self.run.method}, {solve_ms:.3g} ms)")
+
+    def events(self) -> Table:
+        table = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
+        for heading in ("#", "phase", "rule", "motion", "along / about", "amount", "hit", "contacts"):
+            is_number = heading in ("#", "amount")
+            table.add_column(heading, justify="right" if is_number else "left", no_wrap=is_number, overflow="fold")
+        number = 0
+        for phase in self.run.phases:
+            for event in phase.events:
+                number += 1
+                last = event is phase.events[-1]
+                table.add_row(*self._event_row(number, phase.name, event, phase.verdict if last else None))
+            table.add_section()
+        return table
+
+    def _event_row(self, number: int, phase: str, event: Event, verdict: str | None) -> list[Text]:
+        if event.motion is None:
+            motion = Text(verdict or "-", style=_style(verdict) if verdict else "")
+            along = amount = ""
+        else:
+            motion, along, amount = Text(event.motion.kind), _line(event.motion), self._amount(event.motion)
+        cells = (along, amount, " ".join(event.hit), " ".join(event.contacts))
+        return [Text(str(number)), Text(phase), Text(event.rule), motion, *(Text(cell) for cell in cells)]
+
+    def summary(self) -> Table:
+        run = self.run
+        table = Table.grid(padding=(0, 2))
+        angles = ", ".join(_short(math.degrees(angle), 6, 1e-10) for angle in run.pose.euler_zyx)
+        for name, value in (
+            ("position", f"({self._lengths(run.pose.position_m)}) {self.unit}"),
+            ("yaw, pitch, roll", f"({angles}) deg"),
+            ("centre of gravity", f"({self._lengths(run.center_of_gravity_world)}) {self.unit}"),
+            ("contacts", ", ".join(_contact_texts(run)) or "none"),
+            ("verdict", _verdicts(run)),
+        ):
+            table.add_row(Text(name), Text(value, overflow="fold"))
+        return table
+
+    def _amount(self, motion: Motion) -> str:
+        angle = f"{_short(math.degrees(motion.angle_rad), 6, 1e-10)} deg"
+        if motion.kind == "turn":
+            return angle
+        if not math.isfinite(motion.distance_m):
+            return "without end"
+        distance = f"{self._lengths([motion.distance_m])} {self.unit}"
+        return distance if motion.kind == "travel" else f"{distance}, {angle}"
+
+    def _lengths(self, lengths_m: Iterable[float]) -> str:
+        return ", ".join(_short(float(from_metres(length, self.unit)), 6, self.noise) for length in lengths_m)
+
+
+def _line(motion: Motion) -> str:
+    along = motion.direction_world if motion.axis_world is None else motion.axis_world
+    return "" if along is None else f"({', '.join(_short(value, 4, 5e-5) for value in along.tolist())})"
+
+
+def _short(value: float, digits: int, noise: float) -> str:
+    return "0" if abs(value) < noise else f"{value:.{digits}g}"
+
+
+def _contact_texts(run: Run) -> list[str]:
+    """``pin1 and pin2 on plate``: the points of each box, in the order of the contacts."""
+    points: dict[str, list[str]] = {}
+    for contact in run.contacts:
+        names = points.setdefault(contact.box, [])
+        if contact.point not in names:  # a point on an edge touches two faces
+            names.append(contact.point)
+    return [f"{' '.join(names)} on {box}" for box, names in points.items()]
+
+
+def _verdicts(run: Run) -> str:
+    return ", ".join(f"{phase.name}: {phase.verdict}" for phase in run.phases)
+
+
+def _style(verdict: str) -> str:
+    if verdict in AT_REST:
+        return "bold green"
+    return "bold red" if verdict in FAILURES else "bold yellow"

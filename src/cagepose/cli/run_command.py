@@ -1,0 +1,108 @@
+"""``cagepose run``: run a scene and print what happened."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from cagepose.cli.options import SceneArgument, SetOption, Switch
+
+if TYPE_CHECKING:
+    from cagepose.files.scene_file import SceneFile
+
+FIRST_RUN = "cagepose: compiling the kernels for the first time on this machine; about half a minute, only once\n"
+EVERY_RUN = (
+    "cagepose: compiling the kernels, about half a minute, at each start: no folder for machine code can be written;"
+    " let NUMBA_CACHE_DIR name one that can\n"
+)
+
+
+def run_command(
+    scene: SceneArgument,
+    /,
+    *,
+    method: Annotated[str | None, Parameter(help="How to run the scene; left out: as the scene says.")] = None,
+    set_values: SetOption = (),
+    json: Annotated[bool, Switch, Parameter(help="Print one JSON document instead of the table.")] = False,
+    out: Annotated[str | None, Parameter(help="Save the run to this file, every number exactly.")] = None,
+    check_tolerance: Annotated[
+        bool, Switch, Parameter(help="Run again with other touch tolerances and warn if the verdict changes.")
+    ] = False,
+) -> int:
+    """Print the events, the final pose and the verdict; return the exit code."""
+    scene_file = _read(scene, set_values, method, out)
+    if scene_file is None:
+        return 2
+
+    from dataclasses import replace
+
+    from cagepose.kernels.jit import CACHE_FOLDER
+    from cagepose.runs.solve import chosen_method, kernels_are_compiled, run
+    from cagepose.runs.tolerance_check import verdict_changes
+
+    if not kernels_are_compiled(chosen_method(scene_file.scene, method)):
+        sys.stderr.write(EVERY_RUN if CACHE_FOLDER is None else FIRST_RUN)
+        sys.stderr.flush()
+    result = run(scene_file.scene, method)
+    notes = []
+    if check_tolerance:
+        changes = verdict_changes(result)
+        result = replace(result, warnings=(*result.warnings, *changes))
+        if not changes:
+            notes.append("same verdict with a ten times larger and a ten times smaller touch tolerance")
+    code = 1 if result.failed else 0
+    if out is not None:
+        from cagepose.files.run_file import save_run
+
+        try:
+            save_run(result, out, scene_file.length_unit)
+        except OSError as error:
+            sys.stderr.write(_cannot_write(out, error))
+            code = 2
+    if json:
+        from json import dumps
+
+        from cagepose.files.document import run_document
+
+        sys.stdout.write(dumps(run_document(result, scene_file.length_unit), indent=1, allow_nan=False) + "\n")
+    else:
+        from cagepose.cli.report import print_report
+
+        print_report(result, scene_file.length_unit, notes)
+    return code
+
+
+def _read(scene: str, set_values: tuple[str, ...], method: str | None, out: str | None) -> SceneFile | None:
+    """Check all that the user gave before anything runs; problems of every argument are printed at once."""
+    from os.path import realpath
+
+    from cagepose.errors import SceneFileError, printable
+    from cagepose.files.run_file import check_can_save
+    from cagepose.files.scene_file import read_scene_file
+    from cagepose.runs.solve import METHODS
+
+    problems = []
+    scene_file = None
+    try:
+        scene_file = read_scene_file(scene, set_values)
+    except SceneFileError as error:
+        problems.append(f"{error}\n")
+    if method is not None and method not in METHODS:
+        problems.append(printable(f"--method {method}: is no known method; use one of: {', '.join(METHODS)}") + "\n")
+    if out is not None:
+        try:
+            check_can_save(out)
+            if scene_file is not None and realpath(out) == realpath(scene):
+                raise OSError("is the scene file itself; name another")
+        except OSError as error:
+            problems.append(_cannot_write(out, error))
+    sys.stderr.write("".join(problems))
+    return None if problems else scene_file
+
+
+def _cannot_write(out: str, error: OSError) -> str:
+    from cagepose.errors import printable
+
+    return printable(f"--out {out}: {error.strerror or error}") + "\n"

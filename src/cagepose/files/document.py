@@ -1,0 +1,102 @@
+"""A `Run` as the document of ``--json``: lengths in the scene's unit, angles in degrees, null for what is unknown."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from cagepose.files.units import LengthUnit, from_metres
+from cagepose.nouns.checks import FloatArray
+from cagepose.nouns.pose import Pose
+from cagepose.nouns.scene import Scene
+from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
+
+FORMAT_VERSION = 1
+"""Of the document and of saved runs. Counts up when a reader of the old form would misread the new one."""
+
+
+def run_document(run: Run, length_unit: LengthUnit = "mm") -> dict[str, Any]:
+    """Return the document: only dict, list, str, int, finite float, bool and None."""
+    writer = _Writer(run.scene, length_unit)
+    return {
+        "version": FORMAT_VERSION,
+        "scene": run.scene.name,
+        "units": {"length": length_unit},
+        "method": run.method,
+        "verdict": run.verdict,
+        "warnings": list(run.warnings),
+        "pose": writer.pose(run.pose),
+        "phases": [writer.phase(phase) for phase in run.phases],
+        "timing_s": {"solve": run.solve_s},
+    }
+
+
+class _Writer:
+    def __init__(self, scene: Scene, unit: LengthUnit) -> None:
+        self.scene = scene
+        self.unit: LengthUnit = unit
+
+    def pose(self, pose: Pose) -> dict[str, Any]:
+        return {
+            "position": self._lengths(pose.position_m),
+            "euler_zyx_deg": [_plain(math.degrees(angle)) for angle in pose.euler_zyx],
+            "quat_wxyz": _numbers(pose.quaternion_wxyz),
+            "center_of_gravity": self._lengths(pose.transform(self.scene.object.center_of_gravity_m)),
+        }
+
+    def phase(self, phase: PhaseRun) -> dict[str, Any]:
+        return {
+            "name": phase.name,
+            "verdict": phase.verdict,
+            "pose": self.pose(phase.pose),
+            "events": [self._event(event) for event in phase.events],
+            "contacts": [self._contact(contact) for contact in phase.contacts],
+            "proof": None,
+        }
+
+    def _event(self, event: Event) -> dict[str, Any]:
+        motion = event.motion
+        return {
+            "rule": event.rule,
+            "motion": None if motion is None else motion.kind,
+            "direction": None if motion is None else _vector_or_none(motion.direction_world),
+            "axis": None if motion is None else _vector_or_none(motion.axis_world),
+            "through": None if motion is None or motion.through_world is None else self._lengths(motion.through_world),
+            "distance": 0.0 if motion is None else self._distance(motion),
+            "angle_deg": 0.0 if motion is None else _plain(math.degrees(motion.angle_rad)),
+            "hit": list(event.hit),
+            "contacts": list(event.contacts),
+            "pose": self.pose(event.pose_world_object),
+        }
+
+    def _distance(self, motion: Motion) -> float | None:
+        """None for a travel without end (an escape): JSON has no infinite number."""
+        return self._length(motion.distance_m) if math.isfinite(motion.distance_m) else None
+
+    def _contact(self, contact: Contact) -> dict[str, Any]:
+        return {
+            "point": contact.point,
+            "box": contact.box,
+            "normal": _numbers(contact.normal_world),
+            "gap": self._length(contact.gap_m),
+            "force_normal": contact.force_normal_n,
+            "force_tangential": _vector_or_none(contact.force_tangential_n),
+        }
+
+    def _length(self, length_m: float) -> float:
+        return _plain(float(from_metres(length_m, self.unit)))
+
+    def _lengths(self, lengths_m: FloatArray) -> list[float]:
+        return _numbers(from_metres(lengths_m, self.unit))
+
+
+def _plain(value: float) -> float:
+    return float(value) + 0.0  # -0.0 becomes 0.0
+
+
+def _numbers(values: FloatArray) -> list[float]:
+    return [_plain(value) for value in values]
+
+
+def _vector_or_none(values: FloatArray | None) -> list[float] | None:
+    return None if values is None else _numbers(values)

@@ -1,0 +1,182 @@
+"""What pydantic found, in the words of whoever wrote the file: what stands there, and what to do about it."""
+
+from __future__ import annotations
+
+import difflib
+import json
+from collections.abc import Iterator
+from functools import cache
+from typing import Any, NamedTuple
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from cagepose.errors import Key, Problem
+from cagepose.files.key_path import Path, value_at
+from cagepose.files.schema import scene_json_schema
+
+_WANTED = {
+    "float_type": "a number",
+    "string_type": "text (in quotes if it looks like a number)",
+    "list_type": "a list in brackets",
+    "dict_type": "keys with values",
+    "model_type": "keys with values",
+    "union_tag_not_found": "a list of [x, y, z], a NAME: [x, y, z] for each point, or file: points.csv",
+}
+_LIMITS = {
+    "greater_than": ("gt", "above {}"),
+    "greater_than_equal": ("ge", "from {} upwards"),
+    "less_than": ("lt", "below {}"),
+    "less_than_equal": ("le", "up to {}"),
+}
+_SHOWN_LENGTH = 40
+
+
+class Finding(NamedTuple):
+    """A problem, and whether it is about the key itself and not about its value."""
+
+    problem: Problem
+    about_key: bool
+
+
+def schema_findings(error: ValidationError, data: object) -> list[Finding]:
+    """Turn all that pydantic found in ``data`` into problems."""
+    findings = []
+    for details in error.errors(include_url=False):
+        path = _file_path(details["loc"])
+        findings.append(Finding(Problem(path, _message(details, path, data)), details["type"] == "extra_forbidden"))
+    return findings
+
+
+def shown(value: object) -> str:
+    """Name a value the way a reader of the file would.
+
+    >>> shown(True), shown("ten"), shown([1, 2]), shown(None)
+    ('true', "text 'ten'", 'a list', 'empty')
+    """
+    match value:
+        case None:
+            return "empty"
+        case bool():
+            return "true" if value else "false"
+        case int() | float():
+            return _number(value)
+        case str():
+            return f"text {_cut(value)!r}"
+        case list():
+            return "a list"
+        case _:
+            return "keys with values"
+
+
+def _file_path(location: tuple[Key, ...]) -> Path:
+    """Pydantic's location without what it adds: the form of the points, and a mark for keys."""
+    if location[:2] == ("cage", "points"):
+        location = location[:2] + location[3:]
+    return location[:-1] if location[-1:] == ("[key]",) else location
+
+
+def _message(details: ErrorDetails, path: Path, data: object) -> str:
+    kind, found, context = details["type"], details["input"], details.get("ctx", {})
+    if kind == "cagepose":
+        return str(context["message"])
+    if kind == "missing":
+        return f"is missing; add it{_example(path, data)}"
+    if kind == "extra_forbidden":
+        return _unknown_key(str(path[-1]), _known_keys(path[:-1], data))
+    if kind in _WANTED:
+        return f"is {shown(found)}; give {_WANTED[kind]}"
+    if kind in _LIMITS:
+        name, text = _LIMITS[kind]
+        return f"is {shown(found)}; give a number {text.format(_number(context[name]))}"
+    if kind == "finite_number":
+        return f"is {shown(found)}; give a finite number"
+    if kind == "literal_error":
+        return _choice(found, context["expected"])
+    if kind in ("too_short", "too_long"):
+        return _length_message(found, context)
+    if kind in ("string_too_short", "string_too_long"):
+        limit = context.get("min_length", context.get("max_length"))
+        return f"has {len(str(found))} characters; give {'at least' if 'min_length' in context else 'at most'} {limit}"
+    return f"is {shown(found)}: {details['msg'].lower()}"
+
+
+def _length_message(found: Any, context: dict[str, Any]) -> str:
+    n_found, least, most = len(found), context.get("min_length"), context.get("max_length")
+    if n_found == 0:
+        return "is empty; give at least one" if least == 1 else f"is empty; give {least} values"
+    noun = "value" if n_found == 1 else "values"
+    return f"has {n_found} {noun}; give {most if least is None else least}"
+
+
+def _choice(found: object, expected: str) -> str:
+    """``expected`` is pydantic's list of literals: 'mm', 'm' or 'in'."""
+    choices = [choice.strip("' ") for choice in expected.replace(" or ", ", ").split(", ")]
+    return f"is {shown(found)}; use one of: {', '.join(choices)}"
+
+
+def _unknown_key(found: str, known: list[str]) -> str:
+    close = difflib.get_close_matches(found, known, n=1)
+    meant = f"did you mean {close[0]}? " if close else "remove it; "
+    return f"is no known key; {meant}known keys: {', '.join(known)}"
+
+
+def _example(path: Path, data: object) -> str:
+    for node in _schema_nodes(path, data):
+        if examples := node.get("examples"):
+            return f", for example {path[-1]}: {json.dumps(examples[0]).replace(chr(34), '')}"
+    return ""
+
+
+def _known_keys(path: Path, data: object) -> list[str]:
+    """Return the keys that the mapping at ``path`` may have."""
+    return [key for node in _schema_nodes(path, data) for key in node.get("properties", {})]
+
+
+@cache
+def _schema() -> dict[str, Any]:
+    return scene_json_schema()
+
+
+def _schema_nodes(path: Path, data: object) -> Iterator[dict[str, Any]]:
+    """Yield the parts of the JSON Schema that speak about ``path``."""
+    nodes = list(_alternatives(_schema()))
+    for depth, key in enumerate(path):
+        is_index = isinstance(value_at(data, path[:depth]), list)
+        children = [
+            node.get("items") if is_index else node.get("properties", {}).get(key, node.get("additionalProperties"))
+            for node in nodes
+        ]
+        nodes = [part for child in children if isinstance(child, dict) for part in _alternatives(child)]
+    yield from nodes
+
+
+def _alternatives(node: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Yield ``node`` with its references followed, and each of its choices."""
+    if "$ref" in node:
+        yield from _alternatives({**_schema()["$defs"][node["$ref"].rpartition("/")[2]], **_without_ref(node)})
+        return
+    yield node
+    for choice in (*node.get("anyOf", ()), *node.get("oneOf", ())):
+        yield from _alternatives(choice)
+
+
+def _without_ref(node: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in node.items() if key != "$ref"}
+
+
+def _number(value: float) -> str:
+    """A number as a person writes it; integers may be too long for Python to print.
+
+    >>> _number(10.0), _number(0.25), _number(float("inf"))
+    ('10', '0.25', 'infinite')
+    """
+    if value != value:
+        return "not a number (.nan)"
+    if abs(value) == float("inf"):
+        return "infinite"
+    return str(int(value)) if abs(value) < 1e6 and value == int(value) else f"{value:.6g}"
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= _SHOWN_LENGTH else text[: _SHOWN_LENGTH - 3] + "..."

@@ -1,0 +1,52 @@
+"""Text out of a file that a user named: scenes and points files alike."""
+
+from __future__ import annotations
+
+import codecs
+from pathlib import Path
+
+from cagepose.errors import FileProblem, Key, SceneFileError
+
+MAX_FILE_BYTES = 4 * 1024 * 1024
+"""The size limit of a scene file and of a points file: about 100,000 points, far above any cage we know of."""
+
+
+def read_text(path: Path, source: str, at: tuple[Key, ...] = ()) -> str:
+    """Return the text of a UTF-8 file; ``at`` is the key of the scene that named it.
+
+    Raises
+    ------
+    SceneFileError
+        Missing, not a file, not readable, larger than `MAX_FILE_BYTES`, binary, or not UTF-8.
+    """
+
+    def refuse(message: str, line: int | None = None, column: int | None = None) -> SceneFileError:
+        return SceneFileError([FileProblem(at, message, source, line, column)])
+
+    try:
+        if "\0" in source:
+            raise refuse("is not a file name; remove the unprintable character")
+        if path.is_dir():
+            raise refuse("is a directory; name a file in it")
+        if not path.exists():
+            raise refuse("does not exist; check the name and the folder")
+        if not path.is_file():
+            raise refuse("is not a regular file; save the text in one and name that")
+        with path.open("rb") as stream:
+            content = stream.read(MAX_FILE_BYTES + 1)
+    except OSError as error:
+        raise refuse(f"cannot be read ({error.strerror or error}); check its name and permissions") from None
+    if len(content) > MAX_FILE_BYTES:
+        limit = f"{MAX_FILE_BYTES // 1024**2} MiB"
+        raise refuse(f"is larger than {limit}, the size limit of scene and points files; give fewer points")
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        raise refuse("is UTF-16 text; save it as UTF-8")
+    if b"\0" in content:
+        raise refuse("is a binary file; give a text file")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        before = content[: error.start]
+        line, column = before.count(b"\n") + 1, error.start - (before.rfind(b"\n") + 1) + 1
+        byte = f"{content[error.start]:#04x}"
+        raise refuse(f"holds byte {byte}, which is not UTF-8; save it as UTF-8", line, column) from None

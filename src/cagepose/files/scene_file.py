@@ -1,0 +1,237 @@
+"""Scene files: text in, a `Scene` or every problem found out."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from copy import deepcopy
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from cagepose.errors import FileProblem, Problem, SceneError, SceneFileError
+from cagepose.files.build import build_scene
+from cagepose.files.key_path import Path as KeyPath
+from cagepose.files.key_path import parse_key_path, resolved, set_value, value_at
+from cagepose.files.messages import Finding, schema_findings, shown
+from cagepose.files.points_file import POINTS_KEY, PointsTable, read_points
+from cagepose.files.read import read_text
+from cagepose.files.schema import PointsFileModel, SceneModel
+from cagepose.files.units import LengthUnit
+from cagepose.files.yaml_source import YamlSource, parse_yaml
+from cagepose.nouns.scene import Scene
+
+
+@dataclass(frozen=True)
+class SceneFile:
+    """A scene, and the unit that its file gives lengths in."""
+
+    scene: Scene
+    length_unit: LengthUnit
+
+
+def load_scene(path: str | os.PathLike[str], set_values: Sequence[str] = ()) -> Scene:
+    """Read a scene file; ``set_values`` are changes such as ``"object.boxes[0].size[2]=12"``.
+
+    Raises
+    ------
+    SceneFileError
+        The file cannot be used; lists every problem with its line and column.
+    """
+    return read_scene_file(path, set_values).scene
+
+
+def read_scene_file(path: str | os.PathLike[str], set_values: Sequence[str] = ()) -> SceneFile:
+    """As `load_scene`, and keep the file's length unit.
+
+    Raises
+    ------
+    SceneFileError
+        As `load_scene`.
+    """
+    source = os.fspath(path)
+    text = read_text(Path(source), source)
+    return _parse(text, source, Path(source).parent, set_values)
+
+
+def parse_scene(text: str, name: str = "scene.yaml", set_values: Sequence[str] = ()) -> Scene:
+    """As `load_scene`, from text; ``name`` stands for the file in messages, and its folder is where points files are.
+
+    Raises
+    ------
+    SceneFileError
+        As `load_scene`.
+    """
+    return _parse(text, name, Path(name).parent, set_values).scene
+
+
+def _parse(text: str, source: str, folder: Path, set_values: Sequence[str]) -> SceneFile:
+    yaml = parse_yaml(text, source)
+    data = deepcopy(yaml.data) if set_values else yaml.data
+    settings = _apply_settings(data, set_values)
+    attempt = _Attempt(data, folder)
+    if attempt.scene_file is not None and not yaml.problems:
+        return attempt.scene_file
+    unset = _Attempt(yaml.data, folder) if settings else attempt
+    unclear = [problem.path for problem in yaml.problems]
+    places = _Places(yaml, attempt, unset, settings)
+    problems: list[FileProblem] = [*yaml.problems, *attempt.table_problems]
+    for finding in attempt.findings:
+        path = finding.problem.path
+        if not any(path[: len(place)] == place for place in unclear):  # else it only echoes the tag or alias there
+            problems.append(places.place(finding))
+    problems.sort(key=_reading_order)
+    raise SceneFileError(problems)
+
+
+def _reading_order(problem: FileProblem) -> tuple[int, int]:
+    return problem.line or 0, problem.column or 0
+
+
+@dataclass(frozen=True)
+class _Setting:
+    """One ``--set`` argument, applied."""
+
+    source: str
+    path: KeyPath
+
+
+def _apply_settings(data: object, set_values: Sequence[str]) -> list[_Setting]:
+    settings: list[_Setting] = []
+    problems: list[FileProblem] = []
+    for argument in set_values:
+        source = f"--set {argument}"
+        key, equals, text = argument.partition("=")
+        try:
+            if not equals:
+                raise ValueError("has no =; write key.path=value, such as object.mass=0.5")
+            path = parse_key_path(key.strip())
+            value = parse_yaml(text, source) if text.strip() else YamlSource(None, source)
+            problems += [replace(problem, line=None, column=None) for problem in value.problems]
+            settings.append(_Setting(source, set_value(data, path, value.data)))
+        except SceneFileError as error:
+            problems += [replace(problem, line=None, column=None) for problem in _file_problems(error)]
+        except ValueError as error:
+            problems.append(FileProblem((), str(error), source))
+    if problems:
+        raise SceneFileError(problems)
+    return settings
+
+
+class _Attempt:
+    """Plain data turned into a scene as far as that goes.
+
+    Attributes
+    ----------
+    scene_file
+        None if anything is wrong.
+    findings
+        Problems with paths into the data.
+    table, table_problems
+        The points file, where the scene names one, and its bad rows.
+    """
+
+    def __init__(self, data: object, folder: Path) -> None:
+        self.scene_file: SceneFile | None = None
+        self.findings: list[Finding] = []
+        self.table_problems: list[FileProblem] = []
+        self.table = self._read_table(value_at(data, POINTS_KEY), folder)
+        try:
+            model = SceneModel.model_validate(data)
+        except ValidationError as error:
+            self.findings += schema_findings(error, data)
+            return
+        self.findings += [Finding(problem, False) for problem in _adjustable_problems(model, data)]
+        if self.table is None and isinstance(model.cage.points, PointsFileModel):
+            return
+        try:
+            scene = build_scene(model, self.table)
+        except SceneError as error:
+            self.findings += [Finding(problem, False) for problem in error.problems]
+            return
+        if not self.findings:
+            self.scene_file = SceneFile(scene, model.units.length if model.units else "mm")
+
+    def _read_table(self, name: object, folder: Path) -> PointsTable | None:
+        if not isinstance(name, str) or not name:
+            return None
+        path = folder / name
+        try:
+            return read_points(path, str(path))
+        except SceneFileError as error:
+            for problem in _file_problems(error):
+                if problem.line is None:  # the file as a whole: its name in the scene is the place to look
+                    self.findings.append(Finding(Problem(POINTS_KEY, f"{path} {problem.message}"), False))
+                else:
+                    self.table_problems.append(problem)
+            return None
+
+
+def _adjustable_problems(model: SceneModel, data: object) -> list[Problem]:
+    problems = []
+    for name, entry in (model.adjustable or {}).items():
+        try:
+            value = value_at(data, resolved(data, parse_key_path(entry.key)))
+        except ValueError as error:
+            message = str(error)
+        else:
+            if isinstance(value, (int, float)) and not isinstance(value, bool):
+                continue
+            found = "where nothing stands" if value is None else f"where {shown(value)} stands"
+            message = f"points to {entry.key}, {found}; point to a number of this scene, or write one there"
+        problems.append(Problem(("adjustable", name, "key"), message))
+    return problems
+
+
+@dataclass(frozen=True)
+class _Places:
+    """Tells where a problem comes from: a line of the scene file or of the points file, or a ``--set`` argument."""
+
+    yaml: YamlSource
+    attempt: _Attempt
+    unset: _Attempt
+    settings: list[_Setting]
+
+    def place(self, finding: Finding) -> FileProblem:
+        path, message = finding.problem.path, finding.problem.message
+        place = self._in_data(path)
+        if finding not in self.unset.findings:
+            source = self._setting(place)
+            if source is not None:
+                return FileProblem(path, message, source)
+        table = self.attempt.table
+        if table is not None and path[:2] == POINTS_KEY[:2] and len(path) > 2 and isinstance(place[2], int):
+            return FileProblem(path, message, table.source, table.lines[place[2]], 1)
+        mark = self.yaml.mark(place, of_key=finding.about_key)
+        return FileProblem(path, message, self.yaml.source, *(mark or (None, None)))
+
+    def _in_data(self, path: KeyPath) -> KeyPath:
+        """Point names as indices, where the points stand in rows."""
+        if path[:2] != POINTS_KEY[:2] or len(path) < 3 or not isinstance(path[2], str) or path == POINTS_KEY:
+            return path
+        table = self.attempt.table
+        if table is not None:
+            names = list(table.names or [f"C{index + 1}" for index in range(len(table.points))])
+        elif isinstance(value_at(self.yaml.data, path[:2]), list):
+            names = [f"C{index + 1}" for index in range(len(value_at(self.yaml.data, path[:2])))]
+        else:
+            return path
+        if path[2] not in names:
+            return path
+        last = len(names) - 1 - names[::-1].index(path[2])
+        return (*path[:2], last, *path[3:])
+
+    def _setting(self, place: KeyPath) -> str | None:
+        """The ``--set`` argument to blame for a problem that is not there without any; None: it is the file's."""
+        for setting in reversed(self.settings):
+            shared = min(len(setting.path), len(place))
+            if shared and setting.path[:shared] == place[:shared]:
+                return setting.source
+        if self.unset.scene_file is not None:
+            return " ".join(setting.source for setting in self.settings)
+        return None
+
+
+def _file_problems(error: SceneFileError) -> list[FileProblem]:
+    return [problem for problem in error.problems if isinstance(problem, FileProblem)]

@@ -1,0 +1,266 @@
+"""The scene file's shape: strict pydantic models, one class for each mapping of the file.
+
+Strict: ``true`` is not a number, ``"10"`` is not a number, unknown keys are errors. What a scene *means* (points
+outside the object, names used once, ...) is checked where the nouns are made, not here.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    StringConstraints,
+    Tag,
+    WithJsonSchema,
+    model_validator,
+)
+from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
+from pydantic_core import PydanticCustomError
+
+from cagepose.files.units import LengthUnit
+from cagepose.nouns.tolerances import TOUCH_DEFAULT, TOUCH_GREATEST, TOUCH_LEAST
+from cagepose.runs.solve import METHODS
+
+LARGEST = 1e12
+"""Greatest number in a scene file. The fifth power of a length (a moment of inertia) must stay a finite double."""
+SMALLEST = 1e-12
+"""Least size, mass and magnitude, for the same reason."""
+
+_BOX = {"size": [10, 20, 30], "position": [0, 0, 0]}
+_POINTS = [[4, 4, 0], [-4, 4, 0], [0, -4, 0]]
+
+
+def _wrong(message: str) -> PydanticCustomError:
+    return PydanticCustomError("cagepose", "{message}", {"message": message})
+
+
+def _not_zero(values: list[float]) -> list[float]:
+    if not any(values):
+        raise _wrong("is all zeros, which points nowhere; give at least one number other than 0")
+    return values
+
+
+def _not_tiny(value: float) -> float:
+    if value < SMALLEST:
+        raise _wrong(f"is {value:g}; give a number of at least {SMALLEST:g}, or another unit")
+    return value
+
+
+def _printable(text: str) -> str:
+    if not text.isprintable() or not text.strip():
+        raise _wrong(f"is {text!r}; give a name of visible characters")
+    return text
+
+
+def _known_method(name: str) -> str:
+    if name not in METHODS:
+        raise _wrong(f"is {name!r}; use one of: {', '.join(METHODS)}")
+    return name
+
+
+def _ordered(limits: list[float]) -> list[float]:
+    if limits[0] >= limits[1]:
+        raise _wrong(f"runs from {limits[0]!r} to {limits[1]!r}; give the lower number first")
+    return limits
+
+
+def _points_form(value: object) -> str | None:
+    """Which of the three ways to give points this is."""
+    if isinstance(value, list):
+        return "list"
+    if isinstance(value, dict):
+        return "file" if "file" in value and not isinstance(value["file"], list) else "names"
+    return None
+
+
+Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+Positive = Annotated[float, Field(gt=0.0, le=LARGEST), AfterValidator(_not_tiny)]
+Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Direction = Annotated[Vector, AfterValidator(_not_zero)]
+Size = Annotated[list[Positive], Field(min_length=3, max_length=3)]
+Quaternion = Annotated[list[Number], Field(min_length=4, max_length=4), AfterValidator(_not_zero)]
+Name = Annotated[str, StringConstraints(min_length=1, max_length=100), AfterValidator(_printable)]
+Method = Annotated[str, AfterValidator(_known_method), WithJsonSchema({"type": "string", "enum": list(METHODS)})]
+
+
+class _Mapping(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+
+
+class UnitsModel(_Mapping):
+    """Units of the file. Angles are always degrees, masses kilograms, forces newtons."""
+
+    length: LengthUnit = Field("mm", description="Unit of every length in this file.")
+
+
+class PoseModel(_Mapping):
+    """Where something is and how it is turned. What is left out is zero."""
+
+    position: Vector | None = Field(None, description="Origin [x, y, z].", examples=[[2, 4, 10]])
+    euler_zyx_deg: Vector | None = Field(
+        None, description="Yaw about z, then pitch about y, then roll about x, in degrees.", examples=[[0, 0.1, 0]]
+    )
+    quat_wxyz: Quaternion | None = Field(
+        None,
+        description="Instead of euler_zyx_deg: a quaternion, scalar first.",
+        examples=[[1, 0, 0, 0]],
+    )
+
+    @model_validator(mode="after")
+    def _one_orientation(self) -> PoseModel:
+        if self.euler_zyx_deg is not None and self.quat_wxyz is not None:
+            raise _wrong("has both euler_zyx_deg and quat_wxyz; keep one of them")
+        return self
+
+
+class BoxModel(_Mapping):
+    """One rectangular block of the object."""
+
+    size: Size = Field(description="Full edge lengths [x, y, z].", examples=[[10, 20, 30]])
+    position: Vector = Field(description="Centre of the box in the object's frame.", examples=[[0, 0, 0]])
+    euler_zyx_deg: Vector | None = Field(
+        None, description="How the box is turned in the object: yaw, pitch, roll in degrees.", examples=[[45, 0, 0]]
+    )
+    name: Name | None = Field(None, description="Shown with contacts; left out: box1, box2, ...", examples=["flange"])
+
+
+class ObjectModel(_Mapping):
+    """The part that is held: a union of boxes that move as one."""
+
+    boxes: list[BoxModel] = Field(min_length=1, description="The part's blocks.", examples=[[_BOX]])
+    center_of_gravity: Vector | None = Field(
+        None, description="In the object's frame; left out: the centroid of the union's volume.", examples=[[0, 0, 0]]
+    )
+    mass: Positive | None = Field(
+        None, description="Kilograms; left out: results are per unit load (or density 1 of the union).", examples=[0.5]
+    )
+    inertia: Annotated[list[Vector], Field(min_length=3, max_length=3)] | None = Field(
+        None,
+        description="3 x 3 matrix about the centre of gravity, in the object's axes, kilograms by length unit squared;"
+        " left out: uniform density of the union.",
+        examples=[[[100, 0, 0], [0, 100, 0], [0, 0, 100]]],
+    )
+    pose: PoseModel | None = Field(None, description="Where the object starts: its origin in the world.")
+
+
+class PointsFileModel(_Mapping):
+    """Points in a file of their own."""
+
+    file: str = Field(
+        min_length=1,
+        description="CSV file beside this one, rows of x,y,z or name,x,y,z in the scene's length unit.",
+        examples=["points.csv"],
+    )
+
+
+Points = Annotated[
+    Annotated[list[Vector], Field(min_length=1, title="Points named C1, C2, ..."), Tag("list")]
+    | Annotated[dict[Name, Vector], Field(min_length=1, title="Points with names"), Tag("names")]
+    | Annotated[PointsFileModel, Tag("file")],
+    Discriminator(_points_form),
+]
+
+
+class CageModel(_Mapping):
+    """What holds it: points that do not move."""
+
+    points: Points = Field(
+        description="A list of [x, y, z], or NAME: [x, y, z] for each, or file: points.csv.",
+        examples=[_POINTS],
+    )
+    pose: PoseModel | None = Field(None, description="Moves all points at once: a misaligned cage.")
+
+
+class ForceModel(_Mapping):
+    """A push whose direction stays fixed in the world."""
+
+    direction: Direction = Field(description="Where it pushes to, in the world; any length.", examples=[[1, 0, 0]])
+    at: Vector = Field(description="The point it acts at, in the object's frame.", examples=[[0, 0, 0]])
+    magnitude: Positive | None = Field(None, description="Newtons; left out: one unit of force.", examples=[10])
+
+
+class LoadModel(_Mapping):
+    """One phase of the run: gravity, a force, or both. A phase without gravity has none."""
+
+    name: Name = Field(description="Shown with the phase's events.", examples=["gravity"])
+    gravity: Direction | None = Field(
+        None, description="Direction; its length (m/s^2) counts only together with a mass.", examples=[[0, 0, -1]]
+    )
+    force: ForceModel | None = Field(None, description="A push at one point of the object.")
+
+
+class FrictionModel(_Mapping):
+    """Friction of all contacts."""
+
+    coefficient: Annotated[float, Field(ge=0.0, le=LARGEST)] | None = Field(
+        None, description="Friction force over normal force.", examples=[0.1]
+    )
+    angle_deg: Annotated[float, Field(ge=0.0, lt=90.0)] | None = Field(
+        None, description="The same as an angle: its tangent is the coefficient.", examples=[5.7]
+    )
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> FrictionModel:
+        if (self.coefficient is None) == (self.angle_deg is None):
+            found = "neither" if self.coefficient is None else "both"
+            raise _wrong(f"has {found} of coefficient and angle_deg; give one of them")
+        return self
+
+
+class TolerancesModel(_Mapping):
+    """What counts as touching and as grazing. The defaults suit nearly every scene."""
+
+    touch: Annotated[float, Field(ge=TOUCH_LEAST, le=TOUCH_GREATEST)] | None = Field(
+        None, description=f"As a fraction of the scene's size; left out: {TOUCH_DEFAULT:g}.", examples=[1e-8]
+    )
+    grazing_band_deg: Annotated[float, Field(ge=0.0, lt=45.0)] | None = Field(
+        None, description="How far past perpendicular to the load a face still slips; left out: 1.", examples=[1]
+    )
+
+
+class AdjustableModel(_Mapping):
+    """A number of this file that sliders and studies may vary."""
+
+    key: str = Field(min_length=1, description="Where the number stands.", examples=["cage.pose.euler_zyx_deg[1]"])
+    range: Annotated[list[Number], Field(min_length=2, max_length=2), AfterValidator(_ordered)] = Field(
+        description="Lowest and highest value.", examples=[[-0.3, 0.3]]
+    )
+
+
+class SceneModel(_Mapping):
+    """A part, the cage that holds it, and the loads that act on it one after the other."""
+
+    model_config = ConfigDict(title="cagepose scene")
+
+    name: Name = Field(description="The scene's name.", examples=["bracket"])
+    units: UnitsModel | None = Field(None, description="Units of the file; left out: millimetres.")
+    object: ObjectModel = Field(description="The part that is held.", examples=[{"boxes": [_BOX]}])
+    cage: CageModel = Field(description="What holds it.", examples=[{"points": _POINTS}])
+    loads: list[LoadModel] = Field(
+        min_length=1, description="Phases, run in order.", examples=[[{"name": "gravity", "gravity": [0, 0, -1]}]]
+    )
+    friction: FrictionModel | None = Field(None, description="Left out: the method's own default.")
+    method: Method | None = Field(None, description="How to run the scene; left out: the default method.")
+    metric: Literal["release", "drag"] | None = Field(
+        None, description="How the object answers a load: released from rest, or dragged slowly."
+    )
+    tolerances: TolerancesModel | None = Field(None, description="Left out: the defaults.")
+    adjustable: dict[Name, AdjustableModel] | None = Field(None, description="Named numbers for sliders and studies.")
+
+
+def scene_json_schema() -> dict[str, Any]:
+    """Return the JSON Schema (2020-12) of a scene file: editors check and complete scenes with it."""
+    schema = SceneModel.model_json_schema(schema_generator=_InOurOrder)
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+class _InOurOrder(GenerateJsonSchema):
+    """Keys stay in the order of the classes above; the examples read as people write them."""
+
+    def sort(self, value: JsonSchemaValue, parent_key: str | None = None) -> JsonSchemaValue:  # noqa: ARG002 (pydantic's signature)
+        return value

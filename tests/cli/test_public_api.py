@@ -1,0 +1,65 @@
+"""``import cagepose`` is quick, complete, and the same to type checkers as to Python."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import cagepose
+
+SOURCE = Path(cagepose.__file__)
+
+
+def test_all_names_every_public_class_and_function_once() -> None:
+    assert sorted(set(cagepose.__all__)) == sorted(cagepose.__all__)
+    assert set(cagepose.__all__) == {
+        *("Adjustable", "Box", "Cage", "CageposeError", "Contact", "Event", "Force", "Frame", "Load", "Motion"),
+        *("Object", "PhaseRun", "Pose", "Problem", "Run", "RunFileError", "Scene", "SceneError", "SceneFileError"),
+        *("Tolerances", "__version__", "load_run", "load_scene", "run", "save_run"),
+    }
+
+
+@pytest.mark.parametrize("name", cagepose.__all__)
+def test_every_public_name_resolves_and_has_a_docstring(name: str) -> None:
+    value = getattr(cagepose, name)
+    assert name in dir(cagepose)
+    if name != "__version__":
+        assert value.__name__ == name
+        assert value.__doc__
+
+
+def test_type_checkers_see_every_name_from_the_module_that_python_takes_it_from() -> None:
+    (block,) = [
+        node
+        for node in ast.parse(SOURCE.read_text(encoding="utf-8")).body
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+    ]
+    seen = {}
+    for node in block.body:
+        if isinstance(node, ast.ImportFrom):
+            for alias in node.names:
+                assert alias.asname == alias.name  # re-exported, as type checkers ask for
+                seen[alias.name] = node.module
+        elif isinstance(node, ast.AnnAssign):
+            seen[ast.unparse(node.target)] = None
+    assert set(seen) == set(cagepose.__all__)
+    assert {name: module for name, module in seen.items() if module} == cagepose._HOME
+
+
+def test_the_package_says_that_it_is_typed() -> None:
+    assert (SOURCE.parent / "py.typed").is_file()
+
+
+def test_an_unknown_name_is_an_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="module 'cagepose' has no attribute 'Cube'"):
+        cagepose.Cube  # noqa: B018
+
+
+def test_importing_the_package_loads_nothing_heavy() -> None:
+    code = "import sys, cagepose; print([name for name in ('numpy', 'numba', 'pydantic') if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"

@@ -1,0 +1,208 @@
+"""A saved run comes back to the last digit; anything else that is called a saved run is refused by name."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from cagepose import Run, RunFileError, Scene, load_run, run, save_run
+from cagepose.files.document import run_document
+from cagepose.files.run_record import run_from_record, run_record
+from cagepose.files.scene_file import parse_scene
+from cagepose.files.scene_record import scene_from_record, scene_record
+
+PUSH = "  - {name: push, force: {direction: [1, 0.3, 0.2], at: [1, 2, 3], magnitude: 7}}\n"
+FULL = """
+friction: {angle_deg: 7}
+method: stepwise
+metric: drag
+tolerances: {touch: 1.0e-8, grazing_band_deg: 2}
+adjustable: {height: {key: object.pose.position.2, range: [5, 15]}}
+"""
+
+
+@pytest.fixture
+def full_scene(sample_text: str) -> Scene:
+    """A scene in which nothing is left to its default, and no number is round."""
+    text = sample_text.replace("[0, 0, 0]", "[0.1, 0.2, 0.3]\n      euler_zyx_deg: [10, 20, 30]\n      name: cube")
+    text = text.replace("cage:\n", "  mass: 0.3\n  inertia: [[5, 0, 0], [0, 6, 0], [0, 0, 7]]\ncage:\n")
+    return parse_scene(text.replace("cage:\n", "cage:\n  pose: {euler_zyx_deg: [1, 2, 3]}\n") + PUSH + FULL)
+
+
+def test_a_scene_is_the_same_after_a_record_and_back(full_scene: Scene) -> None:
+    record = json.loads(json.dumps(scene_record(full_scene)))
+    again = scene_from_record(record)
+    assert scene_record(again) == record
+    assert again.size_m == full_scene.size_m
+    assert np.array_equal(again.object.inertia_kg_m2, full_scene.object.inertia_kg_m2)  # type: ignore[arg-type]
+
+
+def test_records_of_many_directions_and_turns_come_back_to_the_last_digit(sample_text: str) -> None:
+    random = np.random.default_rng(20260)
+    for _ in range(200):
+        direction, angles = random.normal(size=3).tolist(), (random.uniform(-180, 180, 3)).tolist()
+        changes = [
+            "object.pose.position=[0, 0, 30]",
+            f"loads[0].gravity={direction}",
+            f"loads[0].force={{direction: {direction}, at: {direction}}}",
+            f"cage.pose.euler_zyx_deg={angles}",
+        ]
+        scene = parse_scene(sample_text, set_values=changes)
+        assert scene_record(scene_from_record(scene_record(scene))) == scene_record(scene)
+
+
+def test_a_run_is_the_same_after_saving_and_loading(full_scene: Scene, tmp_path: Path) -> None:
+    before = run(full_scene)
+    save_run(before, tmp_path / "run.json")
+    after = load_run(tmp_path / "run.json")
+    assert run_record(after) == run_record(before)
+    assert (after.verdict, after.warnings, after.solve_s) == (before.verdict, before.warnings, before.solve_s)
+    assert np.array_equal(after.pose.position_m, before.pose.position_m)
+    assert [event.tie for phase in after.phases for event in phase.events] == [
+        event.tie for phase in before.phases for event in phase.events
+    ]
+    for one, other in zip(before.frames(), after.frames(), strict=True):
+        assert np.array_equal(one.pose_world_object.quaternion_wxyz, other.pose_world_object.quaternion_wxyz)
+
+
+def test_a_loaded_run_can_be_run_again_with_the_same_result(sample_text: str, tmp_path: Path) -> None:
+    save_run(run(parse_scene(sample_text)), tmp_path / "run.json")
+    loaded = load_run(tmp_path / "run.json")
+    again, first = run_record(run(loaded.scene)), run_record(loaded)
+    assert {**again, "solve_s": 0.0} == {**first, "solve_s": 0.0}
+
+
+def test_an_escape_without_end_survives(sample_text: str) -> None:
+    away = run(parse_scene(sample_text, set_values=["loads[0].gravity=[0, 0, 1]"]))
+    assert away.verdict == "escapes"
+    again = run_from_record(json.loads(json.dumps(run_record(away), allow_nan=False)))
+    assert run_record(again) == run_record(away)
+    json.dumps(run_document(away), allow_nan=False)
+    distances = [event.motion.distance_m for event in again.phases[0].events if event.motion is not None]
+    assert distances in ([], [math.inf])
+
+
+def test_the_saved_file_begins_with_the_document(sample_text: str, tmp_path: Path) -> None:
+    result = run(parse_scene(sample_text))
+    save_run(result, tmp_path / "run.json", "in")
+    content = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    exact = content.pop("exact")
+    assert content == run_document(result, "in")
+    assert exact["scene"]["name"] == "sample"
+
+
+def test_saving_replaces_a_file_whole_and_leaves_nothing_else(sample_text: str, tmp_path: Path) -> None:
+    path = tmp_path / "run.json"
+    path.write_text("old", encoding="utf-8")
+    save_run(run(parse_scene(sample_text)), path)
+    assert load_run(path).verdict == "stable"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_failed_save_leaves_the_old_file_and_nothing_else(
+    sample_text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    result = run(parse_scene(sample_text))
+    path = tmp_path / "run.json"
+    path.write_text("old", encoding="utf-8")
+
+    def full_disk(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full_disk)
+    with pytest.raises(OSError, match="No space left"):
+        save_run(result, path)
+    assert path.read_text(encoding="utf-8") == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_saving_through_a_link_keeps_the_link(sample_text: str, tmp_path: Path) -> None:
+    target, link = tmp_path / "target.json", tmp_path / "link.json"
+    target.write_text("old", encoding="utf-8")
+    link.symlink_to(target)
+    save_run(run(parse_scene(sample_text)), link)
+    assert link.is_symlink()
+    assert load_run(target).verdict == "stable"
+
+
+def test_a_device_is_not_replaced_by_a_file(sample_text: str) -> None:
+    with pytest.raises(OSError, match="is not a regular file"):
+        save_run(run(parse_scene(sample_text)), "/dev/null")
+    assert Path("/dev/null").is_char_device()
+
+
+def _changed(change: Callable[[dict[str, Any]], None]) -> Callable[[dict[str, Any]], str]:
+    def text(content: dict[str, Any]) -> str:
+        change(content)
+        return json.dumps(content)
+
+    return text
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda _: "",
+         "is not JSON (Expecting value: line 1 column 1 (char 0)); it is no saved run, or it was cut short"),
+        (lambda content: json.dumps(content)[:-20], "is not JSON ("),
+        (lambda _: "[" * 200_000, "is JSON nested too deep; it is no saved run"),
+        (lambda _: "[1, 2]", "is JSON, but not a run; name a file that cagepose run --out wrote"),
+        (lambda _: '{"a": 1}', "is JSON, but not a run; name a file that cagepose run --out wrote"),
+        (_changed(lambda content: content.update(version=2)), "has format version 2, and this cagepose knows 1;"
+         " read it with the cagepose that wrote it, or run the scene again"),
+        (_changed(lambda content: content.update(version=True)), "has format version True, and this cagepose knows 1;"),
+        (_changed(lambda content: content.pop("exact")), "is what --json prints, without the exact numbers;"
+         " save the run with --out FILE instead"),
+        (_changed(lambda content: content.update(exact=3)), "is damaged: exact: "),
+        (_changed(lambda content: content["exact"].pop("method")),
+         "is damaged: exact.method: field required; run the scene"),
+        (_changed(lambda content: content["exact"]["phases"].clear()), "is damaged: exact.phases: "),
+        (_changed(lambda content: content["exact"]["phases"][0].update(verdict="fine")), "exact.phases[0].verdict: "),
+        (_changed(lambda content: content["exact"]["phases"][0]["start_pose"]["position_m"].pop()),
+         "is damaged: exact.phases[0].start_pose.position_m: "),
+        (_changed(lambda content: content["exact"]["phases"][0]["start_pose"].update(position_m=[0, 0, math.inf])),
+         "is damaged: exact.phases[0].start_pose.position_m[2]: "),
+        (_changed(lambda content: content["exact"]["phases"][0]["events"][0]["motion"].update(direction=None)),
+         "is damaged: exact.phases[0].events[0].motion: "),
+        (_changed(lambda content: content["exact"]["scene"].update(touch=3.0)),
+         "is damaged: its scene cannot be right ("),
+        (_changed(lambda content: content["exact"]["scene"]["point_names"].pop()),
+         "is damaged: its scene cannot be right ("),
+    ],
+)  # fmt: skip
+def test_what_is_no_saved_run_is_refused_by_name(
+    sample_text: str, tmp_path: Path, make: Callable[[dict[str, Any]], str], message: str
+) -> None:
+    path = tmp_path / "run.json"
+    save_run(run(parse_scene(sample_text)), path)
+    path.write_text(make(json.loads(path.read_text(encoding="utf-8"))), encoding="utf-8")
+    with pytest.raises(RunFileError) as caught:
+        load_run(path)
+    assert str(caught.value).startswith(f"{path}: ")
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("content", [None, b"\xff\xfe\x00"])
+def test_what_cannot_be_read_is_refused_by_name(tmp_path: Path, content: bytes | None) -> None:
+    path = tmp_path / "run.json"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(
+        RunFileError, match=r"run\.json: cannot be read \((No such file or directory|it is not UTF-8 text)\)"
+    ):
+        load_run(path)
+
+
+def test_loading_checks_the_type_of_every_number(sample_text: str) -> None:
+    result: Run = run(parse_scene(sample_text))
+    record = run_record(result)
+    record["solve_s"] = "0.1"
+    with pytest.raises(ValueError, match="solve_s"):
+        run_from_record(record)

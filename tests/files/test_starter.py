@@ -1,0 +1,70 @@
+"""The scene that ``cagepose init`` writes is good, complete, and ends at rest."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from cagepose import run
+from cagepose.files.scene_file import parse_scene
+from cagepose.files.schema import scene_json_schema
+from cagepose.files.starter import starter_text, write_starter
+
+
+def test_the_starter_runs_through_all_its_phases_and_ends_stable() -> None:
+    result = run(parse_scene(starter_text("mine")))
+    assert result.scene.name == "mine"
+    assert [phase.verdict for phase in result.phases] == ["stable", "stable"]
+    assert {event.rule for phase in result.phases for event in phase.events} >= {"A-1", "A-4", "Slp-1", "Slp-2", "B-4"}
+    assert result.warnings == ()
+
+
+def test_the_starter_names_every_key_of_the_schema() -> None:
+    schema = scene_json_schema()
+    text = starter_text("x")
+    for part in (schema, *schema["$defs"].values()):
+        for key in part["properties"]:
+            assert re.search(rf"\b{key}\b", text), key
+
+
+def test_every_option_of_the_starter_works_when_its_hash_is_removed() -> None:
+    text = re.sub(r"(?m)^(\s*)# ([a-z_]+: )", r"\1\2", starter_text("x"))
+    scene = parse_scene(text)
+    assert scene.object.mass_kg is not None
+    assert scene.object.inertia_kg_m2 is not None
+    assert (scene.method, scene.metric) == ("stepwise", "release")
+    assert scene.adjustable[0].key == "cage.points.end[0]"
+    assert len(text.splitlines()) == len(starter_text("x").splitlines())
+
+
+def test_the_change_that_the_starter_proposes_works() -> None:
+    text = starter_text("x")
+    (change,) = re.findall(r"--set (\S+)", text)
+    assert run(parse_scene(text, set_values=[change])).verdict == "stable"
+
+
+@pytest.mark.parametrize("name", ["null", "True", "fixture-2", "Größe", "a_b"])
+def test_any_good_name_gives_a_scene_of_that_name(tmp_path: Path, name: str) -> None:
+    path = write_starter(name, tmp_path)
+    assert path == tmp_path / f"{name}.yaml"
+    assert parse_scene(path.read_text(encoding="utf-8")).name == name
+
+
+def test_a_name_with_its_ending_is_understood(tmp_path: Path) -> None:
+    assert write_starter("mine.yaml", tmp_path) == tmp_path / "mine.yaml"
+
+
+def test_an_existing_file_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text("precious", encoding="utf-8")
+    with pytest.raises(FileExistsError):
+        write_starter("mine", tmp_path)
+    assert (tmp_path / "mine.yaml").read_text(encoding="utf-8") == "precious"
+
+
+@pytest.mark.parametrize("name", ["", ".yaml", "../up", "a/b", "2nd", "-x", "a b", "a\nb", "x" * 101])
+def test_a_name_that_is_no_plain_file_name_is_refused(tmp_path: Path, name: str) -> None:
+    with pytest.raises(ValueError, match="start with a letter and use letters, digits, - and _ only"):
+        write_starter(name, tmp_path)
+    assert list(tmp_path.iterdir()) == []
