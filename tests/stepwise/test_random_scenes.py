@@ -1,0 +1,80 @@
+"""Twenty thousand seeded random scenes: every run ends with a name, and nobody is ever inside.
+
+The method is a heuristic: its turns run on through the balance point of the load, so many scenes end by name as
+"spins" (a full turn) or "cycling" (a swing between poses). That is the method's limit, not a numerical one, and the
+test proves it: every such run contains a turn that the load had stopped driving before its end. A few creep towards an end
+by ever smaller steps and stop at the event limit, which is named too.
+"""
+
+from __future__ import annotations
+
+import collections
+
+import numpy as np
+import pytest
+
+from cagepose import Run, run
+from cagepose.kernels.contacts import deepest_boxes
+from cagepose.nouns.geometry import scene_geometry
+from jit import cases
+from random_scenes import random_scenes
+
+N_SCENES = 20_000
+VERDICTS = {"stable", "escapes", "spins", "cycling", "limit"}
+
+
+def greatest_depth(result: Run) -> float:
+    """The deepest that any cage point is in any box at any event, as a fraction of the scene's size."""
+    geometry = scene_geometry(result.scene.object, result.scene.cage, result.scene.touch_m)
+    events = [event for phase in result.phases for event in phase.events]
+    return max(deepest_boxes(geometry, *event.pose_world_object.as_tuples())[0].max() for event in events)
+
+
+def swings_past_its_balance(result: Run) -> bool:
+    """Whether the last phase has a turn at whose end the load turns the object the other way (or a full turn)."""
+    phase = result.phases[-1]
+    load = result.scene.loads[len(result.phases) - 1]
+    direction = load.gravity_world if load.force is None else load.force.direction_world
+    at = result.scene.object.center_of_gravity_m if load.force is None else load.force.at_object_m
+    for event in phase.events:
+        motion = event.motion
+        if motion is not None and motion.kind == "turn":
+            if motion.angle_rad > 6.28:
+                return True
+            arm = event.pose_world_object.transform(at) - motion.through_world
+            if np.dot(np.cross(arm, direction), motion.axis_world) < 0.0:
+                return True
+    return False
+
+
+def test_random_scenes_end_by_name_and_nobody_is_ever_inside(capsys):
+    n_scenes = cases(N_SCENES)
+    verdicts: collections.Counter[str] = collections.Counter()
+    worst, most_events = 0.0, 0
+    for number, scene in enumerate(random_scenes(n_scenes, seed=20261121)):
+        result = run(scene)
+        verdicts[result.verdict] += 1
+        assert result.verdict in VERDICTS
+        for phase in result.phases:
+            most_events = max(most_events, len(phase.events))
+            for event in phase.events:
+                pose = event.pose_world_object
+                assert np.isfinite([*pose.position_m, *pose.quaternion_wxyz]).all(), f"scene {number}"
+        depth = greatest_depth(result) / scene.size_m
+        assert depth <= scene.tolerances.touch, f"scene {number}: {depth:g} of the size deep"
+        worst = max(worst, depth)
+        if result.verdict in ("spins", "cycling"):
+            assert swings_past_its_balance(result), f"scene {number}: {result.verdict} without a swing"
+    with capsys.disabled():
+        shares = ", ".join(f"{name} {count / n_scenes:.1%}" for name, count in verdicts.most_common())
+        print(f"\n{n_scenes} random scenes: {shares};")
+        print(f"at most {most_events} events in a phase, deepest point {worst:.1e} of the scene's size")
+    assert verdicts["limit"] <= 0.001 * n_scenes
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_same_scene_gives_the_same_run_to_the_last_bit(seed):
+    first, second = (run(next(iter(random_scenes(1, seed)))) for _ in range(2))
+    assert [event.rule for event in first.phases[-1].events] == [event.rule for event in second.phases[-1].events]
+    assert np.array_equal(first.pose.quaternion_wxyz, second.pose.quaternion_wxyz)
+    assert np.array_equal(first.pose.position_m, second.pose.position_m)
