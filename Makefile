@@ -11,7 +11,7 @@ UV_VERSION := 0.13.8
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test test-nojit lint format bench docs lock clean
+.PHONY: help setup run test test-nojit lint format golden bench docs lock clean
 
 help:  ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -52,8 +52,11 @@ format: $(READY)  ## put all code into the project's style
 	@$(BIN)/ruff check --fix
 	@$(BIN)/ruff format
 
+golden: $(READY)  ## write the golden runs of all scenes anew (say why in the commit)
+	@$(BIN)/python tests/golden_runs.py
+
 bench: $(READY)  ## measure how long the scenes take
-	@$(BIN)/python bench/bench.py
+	@$(BIN)/python bench/bench.py $(if $(ONLY),--only $(ONLY))
 
 docs: $(READY)  ## build the documentation into build/docs
 	@$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --builder html docs build/docs

@@ -2,8 +2,8 @@
 
 The method is a heuristic: its turns run on through the balance point of the load, so many scenes end by name as
 "spins" (a full turn) or "cycling" (a swing between poses). That is the method's limit, not a numerical one, and the
-test proves it: every such run contains a turn that the load had stopped driving before its end. A few creep towards an end
-by ever smaller steps and stop at the event limit, which is named too.
+test proves it: every such run contains a turn that the load had stopped driving before its end. A few creep towards an
+end by ever smaller steps and stop at the event limit, which is named too.
 """
 
 from __future__ import annotations

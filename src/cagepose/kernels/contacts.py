@@ -149,7 +149,7 @@ def steepest_contact(
     return best_cosine > -math.inf, best_normal
 
 
-@kernel
+@entry_kernel
 def fill_contact_rows(geometry: Geometry, placement: Placement, touch_m: float, rows: ContactRows) -> int:
     """Write as many rows as fit; return how many there are."""
     n_rows = 0
@@ -176,8 +176,8 @@ def fill_contact_rows(geometry: Geometry, placement: Placement, touch_m: float, 
     return n_rows
 
 
-@kernel
 def empty_contact_rows(n_rows: int) -> ContactRows:
+    """Return room for contacts (plain Python)."""
     return ContactRows(
         np.empty(n_rows, np.int64),
         np.empty(n_rows, np.int64),
@@ -187,9 +187,8 @@ def empty_contact_rows(n_rows: int) -> ContactRows:
     )
 
 
-@entry_kernel
 def contact_rows(geometry: Geometry, position: Vector, quaternion: Quaternion, touch_m: float) -> ContactRows:
-    """Return all contacts at a pose, by point, then box, then face."""
+    """Return all contacts at a pose, by point, then box, then face (plain Python)."""
     placement = empty_placement(geometry)
     place_object(geometry, position, quaternion, placement)
     rows = empty_contact_rows(fill_contact_rows(geometry, placement, touch_m, empty_contact_rows(0)))
@@ -197,19 +196,12 @@ def contact_rows(geometry: Geometry, position: Vector, quaternion: Quaternion, t
     return rows
 
 
-@entry_kernel
 def deepest_boxes(geometry: Geometry, position: Vector, quaternion: Quaternion) -> tuple[FloatArray, NDArray[np.int64]]:
     """Return, for each cage point, the greatest depth inside a box (below zero: outside) in metres, and that box.
 
-    A box index of ``n_own_boxes`` or more is a bridge: the point lies in the seam between two boxes.
+    A box index of ``n_own_boxes`` or more is a bridge: the point lies in the seam between two boxes. Plain Python.
     """
     placement = empty_placement(geometry)
     place_object(geometry, position, quaternion, placement)
-    boxes = np.zeros(len(geometry.points_world), np.int64)
-    for point in range(len(boxes)):
-        for box in range(len(geometry.half_sizes)):
-            gap = box_gap(row(placement.points_box[box], point), row(geometry.half_sizes, box))
-            if -gap == placement.depths[point]:
-                boxes[point] = box
-                break
-    return placement.depths, boxes
+    depths = (geometry.half_sizes[:, None, :] - np.abs(placement.points_box)).min(axis=2)
+    return placement.depths, depths.argmax(axis=0)

@@ -8,6 +8,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+from numpy.typing import NDArray
+
 from cagepose.kernels.geometry import Geometry, Placement, point_in_box, vector_in_box
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.screw import screw_entry
@@ -74,6 +77,39 @@ def first_contact_turn(
             if entry < least:
                 least, first_point = entry, point
     return least, first_point
+
+
+@kernel
+def turn_is_blocked(
+    geometry: Geometry,
+    placement: Placement,
+    points: NDArray[np.int64],
+    n_points: int,
+    through: Vector,
+    axis: Vector,
+    blocked_key: float,
+    tolerances: KernelTolerances,
+) -> bool:
+    """Whether one of the first ``n_points`` of ``points`` is met before ``blocked_key``.
+
+    Asked of the touching points before a sweep over all: it answers most stability tests at a tenth of the cost.
+    """
+    for box in range(len(geometry.half_sizes)):
+        half_size = row(geometry.half_sizes, box)
+        through_box = point_in_box(placement, box, through)
+        axis_box = vector_in_box(placement, box, axis)
+        for i in range(n_points):
+            entry = turn_entry(
+                row(placement.points_box[box], points[i]),
+                through_box,
+                axis_box,
+                half_size,
+                allowed_depth(placement.depths[points[i]], tolerances),
+                tolerances.resolution_m,
+            )
+            if entry < blocked_key:
+                return True
+    return False
 
 
 @kernel

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.jit import kernel
+from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.vector import Vector, minus, plus, row, times, transposed_times
 
@@ -60,8 +60,8 @@ class Placement(NamedTuple):
     depths: FloatArray
 
 
-@kernel
 def empty_placement(geometry: Geometry) -> Placement:
+    """Return room for one placement (plain Python: making arrays in compiled code is slow to compile)."""
     n_boxes = len(geometry.half_sizes)
     n_points = len(geometry.points_world)
     return Placement(
@@ -75,12 +75,13 @@ def box_gap(point_box: Vector, half_size: Vector) -> float:
     return max(abs(point_box[0]) - half_size[0], abs(point_box[1]) - half_size[1], abs(point_box[2]) - half_size[2])
 
 
-@kernel
+@entry_kernel
 def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, placement: Placement) -> None:
     """Fill ``placement`` for the object at the given pose."""
     rotation = matrix_from_quaternion(quaternion)
     n_points = len(geometry.points_world)
-    placement.depths[:] = -np.inf
+    for point in range(n_points):  # assigning to a slice would compile numba's whole shape-error machinery: 2 s
+        placement.depths[point] = -np.inf
     for box in range(len(geometry.half_sizes)):
         half_size = row(geometry.half_sizes, box)
         box_position = plus(position, times(rotation, row(geometry.box_positions, box)))

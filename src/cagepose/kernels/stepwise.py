@@ -32,7 +32,7 @@ from cagepose.kernels.trace import (
     Step,
     Trace,
     empty_trace,
-    pose_after,
+    pose_during,
     write_event,
 )
 from cagepose.kernels.vector import Vector, minus, norm, plus, row
@@ -84,8 +84,9 @@ class Touching(NamedTuple):
         Indices of the points that touch, the longest touching first, (n_points,), of which `n_touching` are used.
     n_touching
         How many points touch, (1,).
-    is_touching, was_touching
-        Which points touch now, and which touched before the last motion, (n_points,).
+    is_touching, was_touching, let_go
+        Which points touch now, which touched before the last motion, and which did not touch halfway, (n_points,). A
+        point that touches before and after but not halfway was reached anew, as in a swing back.
     alphas
         Angle between each touching point's normal and the load, (n_points,), radians.
     normals
@@ -98,16 +99,18 @@ class Touching(NamedTuple):
     n_touching: NDArray[np.int64]
     is_touching: NDArray[np.bool_]
     was_touching: NDArray[np.bool_]
+    let_go: NDArray[np.bool_]
     alphas: FloatArray
     normals: FloatArray
     chosen: NDArray[np.int64]
 
 
-@kernel
 def empty_touching(n_points: int) -> Touching:
+    """Return room for the contacts of one pose, none of them touching yet (plain Python)."""
     return Touching(
         np.empty(n_points, np.int64),
         np.zeros(1, np.int64),
+        np.zeros(n_points, np.bool_),
         np.zeros(n_points, np.bool_),
         np.zeros(n_points, np.bool_),
         np.empty(n_points),
@@ -121,8 +124,8 @@ def find_touching(
     geometry: Geometry, placement: Placement, load: PointLoad, touch_m: float, touching: Touching
 ) -> None:
     """Step (*): find all contacts again. Points that still touch keep their place in the order, new ones come after."""
-    touching.was_touching[:] = touching.is_touching
     for point in range(len(geometry.points_world)):
+        touching.was_touching[point] = touching.is_touching[point]
         touches, normal = steepest_contact(geometry, placement, point, load.direction, touch_m)
         touching.is_touching[point] = touches
         touching.alphas[point] = load_angle(normal, load.direction)
@@ -265,13 +268,17 @@ def phase_run(
     find_touching(geometry, placement, load, tolerances.touch_m, touching)
     for event in range(first_event, first_event + rules.event_limit):
         step = next_step(geometry, placement, touching, load, loads.is_push[phase], rules, tolerances)
-        position, quaternion = pose_after(step, position, quaternion)
+        halfway = pose_during(step, position, quaternion, 0.5)
+        place_object(geometry, halfway[0], halfway[1], placement)
+        for point in range(len(geometry.points_world)):
+            touching.let_go[point] = placement.depths[point] < -tolerances.touch_m
+        position, quaternion = pose_during(step, position, quaternion, 1.0)
         write_event(trace, event, phase, step, position, quaternion)
         load = load_at(loads, phase, position, quaternion)
         place_object(geometry, position, quaternion, placement)
         find_touching(geometry, placement, load, tolerances.touch_m, touching)
         for point in range(len(geometry.points_world)):
-            is_new = not touching.was_touching[point] or point == step.hit_point
+            is_new = not touching.was_touching[point] or touching.let_go[point] or point == step.hit_point
             trace.touching[event, point] = touching.is_touching[point]
             trace.hit[event, point] = touching.is_touching[point] and is_new
         if step.motion == NONE:
@@ -283,6 +290,36 @@ def phase_run(
     return LIMIT, first_event + rules.event_limit, position, quaternion
 
 
+class Workspace(NamedTuple):
+    """All arrays that a run writes to, so that compiled code makes none.
+
+    Attributes
+    ----------
+    placement, touching
+        The state at the present pose.
+    trace
+        Events of all phases, one after the other.
+    verdicts
+        Verdict code of each phase, (n_phases,).
+    """
+
+    placement: Placement
+    touching: Touching
+    trace: Trace
+    verdicts: NDArray[np.int64]
+
+
+def empty_workspace(geometry: Geometry, n_phases: int, rules: StepwiseRules) -> Workspace:
+    """Return room for one run (plain Python)."""
+    n_points = len(geometry.points_world)
+    return Workspace(
+        empty_placement(geometry),
+        empty_touching(n_points),
+        empty_trace(n_phases * rules.event_limit, n_points),
+        np.empty(n_phases, np.int64),
+    )
+
+
 @entry_kernel
 def stepwise_run(
     geometry: Geometry,
@@ -292,8 +329,9 @@ def stepwise_run(
     rules: StepwiseRules,
     size_m: float,
     tolerances: KernelTolerances,
-) -> tuple[Trace, NDArray[np.int64], int, int]:
-    """Run the phases one after the other; return (trace, verdict of each phase, phases run, events).
+    workspace: Workspace,
+) -> tuple[int, int]:
+    """Run the phases one after the other; return how many (phases were run, events were written).
 
     Parameters
     ----------
@@ -305,18 +343,18 @@ def stepwise_run(
         Numbers of the method and of the kernels.
     size_m
         The scene's size, metres.
+    workspace
+        Filled: trace and verdicts.
 
     A phase that does not end stable is the last one that is run.
     """
-    n_points = len(geometry.points_world)
-    n_phases = len(loads.is_push)
-    placement = empty_placement(geometry)
-    touching = empty_touching(n_points)
-    trace = empty_trace(n_phases * rules.event_limit, n_points)
-    verdicts = np.empty(n_phases, np.int64)
+    placement, touching, trace, verdicts = workspace
+    touching.n_touching[0] = 0
+    for point in range(len(geometry.points_world)):
+        touching.is_touching[point] = False
     position, quaternion = start_position, start_quaternion
     n_events = int(np.int64(0))  # a plain 0 would compile `phase_run` twice, once for the literal
-    for phase in range(n_phases):
+    for phase in range(len(verdicts)):
         verdicts[phase], n_events, position, quaternion = phase_run(
             geometry,
             placement,
@@ -332,5 +370,5 @@ def stepwise_run(
             n_events,
         )
         if verdicts[phase] != STABLE:
-            return trace, verdicts, phase + 1, n_events
-    return trace, verdicts, n_phases, n_events
+            return phase + 1, n_events
+    return len(verdicts), n_events

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.first_contact import first_contact_turn
+from cagepose.kernels.first_contact import first_contact_turn, turn_is_blocked
 from cagepose.kernels.geometry import Geometry, Placement
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.tolerances import KernelTolerances
@@ -148,6 +148,8 @@ def pairwise_stability(
                 continue
             axis, relative_moment = driven_axis(one, other, load, tolerances.tie)
             if relative_moment < rules.least_moment:
+                continue
+            if turn_is_blocked(geometry, placement, contacts, n_contacts, one, axis, rules.blocked_key, tolerances):
                 continue
             key, hit_point = first_contact_turn(geometry, placement, one, axis, tolerances)
             if key >= rules.blocked_key:

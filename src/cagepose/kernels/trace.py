@@ -89,8 +89,8 @@ class Trace(NamedTuple):
     hit: NDArray[np.bool_]
 
 
-@kernel
 def empty_trace(n_events: int, n_points: int) -> Trace:
+    """Return room for the events of a run (plain Python)."""
     return Trace(
         np.empty(n_events, np.int64),
         np.empty(n_events, np.int64),
@@ -118,12 +118,15 @@ def step_amounts(step: Step) -> tuple[float, float]:
 
 
 @kernel
-def pose_after(step: Step, position: Vector, quaternion: Quaternion) -> tuple[Vector, Quaternion]:
-    """Return the pose after a step; one that hits nothing (a full turn, an endless travel) ends where it began."""
+def pose_during(step: Step, position: Vector, quaternion: Quaternion, fraction: float) -> tuple[Vector, Quaternion]:
+    """Return the pose when ``fraction`` of a step is done.
+
+    A step that hits nothing (a full turn, an endless travel) ends where it began.
+    """
     if step.amount == np.inf or step.motion == NONE:
         return position, quaternion
     distance, angle = step_amounts(step)
-    return moved_pose(position, quaternion, step.along, step.through, distance, angle)
+    return moved_pose(position, quaternion, step.along, step.through, fraction * distance, fraction * angle)
 
 
 @kernel

@@ -51,7 +51,7 @@ def unit_vector(value: ArrayLike, key: str) -> FloatArray:
         raise SceneError([Problem((key,), "is zero, so it has no direction; give a vector of any other length")])
     scaled = vector / largest  # so that the squares of tiny or huge components neither vanish nor overflow
     # A vector that is unit to rounding is kept to the last digit, so that saved scenes come back unchanged.
-    is_unit = abs(float(np.linalg.norm(vector)) - 1.0) < 1e-15
+    is_unit = largest <= 1.0 and abs(float(np.linalg.norm(vector)) - 1.0) < 1e-15
     unit: FloatArray = vector if is_unit else scaled / np.linalg.norm(scaled)
     unit.setflags(write=False)
     return unit

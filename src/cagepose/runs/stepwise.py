@@ -11,7 +11,7 @@ from cagepose.kernels.contacts import contact_rows
 from cagepose.kernels.geometry import Geometry
 from cagepose.kernels.jit import is_loaded
 from cagepose.kernels.slip import SlipRules
-from cagepose.kernels.stepwise import RULE_NAMES, PhaseLoads, StepwiseRules, stepwise_run
+from cagepose.kernels.stepwise import RULE_NAMES, PhaseLoads, StepwiseRules, empty_workspace, stepwise_run
 from cagepose.kernels.support import SupportRules
 from cagepose.kernels.tolerances import kernel_tolerances
 from cagepose.kernels.trace import MOTION_NAMES, NONE, TRAVEL, VERDICT_NAMES, Trace
@@ -46,19 +46,20 @@ def run_stepwise(scene: Scene) -> Run:
     start = (position[0] - origin[0], position[1] - origin[1], position[2] - origin[2])
     loads, rules = _phase_loads(scene), _rules(scene)
     tolerances = kernel_tolerances(scene.size_m, scene.tolerances.touch)
-    arguments = (geometry, start, quaternion, loads, rules, scene.size_m, tolerances)
+    workspace = empty_workspace(geometry, len(scene.loads), rules)
+    arguments = (geometry, start, quaternion, loads, rules, scene.size_m, tolerances, workspace)
     if not is_loaded(stepwise_run):
         stepwise_run(*arguments)  # so that the time measured is that of the run
     began = time.perf_counter()
-    trace, verdicts, n_phases, n_events = stepwise_run(*arguments)
+    n_phases, n_events = stepwise_run(*arguments)
     solve_s = time.perf_counter() - began
 
-    phases: list[PhaseRun] = []
+    trace, phases = workspace.trace, list[PhaseRun]()
     pose = scene.object.pose_world_object
     for phase in range(n_phases):
         events = tuple(_event(scene, trace, event, origin) for event in range(n_events) if trace.phases[event] == phase)
         contacts = _contacts(scene, geometry, events[-1].pose_world_object, origin)
-        verdict: Verdict = VERDICT_NAMES[verdicts[phase]]
+        verdict: Verdict = VERDICT_NAMES[workspace.verdicts[phase]]
         phases.append(PhaseRun(scene.loads[phase].name, verdict, pose, events, contacts))
         pose = events[-1].pose_world_object
     return Run(scene, "stepwise", tuple(phases), tuple(_warnings(scene, phases)), solve_s)

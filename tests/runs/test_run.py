@@ -1,0 +1,70 @@
+"""A `Run` can be replayed: its motions lead from pose to pose exactly, and frames are made of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cagepose import Box, Cage, Load, Object, Scene, SceneError, run
+from rails import rail_scene
+from random_scenes import random_scenes
+
+
+def assert_replays(result):
+    for phase in result.phases:
+        pose = phase.start_pose
+        for event in phase.events:
+            if event.motion is not None and np.isfinite(event.motion.distance_m):
+                replayed = event.motion.pose_at(pose, 1.0)
+                assert_allclose(replayed.position_m, event.pose_world_object.position_m, atol=1e-12)
+                assert_allclose(replayed.rotation, event.pose_world_object.rotation, atol=1e-12)
+            pose = event.pose_world_object
+        assert_allclose(pose.position_m, phase.pose.position_m)
+
+
+def test_motions_lead_from_each_pose_to_the_next():
+    assert_replays(run(rail_scene(pitch_deg=0.1)))
+    for scene in random_scenes(30, seed=3):
+        assert_replays(run(scene))
+
+
+def test_each_phase_starts_where_the_one_before_ended():
+    gravity, push = run(rail_scene(pitch_deg=0.1)).phases
+    assert push.start_pose is gravity.pose
+
+
+def test_a_turn_has_ten_frames_and_a_travel_one():
+    result = run(rail_scene(pitch_deg=0.1))
+    motions = [event.motion for phase in result.phases for event in phase.events if event.motion is not None]
+    n_turns = sum(motion.kind == "turn" for motion in motions)
+    frames = list(result.frames(per_turn=10))
+    assert len(frames) == 1 + 10 * n_turns + (len(motions) - n_turns)
+    assert_allclose(frames[-1].pose_world_object.position_m, result.pose.position_m)
+
+
+def test_frames_of_a_turn_are_evenly_spaced():
+    result = run(rail_scene(pitch_deg=0.1))
+    turn = [frame for frame in result.frames(4) if (frame.phase_index, frame.event_index) == (0, 1)]
+    angles = [np.degrees(frame.pose_world_object.euler_zyx[1]) for frame in turn]
+    assert [frame.fraction for frame in turn] == [0.25, 0.5, 0.75, 1.0]
+    assert_allclose(np.diff([0.1, *angles]), np.full(4, 0.313084 / 4), atol=1e-6)
+
+
+def test_fewer_than_one_frame_for_a_turn_is_refused():
+    with pytest.raises(ValueError, match="per_turn is 0"):
+        next(run(rail_scene()).frames(0))
+
+
+def test_an_endless_travel_has_no_poses_on_its_way():
+    scene = Scene(Object([Box((1, 1, 1))]), Cage([(0, 0, 9)]), [Load("gravity", gravity=(0, 0, -1))])
+    result = run(scene)
+    motion = result.phases[0].events[0].motion
+    with pytest.raises(ValueError, match="no end"):
+        motion.pose_at(result.pose, 0.5)
+    assert [frame.event_index for frame in result.frames()] == [-1, 0]
+
+
+def test_an_unknown_method_is_refused_with_the_known_ones():
+    with pytest.raises(SceneError, match="known methods: stepwise"):
+        run(rail_scene(), method="magic")
