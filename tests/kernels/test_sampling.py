@@ -41,6 +41,7 @@ def random_start(rng, half):
     while True:
         point = rng.uniform(-2.5, 2.5, 3)
         if rng.random() < 1 / 3:
+            point = rng.uniform(-1.2, 1.2, 3) * half
             for axis in rng.permutation(3)[: rng.integers(1, 4)]:
                 point[axis] = rng.choice([-1.0, 1.0]) * half[axis]
         if (np.abs(point) - half).max() >= 0.0:
