@@ -137,6 +137,11 @@ class TestTurn:
 
 
 class TestScrew:
+    @pytest.mark.parametrize("gap", [0.0, 0.9 * RESOLUTION, -0.9 * RESOLUTION])
+    def test_a_touching_point_blocks_at_once_when_the_face_comes_nearer(self, gap):
+        assert screw((0.2, 0.0, 1.0 + gap), (0.0, 0.0, 0.0), Z, 0.1) == 0.0
+        assert turn((0.2, 1.0 + gap, 0.0), (2.0, 1.0, 0.0), negated(Z)) == 0.0
+
     def test_without_pitch_it_is_a_turn(self):
         rng = np.random.default_rng(5)
         n_met = 0

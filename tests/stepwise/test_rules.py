@@ -114,6 +114,12 @@ class TestPush:
         assert first.rule == "B-2"
         assert_allclose(first.motion.axis_world, (0, 0, 1), atol=1e-15)
 
+    def test_r4_a_point_on_an_edge_counts_by_the_face_that_meets_the_push(self):
+        """On the edge of the right face and the bottom: the right face is steep (no-slip), the bottom would slip."""
+        first = run(Scene(block(), Cage([(2, 0, 0), (9, 9, 9), (-9, 9, 9)]), [push((1, 0, 0), (-2, 0, 0))])).phases[0]
+        assert first.events[0].rule == "B-2"
+        assert_allclose(first.events[0].motion.axis_world, (0, 1, 0), atol=1e-15)
+
     def test_r6_one_face_slides_round_the_farthest_contact(self):
         """Two points below, pushed sideways at one end: Slp-1 turns about the contact farthest from the push."""
         cage = Cage([(1, 0, 0), (-1.5, 0, 0), (1.0, -2.3, 1.0)])
@@ -150,6 +156,19 @@ class TestPush:
         )
         assert run(scene).phases[0].events[0].rule == rule
 
+    def test_r8_a_contact_taken_for_contactless_that_blocks_at_once_is_one_after_all(self):
+        """A stop ahead (no-slip) would be turned about, but a point behind, which the push leaves, blocks that turn.
+
+        Turning left about (2, 0.5), the left face at y = 1.5 moves back into the point there. So both carry: the block
+        tips about the line through them, which lies above the push.
+        """
+        cage = Cage([(2, 0.5, 1), (-2, 1.5, 1), (0, 0, -9)])
+        first = run(Scene(block(), cage, [push((1, 0, 0), (-2, 0, -0.5))])).phases[0].events[0]
+        along = np.array([4.0, -1.0, 0.0]) / math.sqrt(17.0)
+        assert first.rule == "B-3"
+        assert_allclose(np.abs(first.motion.axis_world), np.abs(along), atol=1e-15)
+        assert first.motion.angle_rad > 0.0
+
     def test_r8b_gravity_beside_a_force_is_ignored_and_told(self):
         both = Load("both", gravity=(0, 0, -1), force=Force((0, 0, 1), (0, 0, 0)))
         result = run(Scene(block(), Cage([*FLOOR, (0, 0, 4)]), [both]))
@@ -163,6 +182,27 @@ class TestPush:
             cage = Cage([(2, 0, 1), (9, 9, 9), (9, -9, 9)])
             scene = Scene(block(), cage, [push(direction, (-1, 0.4, 0.5))], friction_coefficient=mu)
             assert run(scene).phases[0].events[0].rule == rule
+
+
+def test_a_point_that_lets_go_and_comes_back_is_hit():
+    """Standing on four points, with its weight left of the first two, the block swings half round about these: the
+    other two let go and meet the same face again, both at once, 180 deg later.
+    """
+    points = [(0, 1, 0), (0, -1, 0), (1.5, 1, 0), (1.5, -1, 0)]
+    first = run(Scene(block(cog=(-0.5, 0, 0)), Cage(points), [DOWN])).phases[0].events[0]
+    assert first.motion.angle_rad == pytest.approx(math.pi, rel=1e-14)
+    assert first.hit == ("C3", "C4")
+
+
+@pytest.mark.parametrize("direction", [(0, 0, 1), (1, 0, 0)])
+def test_a_start_pose_a_little_too_deep_may_leave_and_slide(direction):
+    """The points start half a touch tolerance inside the floor's face, as a pose drawn by hand may."""
+    tolerances = Tolerances(touch=1e-7)
+    depth = 0.5e-7 * Scene(block(), Cage(FLOOR), [DOWN]).size_m
+    scene = Scene(block(at=(0, 0, 1 - depth)), Cage(FLOOR), [push(direction, (0, 0, 0))], tolerances=tolerances)
+    first = run(scene).phases[0].events[0]
+    assert first.motion is not None
+    assert max(first.motion.distance_m, first.motion.angle_rad) > 0.1
 
 
 class TestFailuresHaveNames:

@@ -84,7 +84,7 @@ def crossing(wave: Wave, start: float, end: float) -> float:
 def next_below(wave: Wave, s_from: float, s_end: float) -> float:
     """Return the first s in [s_from, s_end) from which on f < 0; inf: none."""
     turning_points = first_turning_points(wave)
-    piece = 0
+    piece = 2 * int(s_from // (2.0 * math.pi))  # two pieces to a turn; those that ended before are passed over below
     start = s_from
     while start < s_end:
         end = min(monotone_end(turning_points, piece), s_end)
@@ -169,7 +169,7 @@ def screw_entry(
     pitch_m
         Travel along the axis for each radian of turning, metres; 0 is a turn. A motion that hardly turns is a travel.
     angle_end_rad
-        Where to stop looking, above 0; more than one turn is fine.
+        Where to stop looking, finite and above 0; more than one turn is fine.
     half_size
         Half edge lengths, metres.
     allowed_depth_m, resolution_m
