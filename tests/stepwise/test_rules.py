@@ -236,6 +236,17 @@ class TestUnions:
         assert (slide.rule, slide.hit) == ("Slp-2", ("C3",))
         assert slide.motion.distance_m == pytest.approx(2.0, rel=1e-14)
 
+    @pytest.mark.parametrize("top", [[(0, 0, 1)], [(-1, 0, 1), (1, 0, 1)]])
+    def test_a_point_does_not_run_along_the_line_where_three_or_four_blocks_meet(self, top):
+        """Two blocks side by side with one across their seam, or two more on top: a point on the line x = z = 0."""
+        boxes = [Box((2, 4, 2), Pose((-1, 0, -1))), Box((2, 4, 2), Pose((1, 0, -1)))]
+        boxes += [Box((2, 4, 2), Pose(at)) for at in top]
+        travel = (
+            run(Scene(Object(boxes), Cage([(0, 5, 0), (9, 9, 9)]), [push((0, 1, 0), (0, 0, 0))])).phases[0].events[0]
+        )
+        assert travel.hit == ("C1",)
+        assert travel.motion.distance_m == pytest.approx(3.0)
+
     def test_a_point_does_not_fall_into_the_seam_between_two_blocks_side_by_side(self):
         pair = Object([Box((2, 4, 2), Pose((-1, 0, 0))), Box((2, 4, 2), Pose((1, 0, 0)))], pose=Pose((0, 0, 3)))
         result = run(Scene(pair, Cage([(0, 1, 0), (0, -1, 0), (1, 0, 0)]), [DOWN]))

@@ -29,11 +29,16 @@ class PlacedBox(NamedTuple):
 
 
 def seam_bridges(boxes: Sequence[PlacedBox], touch_m: float) -> list[PlacedBox]:
-    """Return a bridge for each pair of boxes that meet flush within ``touch_m``.
+    """Return a bridge for each pair of boxes that meet flush within ``touch_m``, and for each pair of bridges that do.
 
-    Boxes turned against each other about the seam's normal are bridged if the face of one lies within the face of the
-    other.
+    The latter close the lines in which three or four boxes meet. Boxes turned against each other about the seam's
+    normal are bridged if the face of one lies within the face of the other.
     """
+    bridges = _pair_bridges(boxes, touch_m)
+    return bridges + _pair_bridges(bridges, touch_m)
+
+
+def _pair_bridges(boxes: Sequence[PlacedBox], touch_m: float) -> list[PlacedBox]:
     bridges = []
     for one, other in combinations(boxes, 2):
         bridge = _bridge(one, other, touch_m) or _bridge(other, one, touch_m)
