@@ -48,12 +48,6 @@ class SlipRules(NamedTuple):
 
 
 @kernel
-def load_angle(normal: Vector, direction: Vector) -> float:
-    """Return the angle between a normal and a direction, right to the last digits at both ends of its range."""
-    return math.atan2(norm(cross(normal, direction)), dot(normal, direction))
-
-
-@kernel
 def independent_normals(
     contacts: NDArray[np.int64], n_contacts: int, normals: FloatArray, parallel_sine: float
 ) -> tuple[int, Vector]:

@@ -1,0 +1,102 @@
+"""The contacts at the present pose, in the order in which they were made, with their angles to the load (R4)."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.kernels.contacts import steepest_contact
+from cagepose.kernels.geometry import FloatArray, Geometry, Placement
+from cagepose.kernels.jit import kernel
+from cagepose.kernels.support import PointLoad
+from cagepose.kernels.vector import Vector, cross, dot, norm
+
+
+class Touching(NamedTuple):
+    """The contacts at the present pose.
+
+    Attributes
+    ----------
+    order
+        Indices of the points that touch, the longest touching first, (n_points,), of which `n_touching` are used.
+    n_touching
+        How many points touch, (1,).
+    is_touching, was_touching, let_go
+        Which points touch now, which touched before the last motion, and which did not touch halfway, (n_points,). A
+        point that touches before and after but not halfway was reached anew, as in a swing back.
+    alphas
+        Angle between each touching point's normal and the load, (n_points,), radians.
+    normals
+        Normal of each touching point, (n_points, 3).
+    chosen
+        Room for the contacts that a rule works on, (n_points,).
+    """
+
+    order: NDArray[np.int64]
+    n_touching: NDArray[np.int64]
+    is_touching: NDArray[np.bool_]
+    was_touching: NDArray[np.bool_]
+    let_go: NDArray[np.bool_]
+    alphas: FloatArray
+    normals: FloatArray
+    chosen: NDArray[np.int64]
+
+
+def empty_touching(n_points: int) -> Touching:
+    """Return room for the contacts of one pose, none of them touching yet (plain Python)."""
+    return Touching(
+        np.empty(n_points, np.int64),
+        np.zeros(1, np.int64),
+        np.zeros(n_points, np.bool_),
+        np.zeros(n_points, np.bool_),
+        np.zeros(n_points, np.bool_),
+        np.empty(n_points),
+        np.empty((n_points, 3)),
+        np.empty(n_points, np.int64),
+    )
+
+
+@kernel
+def load_angle(normal: Vector, direction: Vector) -> float:
+    """Return the angle between a normal and a direction, right to the last digits at both ends of its range."""
+    return math.atan2(norm(cross(normal, direction)), dot(normal, direction))
+
+
+@kernel
+def find_touching(
+    geometry: Geometry, placement: Placement, load: PointLoad, touch_m: float, touching: Touching
+) -> None:
+    """Step (*): find all contacts again. Points that still touch keep their place in the order, new ones come after."""
+    for point in range(len(geometry.points_world)):
+        touching.was_touching[point] = touching.is_touching[point]
+        touches, normal = steepest_contact(geometry, placement, point, load.direction, touch_m)
+        touching.is_touching[point] = touches
+        touching.alphas[point] = load_angle(normal, load.direction)
+        for k in range(3):
+            touching.normals[point, k] = normal[k]
+    n_listed = 0
+    for i in range(touching.n_touching[0]):
+        point = touching.order[i]
+        if touching.is_touching[point]:
+            touching.order[n_listed] = point
+            n_listed += 1
+    for point in range(len(geometry.points_world)):
+        if touching.is_touching[point] and not touching.was_touching[point]:
+            touching.order[n_listed] = point
+            n_listed += 1
+    touching.n_touching[0] = n_listed
+
+
+@kernel
+def choose_below(touching: Touching, angle_rad: float) -> int:
+    """Write the contacts whose angle to the load is at most ``angle_rad`` into ``chosen``; return how many."""
+    n_chosen = 0
+    for i in range(touching.n_touching[0]):
+        point = touching.order[i]
+        if touching.alphas[point] <= angle_rad:
+            touching.chosen[n_chosen] = point
+            n_chosen += 1
+    return n_chosen
