@@ -1,0 +1,67 @@
+"""Sphinx settings. Everything is built and read offline: no web fonts, no scripts from the network."""
+
+from __future__ import annotations
+
+import re
+from importlib.metadata import version as installed_version
+
+import latex2mathml.converter
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.writers.html5 import HTML5Translator
+
+project = "cagepose"
+author = "the cagepose developers"
+copyright = author
+release = version = installed_version("cagepose")
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc"]
+highlight_language = "python"
+
+html_theme = "furo"
+html_title = f"cagepose {version}"
+html_show_copyright = False
+html_math_renderer = "mathml"
+
+myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 3
+
+autodoc_member_order = "bysource"
+autodoc_type_aliases = {"ArrayLike": "ArrayLike", "FloatArray": "FloatArray"}
+autodoc_default_options = {"members": True}
+python_use_unqualified_type_names = True
+autoclass_content = "both"  # what a class raises stands in the docstring of its __init__
+numpydoc_show_class_members = False  # autodoc lists them
+
+
+def _mathml(node: nodes.Element, display: str) -> str:
+    """Write an equation as MathML, which browsers draw themselves; MathJax would be loaded from the network."""
+    return latex2mathml.converter.convert(node.astext(), display=display)
+
+
+def _inline_math(translator: HTML5Translator, node: nodes.Element) -> None:
+    translator.body.append(_mathml(node, "inline"))
+    raise nodes.SkipNode
+
+
+def _display_math(translator: HTML5Translator, node: nodes.Element) -> None:
+    translator.body.append(translator.starttag(node, "div", CLASS="math"))
+    if node["number"]:
+        translator.body.append(f'<span class="eqno">({node["number"]})</span>')
+    translator.body.append(_mathml(node, "block"))
+    translator.body.append("</div>")
+    raise nodes.SkipNode
+
+
+def _plain_aliases(*event: object) -> tuple[str, str] | None:
+    """Name a type alias as the source does: autodoc wraps it where it stands in a union."""
+    signature, returns = event[-2:]
+    if signature is None:
+        return None
+    return tuple(re.sub(r"TypeAliasForwardRef\('(\w+)'\)", r"\1", part or "") for part in (signature, returns))
+
+
+def setup(app: Sphinx) -> None:
+    """Register the equations' writer and the repair of signatures."""
+    app.connect("autodoc-process-signature", _plain_aliases)
+    app.add_html_math_renderer("mathml", (_inline_math, None), (_display_math, None))
