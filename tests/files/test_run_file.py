@@ -64,8 +64,8 @@ def test_a_run_is_the_same_after_saving_and_loading(full_scene: Scene, tmp_path:
     assert run_record(after) == run_record(before)
     assert (after.verdict, after.warnings, after.solve_s) == (before.verdict, before.warnings, before.solve_s)
     assert np.array_equal(after.pose.position_m, before.pose.position_m)
-    assert [event.tie for phase in after.phases for event in phase.events] == [
-        event.tie for phase in before.phases for event in phase.events
+    assert [event.note for phase in after.phases for event in phase.events] == [
+        event.note for phase in before.phases for event in phase.events
     ]
     for one, other in zip(before.frames(), after.frames(), strict=True):
         assert np.array_equal(one.pose_world_object.quaternion_wxyz, other.pose_world_object.quaternion_wxyz)

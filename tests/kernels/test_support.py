@@ -18,7 +18,7 @@ from cagepose.nouns.geometry import scene_geometry
 from jit import callable_kernel
 
 DOWN = (0.0, 0.0, -1.0)
-RULES = SupportRules(1e-3, key_of_angle(math.pi / 10000.0), 1e-6)
+RULES = SupportRules(1e-3, key_of_angle(math.pi / 10000.0), key_of_angle(1e-9), 1e-6)
 TOLERANCES = kernel_tolerances(10.0, 1e-9)
 SQUARE = [(1.0, 1.0, 0.0), (1.0, -1.0, 0.0), (-1.0, -1.0, 0.0), (-1.0, 1.0, 0.0)]
 

@@ -89,6 +89,13 @@ def test_the_touch_tolerance_does_not_show_in_the_tilt(misaligned, touch):
     assert tilt_deg(result, 1) == pytest.approx(-exact_tilt_deg(1.0, 183.0), abs=1e-5)
 
 
+def test_play_below_the_resolution_of_r3_is_told():
+    """At 0.05 mm the way from level to tilted is less than 0.018 deg, so the method holds the rail where it is."""
+    result = run(rail_scene(pitch_deg=0.1, play_mm=0.05))
+    assert exact_tilt_deg(0.05, 183.0) < 0.018
+    assert any("less than 0.018 deg" in warning for warning in result.warnings)
+
+
 def test_a_tighter_rail_is_as_exact():
     """Play 0.1 mm: the event logs of a fuzzy method would depend on its tolerance here."""
     result = run(rail_scene(pitch_deg=0.1, play_mm=0.1))

@@ -18,7 +18,7 @@ from cagepose.files.scene_record import (
     scene_of_record,
 )
 from cagepose.nouns.checks import FloatArray
-from cagepose.runs.run import Contact, Event, Motion, MotionKind, PhaseRun, Run, Verdict
+from cagepose.runs.run import Contact, Event, Motion, MotionKind, Note, PhaseRun, Run, Verdict
 
 
 class MotionRecord(Record):
@@ -47,7 +47,7 @@ class EventRecord(Record):
     hit: list[str]
     contacts: list[str]
     pose: PoseRecord
-    tie: bool
+    note: Note | None
 
 
 class ContactRecord(Record):
@@ -145,7 +145,7 @@ def _event_record(event: Event) -> EventRecord:
         hit=list(event.hit),
         contacts=list(event.contacts),
         pose=PoseRecord.of(event.pose_world_object),
-        tie=event.tie,
+        note=event.note,
     )
 
 
@@ -168,7 +168,7 @@ def _phase(record: PhaseRecord) -> PhaseRun:
 
 def _event(record: EventRecord) -> Event:
     motion = None if record.motion is None else _motion(record.motion)
-    return Event(record.rule, motion, tuple(record.hit), tuple(record.contacts), record.pose.pose(), record.tie)
+    return Event(record.rule, motion, tuple(record.hit), tuple(record.contacts), record.pose.pose(), record.note)
 
 
 def _motion(record: MotionRecord) -> Motion:

@@ -17,7 +17,7 @@ from cagepose.kernels.geometry import FloatArray, Geometry, Placement
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.support import PointLoad, held, moment_about
 from cagepose.kernels.tolerances import KernelTolerances
-from cagepose.kernels.trace import TRAVEL, TURN, Step
+from cagepose.kernels.trace import PLAIN, TRAVEL, TURN, Step
 from cagepose.kernels.vector import Vector, cross, dot, minus, norm, row, scaled
 
 SLP_1, SLP_2 = 8, 9
@@ -84,7 +84,7 @@ def turn_on_face(
 
     Farthest from the load's point; among equal distances the lowest point index. Held if there is none.
     """
-    best = held(SLP_1)
+    best = held(SLP_1, PLAIN)
     best_distance = -math.inf
     best_contact = -1
     for i in range(n_contacts):
@@ -102,7 +102,7 @@ def turn_on_face(
         axis = normal if moment > 0.0 else scaled(normal, -1.0)
         key, hit_point = first_contact_turn(geometry, placement, through, axis, tolerances)
         if key > -math.inf:
-            best = Step(SLP_1, TURN, axis, through, key, hit_point, False)
+            best = Step(SLP_1, TURN, axis, through, key, hit_point, PLAIN)
             best_distance, best_contact = distance, contact
     return best
 
@@ -114,12 +114,12 @@ def travel_between_faces(
     """R7 (Slp-2): travel along n1 x n2 in the sense in which the load does work; held if it does none or is blocked."""
     work = dot(across, load.direction)
     if abs(work) <= tolerances.tie:
-        return held(SLP_2)
+        return held(SLP_2, PLAIN)
     direction = across if work > 0.0 else scaled(across, -1.0)
     distance, hit_point = first_contact_travel(geometry, placement, direction, tolerances)
     if distance <= 0.0:
-        return held(SLP_2)
-    return Step(SLP_2, TRAVEL, direction, (0.0, 0.0, 0.0), distance, hit_point, False)
+        return held(SLP_2, PLAIN)
+    return Step(SLP_2, TRAVEL, direction, (0.0, 0.0, 0.0), distance, hit_point, PLAIN)
 
 
 @kernel
@@ -140,7 +140,7 @@ def slip_step(
     """
     for i in range(n_contacts):
         if alphas[contacts[i]] < rules.no_slip_angle_rad:
-            return held(SLP_1)
+            return held(SLP_1, PLAIN)
     n_directions, across = independent_normals(contacts, n_contacts, normals, rules.parallel_sine)
     if n_directions == 1:
         return turn_on_face(
@@ -148,4 +148,4 @@ def slip_step(
         )
     if n_directions == 2:
         return travel_between_faces(geometry, placement, across, load, tolerances)
-    return held(SLP_2)
+    return held(SLP_2, PLAIN)

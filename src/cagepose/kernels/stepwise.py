@@ -26,6 +26,7 @@ from cagepose.kernels.trace import (
     ESCAPES,
     LIMIT,
     NONE,
+    PLAIN,
     SPINS,
     STABLE,
     TRAVEL,
@@ -112,7 +113,7 @@ def next_step(
     n_chosen = choose_below(touching, rules.slip.contactless_angle_rad if is_push else math.inf)
     if n_chosen == 0:
         distance, hit_point = first_contact_travel(geometry, placement, load.direction, tolerances)
-        return Step(phase_code, TRAVEL, load.direction, (0.0, 0.0, 0.0), distance, hit_point, False)
+        return Step(phase_code, TRAVEL, load.direction, (0.0, 0.0, 0.0), distance, hit_point, PLAIN)
     if is_push:
         slide = slip_step(
             geometry,
@@ -139,7 +140,8 @@ def next_step(
 def was_met(trace: Trace, first: int, last: int, size_m: float, resolution_m: float) -> bool:
     """Whether an event from ``first`` to before ``last`` ended at the pose and with the contacts of ``last`` (R10).
 
-    The method has no other memory, so it would repeat itself for ever.
+    The method has no other memory (but for the order of touching, which only tells at a tie), so it would repeat itself
+    for ever.
     """
     for event in range(first, last):
         offset = norm(minus(row(trace.positions, event), row(trace.positions, last)))

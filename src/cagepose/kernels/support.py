@@ -12,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.first_contact import first_contact_turn, turn_is_blocked
+from cagepose.kernels.first_contact import first_contact_turn, turn_is_blocked_at_once
 from cagepose.kernels.geometry import Geometry, Placement
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.tolerances import KernelTolerances
-from cagepose.kernels.trace import NONE, TURN, Step
+from cagepose.kernels.trace import BALANCED, NONE, PLAIN, SMALL_TURN, TIE, TURN, Step
 from cagepose.kernels.vector import Vector, cross, dot, minus, norm, row, scaled
 
 
@@ -36,12 +36,15 @@ class SupportRules(NamedTuple):
         An axis counts if the load's moment about it is at least this fraction of force times distance (R3). No unit.
     blocked_key
         Key of the angle within which a contact blocks an axis (R3).
+    unseen_key
+        Key of the angle that moves nothing by more than the touch tolerance: a turn that ends within it is none.
     equal_distance_m
         Distances that differ by less are equal, so the lowest point indices win, metres.
     """
 
     least_moment: float
     blocked_key: float
+    unseen_key: float
     equal_distance_m: float
 
 
@@ -52,10 +55,10 @@ def moment_about(axis: Vector, through: Vector, load: PointLoad) -> float:
 
 
 @kernel
-def held(rule: int) -> Step:
-    """The step that does not move."""
+def held(rule: int, note: int) -> Step:
+    """Return the step that does not move."""
     zero = (0.0, 0.0, 0.0)
-    return Step(rule, NONE, zero, zero, 0.0, -1, False)
+    return Step(rule, NONE, zero, zero, 0.0, -1, note)
 
 
 @kernel
@@ -74,10 +77,10 @@ def turn_about_one(
     moment = cross(arm, load.direction)
     length = norm(moment)
     if length <= tolerances.tie * norm(arm):
-        return held(held_rule)
+        return held(held_rule, BALANCED)
     axis = scaled(moment, 1.0 / length)
     key, hit_point = first_contact_turn(geometry, placement, through, axis, tolerances)
-    return Step(turn_rule, TURN, axis, through, key, hit_point, False)
+    return Step(turn_rule, TURN, axis, through, key, hit_point, PLAIN)
 
 
 @kernel
@@ -111,7 +114,8 @@ def turn_about_two(
     other = row(geometry.points_world, second)
     axis, relative_moment = driven_axis(one, other, load, tolerances.tie)
     key, hit_point = first_contact_turn(geometry, placement, one, axis, tolerances)
-    return Step(turn_rule, TURN, axis, one, key, hit_point, relative_moment <= tolerances.tie)
+    note = TIE if relative_moment <= tolerances.tie else PLAIN
+    return Step(turn_rule, TURN, axis, one, key, hit_point, note)
 
 
 @kernel
@@ -126,13 +130,12 @@ def pairwise_stability(
     rules: SupportRules,
     tolerances: KernelTolerances,
 ) -> Step:
-    """R3: held if every pair's axis that the load drives is blocked at once; else turn about the free axis farthest
-    out.
+    """R3: held if every driven axis through two contacts is blocked; else turn about the free one farthest out.
 
     Farthest: the largest sum of the distances from the load's point to the two contacts; among equal sums the lowest
-    point indices.
+    point indices. Held with a note if a driven turn was free, but for less than the angle that counts.
     """
-    best = held(held_rule)
+    best = held(held_rule, PLAIN)
     best_sum = -math.inf
     best_low, best_high = -1, -1
     for i in range(n_contacts):
@@ -149,10 +152,12 @@ def pairwise_stability(
             axis, relative_moment = driven_axis(one, other, load, tolerances.tie)
             if relative_moment < rules.least_moment:
                 continue
-            if turn_is_blocked(geometry, placement, contacts, n_contacts, one, axis, rules.blocked_key, tolerances):
+            if turn_is_blocked_at_once(geometry, placement, contacts, n_contacts, one, axis, tolerances):
                 continue
             key, hit_point = first_contact_turn(geometry, placement, one, axis, tolerances)
             if key >= rules.blocked_key:
-                best = Step(turn_rule, TURN, axis, one, key, hit_point, False)
+                best = Step(turn_rule, TURN, axis, one, key, hit_point, PLAIN)
                 best_sum, best_low, best_high = distance_sum, low, high
+            elif key > rules.unseen_key and best.motion == NONE:
+                best = held(held_rule, SMALL_TURN)
     return best

@@ -28,6 +28,11 @@ VERDICT_NAMES: tuple[Literal["stable", "escapes", "spins", "cycling", "limit"], 
 )
 
 
+TIE, BALANCED, SMALL_TURN, PLAIN = 0, 1, 2, 3
+"""Codes of notes: the index into `NOTE_NAMES`; PLAIN has no name."""
+NOTE_NAMES: tuple[Literal["tie", "balanced", "small turn"], ...] = ("tie", "balanced", "small turn")
+
+
 class Step(NamedTuple):
     """What a rule decides to do next.
 
@@ -43,8 +48,8 @@ class Step(NamedTuple):
         Travel: distance in metres. Turn: key of the angle, see `cagepose.kernels.turn`. Inf: nothing is hit.
     hit_point
         Index of the cage point that ends the motion; -1: none.
-    tie
-        The sense of turning was decided by convention.
+    note
+        Code of what a careful reader should know of this decision: the index into `NOTE_NAMES`, or PLAIN.
     """
 
     rule: int
@@ -53,7 +58,7 @@ class Step(NamedTuple):
     through: Vector
     amount: float
     hit_point: int
-    tie: bool
+    note: int
 
 
 class Trace(NamedTuple):
@@ -69,7 +74,7 @@ class Trace(NamedTuple):
         Metres and radians, (n_events,).
     positions, quaternions
         Pose of the object after the event, (n_events, 3) metres and (n_events, 4).
-    ties
+    notes
         As in `Step`, (n_events,).
     touching, hit
         Which points touch after the event, and which of them the motion reached, (n_events, n_points).
@@ -84,7 +89,7 @@ class Trace(NamedTuple):
     angles: FloatArray
     positions: FloatArray
     quaternions: FloatArray
-    ties: NDArray[np.bool_]
+    notes: NDArray[np.int64]
     touching: NDArray[np.bool_]
     hit: NDArray[np.bool_]
 
@@ -101,7 +106,7 @@ def empty_trace(n_events: int, n_points: int) -> Trace:
         np.empty(n_events),
         np.empty((n_events, 3)),
         np.empty((n_events, 4)),
-        np.empty(n_events, np.bool_),
+        np.empty(n_events, np.int64),
         np.zeros((n_events, n_points), np.bool_),
         np.zeros((n_events, n_points), np.bool_),
     )
@@ -136,7 +141,7 @@ def write_event(trace: Trace, event: int, phase: int, step: Step, position: Vect
     trace.rules[event] = step.rule
     trace.motions[event] = step.motion
     trace.distances[event], trace.angles[event] = step_amounts(step)
-    trace.ties[event] = step.tie
+    trace.notes[event] = step.note
     for k in range(3):
         trace.along[event, k] = step.along[k]
         trace.through[event, k] = step.through[k]

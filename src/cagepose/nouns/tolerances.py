@@ -26,7 +26,8 @@ class Tolerances:
         (about 1e-15 of the size for each step of a run); above the greatest, touching would be visible play.
     grazing_band_rad
         A contact whose face is steeper than perpendicular to the load by at most this angle still counts as slipping
-        (rule R5): without it the classification flips with the object's tilt, and a push along a rail never settles.
+        (rule R5): without it the classification flips with the object's tilt, and a push leaves the rail of docs/theory
+        at the wrong one.
     """
 
     touch: float = TOUCH_DEFAULT

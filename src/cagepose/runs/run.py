@@ -15,6 +15,7 @@ from cagepose.nouns.pose import Pose
 from cagepose.nouns.scene import Scene
 
 MotionKind = Literal["travel", "turn", "screw"]
+Note = Literal["tie", "balanced", "small turn"]
 Verdict = Literal["stable", "rests", "may rest", "moves", "escapes", "spins", "cycling", "stalled", "limit"]
 
 FAILURES: frozenset[Verdict] = frozenset({"spins", "cycling", "stalled", "limit"})
@@ -114,8 +115,10 @@ class Event:
         Names of all points that touch after it.
     pose_world_object
         Where the object is after it.
-    tie
-        The rule met a tie: the load has no moment about the axis, so the sense of turning was decided by convention.
+    note
+        What a careful reader should know of it: "tie" (the load has no moment about the axis, so the sense of turning
+        was decided by convention), "balanced" (the load's line passes through the one contact that holds), "small
+        turn" (held, though the load could still turn the object by less than counts); None: nothing.
     """
 
     rule: str
@@ -123,7 +126,7 @@ class Event:
     hit: tuple[str, ...]
     contacts: tuple[str, ...]
     pose_world_object: Pose
-    tie: bool
+    note: Note | None
 
 
 @dataclass(frozen=True, eq=False)

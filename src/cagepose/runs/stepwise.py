@@ -14,13 +14,13 @@ from cagepose.kernels.slip import SlipRules
 from cagepose.kernels.stepwise import RULE_NAMES, PhaseLoads, StepwiseRules, empty_workspace, stepwise_run
 from cagepose.kernels.support import SupportRules
 from cagepose.kernels.tolerances import kernel_tolerances
-from cagepose.kernels.trace import MOTION_NAMES, NONE, TRAVEL, VERDICT_NAMES, Trace
+from cagepose.kernels.trace import MOTION_NAMES, NONE, NOTE_NAMES, PLAIN, TRAVEL, VERDICT_NAMES, Trace
 from cagepose.kernels.turn import key_of_angle
 from cagepose.nouns.checks import FloatArray, as_vector
 from cagepose.nouns.geometry import scene_geometry
 from cagepose.nouns.pose import Pose
 from cagepose.nouns.scene import Scene
-from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run, Verdict
+from cagepose.runs.run import Contact, Event, Motion, Note, PhaseRun, Run, Verdict
 
 NO_SLIP_ANGLE_DEFAULT_RAD = 0.1
 """The paper's threshold, from the friction of metal on metal."""
@@ -33,7 +33,16 @@ EQUAL_DISTANCE_OF_SIZE = 1e-6
 PARALLEL_SINE = 1e-6
 """Normals closer than this angle (radians) are one direction."""
 EVENT_LIMIT = 200
-"""Events in a phase after which a run is named "limit". The rail takes 8; of 20,000 random scenes none needs 100."""
+"""Events in a phase after which a run is named "limit". A rail's push takes 9; 0.1 % of random scenes get here."""
+NOTES: dict[Note, str] = {
+    "tie": "tie: the load has no moment about the axis through the two contacts, so the sense of turning was decided by"
+    " convention (R2)",
+    "balanced": "balanced: the load's line passes through the one contact that holds, so the least disturbance may move"
+    " it (R1)",
+    "small turn": "held, though the load could still turn the object by less than 0.018 deg: the method cannot tell"
+    " play this small from none (R3)",
+}
+"""What the notes of events say as warnings."""
 SMALL_POSE_RAD = math.radians(45.0)
 """Assumption E of the paper: the method is meant for smaller angles per axis (R11)."""
 
@@ -69,7 +78,9 @@ def _rules(scene: Scene) -> StepwiseRules:
     friction = scene.friction_coefficient
     equal_distance_m = EQUAL_DISTANCE_OF_SIZE * scene.size_m
     return StepwiseRules(
-        SupportRules(LEAST_MOMENT, key_of_angle(BLOCKED_ANGLE_RAD), equal_distance_m),
+        SupportRules(
+            LEAST_MOMENT, key_of_angle(BLOCKED_ANGLE_RAD), key_of_angle(scene.tolerances.touch), equal_distance_m
+        ),
         SlipRules(
             NO_SLIP_ANGLE_DEFAULT_RAD if friction is None else math.atan(friction),
             math.pi / 2.0 + scene.tolerances.grazing_band_rad,
@@ -103,7 +114,7 @@ def _event(scene: Scene, trace: Trace, event: int, origin: FloatArray) -> Event:
         hit=_names(scene, trace.hit[event]),
         contacts=_names(scene, trace.touching[event]),
         pose_world_object=Pose(trace.positions[event] + origin, trace.quaternions[event]),
-        tie=bool(trace.ties[event]),
+        note=None if trace.notes[event] == PLAIN else NOTE_NAMES[trace.notes[event]],
     )
 
 
@@ -150,14 +161,8 @@ def _warnings(scene: Scene, phases: list[PhaseRun]) -> list[str]:
             warnings.append(f"{phase.name}: gravity is ignored beside a force (the paper's assumption C)")
         for number, event in enumerate(phase.events, start=1):
             largest = max(largest, *(abs(angle) for angle in (start @ event.pose_world_object).euler_zyx))
-            if event.tie:
-                warnings.append(
-                    f"{phase.name}, event {number} ({event.rule}): tie: the load has no moment about the axis through"
-                    " the two contacts, so the sense of turning was decided by convention (R2)"
-                )
-        if phase.verdict == "stable" and len(phase.events[-1].contacts) < 3:
-            names = " and ".join(phase.events[-1].contacts)
-            warnings.append(f"{phase.name}: balanced on {names} alone; the least disturbance may move it")
+            if event.note is not None:
+                warnings.append(f"{phase.name}, event {number} ({event.rule}): {NOTES[event.note]}")
         edges = sorted({contact.point for contact in phase.contacts if contact.near_edge})
         if edges:
             warnings.append(f"{phase.name}: {', '.join(edges)} within the touch tolerance of a face's edge")
