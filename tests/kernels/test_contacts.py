@@ -10,14 +10,15 @@ from numpy.testing import assert_allclose
 
 from cagepose import Box, Cage, Object, Pose
 from cagepose.kernels.contacts import contact_rows, deepest_boxes
-from cagepose.nouns.geometry import scene_geometry
+from cagepose.nouns.geometry import object_seams, scene_geometry
 
 TOUCH = 1e-9
 STILL = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 
 
 def rows_of(boxes, points, pose=STILL, touch=TOUCH):
-    return contact_rows(scene_geometry(Object(boxes), Cage(points), touch), *pose, touch)
+    held = Object(boxes)
+    return contact_rows(scene_geometry(held, Cage(points), object_seams(held, touch).bridges), *pose, touch)
 
 
 def normals(rows):
@@ -92,7 +93,9 @@ class TestUnions:
         assert normals(rows_of(boxes, [(0.0, 0.0, 1.0)])) == {(0.0, 0.0, 1.0)}
 
     def test_a_point_in_the_seam_lies_inside_the_object(self):
-        geometry = scene_geometry(Object(self.pair), Cage([(0.0, 0.0, 0.0), (5.0, 0.0, 0.0)]), TOUCH)
+        held = Object(self.pair)
+        points = Cage([(0.0, 0.0, 0.0), (5.0, 0.0, 0.0)])
+        geometry = scene_geometry(held, points, object_seams(held, TOUCH).bridges)
         depths, boxes = deepest_boxes(geometry, *STILL)
         assert depths[0] == pytest.approx(1.0)
         assert boxes[0] == geometry.n_own_boxes

@@ -29,7 +29,7 @@ _driven = callable_kernel(driven_axis)
 def stability(points, load_point, *, direction=DOWN, pose=None, contacts=None):
     """Test a plate 6 x 6 x 1 whose bottom lies on the plane z = 0, loaded at ``load_point``."""
     frame = pose or Pose()
-    geometry = scene_geometry(Object([Box((6, 6, 1))]), Cage(points, pose=frame), 1e-8)
+    geometry = scene_geometry(Object([Box((6, 6, 1))]), Cage(points, pose=frame), [])
     placement = empty_placement(geometry)
     place_object(geometry, *(frame @ Pose((0, 0, 0.5))).as_tuples(), placement)
     load = PointLoad(tuple((frame.rotation @ direction).tolist()), tuple(frame.transform(load_point).tolist()))

@@ -2,8 +2,8 @@
 
 The method is a heuristic: its turns run on through the balance point of the load, so many scenes end by name as
 "spins" (a full turn) or "cycling" (a swing between poses). That is the method's limit, not a numerical one, and the
-test proves it: every such run contains a turn that the load had stopped driving before its end. A few creep towards an
-end by ever smaller steps and stop at the event limit, which is named too.
+test proves it: every such run contains a turn that the load had stopped driving before its end. A few take so
+many steps that they stop at the event limit, which is named too.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ import pytest
 
 from cagepose import Run, run
 from cagepose.kernels.contacts import deepest_boxes
-from cagepose.nouns.geometry import scene_geometry
 from jit import cases
 from random_scenes import random_scenes
 
@@ -25,7 +24,7 @@ VERDICTS = {"stable", "escapes", "spins", "cycling", "limit"}
 
 def greatest_depth(result: Run) -> float:
     """The deepest that any cage point is in any box at any event, as a fraction of the scene's size."""
-    geometry = scene_geometry(result.scene.object, result.scene.cage, result.scene.touch_m)
+    geometry = result.scene.geometry
     events = [event for phase in result.phases for event in phase.events]
     return max(deepest_boxes(geometry, *event.pose_world_object.as_tuples())[0].max() for event in events)
 
@@ -69,7 +68,7 @@ def test_random_scenes_end_by_name_and_nobody_is_ever_inside(capsys):
         shares = ", ".join(f"{name} {count / n_scenes:.1%}" for name, count in verdicts.most_common())
         print(f"\n{n_scenes} random scenes: {shares};")
         print(f"at most {most_events} events in a phase, deepest point {worst:.1e} of the scene's size")
-    assert verdicts["limit"] <= 0.001 * n_scenes
+    assert verdicts["limit"] <= 0.0005 * n_scenes
 
 
 @pytest.mark.parametrize("seed", range(5))

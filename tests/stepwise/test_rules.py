@@ -11,6 +11,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, Tolerances, run
+from jit import cases
+from random_scenes import random_scenes
 
 DOWN = Load("gravity", gravity=(0, 0, -1))
 FLOOR = [(1.0, 1.0, 0.0), (1.0, -1.0, 0.0), (-1.0, -1.0, 0.0), (-1.0, 1.0, 0.0)]
@@ -122,6 +124,21 @@ class TestPush:
         assert first.events[0].rule == "B-2"
         assert_allclose(first.events[0].motion.axis_world, (0, 1, 0), atol=1e-15)
 
+    def test_r4_faces_that_meet_the_push_at_the_same_angle_are_a_tie_decided_alike_in_every_frame(self):
+        """Pushed at 45 deg to both faces of an edge that touches: which face counts must not hang on the last bit."""
+        points = [(2, -5, -5), (-3, 1, -5), (9, 0, 0), (-9, 0, 0), (0, 9, 0), (0, 0, 9)]
+        rng = np.random.default_rng(8)
+        logs = set()
+        for _ in range(40):
+            frame = Pose(rng.uniform(-9, 9, 3), rng.normal(size=4))
+            held = Object([Box((10, 10, 10))], (0, 0, 0), pose=frame)
+            load = push(frame.rotation @ (0.0, -1.0, -1.0), (1, 0, 3))
+            result = run(Scene(held, Cage(points, pose=frame), [load]))
+            logs.add(tuple((event.rule, event.hit, event.note) for event in result.phases[0].events))
+        (log,) = logs
+        assert log[0][2] == "edge tie"
+        assert any("(R4)" in warning for warning in result.warnings)
+
     def test_r6_one_face_slides_round_the_farthest_contact(self):
         """Two points below, pushed sideways at one end: Slp-1 turns about the contact farthest from the push."""
         cage = Cage([(1, 0, 0), (-1.5, 0, 0), (1.0, -2.3, 1.0)])
@@ -205,6 +222,37 @@ def test_a_start_pose_a_little_too_deep_may_leave_and_slide(direction):
     first = run(scene).phases[0].events[0]
     assert first.motion is not None
     assert max(first.motion.distance_m, first.motion.angle_rad) > 0.1
+
+
+@pytest.mark.parametrize("length", [1e-200, 1e155, 9.81])
+def test_the_length_of_gravity_does_not_matter(length):
+    result = run(Scene(block(at=(0, 0, 3)), Cage(FLOOR), [Load("gravity", gravity=(0, 0, -length))]))
+    assert rules(result) == ["A-1", "A-4"]
+
+
+def test_where_the_object_was_drawn_does_not_matter():
+    """The same part drawn 1000 sizes from its own origin; a cycle may take one more round to be told from rounding."""
+    for scene in random_scenes(cases(100), seed=17):
+        held, shift = scene.object, 1000.0 * scene.size_m * np.array([0.6, -0.64, 0.48])
+        moved = Object(
+            [
+                Box(b.size_m, Pose(b.pose_object_box.position_m + shift, b.pose_object_box.quaternion_wxyz))
+                for b in held.boxes
+            ],
+            held.center_of_gravity_m + shift,
+            pose=held.pose_world_object @ Pose(-shift),
+        )
+        loads = [
+            load
+            if load.force is None
+            else Load(load.name, force=Force(load.force.direction_world, load.force.at_object_m + shift))
+            for load in scene.loads
+        ]
+        found, expected = run(Scene(moved, scene.cage, loads)), run(scene)
+        assert found.verdict == expected.verdict
+        if expected.verdict != "cycling":
+            phases = range(len(expected.phases))
+            assert [rules(found, i) for i in phases] == [rules(expected, i) for i in phases]
 
 
 class TestFailuresHaveNames:

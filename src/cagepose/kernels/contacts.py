@@ -25,7 +25,8 @@ from cagepose.kernels.geometry import (
 )
 from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.pose import Quaternion
-from cagepose.kernels.vector import Vector, dot, plus, row, scaled
+from cagepose.kernels.tolerances import KernelTolerances
+from cagepose.kernels.vector import Vector, dot, minus, norm, plus, row, scaled
 
 # In touch tolerances. The probe must clear a point that lies a whole tolerance inside (hence more than 1 and more
 # than the margin), and the margin must clear boxes that meet up to a tolerance apart. Scenes refuse boxes thinner
@@ -125,28 +126,37 @@ def is_near_edge(geometry: Geometry, placement: Placement, box: int, point: int,
 
 @kernel
 def steepest_contact(
-    geometry: Geometry, placement: Placement, point: int, load_direction: Vector, touch_m: float
-) -> tuple[bool, Vector]:
-    """Return (touches, normal): of the faces that the point touches, the one that faces the load most.
+    geometry: Geometry, placement: Placement, point: int, load_direction: Vector, tolerances: KernelTolerances
+) -> tuple[bool, Vector, bool]:
+    """Return (touches, normal, tie): of the faces that the point touches, the one that faces the load most.
 
-    The smaller angle to the load counts (rule R4), that is the greater cosine n.f. A point that touches only hidden
-    faces does not touch.
+    The smaller angle to the load counts (rule R4), that is the greater cosine n.f. Cosines within the tie tolerance are
+    equal: then the first face counts (by box, then axis), and it is told. A point that touches only hidden faces does
+    not touch.
     """
     best_cosine = -math.inf
     best_normal = (0.0, 0.0, 0.0)
+    is_tie = False
     for box in range(geometry.n_own_boxes):
         half_size = row(geometry.half_sizes, box)
         point_box = row(placement.points_box[box], point)
-        if box_gap(point_box, half_size) > touch_m:
+        if box_gap(point_box, half_size) > tolerances.touch_m:
             continue
         for axis in range(3):
-            if not touches_face(point_box, half_size, axis, touch_m):
+            if not touches_face(point_box, half_size, axis, tolerances.touch_m):
                 continue
             normal = face_normal(placement, box, axis, math.copysign(1.0, point_box[axis]))
             cosine = dot(normal, load_direction)
-            if cosine > best_cosine and not is_hidden(geometry, placement, box, point, axis, touch_m):
-                best_cosine, best_normal = cosine, normal
-    return best_cosine > -math.inf, best_normal
+            is_equal = abs(cosine - best_cosine) <= tolerances.tie
+            if cosine < best_cosine and not is_equal:
+                continue
+            if is_hidden(geometry, placement, box, point, axis, tolerances.touch_m):
+                continue
+            if is_equal:
+                is_tie = is_tie or norm(minus(normal, best_normal)) > tolerances.tie
+            else:
+                best_cosine, best_normal, is_tie = cosine, normal, False
+    return best_cosine > -math.inf, best_normal, is_tie
 
 
 @entry_kernel

@@ -20,9 +20,10 @@ from cagepose.kernels.pose import Quaternion, rotated
 from cagepose.kernels.slip import SlipRules, slip_step
 from cagepose.kernels.support import PointLoad, SupportRules, pairwise_stability, turn_about_one, turn_about_two
 from cagepose.kernels.tolerances import KernelTolerances
-from cagepose.kernels.touching import Touching, choose_below, empty_touching, find_touching
+from cagepose.kernels.touching import Touching, choose_below, empty_touching, find_touching, has_face_tie
 from cagepose.kernels.trace import (
     CYCLING,
+    EDGE_TIE,
     ESCAPES,
     LIMIT,
     NONE,
@@ -186,9 +187,11 @@ def phase_run(
     """Run one phase; return (verdict code, number of events so far, position, quaternion)."""
     load = load_at(loads, phase, position, quaternion)
     place_object(geometry, position, quaternion, placement)
-    find_touching(geometry, placement, load, tolerances.touch_m, touching)
+    find_touching(geometry, placement, load, tolerances, touching)
     for event in range(first_event, first_event + rules.event_limit):
         step = next_step(geometry, placement, touching, load, loads.is_push[phase], rules, tolerances)
+        if loads.is_push[phase] and step.note == PLAIN and has_face_tie(touching):
+            step = Step(step.rule, step.motion, step.along, step.through, step.amount, step.hit_point, EDGE_TIE)
         halfway = pose_during(step, position, quaternion, 0.5)
         place_object(geometry, halfway[0], halfway[1], placement)
         for point in range(len(geometry.points_world)):
@@ -197,7 +200,7 @@ def phase_run(
         write_event(trace, event, phase, step, position, quaternion)
         load = load_at(loads, phase, position, quaternion)
         place_object(geometry, position, quaternion, placement)
-        find_touching(geometry, placement, load, tolerances.touch_m, touching)
+        find_touching(geometry, placement, load, tolerances, touching)
         for point in range(len(geometry.points_world)):
             is_new = not touching.was_touching[point] or touching.let_go[point] or point == step.hit_point
             trace.touching[event, point] = touching.is_touching[point]

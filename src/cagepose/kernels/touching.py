@@ -12,6 +12,7 @@ from cagepose.kernels.contacts import steepest_contact
 from cagepose.kernels.geometry import FloatArray, Geometry, Placement
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.support import PointLoad
+from cagepose.kernels.tolerances import KernelTolerances
 from cagepose.kernels.vector import Vector, cross, dot, norm
 
 
@@ -31,6 +32,8 @@ class Touching(NamedTuple):
         Angle between each touching point's normal and the load, (n_points,), radians.
     normals
         Normal of each touching point, (n_points, 3).
+    is_tie
+        Whether the point lies on an edge whose faces make the same angle with the load, (n_points,).
     chosen
         Room for the contacts that a rule works on, (n_points,).
     """
@@ -42,6 +45,7 @@ class Touching(NamedTuple):
     let_go: NDArray[np.bool_]
     alphas: FloatArray
     normals: FloatArray
+    is_tie: NDArray[np.bool_]
     chosen: NDArray[np.int64]
 
 
@@ -55,6 +59,7 @@ def empty_touching(n_points: int) -> Touching:
         np.zeros(n_points, np.bool_),
         np.empty(n_points),
         np.empty((n_points, 3)),
+        np.zeros(n_points, np.bool_),
         np.empty(n_points, np.int64),
     )
 
@@ -67,13 +72,14 @@ def load_angle(normal: Vector, direction: Vector) -> float:
 
 @kernel
 def find_touching(
-    geometry: Geometry, placement: Placement, load: PointLoad, touch_m: float, touching: Touching
+    geometry: Geometry, placement: Placement, load: PointLoad, tolerances: KernelTolerances, touching: Touching
 ) -> None:
     """Step (*): find all contacts again. Points that still touch keep their place in the order, new ones come after."""
     for point in range(len(geometry.points_world)):
         touching.was_touching[point] = touching.is_touching[point]
-        touches, normal = steepest_contact(geometry, placement, point, load.direction, touch_m)
+        touches, normal, is_tie = steepest_contact(geometry, placement, point, load.direction, tolerances)
         touching.is_touching[point] = touches
+        touching.is_tie[point] = is_tie
         touching.alphas[point] = load_angle(normal, load.direction)
         for k in range(3):
             touching.normals[point, k] = normal[k]
@@ -100,3 +106,12 @@ def choose_below(touching: Touching, angle_rad: float) -> int:
             touching.chosen[n_chosen] = point
             n_chosen += 1
     return n_chosen
+
+
+@kernel
+def has_face_tie(touching: Touching) -> bool:
+    """Whether a touching point lies on an edge whose faces make the same angle with the load."""
+    found = False
+    for i in range(touching.n_touching[0]):
+        found = found or touching.is_tie[touching.order[i]]
+    return found

@@ -28,9 +28,14 @@ VERDICT_NAMES: tuple[Literal["stable", "escapes", "spins", "cycling", "limit"], 
 )
 
 
-TIE, BALANCED, SMALL_TURN, PLAIN = 0, 1, 2, 3
+TIE, BALANCED, SMALL_TURN, EDGE_TIE, PLAIN = 0, 1, 2, 3, 4
 """Codes of notes: the index into `NOTE_NAMES`; PLAIN has no name."""
-NOTE_NAMES: tuple[Literal["tie", "balanced", "small turn"], ...] = ("tie", "balanced", "small turn")
+NOTE_NAMES: tuple[Literal["tie", "balanced", "small turn", "edge tie"], ...] = (
+    "tie",
+    "balanced",
+    "small turn",
+    "edge tie",
+)
 
 
 class Step(NamedTuple):

@@ -8,26 +8,30 @@ from cagepose.kernels.geometry import Geometry
 from cagepose.nouns.cage import Cage
 from cagepose.nouns.checks import FloatArray
 from cagepose.nouns.parts import Object
-from cagepose.nouns.seams import PlacedBox, seam_bridges
+from cagepose.nouns.seams import PlacedBox, Seams, close_seams
 
 
-def scene_geometry(held: Object, cage: Cage, touch_m: float, origin_world: FloatArray | None = None) -> Geometry:
-    """Return the boxes in the object's frame and the cage points in the world, seen from ``origin_world`` (default: 0).
+def object_seams(held: Object, touch_m: float) -> Seams:
+    """Close the seams between boxes that meet flush within ``touch_m``."""
+    return close_seams(_placed(held), touch_m)
 
-    Bridges over the seams between flush boxes (within ``touch_m``) come after the object's own boxes.
-    """
-    own = [
-        PlacedBox(box.size_m / 2.0, box.pose_object_box.position_m, box.pose_object_box.rotation) for box in held.boxes
-    ]
-    placed = own + seam_bridges(own, touch_m)
-    points = cage.points_world()
+
+def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox]) -> Geometry:
+    """Return the boxes in the object's frame, its own first and then the bridges, and the cage points in the world."""
+    placed = _placed(held) + bridges
     return Geometry(
         half_sizes=np.array([box.half_size for box in placed]),
         box_positions=np.array([box.position for box in placed]),
         box_rotations=np.array([box.rotation for box in placed]),
-        n_own_boxes=len(own),
-        points_world=np.ascontiguousarray(points if origin_world is None else points - origin_world),
+        n_own_boxes=len(held.boxes),
+        points_world=np.ascontiguousarray(cage.points_world()),
     )
+
+
+def _placed(held: Object) -> list[PlacedBox]:
+    return [
+        PlacedBox(box.size_m / 2.0, box.pose_object_box.position_m, box.pose_object_box.rotation) for box in held.boxes
+    ]
 
 
 def scene_size(held: Object, cage: Cage) -> float:

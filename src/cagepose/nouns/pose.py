@@ -52,11 +52,13 @@ class Pose:
             quaternion = np.array(kernel.quaternion_from_euler_zyx(yaw, pitch, roll))
         elif quaternion_wxyz is not None:
             given = finite_array(quaternion_wxyz, (4,), "quat_wxyz")
-            length = float(np.linalg.norm(given))
-            if length == 0.0:
+            largest = float(np.abs(given).max())
+            if largest == 0.0:
                 raise SceneError([Problem(("quat_wxyz",), "is zero; no rotation is: use [1, 0, 0, 0]")])
             # A quaternion that is unit to rounding is kept to the last digit, so that saved poses come back unchanged.
-            quaternion = given.copy() if abs(length - 1.0) < 1e-15 else given / length
+            is_unit = largest <= 1.0 and abs(float(np.linalg.norm(given)) - 1.0) < 1e-15
+            scaled = given / largest  # so that the squares of tiny or huge components neither vanish nor overflow
+            quaternion = given.copy() if is_unit else scaled / np.linalg.norm(scaled)
         else:
             quaternion = np.array([1.0, 0.0, 0.0, 0.0])
         if quaternion[0] < 0.0:

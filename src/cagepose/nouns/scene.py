@@ -9,14 +9,18 @@ from typing import Literal
 import numpy as np
 
 from cagepose.kernels.contacts import deepest_boxes
+from cagepose.kernels.geometry import Geometry
 from cagepose.nouns.cage import Cage
 from cagepose.nouns.checks import ProblemList, duplicates
-from cagepose.nouns.geometry import scene_geometry, scene_size
+from cagepose.nouns.geometry import object_seams, scene_geometry, scene_size
 from cagepose.nouns.load import Load
 from cagepose.nouns.parts import Object
-from cagepose.nouns.tolerances import Tolerances
+from cagepose.nouns.tolerances import TOUCH_GREATEST, Tolerances
 
 Metric = Literal["release", "drag"]
+
+FARTHEST_START = 1e4
+"""In sizes of the scene. A travel of 1e4 sizes ends right to 1e-12 of the size, the kernels' resolution."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +57,11 @@ class Scene:
         How to run it; None: the default.
     tolerances
         What counts as touching and as grazing.
+    geometry
+        Boxes, bridges over their seams and cage points as the kernels take them.
+    open_seams
+        Names of pairs of boxes that meet flush with outlines that cross: a point that moves exactly in their common
+        plane would pass between them.
     size_m
         The greater of the object's and the cage's diameter (of a sphere about their middle), metres.
     """
@@ -66,6 +75,8 @@ class Scene:
     metric: Metric | None
     tolerances: Tolerances
     adjustable: tuple[Adjustable, ...]
+    geometry: Geometry
+    open_seams: tuple[tuple[str, str], ...]
     size_m: float
 
     def __init__(
@@ -103,8 +114,12 @@ class Scene:
         touch_m = tolerances.touch * size_m
         _check_thickness(object, touch_m, problems)
         _check_points_apart(cage, touch_m, problems)
-        _check_points_outside(object, cage, touch_m, problems)
+        seams = object_seams(object, touch_m)
+        geometry = scene_geometry(object, cage, seams.bridges)
+        _check_distance(object, cage, size_m, problems)
+        _check_points_outside(object, cage, geometry, touch_m, size_m, problems)
         problems.raise_if_any()
+        named = object.boxes
         for field, value in (
             ("object", object),
             ("cage", cage),
@@ -115,6 +130,8 @@ class Scene:
             ("metric", metric),
             ("tolerances", tolerances),
             ("adjustable", tuple(adjustable)),
+            ("geometry", geometry),
+            ("open_seams", tuple((str(named[one].name), str(named[other].name)) for one, other in seams.open_pairs)),
             ("size_m", size_m),
         ):
             _set_field(self, field, value)
@@ -157,8 +174,21 @@ def _check_points_apart(cage: Cage, touch_m: float, problems: ProblemList) -> No
                 )
 
 
-def _check_points_outside(held: Object, cage: Cage, touch_m: float, problems: ProblemList) -> None:
-    geometry = scene_geometry(held, cage, touch_m)
+def _check_distance(held: Object, cage: Cage, size_m: float, problems: ProblemList) -> None:
+    """A start far from the cage leaves too few digits for the contact at the end of the first travel."""
+    middle = held.pose_world_object.transform(held.boxes[0].pose_object_box.position_m)
+    distance = float(np.linalg.norm(middle - cage.points_world().mean(axis=0)))
+    if distance > FARTHEST_START * size_m:
+        problems.add(
+            ("object", "pose", "position"),
+            f"starts {millimetres(distance)} from the cage, more than {FARTHEST_START:g} times the scene's size;"
+            " start nearer",
+        )
+
+
+def _check_points_outside(
+    held: Object, cage: Cage, geometry: Geometry, touch_m: float, size_m: float, problems: ProblemList
+) -> None:
     depths, boxes = deepest_boxes(geometry, *held.pose_world_object.as_tuples())
     for point_index in np.nonzero(depths > touch_m)[0].tolist():
         box = int(boxes[point_index])
@@ -166,10 +196,10 @@ def _check_points_outside(held: Object, cage: Cage, touch_m: float, problems: Pr
             where = f"starts {millimetres(depths[point_index])} inside object.boxes[{box}] ({held.boxes[box].name})"
         else:
             where = "starts in the seam between two boxes that meet flush, so inside the object"
-        problems.add(
-            ("cage", "points", cage.names[point_index]),
-            f"{where}; move the point out, move the object's start pose, or raise tolerances.touch",
-        )
+        remedy = "move the point out or move the object's start pose"
+        if depths[point_index] <= TOUCH_GREATEST * size_m:
+            remedy = "move the point out, move the object's start pose, or raise tolerances.touch"
+        problems.add(("cage", "points", cage.names[point_index]), f"{where}; {remedy}")
 
 
 def millimetres(length_m: float) -> str:

@@ -15,7 +15,7 @@ from cagepose.nouns.pose import Pose
 from cagepose.nouns.scene import Scene
 
 MotionKind = Literal["travel", "turn", "screw"]
-Note = Literal["tie", "balanced", "small turn"]
+Note = Literal["tie", "balanced", "small turn", "edge tie"]
 Verdict = Literal["stable", "rests", "may rest", "moves", "escapes", "spins", "cycling", "stalled", "limit"]
 
 FAILURES: frozenset[Verdict] = frozenset({"spins", "cycling", "stalled", "limit"})
@@ -85,7 +85,7 @@ class Contact:
     gap_m
         Distance from the face, within the touch tolerance; below zero: inside.
     near_edge
-        The point lies within the touch tolerance of an edge of the face.
+        The point lies within the touch tolerance of an edge where the object's surface really ends.
     force_normal_n, force_tangential_n
         What the contact carries; None where the method does not compute forces.
     """
@@ -118,7 +118,8 @@ class Event:
     note
         What a careful reader should know of it: "tie" (the load has no moment about the axis, so the sense of turning
         was decided by convention), "balanced" (the load's line passes through the one contact that holds), "small
-        turn" (held, though the load could still turn the object by less than counts); None: nothing.
+        turn" (held, though the load could still turn the object by less than counts), "edge tie" (a contact on an edge
+        whose faces make the same angle with the push); None: nothing.
     """
 
     rule: str
