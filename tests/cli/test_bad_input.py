@@ -91,7 +91,7 @@ EDITS = [
     ("second document", "cage:", "---\ncage:",
      "7:1: starts a second document; keep one scene in a file and remove the line ---"),
     ("point inside the object", C1, "    C1: [2, 4, 9.58]\n", "9:9: cage.points.C1: starts 4.58 mm inside"
-     " object.boxes[0] (box1); move the point out, move the object's start pose, or raise tolerances.touch"),
+     " object.boxes[0] (box1); move the point out or move the object's start pose"),
     ("points on top of each other", "C3: [-4, -4, 0]", "C3: [4, -4, 0]",
      "11:9: cage.points.C3: lies 0 mm from C2, so they are one point; remove or move one"),
     ("gravity without direction", "gravity: [0, 0, -1]", "gravity: [0, 0, 0]",

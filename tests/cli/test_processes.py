@@ -120,3 +120,11 @@ def test_forced_colours_do_not_reach_a_pipe(tmp_path: Path, sample_text: str) ->
     scene = tmp_path / "scene.yaml"
     scene.write_text(sample_text, encoding="utf-8")
     assert "\x1b" not in _run("run", str(scene), FORCE_COLOR="1", TERM="xterm-256color").stdout
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+def test_a_full_disk_is_told_and_is_no_bug_of_ours() -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run([*CAGEPOSE, "schema"], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr == "cagepose: the output cannot be written: No space left on device\n"

@@ -99,7 +99,7 @@ def test_the_saved_file_begins_with_the_document(sample_text: str, tmp_path: Pat
 
 def test_saving_replaces_a_file_whole_and_leaves_nothing_else(sample_text: str, tmp_path: Path) -> None:
     path = tmp_path / "run.json"
-    path.write_text("old", encoding="utf-8")
+    path.write_text('{"version": 0}', encoding="utf-8")
     save_run(run(parse_scene(sample_text)), path)
     assert load_run(path).verdict == "stable"
     assert list(tmp_path.iterdir()) == [path]
@@ -110,7 +110,7 @@ def test_a_failed_save_leaves_the_old_file_and_nothing_else(
 ) -> None:
     result = run(parse_scene(sample_text))
     path = tmp_path / "run.json"
-    path.write_text("old", encoding="utf-8")
+    path.write_text('{"version": 0}', encoding="utf-8")
 
     def full_disk(*_: object) -> None:
         raise OSError(28, "No space left on device")
@@ -118,13 +118,13 @@ def test_a_failed_save_leaves_the_old_file_and_nothing_else(
     monkeypatch.setattr("os.fsync", full_disk)
     with pytest.raises(OSError, match="No space left"):
         save_run(result, path)
-    assert path.read_text(encoding="utf-8") == "old"
+    assert path.read_text(encoding="utf-8") == '{"version": 0}'
     assert list(tmp_path.iterdir()) == [path]
 
 
 def test_saving_through_a_link_keeps_the_link(sample_text: str, tmp_path: Path) -> None:
     target, link = tmp_path / "target.json", tmp_path / "link.json"
-    target.write_text("old", encoding="utf-8")
+    target.write_text('{"version": 0}', encoding="utf-8")
     link.symlink_to(target)
     save_run(run(parse_scene(sample_text)), link)
     assert link.is_symlink()
@@ -206,3 +206,13 @@ def test_loading_checks_the_type_of_every_number(sample_text: str) -> None:
     record["solve_s"] = "0.1"
     with pytest.raises(ValueError, match="solve_s"):
         run_from_record(record)
+
+
+def test_a_file_that_holds_something_else_is_not_replaced(full_scene: Scene, tmp_path: Path) -> None:
+    result, points = run(full_scene), tmp_path / "points.csv"
+    points.write_text("C1,1,2,3\n")
+    with pytest.raises(OSError, match="holds something else than a saved run"):
+        save_run(result, points)
+    assert points.read_text() == "C1,1,2,3\n"
+    save_run(result, tmp_path / "run.json")
+    save_run(result, tmp_path / "run.json")  # a run of before may go

@@ -7,6 +7,7 @@ The overview is printed without loading any command, and each command loads only
 from __future__ import annotations
 
 import contextlib
+import errno
 import io
 import os
 import sys
@@ -43,16 +44,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stderr.write("cagepose: stopped\n")
         return INTERRUPTED
     except BrokenPipeError:
-        # Whoever read our output has left. Python would complain once more when it closes the pipe at its end.
-        with contextlib.suppress(OSError, ValueError):
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _abandon_output()  # whoever read it has left
         return BROKEN_PIPE
-    except Exception:
+    except Exception as error:
+        if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EIO, errno.EDQUOT):
+            _abandon_output()
+            sys.stderr.write(f"cagepose: the output cannot be written: {error.strerror}\n")
+            return BAD_INPUT
         import traceback  # 10 ms that only this branch needs
 
         traceback.print_exc()
         sys.stderr.write("cagepose: this is a bug of ours; please report it with the lines above and the scene file\n")
         return BUG
+
+
+def _abandon_output() -> None:
+    """Send what is left of standard output nowhere, or Python would complain once more when it closes it."""
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _dispatch(tokens: list[str]) -> int:

@@ -93,9 +93,9 @@ def _read(scene: str, set_values: tuple[str, ...], method: str | None, out: str 
         problems.append(printable(f"--method {method}: is no known method; use one of: {', '.join(METHODS)}") + "\n")
     if out is not None:
         try:
-            check_can_save(out)
             if scene_file is not None and realpath(out) == realpath(scene):
                 raise OSError("is the scene file itself; name another")
+            check_can_save(out)
         except OSError as error:
             problems.append(_cannot_write(out, error))
     sys.stderr.write("".join(problems))

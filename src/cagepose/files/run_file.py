@@ -45,7 +45,8 @@ def check_can_save(path: str | os.PathLike[str]) -> None:
     Raises
     ------
     OSError
-        It cannot: no such folder, a folder or device of that name, or no permission.
+        It cannot: no such folder, a folder or device of that name, no permission, or a file with other content stands
+        there.
     """
     if "\0" in os.fspath(path):
         raise OSError("is not a file name; remove the unprintable character")
@@ -54,10 +55,19 @@ def check_can_save(path: str | os.PathLike[str]) -> None:
         raise IsADirectoryError("is a directory; name a file in it")
     if target.exists() and not target.is_file():
         raise OSError("is not a regular file; name another")
+    if target.exists() and not _holds_nothing_else(target):
+        raise FileExistsError("holds something else than a saved run; name another file, or remove it first")
     if not target.parent.is_dir():
         raise FileNotFoundError("its folder does not exist; make the folder first")
     if not os.access(target.parent, os.W_OK | os.X_OK):
         raise PermissionError("its folder cannot be written; name another")
+
+
+def _holds_nothing_else(target: Path) -> bool:
+    """Whether a file is empty or starts as a saved run does, so that nobody's work is lost when it is replaced."""
+    with target.open("rb") as stream:
+        head = stream.read(100)
+    return not head.strip() or (head.lstrip().startswith(b"{") and b'"version"' in head)
 
 
 def load_run(path: str | os.PathLike[str]) -> Run:
