@@ -65,5 +65,7 @@ def setup(app: Sphinx) -> None:
     """Register the equations' writer and the repair of signatures."""
     app.connect("autodoc-process-signature", _plain_aliases)
     app.add_html_math_renderer("mathml", (_inline_math, None), (_display_math, None))
+
+
 html_static_path = ["_static"]
 html_css_files = ["equations.css"]

@@ -34,7 +34,7 @@ EQUAL_DISTANCE_OF_SIZE = 1e-6
 PARALLEL_SINE = 1e-6
 """Normals closer than this angle (radians) are one direction."""
 EVENT_LIMIT = 1000
-"""Events in a phase after which a run is named "limit". A rail's push takes 9; 1 random scene in 10,000 gets here."""
+"""Events in a phase after which a run is named "limit". A rail's push takes 9; 1 of 20,000 random scenes gets here."""
 NOTES: dict[Note, str] = {
     "tie": "tie: the load has no moment about the axis through the two contacts, so the sense of turning was decided by"
     " convention (R2)",
