@@ -20,7 +20,7 @@ from cagepose.nouns.tolerances import TOUCH_GREATEST, Tolerances
 Metric = Literal["release", "drag"]
 
 FARTHEST_START = 1e4
-"""In sizes of the scene. A travel of 1e4 sizes ends right to 1e-12 of the size, the kernels' resolution."""
+"""In sizes of the scene. The rounding of a position 1e4 sizes away is about 2e-12 of the size, near the resolution."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,8 @@ class Scene:
         ------
         SceneError
             No loads, a phase name used twice, a negative friction coefficient, cage points on top of each other, a cage
-            point inside the object at the start, or a box thinner than what the touch tolerance can tell apart.
+            point inside the object at the start, a start too far from the cage, or a box thinner than what the touch
+            tolerance can tell apart.
         """
         tolerances = tolerances or Tolerances()
         loads = tuple(loads)

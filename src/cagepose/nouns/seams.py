@@ -108,9 +108,9 @@ def _bridge(small: PlacedBox, large: PlacedBox, touch_m: float) -> PlacedBox | N
             large_half = np.abs(relative) @ large.half_size - margin
             low[across] = np.maximum(low, offset - large_half)[across]
             high[across] = np.minimum(high, offset + large_half)[across]
-            if (high - low)[across].min() <= touch_m:
-                continue
         elif not _lies_within(small, large, axis, large_axis):
+            continue
+        if (high - low)[across].min() <= touch_m:
             continue
         seam = np.sign(offset[axis]) * (small.half_size[axis] + apart / 2.0)
         depth = min(small.half_size[axis], large.half_size[large_axis])
