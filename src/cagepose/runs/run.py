@@ -120,6 +120,9 @@ class Event:
         was decided by convention), "balanced" (the load's line passes through the one contact that holds), "small
         turn" (held, though the load could still turn the object by less than counts), "edge tie" (a contact on an edge
         whose faces make the same angle with the push); None: nothing.
+    path
+        Poses on the way to ``pose_world_object``, the last of them, where the way is not that of ``motion`` alone (a
+        sliding contact bends it); empty: it is.
     """
 
     rule: str
@@ -128,6 +131,7 @@ class Event:
     contacts: tuple[str, ...]
     pose_world_object: Pose
     note: Note | None
+    path: tuple[Pose, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

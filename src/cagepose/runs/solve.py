@@ -7,10 +7,14 @@ from collections.abc import Callable
 from cagepose.errors import Problem, SceneError
 from cagepose.kernels.jit import is_compiled
 from cagepose.nouns.scene import Scene
+from cagepose.runs.quasistatic import run_quasistatic
 from cagepose.runs.run import Run
 from cagepose.runs.stepwise import run_stepwise
 
-_SOLVERS: dict[str, tuple[Callable[[Scene], Run], str]] = {"stepwise": (run_stepwise, "stepwise_run")}
+_SOLVERS: dict[str, tuple[Callable[[Scene], Run], str]] = {
+    "stepwise": (run_stepwise, "stepwise_run"),
+    "quasistatic": (run_quasistatic, "quasistatic_run"),
+}
 """For each method what runs it, and the kernel that is compiled for it."""
 
 METHODS = tuple(_SOLVERS)

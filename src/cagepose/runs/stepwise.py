@@ -10,17 +10,15 @@ import numpy as np
 from cagepose.kernels.contacts import contact_rows
 from cagepose.kernels.geometry import Geometry
 from cagepose.kernels.jit import is_loaded
-from cagepose.kernels.pose import Quaternion
 from cagepose.kernels.slip import SlipRules
 from cagepose.kernels.stepwise import RULE_NAMES, PhaseLoads, StepwiseRules, empty_workspace, stepwise_run
 from cagepose.kernels.support import SupportRules
 from cagepose.kernels.tolerances import kernel_tolerances
 from cagepose.kernels.trace import MOTION_NAMES, NONE, NOTE_NAMES, PLAIN, TRAVEL, VERDICT_NAMES, Trace
 from cagepose.kernels.turn import key_of_angle
-from cagepose.kernels.vector import Vector
 from cagepose.nouns.checks import FloatArray, as_vector, unit_vector
-from cagepose.nouns.pose import Pose
 from cagepose.nouns.scene import Scene
+from cagepose.runs.frames import Frames, middle_of_boxes, touching_names
 from cagepose.runs.run import Contact, Event, Motion, Note, PhaseRun, Run, Verdict
 
 NO_SLIP_ANGLE_DEFAULT_RAD = 0.1
@@ -50,40 +48,22 @@ SMALL_POSE_RAD = math.radians(45.0)
 """Assumption E of the paper: the method is meant for smaller angles per axis (R11)."""
 
 
-class _Frames:
-    """The frames of the compiled run: both cage and object are seen from their own middle, so that neither a cage far
-    from the world's origin nor an object drawn far from its own costs digits, or tells in the result.
-    """
-
-    def __init__(self, scene: Scene) -> None:
-        self.origin_world = scene.cage.points_world().mean(axis=0)
-        self.middle_object = scene.geometry.box_positions[: scene.geometry.n_own_boxes].mean(axis=0)
-
-    def geometry(self, scene: Scene) -> Geometry:
-        return scene.geometry._replace(
-            box_positions=scene.geometry.box_positions - self.middle_object,
-            points_world=scene.geometry.points_world - self.origin_world,
-        )
-
-    def start(self, scene: Scene) -> tuple[Vector, Quaternion]:
-        pose = scene.object.pose_world_object
-        return as_vector(pose.transform(self.middle_object) - self.origin_world), pose.as_tuples()[1]
-
-    def pose(self, trace: Trace, event: int) -> Pose:
-        """The object's pose in the world after an event."""
-        turned = Pose(quaternion_wxyz=trace.quaternions[event])
-        middle_world = trace.positions[event] + self.origin_world
-        return Pose(middle_world - turned.transform(self.middle_object), trace.quaternions[event])
-
-
 def run_stepwise(scene: Scene) -> Run:
     """Run a scene by the paper's rules (docs/theory)."""
-    frames = _Frames(scene)
+    frames = Frames(scene, middle_of_boxes(scene))
     geometry, rules = frames.geometry(scene), _rules(scene)
     loads = _phase_loads(scene, frames.middle_object)
     tolerances = kernel_tolerances(scene.size_m, scene.tolerances.touch)
     workspace = empty_workspace(geometry, len(scene.loads), rules)
-    arguments = (geometry, *frames.start(scene), loads, rules, scene.size_m, tolerances, workspace)
+    arguments = (
+        geometry,
+        *frames.inward(scene.object.pose_world_object),
+        loads,
+        rules,
+        scene.size_m,
+        tolerances,
+        workspace,
+    )
     if not is_loaded(stepwise_run):
         stepwise_run(*arguments)  # so that the time measured is that of the run
     began = time.perf_counter()
@@ -134,13 +114,13 @@ def _phase_loads(scene: Scene, middle_object: FloatArray) -> PhaseLoads:
     return PhaseLoads(np.array(directions), np.array(points) - middle_object, np.array(is_push))
 
 
-def _event(scene: Scene, trace: Trace, event: int, frames: _Frames) -> Event:
+def _event(scene: Scene, trace: Trace, event: int, frames: Frames) -> Event:
     return Event(
         rule=RULE_NAMES[trace.rules[event]],
         motion=_motion(trace, event, frames.origin_world),
-        hit=_names(scene, trace.hit[event]),
-        contacts=_names(scene, trace.touching[event]),
-        pose_world_object=frames.pose(trace, event),
+        hit=touching_names(scene, trace.hit[event]),
+        contacts=touching_names(scene, trace.touching[event]),
+        pose_world_object=frames.outward(trace, event),
         note=None if trace.notes[event] == PLAIN else NOTE_NAMES[trace.notes[event]],
     )
 
@@ -158,10 +138,6 @@ def _motion(trace: Trace, event: int, origin: FloatArray) -> Motion | None:
         distance_m=float(trace.distances[event]),
         angle_rad=float(trace.angles[event]),
     )
-
-
-def _names(scene: Scene, chosen: np.ndarray) -> tuple[str, ...]:
-    return tuple(scene.cage.names[index] for index in np.nonzero(chosen)[0])
 
 
 def _contacts(scene: Scene, geometry: Geometry, trace: Trace, event: int) -> tuple[Contact, ...]:
