@@ -1,4 +1,4 @@
-"""Contact forces inside exact friction cones: min |b - A f| with |f_t| <= mu f_n, equations (4.4) to (4.6).
+"""Contact forces inside exact friction cones: min |b - A f| with |f_t| <= mu f_n, equations (5.4) to (5.6).
 
 A cone has infinitely many generators n + mu d, d any unit tangent. The active-set method of `least_squares` needs only
 the one that points most along the residual r, and that one is known in closed form: d = r_t / |r_t|. So cones stay
@@ -48,8 +48,8 @@ class ConeRoom(NamedTuple):
     contacts, directions
         Contact and tangent d of each generator, (n_generators,) and (n_generators, 2).
     slips
-        Slip speed of each contact that its generators are charged for, (n_contacts,): zero for balance (4.4), see
-        `cagepose.kernels.coulomb` for (4.7).
+        Slip speed of each contact that its generators are charged for, (n_contacts,): zero for balance (5.4), see
+        `cagepose.kernels.coulomb` for (5.7).
     column
         One generator, (6,).
     rejected

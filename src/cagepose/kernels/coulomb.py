@@ -1,4 +1,4 @@
-"""Onset of motion with Coulomb friction: the forces and the motion that they leave, equations (4.7) and (4.8).
+"""Onset of motion with Coulomb friction: the forces and the motion that they leave, equations (5.7) and (5.8).
 
 With the slip speeds s_i charged to the generators of the cones (De Saxce),
 
@@ -75,7 +75,7 @@ def coulomb_error(
     columns: FloatArray, chosen: NDArray[np.bool_], n_contacts: int, friction: float, forces: FloatArray, y: FloatArray
 ) -> float:
     """Return the greatest violation of Coulomb's law, as a velocity: going in, forces at an open contact, a cone left,
-    or friction not along the slip, equation (4.7).
+    or friction not along the slip, equation (5.7).
     """
     worst = 0.0
     for i in range(n_contacts):

@@ -1,4 +1,4 @@
-"""Newton's method on Coulomb's law once it is known which contacts open, stick and slip: equation (4.8).
+"""Newton's method on Coulomb's law once it is known which contacts open, stick and slip: equation (5.8).
 
 Sweeps over the contacts find the modes soon and the digits late; with the modes known, the law is a smooth system of
 equations in the motion y and the forces, and a few steps solve it to rounding.

@@ -1,4 +1,4 @@
-"""How the balance changes with the pose: the Hessian of the potential on the curved constraints, equation (4.9).
+"""How the balance changes with the pose: the Hessian of the potential on the curved constraints, equation (5.9).
 
     S = D^-1/2 (Hess V - sum lambda_i Hess g_i + sum phi_i . Hess u_i) D^-1/2
 

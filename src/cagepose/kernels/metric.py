@@ -1,4 +1,4 @@
-"""The metric D of motion from rest, the loads, and twists and wrenches in its units: equations (4.1) to (4.3).
+"""The metric D of motion from rest, the loads, and twists and wrenches in its units: equations (5.1) to (5.3).
 
 D is that of a rigid body of mass 1: D = diag(1, 1, 1, K), K the inertia about the centre of gravity. In "scaled"
 coordinates y = D^1/2 nu, along the principal axes of K, the metric is the identity, every component is a length, and
@@ -105,7 +105,7 @@ def write_load(loads: DeadLoads, phase: int, quaternion: Quaternion, frame: Fram
 def work_done(
     loads: DeadLoads, phase: int, start: Vector, start_turned: Quaternion, end: Vector, end_turned: Quaternion
 ) -> float:
-    """Return the work of a phase's loads between two poses of the centre of gravity: the fall of the potential (4.2)."""
+    """Return the work of a phase's loads between two poses of the centre of gravity: the fall of the potential (5.2)."""
     work = 0.0
     for which in range(2):
         moved = minus(load_arm(loads, phase, which, end_turned), load_arm(loads, phase, which, start_turned))

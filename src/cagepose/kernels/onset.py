@@ -1,4 +1,4 @@
-"""What happens from rest at one pose: the contacts hold the object, or it starts to move, equations (4.1) to (4.8).
+"""What happens from rest at one pose: the contacts hold the object, or it starts to move, equations (5.1) to (5.8).
 
 On an edge one face that holds or leaves is enough, so every combination of faces is asked. The object moves if it
 moves with any of them; then the freest counts, the one with the greatest |y| (the least constraint in Gauss's sense).

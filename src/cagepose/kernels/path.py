@@ -93,7 +93,7 @@ def straightened(velocity: Vector, spin: Vector, reach_m: float) -> Vector:
 @kernel
 def longest_step(velocity: Vector, spin: Vector, slides: bool, turn_step_rad: float, size_m: float) -> float:
     """Return how much of a twist keeps its direction: its turn, and how far sliding contacts leave their faces, stay
-    small (4.11).
+    small (5.11).
     """
     rate = norm(spin)
     if rate == 0.0:

@@ -256,7 +256,7 @@ def first_rest(
 def polished(
     setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace
 ) -> tuple[Vector, Quaternion]:
-    """Close the gaps, within the touch tolerance, of the contacts that carry (4.12)."""
+    """Close the gaps, within the touch tolerance, of the contacts that carry (5.12)."""
     for i in range(work.contacts.count[0]):
         work.stiff.is_sticking[i] = False
     allow_depths(work.placement, setting.tolerances, work.path)

@@ -1,4 +1,4 @@
-"""Steps near a balance: the linearly implicit form of the path, equation (4.10).
+"""Steps near a balance: the linearly implicit form of the path, equation (5.10).
 
     (rho 1 + S) delta = b - forces,    rho = 1 / (longest explicit step)
 
