@@ -22,6 +22,9 @@ from cagepose.kernels.vector import Vector, cross, minus, norm, row
 SAME_NORMAL = 1e-9
 """Radians. Flush faces of two boxes give one contact."""
 
+CONTACTS_PER_POINT = 6
+"""Faces that one point may touch, flush ones counted once. More: the run stalls, by name."""
+
 
 class ContactSet(NamedTuple):
     """Rows 0 to count - 1 are in use.

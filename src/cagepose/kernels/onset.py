@@ -134,6 +134,23 @@ def onset(contacts: ContactSet, friction: float, b: FloatArray, room: OnsetRoom)
 
 
 @kernel
+def is_held(contacts: ContactSet, friction: float, b: FloatArray, room: OnsetRoom) -> bool:
+    """Whether the contacts hold the object, whichever faces count on edges."""
+    n_contacts = contacts.count[0]
+    for i in range(n_contacts):
+        room.cone.slips[i] = 0.0
+    charged = bool(np.bool_(False))
+    holds = True
+    for _ in range(COMBINATIONS_LIMIT):
+        clear_cone(room.cone, b)
+        left = cone_residual(contacts.columns, contacts.chosen, n_contacts, friction, b, charged, room.cone)
+        holds = holds and left <= BALANCED * rounding_scale(room.cone.passive, b, 6)
+        if not choose_next_faces(contacts):
+            break
+    return holds
+
+
+@kernel
 def sticks(contacts: ContactSet, i: int, friction: float, y: FloatArray) -> bool:
     """Whether a contact carries and does not slip: its tangential velocity is rounding."""
     if contacts.forces[i, 0] <= 0.0 or friction == 0.0:

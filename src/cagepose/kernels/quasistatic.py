@@ -13,17 +13,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.contact_set import ContactSet, empty_contact_set, find_contacts
+from cagepose.kernels.contact_set import CONTACTS_PER_POINT, ContactSet, empty_contact_set, find_contacts
 from cagepose.kernels.curvature import write_curvature
 from cagepose.kernels.geometry import FloatArray, Geometry, Placement, place_object
 from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.metric import Body, DeadLoads, Frame, frame_at, twist_of, write_load
 from cagepose.kernels.onset import (
-    HELD_BY_FRICTION,
     MOVES,
     UNSOLVED,
     OnsetRoom,
     empty_onset_room,
+    is_held,
     onset,
     sticks,
 )
@@ -112,10 +112,6 @@ class QuasistaticWorkspace(NamedTuple):
     verdicts: NDArray[np.int64]
 
 
-CONTACTS_PER_POINT = 6
-"""Faces that one point may touch, flush ones counted once. More: the run stalls, by name."""
-
-
 def empty_quasistatic_workspace(n_boxes: int, n_points: int, n_phases: int, step_limit: int) -> QuasistaticWorkspace:
     """Return room for one run (plain Python); ``n_boxes`` counts bridges too."""
     n_contacts = CONTACTS_PER_POINT * n_points
@@ -194,7 +190,7 @@ def is_held_on_the_way(
                 kept += 1
         work.ahead.count[0] = kept
     write_load(setting.loads, setting.phase, quaternion, frame, work.load)
-    return onset(work.ahead, setting.friction, work.load, work.solver) <= HELD_BY_FRICTION
+    return is_held(work.ahead, setting.friction, work.load, work.solver)
 
 
 @kernel
@@ -225,6 +221,7 @@ def first_rest(
 ) -> tuple[Vector, Quaternion]:
     """Return the first pose of a step that friction holds; at ``amount`` it does. The placement is that of the pose."""
     low, high = 0.0, amount
+    no_point = int(np.int64(-1))  # a literal would compile its callees again
     best = (position, quaternion)
     for _ in range(HALVES_TO_REST):
         middle = 0.5 * (low + high)
@@ -239,11 +236,11 @@ def first_rest(
             quaternion,
             twist,
             middle,
-            -1,
-            -1,
+            no_point,
+            no_point,
             work.path,
         )
-        if done and is_held_on_the_way(setting, new_position, new_quaternion, -1, work):
+        if done and is_held_on_the_way(setting, new_position, new_quaternion, no_point, work):
             high = middle
             best = (new_position, new_quaternion)
         else:

@@ -4,26 +4,22 @@ from __future__ import annotations
 
 import time
 
-import numpy as np
-
 from cagepose.kernels.jit import is_loaded
-from cagepose.kernels.metric import Body
 from cagepose.kernels.quasistatic import (
     RULE_NAMES,
     QuasistaticRules,
     empty_quasistatic_workspace,
     quasistatic_run,
 )
-from cagepose.kernels.tolerances import kernel_tolerances
 from cagepose.kernels.trace import NONE, VERDICT_NAMES, Trace
 from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import Metric, Scene
+from cagepose.nouns.scene import Scene
 from cagepose.runs.frames import Frames, touching_names
+from cagepose.runs.judge import Judge
+from cagepose.runs.remarks import edge_remarks, proof_remarks, seam_remarks, weight_remarks
 from cagepose.runs.run import Event, PhaseRun, Run, Verdict
 from cagepose.runs.screw_between import motion_between
-from cagepose.runs.weights import dead_loads
 
-METRIC_DEFAULT: Metric = "release"
 TURN_STEP_RAD = 0.02
 """Longest turn in one step: the path is wrong by about this fraction of it (docs/theory/mechanics)."""
 STEP_LIMIT = 3000
@@ -32,15 +28,15 @@ STEP_LIMIT = 3000
 
 def run_quasistatic(scene: Scene, turn_step_rad: float = TURN_STEP_RAD) -> Run:
     """Run a scene by the mechanics (docs/theory/mechanics)."""
-    frames = Frames(scene, scene.object.center_of_gravity_m)
-    geometry = frames.geometry(scene)
-    rules = QuasistaticRules(scene.friction_coefficient or 0.0, turn_step_rad, STEP_LIMIT)
+    friction = scene.friction_coefficient or 0.0
+    judge = Judge(scene, friction)
+    frames = judge.frames
+    rules = QuasistaticRules(friction, turn_step_rad, STEP_LIMIT)
     work = empty_quasistatic_workspace(
-        len(geometry.half_sizes), len(geometry.points_world), len(scene.loads), STEP_LIMIT
+        len(judge.geometry.half_sizes), len(judge.geometry.points_world), len(scene.loads), STEP_LIMIT
     )
     start = frames.inward(scene.object.pose_world_object)
-    tolerances = kernel_tolerances(scene.size_m, scene.tolerances.touch)
-    arguments = (geometry, body_of(scene), *start, dead_loads(scene), rules, scene.size_m, tolerances, work)
+    arguments = (judge.geometry, judge.body, *start, judge.loads, rules, scene.size_m, judge.tolerances, work)
     if not is_loaded(quasistatic_run):
         quasistatic_run(*arguments)  # so that the time measured is that of the run
     began = time.perf_counter()
@@ -52,21 +48,25 @@ def run_quasistatic(scene: Scene, turn_step_rad: float = TURN_STEP_RAD) -> Run:
     for phase in range(n_phases):
         steps = [step for step in range(n_steps) if work.trace.phases[step] == phase]
         events = _events(scene, work.trace, steps, frames, pose)
+        proof, contacts = judge.proof(events[-1].pose_world_object, phase)
         verdict: Verdict = VERDICT_NAMES[work.verdicts[phase]]
-        phases.append(PhaseRun(scene.loads[phase].name, verdict, pose, events, ()))
+        if verdict == "rests":
+            # A pose that the last correction has taken out of balance is not shown as rest.
+            verdict = "stalled" if proof.verdict == "moves" else proof.verdict
+        phases.append(PhaseRun(scene.loads[phase].name, verdict, pose, events, contacts, proof))
         pose = events[-1].pose_world_object
-    return Run(scene, "quasistatic", tuple(phases), (), solve_s)
+        if verdict == "stalled":
+            break
+    return Run(scene, "quasistatic", tuple(phases), tuple(_warnings(scene, phases, friction)), solve_s)
 
 
-def body_of(scene: Scene) -> Body:
-    """Return the metric of a scene: its inertia about the centre of gravity, or the same about every axis ("drag")."""
-    gyration = scene.object.gyration_m2
-    corners = np.concatenate([box.corners_object() for box in scene.object.boxes])
-    reach_m = float(np.linalg.norm(corners - scene.object.center_of_gravity_m, axis=1).max())
-    if (scene.metric or METRIC_DEFAULT) == "drag":
-        return Body(np.eye(3), np.full(3, np.sqrt(np.trace(gyration) / 3.0)), reach_m)
-    squares, axes = np.linalg.eigh(gyration)
-    return Body(np.ascontiguousarray(axes.T), np.sqrt(squares), reach_m)
+def _warnings(scene: Scene, phases: list[PhaseRun], friction: float) -> list[str]:
+    """What a careful reader should know: seams, weights, contacts on edges, and what is less than a proven rest."""
+    warnings = [*seam_remarks(scene), *weight_remarks(scene, len(phases))]
+    for phase in phases:
+        warnings.extend(edge_remarks(phase))
+    warnings.extend(proof_remarks(phases, friction))
+    return warnings
 
 
 def _events(scene: Scene, trace: Trace, steps: list[int], frames: Frames, start: Pose) -> tuple[Event, ...]:

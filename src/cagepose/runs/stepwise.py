@@ -7,8 +7,6 @@ import time
 
 import numpy as np
 
-from cagepose.kernels.contacts import contact_rows
-from cagepose.kernels.geometry import Geometry
 from cagepose.kernels.jit import is_loaded
 from cagepose.kernels.slip import SlipRules
 from cagepose.kernels.stepwise import RULE_NAMES, PhaseLoads, StepwiseRules, empty_workspace, stepwise_run
@@ -16,10 +14,12 @@ from cagepose.kernels.support import SupportRules
 from cagepose.kernels.tolerances import kernel_tolerances
 from cagepose.kernels.trace import MOTION_NAMES, NONE, NOTE_NAMES, PLAIN, TRAVEL, VERDICT_NAMES, Trace
 from cagepose.kernels.turn import key_of_angle
-from cagepose.nouns.checks import FloatArray, as_vector, unit_vector
+from cagepose.nouns.checks import FloatArray, unit_vector
 from cagepose.nouns.scene import Scene
 from cagepose.runs.frames import Frames, middle_of_boxes, touching_names
-from cagepose.runs.run import Contact, Event, Motion, Note, PhaseRun, Run, Verdict
+from cagepose.runs.judge import Judge
+from cagepose.runs.remarks import edge_remarks, proof_remarks, seam_remarks
+from cagepose.runs.run import Event, Motion, Note, PhaseRun, Run, Verdict
 
 NO_SLIP_ANGLE_DEFAULT_RAD = 0.1
 """The paper's threshold, from the friction of metal on metal."""
@@ -70,16 +70,18 @@ def run_stepwise(scene: Scene) -> Run:
     n_phases, n_events = stepwise_run(*arguments)
     solve_s = time.perf_counter() - began
 
+    friction = scene.friction_coefficient
+    judge = Judge(scene, math.tan(NO_SLIP_ANGLE_DEFAULT_RAD) if friction is None else friction)
     trace, phases = workspace.trace, list[PhaseRun]()
     pose = scene.object.pose_world_object
     for phase in range(n_phases):
         places = [event for event in range(n_events) if trace.phases[event] == phase]
         events = tuple(_event(scene, trace, event, frames) for event in places)
-        contacts = _contacts(scene, geometry, trace, places[-1])
+        proof, contacts = judge.proof(events[-1].pose_world_object, phase)
         verdict: Verdict = VERDICT_NAMES[workspace.verdicts[phase]]
-        phases.append(PhaseRun(scene.loads[phase].name, verdict, pose, events, contacts))
+        phases.append(PhaseRun(scene.loads[phase].name, verdict, pose, events, contacts, proof))
         pose = events[-1].pose_world_object
-    return Run(scene, "stepwise", tuple(phases), tuple(_warnings(scene, phases)), solve_s)
+    return Run(scene, "stepwise", tuple(phases), tuple(_warnings(scene, phases, judge.friction)), solve_s)
 
 
 def _rules(scene: Scene) -> StepwiseRules:
@@ -140,28 +142,11 @@ def _motion(trace: Trace, event: int, origin: FloatArray) -> Motion | None:
     )
 
 
-def _contacts(scene: Scene, geometry: Geometry, trace: Trace, event: int) -> tuple[Contact, ...]:
-    w, x, y, z = trace.quaternions[event].tolist()
-    rows = contact_rows(geometry, as_vector(trace.positions[event]), (w, x, y, z), scene.touch_m)
-    return tuple(
-        Contact(
-            point=scene.cage.names[rows.points[i]],
-            box=str(scene.object.boxes[rows.boxes[i]].name),
-            normal_world=rows.normals_world[i].copy(),
-            gap_m=float(rows.gaps[i]),
-            near_edge=bool(rows.near_edge[i]),
-        )
-        for i in range(len(rows.points))
-    )
-
-
-def _warnings(scene: Scene, phases: list[PhaseRun]) -> list[str]:
-    """What a careful reader should know: ties, conventions, poses beyond the method's range, contacts on edges."""
-    warnings = [
-        f"boxes {one} and {other} meet flush with outlines that cross: a point that moves exactly in their common plane"
-        " is not stopped by the seam; let them overlap a little"
-        for one, other in scene.open_seams
-    ]
+def _warnings(scene: Scene, phases: list[PhaseRun], friction: float) -> list[str]:
+    """What a careful reader should know: ties, conventions, poses beyond the method's range, contacts on edges, and
+    where the mechanics contradicts the rules.
+    """
+    warnings = list(seam_remarks(scene))
     largest = 0.0
     start = scene.object.pose_world_object.inverse()
     for phase, load in zip(phases, scene.loads, strict=False):
@@ -171,12 +156,11 @@ def _warnings(scene: Scene, phases: list[PhaseRun]) -> list[str]:
             largest = max(largest, *(abs(angle) for angle in (start @ event.pose_world_object).euler_zyx))
             if event.note is not None:
                 warnings.append(f"{phase.name}, event {number} ({event.rule}): {NOTES[event.note]}")
-        edges = sorted({contact.point for contact in phase.contacts if contact.near_edge})
-        if edges:
-            warnings.append(f"{phase.name}: {', '.join(edges)} within the touch tolerance of a face's edge")
+        warnings.extend(edge_remarks(phase))
     if largest > SMALL_POSE_RAD:
         warnings.append(
             f"turned by {math.degrees(largest):.1f} deg about one axis from the start; the paper's rules are meant for"
             " at most 45 deg (assumption E)"
         )
+    warnings.extend(proof_remarks(phases, friction))
     return warnings
