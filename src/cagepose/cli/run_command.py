@@ -12,12 +12,6 @@ from cagepose.cli.options import SceneArgument, SetOption, Switch
 if TYPE_CHECKING:
     from cagepose.files.scene_file import SceneFile
 
-FIRST_RUN = "cagepose: compiling the kernels for the first time on this machine; about half a minute, only once\n"
-EVERY_RUN = (
-    "cagepose: compiling the kernels, about half a minute, at each start: no folder for machine code can be written;"
-    " let NUMBA_CACHE_DIR name one that can\n"
-)
-
 
 def run_command(
     scene: SceneArgument,
@@ -27,6 +21,9 @@ def run_command(
     set_values: SetOption = (),
     json: Annotated[bool, Switch, Parameter(help="Print one JSON document instead of the table.")] = False,
     out: Annotated[str | None, Parameter(help="Save the run to this file, every number exactly.")] = None,
+    critical_friction: Annotated[
+        bool, Switch, Parameter(help="Find the least coefficient of friction that each rest needs.")
+    ] = False,
     check_tolerance: Annotated[
         bool, Switch, Parameter(help="Run again with other touch tolerances and warn if the verdict changes.")
     ] = False,
@@ -38,14 +35,15 @@ def run_command(
 
     from dataclasses import replace
 
-    from cagepose.kernels.jit import CACHE_FOLDER
-    from cagepose.runs.solve import chosen_method, kernels_are_compiled, run
+    from cagepose.cli.first_run import announce_compilation
+    from cagepose.runs.critical import with_critical_friction
+    from cagepose.runs.solve import chosen_method, run
     from cagepose.runs.tolerance_check import verdict_changes
 
-    if not kernels_are_compiled(chosen_method(scene_file.scene, method)):
-        sys.stderr.write(EVERY_RUN if CACHE_FOLDER is None else FIRST_RUN)
-        sys.stderr.flush()
+    announce_compilation([chosen_method(scene_file.scene, method)])
     result = run(scene_file.scene, method)
+    if critical_friction:
+        result = with_critical_friction(result)
     notes = []
     if check_tolerance:
         changes = verdict_changes(result)

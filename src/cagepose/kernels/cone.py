@@ -96,7 +96,7 @@ def write_generator(columns: FloatArray, friction: float, one: float, two: float
 @kernel
 def clear_cone(room: ConeRoom, b: FloatArray) -> None:
     """Start from no force."""
-    room.passive.count[0] = 0
+    room.passive.used[0] = 0
     aim(room.passive, b, 6)
 
 
@@ -135,7 +135,7 @@ def cone_residual(
     """
     passive = room.passive
     n_generators = 0
-    for k in range(passive.count[0]):  # renumber, so that the room is never full
+    for k in range(passive.used[0]):  # renumber, so that the room is never full
         label = passive.labels[k]
         room.contacts[k] = room.contacts[label]
         room.directions[k, 0], room.directions[k, 1] = room.directions[label, 0], room.directions[label, 1]
@@ -187,7 +187,7 @@ def write_forces(room: ConeRoom, n_contacts: int, friction: float, forces: Float
     for i in range(n_contacts):
         for k in range(3):
             forces[i, k] = 0.0
-    for k in range(room.passive.count[0]):
+    for k in range(room.passive.used[0]):
         label = room.passive.labels[k]
         i, x = room.contacts[label], room.passive.x[k]
         forces[i, 0] += x

@@ -27,11 +27,11 @@ CONTACTS_PER_POINT = 6
 
 
 class ContactSet(NamedTuple):
-    """Rows 0 to count - 1 are in use.
+    """Rows 0 to used - 1 are in use.
 
     Attributes
     ----------
-    count
+    used
         How many contacts there are, (1,).
     points, boxes, axes
         Indices of the cage point, the box and the axis of the face, (n,).
@@ -52,7 +52,7 @@ class ContactSet(NamedTuple):
         What the contact carries along them, (n, 3).
     """
 
-    count: NDArray[np.int64]
+    used: NDArray[np.int64]
     points: NDArray[np.int64]
     boxes: NDArray[np.int64]
     axes: NDArray[np.int64]
@@ -87,7 +87,7 @@ def empty_contact_set(n_rows: int) -> ContactSet:
 @kernel
 def face_is_listed(contacts: ContactSet, point: int, normal: Vector) -> bool:
     """Whether the last rows hold the same point with the same normal: the flush face of another box."""
-    for i in range(contacts.count[0] - 1, -1, -1):
+    for i in range(contacts.used[0] - 1, -1, -1):
         if contacts.points[i] != point:
             return False
         if norm(minus(row(contacts.normals, i), normal)) <= SAME_NORMAL:
@@ -99,7 +99,7 @@ def face_is_listed(contacts: ContactSet, point: int, normal: Vector) -> bool:
 def append_contact(
     contacts: ContactSet, placement: Placement, point: int, box: int, axis: int, side: float, arm: Vector, frame: Frame
 ) -> None:
-    i = contacts.count[0]
+    i = contacts.used[0]
     contacts.points[i], contacts.boxes[i], contacts.axes[i], contacts.sides[i] = point, box, axis, side
     normal = face_normal(placement, box, axis, side)
     for k in range(3):
@@ -108,7 +108,7 @@ def append_contact(
     for j in range(3):
         direction = normal if j == 0 else face_normal(placement, box, (axis + j) % 3, 1.0)
         write_scaled_wrench(direction, cross(arm, direction), frame, contacts.columns[i, j])
-    contacts.count[0] = i + 1
+    contacts.used[0] = i + 1
 
 
 @kernel
@@ -116,7 +116,7 @@ def find_contacts(
     geometry: Geometry, placement: Placement, center: Vector, frame: Frame, touch_m: float, contacts: ContactSet
 ) -> bool:
     """Fill ``contacts`` at a pose; False: there are more than it has room for."""
-    contacts.count[0] = 0
+    contacts.used[0] = 0
     for point in range(len(geometry.points_world)):
         if placement.depths[point] < -touch_m:
             continue
@@ -126,7 +126,7 @@ def find_contacts(
             point_box = row(placement.points_box[box], point)
             if box_gap(point_box, half_size) > touch_m:
                 continue
-            first = contacts.count[0]
+            first = contacts.used[0]
             for axis in range(3):
                 if not touches_face(point_box, half_size, axis, touch_m):
                     continue
@@ -135,7 +135,7 @@ def find_contacts(
                     geometry, placement, box, point, axis, touch_m
                 ):
                     continue
-                i = contacts.count[0]
+                i = contacts.used[0]
                 if i == len(contacts.points):
                     return False
                 contacts.gaps[i] = abs(point_box[axis]) - half_size[axis]
@@ -148,11 +148,11 @@ def find_contacts(
 @kernel
 def choose_next_faces(contacts: ContactSet) -> bool:
     """Choose the next combination of faces on edges; False: all have been, and the first is chosen again."""
-    for first in range(contacts.count[0]):
+    for first in range(contacts.used[0]):
         if contacts.groups[first] != first:
             continue
         last = first
-        while last + 1 < contacts.count[0] and contacts.groups[last + 1] == first:
+        while last + 1 < contacts.used[0] and contacts.groups[last + 1] == first:
             last += 1
         for i in range(first, last):
             if contacts.chosen[i]:

@@ -99,7 +99,7 @@ def eliminate(room: NewtonRoom, n: int) -> None:
 
 @kernel
 def number_unknowns(columns: FloatArray, n_contacts: int, y: FloatArray, room: NewtonRoom) -> int:
-    """Number the unknowns: six of the motion, then one or three forces of each contact; return how many, -1: too many."""
+    """Number the unknowns: six of the motion, one or three forces of each contact; return how many, -1: too many."""
     n = 6
     for i in range(n_contacts):
         if room.modes[i] == SLIPS and inner(columns[i, 1], y, 6) == 0.0 and inner(columns[i, 2], y, 6) == 0.0:

@@ -51,7 +51,7 @@ def write_curvature(
     for which in range(2):
         arm = load_arm(loads, phase, which, quaternion)
         add_arm_curvature(row(loads.forces_world[phase], which), arm, -1.0, frame, out)
-    for i in range(contacts.count[0]):
+    for i in range(contacts.used[0]):
         if contacts.forces[i, 0] <= 0.0:
             continue
         normal, arm = row(contacts.normals, i), row(contacts.arms, i)

@@ -30,7 +30,7 @@ class PassiveSet(NamedTuple):
 
     Attributes
     ----------
-    count
+    used
         How many columns are passive, (1,).
     labels
         Which column each one is, (m + 1,).
@@ -46,7 +46,7 @@ class PassiveSet(NamedTuple):
         b - A x at the target, (m,).
     """
 
-    count: NDArray[np.int64]
+    used: NDArray[np.int64]
     labels: NDArray[np.int64]
     columns: FloatArray
     basis: FloatArray
@@ -114,7 +114,7 @@ def orthogonalise(passive: PassiveSet, place: int, n_rows: int) -> bool:
 @kernel
 def append_column(passive: PassiveSet, column: FloatArray, label: int, cost: float, n_rows: int) -> bool:
     """Add a column with coefficient zero; False: it depends on the others, and nothing has changed."""
-    place = passive.count[0]
+    place = passive.used[0]
     if place >= n_rows:
         return False
     for row in range(n_rows):
@@ -124,28 +124,28 @@ def append_column(passive: PassiveSet, column: FloatArray, label: int, cost: flo
     passive.labels[place] = label
     passive.costs[place] = cost
     passive.x[place] = 0.0
-    passive.count[0] = place + 1
+    passive.used[0] = place + 1
     return True
 
 
 @kernel
 def remove_column(passive: PassiveSet, place: int, n_rows: int) -> None:
     """Take one column out; the basis behind it is made anew."""
-    passive.count[0] -= 1
-    for k in range(place, passive.count[0]):
+    passive.used[0] -= 1
+    for k in range(place, passive.used[0]):
         passive.labels[k] = passive.labels[k + 1]
         passive.costs[k] = passive.costs[k + 1]
         passive.x[k] = passive.x[k + 1]
         for row in range(n_rows):
             passive.columns[k, row] = passive.columns[k + 1, row]
-    for k in range(place, passive.count[0]):
+    for k in range(place, passive.used[0]):
         orthogonalise(passive, k, n_rows)
 
 
 @kernel
 def aim(passive: PassiveSet, b: FloatArray, n_rows: int) -> None:
     """Write the unconstrained least squares solution over the passive columns into ``target``."""
-    n = passive.count[0]
+    n = passive.used[0]
     for row in range(n_rows):
         passive.residual[row] = b[row]
     for k in range(n):  # one basis vector after the other, from what is left: rounding stays that of the residual
@@ -168,8 +168,8 @@ def aim(passive: PassiveSet, b: FloatArray, n_rows: int) -> None:
 @kernel
 def solve_triangle(passive: PassiveSet) -> None:
     """Replace ``target`` by R^-1 target."""
-    for k in range(passive.count[0] - 1, -1, -1):
-        for later in range(k + 1, passive.count[0]):
+    for k in range(passive.used[0] - 1, -1, -1):
+        for later in range(k + 1, passive.used[0]):
             passive.target[k] -= passive.triangle[later, k] * passive.target[later]
         passive.target[k] /= passive.triangle[k, k]
 
@@ -177,18 +177,18 @@ def solve_triangle(passive: PassiveSet) -> None:
 @kernel
 def settle(passive: PassiveSet, b: FloatArray, n_rows: int) -> None:
     """Go from x towards the target until a coefficient reaches zero, drop its column, and so on."""
-    while passive.count[0] > 0:
+    while passive.used[0] > 0:
         aim(passive, b, n_rows)
         fraction = 1.0
-        for k in range(passive.count[0]):
+        for k in range(passive.used[0]):
             if passive.target[k] <= 0.0:
                 fraction = min(fraction, passive.x[k] / (passive.x[k] - passive.target[k] + 1e-300))
         if fraction == 1.0 and least_target(passive) > 0.0:
-            for k in range(passive.count[0]):
+            for k in range(passive.used[0]):
                 passive.x[k] = passive.target[k]
             return
         lowest, lowest_x = -1, math.inf
-        for k in range(passive.count[0]):
+        for k in range(passive.used[0]):
             passive.x[k] += fraction * (passive.target[k] - passive.x[k])
             if passive.target[k] <= 0.0 and passive.x[k] < lowest_x:
                 lowest, lowest_x = k, passive.x[k]
@@ -202,7 +202,7 @@ def exchange_column(passive: PassiveSet, column: FloatArray, label: int, cost: f
 
     False: none of them gives way. Only columns with costs need this: without, a dependent column has nothing to offer.
     """
-    n = passive.count[0]
+    n = passive.used[0]
     for k in range(n):
         passive.target[k] = inner(passive.basis[k], column, n_rows)
     solve_triangle(passive)
@@ -216,14 +216,14 @@ def exchange_column(passive: PassiveSet, column: FloatArray, label: int, cost: f
         passive.x[k] = max(0.0, passive.x[k] - share * passive.target[k])
     remove_column(passive, leaves, n_rows)
     if append_column(passive, column, label, cost, n_rows):
-        passive.x[passive.count[0] - 1] = share
+        passive.x[passive.used[0] - 1] = share
     return True
 
 
 @kernel
 def least_target(passive: PassiveSet) -> float:
     least = math.inf
-    for k in range(passive.count[0]):
+    for k in range(passive.used[0]):
         least = min(least, passive.target[k])
     return least
 
@@ -232,17 +232,17 @@ def least_target(passive: PassiveSet) -> float:
 def rounding_scale(passive: PassiveSet, b: FloatArray, n_rows: int) -> float:
     """Return the length of the terms that the residual is the sum of: its rounding is about 1e-16 of this."""
     scale = length(b, n_rows)
-    for k in range(passive.count[0]):
+    for k in range(passive.used[0]):
         scale += passive.x[k] * length(passive.columns[k], n_rows)
     return scale
 
 
 @kernel
 def label_is_passive(passive: PassiveSet, label: int) -> bool:
-    for k in range(passive.count[0]):
-        if passive.labels[k] == label:
-            return True
-    return False
+    found = False
+    for k in range(passive.used[0]):
+        found = found or passive.labels[k] == label
+    return found
 
 
 @entry_kernel
@@ -260,12 +260,12 @@ def nonnegative_least_squares(
     b
         (at least n_rows,)
     passive
-        Where to start from, and the solution: set ``count`` to 0 for a cold start; columns from an earlier call with
+        Where to start from, and the solution: set ``used`` to 0 for a cold start; columns from an earlier call with
         the same ``columns`` and another ``b`` are a warm one.
     rejected
         Room, (at least n_columns,).
     """
-    for k in range(passive.count[0]):  # a warm start is any set of columns; from zero, `settle` finds which may stay
+    for k in range(passive.used[0]):  # a warm start is any set of columns; from zero, `settle` finds which may stay
         passive.x[k] = 0.0
     warm_start(passive, b, n_rows)
     for j in range(n_columns):
@@ -298,12 +298,12 @@ def nonnegative_least_squares(
 def warm_start(passive: PassiveSet, b: FloatArray, n_rows: int) -> None:
     """Keep of the passive columns a set that has positive coefficients for the new ``b``."""
     aim(passive, b, n_rows)
-    while passive.count[0] > 0 and least_target(passive) <= 0.0:
+    while passive.used[0] > 0 and least_target(passive) <= 0.0:
         lowest = 0
-        for k in range(passive.count[0]):
+        for k in range(passive.used[0]):
             if passive.target[k] < passive.target[lowest]:
                 lowest = k
         remove_column(passive, lowest, n_rows)
         aim(passive, b, n_rows)
-    for k in range(passive.count[0]):
+    for k in range(passive.used[0]):
         passive.x[k] = passive.target[k]

@@ -105,7 +105,7 @@ def write_load(loads: DeadLoads, phase: int, quaternion: Quaternion, frame: Fram
 def work_done(
     loads: DeadLoads, phase: int, start: Vector, start_turned: Quaternion, end: Vector, end_turned: Quaternion
 ) -> float:
-    """Return the work of a phase's loads between two poses of the centre of gravity: the fall of the potential (5.2)."""
+    """Return the work of a phase's loads between two poses of the centre of gravity: what the potential falls (5.2)."""
     work = 0.0
     for which in range(2):
         moved = minus(load_arm(loads, phase, which, end_turned), load_arm(loads, phase, which, start_turned))

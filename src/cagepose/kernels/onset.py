@@ -107,7 +107,7 @@ def onset(contacts: ContactSet, friction: float, b: FloatArray, room: OnsetRoom)
 
     Filled: ``contacts.chosen`` and ``contacts.forces``, and in ``room`` the motion y (zero if held) and the residual.
     """
-    n_contacts = contacts.count[0]
+    n_contacts = contacts.used[0]
     best_code, best_speed = -1, -1.0
     for _ in range(COMBINATIONS_LIMIT):
         code = onset_with_faces(
@@ -136,7 +136,7 @@ def onset(contacts: ContactSet, friction: float, b: FloatArray, room: OnsetRoom)
 @kernel
 def is_held(contacts: ContactSet, friction: float, b: FloatArray, room: OnsetRoom) -> bool:
     """Whether the contacts hold the object, whichever faces count on edges."""
-    n_contacts = contacts.count[0]
+    n_contacts = contacts.used[0]
     for i in range(n_contacts):
         room.cone.slips[i] = 0.0
     charged = bool(np.bool_(False))

@@ -158,12 +158,12 @@ def pin_contacts(
     geometry: Geometry, placement: Placement, contacts: ContactSet, forces: FloatArray, stiff: StiffRoom, pins: Pins
 ) -> None:
     """Pin the contacts that carry: to their faces, and where they stick also in the face."""
-    pins.count[0] = 0
-    for i in range(contacts.count[0]):
+    pins.used[0] = 0
+    for i in range(contacts.used[0]):
         if forces[i, 0] > 0.0:
             box, axis = contacts.boxes[i], contacts.axes[i]
             add_pin(pins, contacts.points[i], box, axis, contacts.sides[i], geometry.half_sizes[box, axis])
-    for i in range(contacts.count[0]):
+    for i in range(contacts.used[0]):
         if forces[i, 0] > 0.0 and stiff.is_sticking[i]:
             for turn in range(1, 3):
                 box, axis = contacts.boxes[i], (contacts.axes[i] + turn) % 3
@@ -201,7 +201,7 @@ def pushed_out(
     geometry = setting.geometry
     holds = True
     for _ in range(POINTS_PUSHED):
-        if room.pins.count[0] > 0:
+        if room.pins.used[0] > 0:
             holds, position, quaternion = pull_back(
                 geometry, setting.body, position, quaternion, room.pins, setting.size_m
             )

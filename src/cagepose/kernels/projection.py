@@ -29,7 +29,7 @@ class Pins(NamedTuple):
 
     Attributes
     ----------
-    count
+    used
         How many there are, (1,).
     points, boxes, axes, sides
         As in `ContactSet`: side * (coordinate of the point along the box's axis) ..., (n,).
@@ -41,7 +41,7 @@ class Pins(NamedTuple):
         Room.
     """
 
-    count: NDArray[np.int64]
+    used: NDArray[np.int64]
     points: NDArray[np.int64]
     boxes: NDArray[np.int64]
     axes: NDArray[np.int64]
@@ -72,7 +72,7 @@ def empty_pins(n_pins: int) -> Pins:
 @kernel
 def add_pin(pins: Pins, point: int, box: int, axis: int, side: float, target: float) -> bool:
     """Add a pin; False: there is no room, or it is there already."""
-    n = pins.count[0]
+    n = pins.used[0]
     if n == len(pins.points):
         return False
     for i in range(n):
@@ -80,7 +80,7 @@ def add_pin(pins: Pins, point: int, box: int, axis: int, side: float, target: fl
             return False
     pins.points[n], pins.boxes[n], pins.axes[n] = point, box, axis
     pins.sides[n], pins.targets[n] = side, target
-    pins.count[0] = n + 1
+    pins.used[0] = n + 1
     return True
 
 
@@ -103,15 +103,15 @@ def pull_back(
     for _ in range(ROUNDS):
         frame = frame_at(body, quaternion)
         back = (quaternion[0], -quaternion[1], -quaternion[2], -quaternion[3])
-        pins.basis.count[0] = 0
+        pins.basis.used[0] = 0
         worst = 0.0
-        for i in range(pins.count[0]):
+        for i in range(pins.used[0]):
             axis_object = scaled(box_axis(geometry, pins.boxes[i], pins.axes[i]), pins.sides[i])
             arm = minus(row(geometry.points_world, pins.points[i]), position)
             from_box = minus(rotated(back, arm), row(geometry.box_positions, pins.boxes[i]))
             direction = rotated(quaternion, axis_object)
             write_scaled_wrench(direction, cross(arm, direction), frame, pins.column)
-            place = pins.basis.count[0]
+            place = pins.basis.used[0]
             if append_column(pins.basis, pins.column, i, 0.0, 6):
                 pins.values[place] = dot(axis_object, from_box) - pins.targets[i]
                 worst = max(worst, abs(pins.values[place]))
@@ -120,7 +120,7 @@ def pull_back(
         worst_before = worst
         for k in range(6):
             pins.y[k] = 0.0
-        for i in range(pins.basis.count[0]):
+        for i in range(pins.basis.used[0]):
             for j in range(i):
                 pins.values[i] -= pins.basis.triangle[i, j] * pins.values[j]
             pins.values[i] /= pins.basis.triangle[i, i]

@@ -135,7 +135,7 @@ def empty_quasistatic_workspace(n_boxes: int, n_points: int, n_phases: int, step
 def carried_by(contacts: ContactSet, forces: FloatArray, stiff: StiffRoom) -> int:
     """Return the rule of a motion: FREE, SLIDE or PIVOT."""
     rule = FREE
-    for i in range(contacts.count[0]):
+    for i in range(contacts.used[0]):
         if forces[i, 0] > 0.0:
             rule = max(rule, PIVOT if stiff.is_sticking[i] else SLIDE)
     return rule
@@ -151,7 +151,7 @@ def next_twist(
     """
     contacts, stiff, y = work.contacts, work.stiff, work.solver.y
     carries = False
-    for i in range(contacts.count[0]):
+    for i in range(contacts.used[0]):
         stiff.is_sticking[i] = sticks(contacts, i, setting.friction, y)
         carries = carries or contacts.forces[i, 0] > 0.0
         for j in range(3):
@@ -165,10 +165,10 @@ def next_twist(
             if stiff_step(contacts, setting.friction, work.load, y, 1.0 / end, stiff, work.solver):
                 velocity, spin = twist_of(stiff.delta, frame)
                 end = min(1.0, longest_step(velocity, spin, carries, turn_step_rad, setting.size_m))
-                for i in range(contacts.count[0]):
+                for i in range(contacts.used[0]):
                     stiff.is_sticking[i] = stiff.is_sticking[i] and stiff.forces[i, 0] > 0.0
                 return Twist(velocity, spin, end), True
-            for i in range(contacts.count[0]):
+            for i in range(contacts.used[0]):
                 for j in range(3):
                     stiff.forces[i, j] = contacts.forces[i, j]
     return Twist(velocity, spin, end), False
@@ -184,11 +184,11 @@ def is_held_on_the_way(
         return False
     kept = 0
     if new_point >= 0:  # its rows are taken out
-        for i in range(work.ahead.count[0]):
+        for i in range(work.ahead.used[0]):
             if work.ahead.points[i] != new_point:
                 copy_contact(work.ahead, i, kept)
                 kept += 1
-        work.ahead.count[0] = kept
+        work.ahead.used[0] = kept
     write_load(setting.loads, setting.phase, quaternion, frame, work.load)
     return is_held(work.ahead, setting.friction, work.load, work.solver)
 
@@ -254,7 +254,7 @@ def polished(
     setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace
 ) -> tuple[Vector, Quaternion]:
     """Close the gaps, within the touch tolerance, of the contacts that carry (5.12)."""
-    for i in range(work.contacts.count[0]):
+    for i in range(work.contacts.used[0]):
         work.stiff.is_sticking[i] = False
     allow_depths(work.placement, setting.tolerances, work.path)
     pin_contacts(setting.geometry, work.placement, work.contacts, work.contacts.forces, work.stiff, work.path.pins)
@@ -279,7 +279,7 @@ def write_step(
         trace.quaternions[event, k] = quaternion[k]
     for point in range(len(work.touched)):
         trace.touching[event, point] = False
-    for i in range(work.contacts.count[0]):
+    for i in range(work.contacts.used[0]):
         trace.touching[event, work.contacts.points[i]] = True
     for point in range(len(work.touched)):
         trace.hit[event, point] = trace.touching[event, point] and not work.touched[point]
@@ -290,7 +290,7 @@ def note_touching(work: QuasistaticWorkspace) -> None:
     """Remember which points touch before a step."""
     for point in range(len(work.touched)):
         work.touched[point] = False
-    for i in range(work.contacts.count[0]):
+    for i in range(work.contacts.used[0]):
         work.touched[work.contacts.points[i]] = True
 
 
@@ -339,9 +339,9 @@ def phase_run(
         if amount == math.inf:
             write_step(work, event, setting.phase, rule, TRAVEL, position, quaternion)
             return ESCAPES, event + 1, position, quaternion
-        if setting.friction > 0.0 and rule != FREE and amount > 0.0:
-            if is_held_on_the_way(setting, new_position, new_quaternion, hit_point, work):
-                new_position, new_quaternion = first_rest(setting, position, quaternion, twist, amount, work)
+        could_rest = setting.friction > 0.0 and rule != FREE and amount > 0.0
+        if could_rest and is_held_on_the_way(setting, new_position, new_quaternion, hit_point, work):
+            new_position, new_quaternion = first_rest(setting, position, quaternion, twist, amount, work)
         speed = norm(twist.velocity) + norm(twist.spin) * setting.body.reach_m
         still = 0 if amount * speed > STILL * setting.size_m else still + 1
         turn_step = min(2.0 * turn_step, setting.turn_step_rad) if as_planned else 0.25 * turn_step

@@ -36,7 +36,7 @@ def first_run_off(
     """Return the amount of a twist, up to ``end``, after which a contact that carries leaves its face; inf: none."""
     first = math.inf
     rate = norm(spin)
-    for i in range(contacts.count[0]):
+    for i in range(contacts.used[0]):
         if contacts.forces[i, 0] <= 0.0:
             continue
         box = contacts.boxes[i]

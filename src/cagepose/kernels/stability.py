@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +28,7 @@ from cagepose.kernels.stiff import greatest_curvature
 
 STABLE_REST, MARGINAL, UNSTABLE = 0, 1, 2
 """Codes of stability: the index into `STABILITY_NAMES`."""
-STABILITY_NAMES = ("stable", "marginal", "unstable")
+STABILITY_NAMES: tuple[Literal["stable", "marginal", "unstable"], ...] = ("stable", "marginal", "unstable")
 
 AT_LIMIT = 1e-9
 """A tangential force this near to its cone (relative) is at the limit of friction."""
@@ -101,7 +101,7 @@ def write_outside(basis: PassiveSet, column: FloatArray, out: FloatArray) -> boo
     for k in range(6):
         out[k] = column[k]
     for _ in range(2):
-        for place in range(basis.count[0]):
+        for place in range(basis.used[0]):
             part = inner(basis.basis[place], out, 6)
             for k in range(6):
                 out[k] -= part * basis.basis[place, k]
@@ -127,8 +127,8 @@ def find_held(contacts: ContactSet, friction: float, room: StabilityRoom) -> boo
     -a_j lies in the cone of the others, seen outside the span of those that carry.
     """
     at_limit = False
-    room.held.count[0] = 0
-    n = contacts.count[0]
+    room.held.used[0] = 0
+    n = contacts.used[0]
     for i in range(n):
         carried = contacts.forces[i, 0]
         room.is_equality[i] = contacts.chosen[i] and carried > 0.0
@@ -158,7 +158,7 @@ def find_held(contacts: ContactSet, friction: float, room: StabilityRoom) -> boo
 def cannot_open(contacts: ContactSet, i: int, room: StabilityRoom) -> bool:
     """Whether no free twist opens a contact that carries nothing."""
     n_others = 0
-    for k in range(contacts.count[0]):
+    for k in range(contacts.used[0]):
         if k != i and contacts.chosen[k] and not room.is_equality[k]:
             write_outside(room.held, contacts.columns[k, 0], room.others[n_others])
             n_others += 1
@@ -166,7 +166,7 @@ def cannot_open(contacts: ContactSet, i: int, room: StabilityRoom) -> bool:
         return True
     for k in range(6):
         room.rest[k] = -room.rest[k]
-    room.scratch.count[0] = 0
+    room.scratch.used[0] = 0
     size = length(room.rest, 6)
     left = nonnegative_least_squares(room.others, n_others, 6, room.rest, room.scratch, room.rejected)
     return left <= IN_SPAN * size
@@ -175,12 +175,12 @@ def cannot_open(contacts: ContactSet, i: int, room: StabilityRoom) -> bool:
 @kernel
 def find_shared(contacts: ContactSet, room: StabilityRoom) -> None:
     """Mark the contacts whose normal force could be another: their wrench lies in the span of the rest."""
-    n = contacts.count[0]
+    n = contacts.used[0]
     for i in range(n):
         room.is_shared[i] = False
         if not room.is_equality[i]:
             continue
-        room.scratch.count[0] = 0
+        room.scratch.used[0] = 0
         for k in range(n):
             if room.is_equality[k]:
                 if k != i:
@@ -194,7 +194,7 @@ def find_shared(contacts: ContactSet, room: StabilityRoom) -> None:
 @kernel
 def find_free(room: StabilityRoom) -> int:
     """Complete the basis of what is held; write what is added into ``free`` and return how many there are."""
-    n_held = room.held.count[0]
+    n_held = int(room.held.used[0])
     for place in range(n_held, 6):
         best, best_size = 0, -1.0
         for axis in range(6):
@@ -214,7 +214,7 @@ def find_free(room: StabilityRoom) -> int:
 @kernel
 def is_feasible(contacts: ContactSet, twist: FloatArray, sign: float, room: StabilityRoom) -> bool:
     """Whether a scaled twist closes none of the contacts that may open."""
-    for i in range(contacts.count[0]):
+    for i in range(contacts.used[0]):
         if contacts.chosen[i] and not room.is_equality[i]:
             column = contacts.columns[i, 0]
             if sign * inner(column, twist, 6) > IN_SPAN * length(column, 6):

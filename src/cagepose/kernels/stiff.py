@@ -132,7 +132,7 @@ def write_matrix(contacts: ContactSet, room: StiffRoom, rho: float, hold: float)
         for k in range(6):
             room.factor[j, k] = room.curvature[j, k]
         room.factor[j, j] += rho
-    for i in range(contacts.count[0]):
+    for i in range(contacts.used[0]):
         if contacts.forces[i, 0] <= 0.0:
             continue
         for which in range(3 if room.is_sticking[i] else 1):
@@ -151,7 +151,7 @@ def stiff_step(
 
     ``room.curvature`` and ``room.is_sticking`` are given; y is the explicit motion.
     """
-    n_contacts = contacts.count[0]
+    n_contacts = contacts.used[0]
     size = greatest_curvature(room.curvature)
     rho = max(rho, LEAST_RHO * size)
     for _ in range(RAISES):

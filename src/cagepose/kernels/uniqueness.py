@@ -178,7 +178,7 @@ def is_possible(
 ) -> bool:
     """Whether the present modes are not ruled out."""
     n_columns = write_modes(contacts, n_rows, friction, b, sectors, room)
-    room.passive.count[0] = 0
+    room.passive.used[0] = 0
     left = nonnegative_least_squares(
         room.columns, n_columns, 3 * n_rows + 1, room.right_side, room.passive, room.rejected
     )
@@ -191,17 +191,17 @@ def is_witnessed(
 ) -> bool:
     """Whether Newton's method from the solution of the system ends in a motion that obeys Coulomb's law."""
     scale = 0.0
-    n_contacts = contacts.count[0]
+    n_contacts = contacts.used[0]
     for i in range(n_contacts):
         coulomb.newton.modes[i] = OPENS
         for j in range(3):
             room.forces[i, j] = 0.0
-    for k in range(room.passive.count[0]):
+    for k in range(room.passive.used[0]):
         if room.passive.labels[k] == 0:
             scale = room.passive.x[k]
     if scale <= 0.0:
         return False
-    for k in range(room.passive.count[0]):
+    for k in range(room.passive.used[0]):
         label = room.passive.labels[k]
         place = room.owners[label]
         if place >= 0:
@@ -225,9 +225,9 @@ def is_witnessed(
 
 @kernel
 def other_onset(contacts: ContactSet, friction: float, b: FloatArray, room: ModesRoom, coulomb: CoulombRoom) -> int:
-    """Return UNIQUE if rest is the only onset that Coulomb's law allows; OTHER_FOUND: it is in ``room``; or NOT_SHOWN."""
+    """Return UNIQUE if Coulomb's law allows no onset but rest; OTHER_FOUND: one is in ``room``; or NOT_SHOWN."""
     n_rows = 0
-    for i in range(contacts.count[0]):
+    for i in range(contacts.used[0]):
         if contacts.chosen[i]:
             if n_rows == CONTACT_LIMIT:
                 return NOT_SHOWN

@@ -10,18 +10,21 @@ import numpy as np
 from cagepose.kernels.contact_set import ContactSet
 from cagepose.kernels.contacts import contact_rows
 from cagepose.kernels.metric import Body
+from cagepose.kernels.pose import Quaternion
 from cagepose.kernels.proof import (
     OTHER_ONSET,
     PROVEN_MOVES,
     PROVEN_UNIQUE,
     PROVEN_WITHOUT_FRICTION,
     TOO_MANY_CONTACTS,
+    ProofRoom,
     critical_friction,
     empty_proof_room,
     prove,
 )
 from cagepose.kernels.stability import STABILITY_NAMES
 from cagepose.kernels.tolerances import kernel_tolerances
+from cagepose.kernels.vector import Vector
 from cagepose.nouns.checks import FloatArray
 from cagepose.nouns.pose import Pose
 from cagepose.nouns.scene import Metric, Scene
@@ -71,7 +74,7 @@ class Judge:
         self.tolerances = kernel_tolerances(scene.size_m, scene.tolerances.touch)
 
     @cached_property
-    def _room(self):  # type: ignore[no-untyped-def]
+    def _room(self) -> ProofRoom:
         return empty_proof_room(len(self.geometry.half_sizes), len(self.geometry.points_world))
 
     def proof(self, pose: Pose, phase: int) -> tuple[Proof, tuple[Contact, ...]]:
@@ -91,7 +94,7 @@ class Judge:
         room = self._room
         names = self.scene.cage.names
         held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
-        shared = room.rest.is_shared[: room.contacts.count[0]] if held else np.zeros(0, np.bool_)
+        shared = room.rest.is_shared[: room.contacts.used[0]] if held else np.zeros(0, np.bool_)
         motion = {PROVEN_MOVES: room.solver.y, OTHER_ONSET: room.modes.y}.get(code)
         proof = Proof(
             verdict="moves"
@@ -116,8 +119,13 @@ class Judge:
         )
         return replace(proof, critical_friction=float(least))
 
-    def _contacts(self, inside: tuple, contacts: ContactSet, held: bool) -> tuple[Contact, ...]:  # type: ignore[type-arg]
-        rows = contact_rows(self.geometry, *inside, self.scene.touch_m)
+    def _contacts(self, inside: tuple[Vector, Quaternion], contacts: ContactSet, held: bool) -> tuple[Contact, ...]:
+        position, quaternion = inside
+        rows = contact_rows(self.geometry, position, quaternion, self.scene.touch_m)
+        forces = [
+            _force(contacts, rows.points[i], rows.boxes[i], rows.normals_world[i]) if held else (None, None)
+            for i in range(len(rows.points))
+        ]
         return tuple(
             Contact(
                 point=self.scene.cage.names[rows.points[i]],
@@ -125,9 +133,10 @@ class Judge:
                 normal_world=rows.normals_world[i].copy(),
                 gap_m=float(rows.gaps[i]),
                 near_edge=bool(rows.near_edge[i]),
-                **(_forces(contacts, rows.points[i], rows.boxes[i], rows.normals_world[i]) if held else {}),
+                force_normal_n=normal,
+                force_tangential_n=tangential,
             )
-            for i in range(len(rows.points))
+            for i, (normal, tangential) in enumerate(forces)
         )
 
     def _twist(self, pose: Pose, y: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -167,12 +176,12 @@ def _is_in_span(basis: FloatArray, vector: FloatArray) -> bool:
     return bool(np.linalg.norm(vector - basis.T @ (basis @ vector)) < IN_SPAN) if len(basis) else False
 
 
-def _forces(contacts: ContactSet, point: int, box: int, normal: FloatArray) -> dict[str, object]:
+def _force(contacts: ContactSet, point: int, box: int, normal: FloatArray) -> tuple[float, FloatArray]:
     """What the contact of a point with a face carries: zero where a flush face of another box stands for it."""
-    for i in range(contacts.count[0]):
+    for i in range(contacts.used[0]):
         same_face = contacts.points[i] == point and contacts.boxes[i] == box
         if same_face and np.linalg.norm(contacts.normals[i] - normal) <= SAME_NORMAL:
             one, two = contacts.columns[i, 1, :3], contacts.columns[i, 2, :3]
             tangential = contacts.forces[i, 1] * one + contacts.forces[i, 2] * two
-            return {"force_normal_n": float(contacts.forces[i, 0]), "force_tangential_n": -tangential}
-    return {"force_normal_n": 0.0, "force_tangential_n": np.zeros(3)}
+            return float(contacts.forces[i, 0]), -tangential
+    return 0.0, np.zeros(3)
