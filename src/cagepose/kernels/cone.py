@@ -33,9 +33,14 @@ from cagepose.kernels.least_squares import (
 BALANCED = 1e-11
 """In lengths of the terms of the residual. Ten thousand times their rounding: rounding that a nearly dependent set of
 contacts has magnified still counts as balance."""
-SEPARATES = 1e-10
-"""A residual that no generator lies along by more than this (cosine) proves that there is no balance."""
+HELD = 1e-9
+"""The same at the limit of friction, where round cones leave more: rounding counts by its square root there."""
+STEEPER, STEEPER_CHARGED = 1e-13, 1e-9
+"""In lengths of the residual: a generator that points along it by so little more than one in use is no better. With
+charges it is one of many rounds, and Newton's method comes after them."""
 GENERATOR_LIMIT = 400
+WRENCH, N_ROWS = 6, 7
+"""A scaled wrench has 6 rows; the 7th, if it is used, adds up the normal forces."""
 
 
 class ConeRoom(NamedTuple):
@@ -51,7 +56,7 @@ class ConeRoom(NamedTuple):
         Slip speed of each contact that its generators are charged for, (n_contacts,): zero for balance (5.4), see
         `cagepose.kernels.coulomb` for (5.7).
     column
-        One generator, (6,).
+        One generator, (7,).
     rejected
         Contacts whose generator did not help, (n_contacts,).
     """
@@ -67,11 +72,11 @@ class ConeRoom(NamedTuple):
 def empty_cone_room(n_contacts: int) -> ConeRoom:
     """Return room for ``n_contacts`` contacts (plain Python)."""
     return ConeRoom(
-        empty_passive_set(6),
+        empty_passive_set(N_ROWS),
         np.zeros(GENERATOR_LIMIT, np.int64),
         np.zeros((GENERATOR_LIMIT, 2)),
         np.zeros(n_contacts),
-        np.zeros(6),
+        np.zeros(N_ROWS),
         np.zeros(n_contacts, np.bool_),
     )
 
@@ -94,10 +99,37 @@ def write_generator(columns: FloatArray, friction: float, one: float, two: float
 
 
 @kernel
-def clear_cone(room: ConeRoom, b: FloatArray) -> None:
+def clear_cone(room: ConeRoom, b: FloatArray, n_rows: int) -> None:
     """Start from no force."""
     room.passive.used[0] = 0
-    aim(room.passive, b, 6)
+    aim(room.passive, b, n_rows)
+
+
+@kernel
+def generator_price(
+    columns: FloatArray, contact: int, friction: float, n_rows: int, charged: bool, room: ConeRoom
+) -> tuple[float, bool]:
+    """Return how far the steepest generator of a contact lies along the residual r, and whether the contact has one.
+
+    A generator in use lies across r (but for its charge), so for another of the same contact only the angle between
+    their tangents counts: mu |r_t| (1 - cos), which has its digits however small it is.
+    """
+    passive = room.passive
+    slip, one, two = steepest_tangent(columns, passive.residual)
+    nearest = math.inf
+    for k in range(passive.used[0]):
+        label = passive.labels[k]
+        if room.contacts[label] == contact:
+            across = one * room.directions[label, 1] - two * room.directions[label, 0]
+            along = one * room.directions[label, 0] + two * room.directions[label, 1]
+            apart = across * across / (1.0 + along) if along > 0.0 else 1.0 - along
+            nearest = min(nearest, apart)
+    if nearest < math.inf:
+        return friction * slip * nearest, True
+    price = inner(columns[0], passive.residual, 6) + friction * slip
+    if n_rows == N_ROWS:
+        price += passive.residual[N_ROWS - 1]
+    return (price - friction * room.slips[contact] if charged else price), False
 
 
 @entry_kernel
@@ -107,6 +139,7 @@ def cone_residual(
     n_contacts: int,
     friction: float,
     b: FloatArray,
+    n_rows: int,
     charged: bool,
     room: ConeRoom,
 ) -> float:
@@ -120,8 +153,8 @@ def cone_residual(
         Which contacts count, (n_contacts,).
     friction
         Coefficient of friction.
-    b
-        Scaled wrench of the load, (6,).
+    b, n_rows
+        Scaled wrench of the load, (6,). With 7 rows: (7,), and the last one asks for a sum of the normal forces.
     charged
         Whether ``room.slips`` counts; else it is zero.
     room
@@ -144,41 +177,38 @@ def cone_residual(
     for i in range(n_contacts):
         room.rejected[i] = False
     while n_generators < GENERATOR_LIMIT:
-        scale = rounding_scale(passive, b, 6)
-        left = length(passive.residual, 6)
-        least_price = PRICE * scale
-        if friction > 0.0 and not charged:
-            if left <= BALANCED * scale:
-                break
-            least_price = max(least_price, SEPARATES * left)
-        best, best_price = -1, least_price
+        scale = rounding_scale(passive, b, n_rows)
+        left = length(passive.residual, n_rows)
+        if friction > 0.0 and not charged and left <= BALANCED * scale:
+            break
+        best, best_price = -1, 0.0
+        steeper = STEEPER_CHARGED if charged else STEEPER
         for i in range(n_contacts):
             if not chosen[i] or room.rejected[i]:
                 continue
-            price = inner(columns[i, 0], passive.residual, 6)
-            if friction > 0.0:
-                price += friction * (steepest_tangent(columns[i], passive.residual)[0] - room.slips[i])
-            price /= length(columns[i, 0], 6)
-            if price > best_price:
-                best, best_price = i, price
+            price, is_steeper = generator_price(columns[i], i, friction, n_rows, charged, room)
+            size = length(columns[i, 0], 6)
+            if price > best_price * size and price > (steeper * left if is_steeper else PRICE * scale) * size:
+                best, best_price = i, price / size
         if best < 0:
             break
         _, one, two = steepest_tangent(columns[best], passive.residual)
         write_generator(columns[best], friction, one, two, room.column)
+        room.column[N_ROWS - 1] = 1.0
         room.contacts[n_generators] = best
         room.directions[n_generators, 0], room.directions[n_generators, 1] = one, two
-        cost = friction * room.slips[best]
-        if append_column(passive, room.column, n_generators, cost, 6) or (
-            charged and exchange_column(passive, room.column, n_generators, cost, 6)
+        cost = friction * room.slips[best] if charged else 0.0
+        if append_column(passive, room.column, n_generators, cost, n_rows) or (
+            charged and exchange_column(passive, room.column, n_generators, cost, n_rows)
         ):
-            settle(passive, b, 6)
+            settle(passive, b, n_rows)
         if label_is_passive(passive, n_generators):
             for i in range(n_contacts):
                 room.rejected[i] = False
         else:
             room.rejected[best] = True
         n_generators += 1
-    return length(passive.residual, 6)
+    return length(passive.residual, n_rows)
 
 
 @kernel

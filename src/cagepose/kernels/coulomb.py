@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.cone import ConeRoom, clear_cone, cone_residual, steepest_tangent, write_forces
+from cagepose.kernels.cone import WRENCH, ConeRoom, clear_cone, cone_residual, steepest_tangent, write_forces
 from cagepose.kernels.coulomb_newton import (
     OPENS,
     SLIPS,
@@ -37,7 +37,10 @@ DAMPED = 0.4
 ROUNDS_BETWEEN = 6
 """Rounds before Newton's method is tried (again)."""
 OBEYS = 1e-9
-"""In lengths of the load: the greatest violation of Coulomb's law. It bends the path by less than a step does."""
+"""In lengths of the motion: the greatest violation of Coulomb's law; where that is not reached, of the load. It bends
+the path by less than a step does."""
+ROUNDING = 1e-5
+"""In lengths of the load: the violation of the law by a motion slower than this is measured as if it were as fast."""
 SLOW, SLOWEST = 1e-6, 1e-10
 """In lengths of the motion: a slower contact is tried as one that sticks, first with the one limit, then the other."""
 ENUMERATED = 5
@@ -93,6 +96,21 @@ def coulomb_error(
 
 
 @kernel
+def obeys(
+    columns: FloatArray,
+    chosen: NDArray[np.bool_],
+    n_contacts: int,
+    friction: float,
+    b: FloatArray,
+    forces: FloatArray,
+    y: FloatArray,
+) -> bool:
+    """Whether forces and motion obey Coulomb's law, but for a small part of the motion (or rounding of the load)."""
+    allowed = OBEYS * max(length(y, 6), ROUNDING * length(b, 6))
+    return coulomb_error(columns, chosen, n_contacts, friction, forces, y) <= allowed
+
+
+@kernel
 def solves_with_modes(
     columns: FloatArray,
     chosen: NDArray[np.bool_],
@@ -106,7 +124,7 @@ def solves_with_modes(
     """Try Newton's method from the forces in ``room.kept``; without success they are put back."""
     newton_on_modes(columns, n_contacts, friction, b, forces, y, room.newton)
     motion_left(columns, chosen, n_contacts, b, forces, y)
-    if coulomb_error(columns, chosen, n_contacts, friction, forces, y) <= OBEYS * length(b, 6):
+    if obeys(columns, chosen, n_contacts, friction, b, forces, y):
         return True
     for i in range(n_contacts):
         for j in range(3):
@@ -184,12 +202,13 @@ def coulomb_onset(
     room
         Room for ``n_contacts`` contacts.
     """
-    size = length(b, 6)
     charged = bool(np.bool_(True))
+    for i in range(n_contacts):
+        cone.slips[i] = 0.0
     for turn in range(1, ROUNDS + 1):
         write_forces(cone, n_contacts, friction, forces)
         motion_left(columns, chosen, n_contacts, b, forces, y)
-        if coulomb_error(columns, chosen, n_contacts, friction, forces, y) <= OBEYS * size:
+        if obeys(columns, chosen, n_contacts, friction, b, forces, y):
             return True
         if turn % ROUNDS_BETWEEN == 0:
             slow = SLOW if turn % (2 * ROUNDS_BETWEEN) != 0 else SLOWEST
@@ -200,7 +219,9 @@ def coulomb_onset(
         for i in range(n_contacts):
             slip = steepest_tangent(columns[i], y)[0] if chosen[i] else 0.0
             cone.slips[i] += share * (slip - cone.slips[i])
-        clear_cone(cone, b)
-        cone_residual(columns, chosen, n_contacts, friction, b, charged, cone)
+        clear_cone(cone, b, WRENCH)
+        cone_residual(columns, chosen, n_contacts, friction, b, WRENCH, charged, cone)
     read_modes(columns, n_contacts, SLOW * length(y, 6), forces, y, room)
-    return solves_with_any_modes(columns, chosen, n_contacts, friction, b, forces, y, room)
+    if solves_with_any_modes(columns, chosen, n_contacts, friction, b, forces, y, room):
+        return True
+    return coulomb_error(columns, chosen, n_contacts, friction, forces, y) <= OBEYS * length(b, 6)

@@ -3,7 +3,8 @@
 Friction can hold an object that could as well begin to move. So for every combination of modes the conditions on
 (motion, forces) are written as a system with non-negative unknowns, in which the motion is not zero (w . nu = 1) and
 the load comes in at any scale tau. A combination without a solution is ruled out, and with it all that share it. Slip
-directions are held in sectors, and cones in pyramids around them: whatever is ruled out so is ruled out in truth.
+directions are held in sectors, halved where that is too coarse, and cones in pyramids around them: whatever is ruled
+out so is ruled out in truth.
 """
 
 from __future__ import annotations
@@ -23,12 +24,15 @@ from cagepose.kernels.least_squares import PassiveSet, empty_passive_set, inner,
 
 CONTACT_LIMIT = 4
 """More contacts than this: not tried."""
-SECTORS = (8, 32)
-"""Sectors of the slip direction, coarse first."""
-GENERATORS = 8
+FIRST_SECTORS = 4
+NARROWEST_RAD = 1e-4
+"""A sector that is narrower is not halved again."""
+GENERATORS = 24
 """Edges of the pyramid around a cone."""
-SYSTEM_LIMIT = 20_000
+SYSTEM_LIMIT = 4000
 """Systems after which the search is given up."""
+WAITING = 1024
+"""Combinations that may wait to be looked at."""
 IMPOSSIBLE = 1e-7
 """A system that misses its right side (of length 1) by more has no solution."""
 MOVES_AT_ALL = 1e-6
@@ -48,8 +52,10 @@ class ModesRoom(NamedTuple):
     ----------
     rows
         Contacts in question, (CONTACT_LIMIT,).
-    modes
-        -1 undecided, 0 opens, 1 sticks, 2 + m slips in sector m, (CONTACT_LIMIT,).
+    modes, starts, widths
+        What each contact does (-1: undecided) and, if it slips, from which angle on and over which, (CONTACT_LIMIT,).
+    waiting_modes, waiting_starts, waiting_widths
+        The same for the combinations still to be looked at, (WAITING, CONTACT_LIMIT).
     columns, right_side
         The system, (N_COLUMNS, N_ROWS) and (N_ROWS,).
     owners, directions
@@ -64,6 +70,11 @@ class ModesRoom(NamedTuple):
 
     rows: NDArray[np.int64]
     modes: NDArray[np.int64]
+    starts: FloatArray
+    widths: FloatArray
+    waiting_modes: NDArray[np.int64]
+    waiting_starts: FloatArray
+    waiting_widths: FloatArray
     columns: FloatArray
     right_side: FloatArray
     owners: NDArray[np.int64]
@@ -80,6 +91,11 @@ def empty_modes_room(n_contacts: int) -> ModesRoom:
     return ModesRoom(
         np.zeros(CONTACT_LIMIT, np.int64),
         np.zeros(CONTACT_LIMIT, np.int64),
+        np.zeros(CONTACT_LIMIT),
+        np.zeros(CONTACT_LIMIT),
+        np.zeros((WAITING, CONTACT_LIMIT), np.int64),
+        np.zeros((WAITING, CONTACT_LIMIT)),
+        np.zeros((WAITING, CONTACT_LIMIT)),
         np.zeros((N_COLUMNS, N_ROWS)),
         np.zeros(N_ROWS),
         np.zeros(N_COLUMNS, np.int64),
@@ -141,15 +157,12 @@ def add_slack(n_rows: int, row: int, one: float, two: float, n_columns: int, roo
 
 
 @kernel
-def write_modes(
-    contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, sectors: int, room: ModesRoom
-) -> int:
+def write_modes(contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesRoom) -> int:
     """Write the system of the present modes; return the number of columns. Column 0 is the scale of the load."""
     write_velocity(contacts, n_rows, b, b, 1.0, room.columns[0], room)
     room.owners[0] = -1
     n_columns = 1
     around = friction / math.cos(math.pi / GENERATORS)
-    beside = friction / math.cos(math.pi / sectors)
     for place in range(n_rows):
         mode = room.modes[place]
         if mode in (UNDECIDED, OPENS):
@@ -158,14 +171,15 @@ def write_modes(
             for g in range(GENERATORS):
                 angle = (g + 0.5) * 2.0 * math.pi / GENERATORS
                 n_columns = add_force_column(contacts, n_rows, b, place, around, angle, n_columns, room)
-        if mode >= SLIPS:
+        if mode == SLIPS:
             for side in range(2):
-                angle = (mode - SLIPS + side) * 2.0 * math.pi / sectors
+                angle = room.starts[place] + side * room.widths[place]
                 n_columns = add_force_column(contacts, n_rows, b, place, friction, angle, n_columns, room)
                 n_columns = add_slack(n_rows, 3 * place + 1, -math.cos(angle), -math.sin(angle), n_columns, room)
             # The arc lies between its chord and the corner of the tangents at its ends.
-            middle = (mode - SLIPS + 0.5) * 2.0 * math.pi / sectors
-            n_columns = add_force_column(contacts, n_rows, b, place, beside, middle, n_columns, room)
+            middle = room.starts[place] + 0.5 * room.widths[place]
+            corner = friction / math.cos(0.5 * room.widths[place])
+            n_columns = add_force_column(contacts, n_rows, b, place, corner, middle, n_columns, room)
     for k in range(3 * n_rows):
         room.right_side[k] = 0.0
     room.right_side[3 * n_rows] = 1.0
@@ -173,11 +187,9 @@ def write_modes(
 
 
 @kernel
-def is_possible(
-    contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, sectors: int, room: ModesRoom
-) -> bool:
+def is_possible(contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesRoom) -> bool:
     """Whether the present modes are not ruled out."""
-    n_columns = write_modes(contacts, n_rows, friction, b, sectors, room)
+    n_columns = write_modes(contacts, n_rows, friction, b, room)
     room.passive.used[0] = 0
     left = nonnegative_least_squares(
         room.columns, n_columns, 3 * n_rows + 1, room.right_side, room.passive, room.rejected
@@ -210,7 +222,7 @@ def is_witnessed(
             room.forces[room.rows[place], 1] += share * room.directions[label, 0]
             room.forces[room.rows[place], 2] += share * room.directions[label, 1]
     for place in range(n_rows):
-        coulomb.newton.modes[room.rows[place]] = min(room.modes[place], SLIPS)
+        coulomb.newton.modes[room.rows[place]] = room.modes[place]
     motion_left(contacts.columns, contacts.chosen, n_contacts, b, room.forces, room.y)
     for attempt in range(2):
         if coulomb_error(contacts.columns, contacts.chosen, n_contacts, friction, room.forces, room.y) <= (
@@ -224,6 +236,42 @@ def is_witnessed(
 
 
 @kernel
+def put_aside(n_waiting: int, place: int, mode: int, start: float, width: float, room: ModesRoom) -> int:
+    """Let the present combination wait, with another mode of one contact; return how many wait."""
+    for k in range(CONTACT_LIMIT):
+        room.waiting_modes[n_waiting, k] = room.modes[k]
+        room.waiting_starts[n_waiting, k] = room.starts[k]
+        room.waiting_widths[n_waiting, k] = room.widths[k]
+    room.waiting_modes[n_waiting, place] = mode
+    room.waiting_starts[n_waiting, place] = start
+    room.waiting_widths[n_waiting, place] = width
+    return n_waiting + 1
+
+
+@kernel
+def branch(n_rows: int, n_waiting: int, room: ModesRoom) -> int:
+    """Divide the present combination: decide a contact, else halve the widest sector; return how many wait.
+
+    -1: nothing is left to divide.
+    """
+    widest, width = -1, NARROWEST_RAD
+    for place in range(n_rows):
+        if room.modes[place] == UNDECIDED:
+            sector = 2.0 * math.pi / FIRST_SECTORS
+            for m in range(FIRST_SECTORS):
+                n_waiting = put_aside(n_waiting, place, SLIPS, m * sector, sector, room)
+            n_waiting = put_aside(n_waiting, place, STICKS, 0.0, 0.0, room)
+            return put_aside(n_waiting, place, OPENS, 0.0, 0.0, room)
+        if room.modes[place] == SLIPS and room.widths[place] > width:
+            widest, width = place, room.widths[place]
+    if widest < 0:
+        return -1
+    start, half = room.starts[widest], 0.5 * room.widths[widest]
+    n_waiting = put_aside(n_waiting, widest, SLIPS, start, half, room)
+    return put_aside(n_waiting, widest, SLIPS, start + half, half, room)
+
+
+@kernel
 def other_onset(contacts: ContactSet, friction: float, b: FloatArray, room: ModesRoom, coulomb: CoulombRoom) -> int:
     """Return UNIQUE if Coulomb's law allows no onset but rest; OTHER_FOUND: one is in ``room``; or NOT_SHOWN."""
     n_rows = 0
@@ -233,31 +281,28 @@ def other_onset(contacts: ContactSet, friction: float, b: FloatArray, room: Mode
                 return NOT_SHOWN
             room.rows[n_rows] = i
             n_rows += 1
-    n_systems = 0
-    for sectors in SECTORS:
-        unclear = False
-        for place in range(n_rows):
-            room.modes[place] = UNDECIDED
-        depth = 0
-        while depth >= 0:
-            room.modes[depth] += 1
-            if room.modes[depth] >= SLIPS + sectors:
-                room.modes[depth] = UNDECIDED
-                depth -= 1
-                continue
-            n_systems += 1
-            if n_systems > SYSTEM_LIMIT:
-                return NOT_SHOWN
-            if not is_possible(contacts, n_rows, friction, b, sectors, room):
-                continue
-            if depth + 1 < n_rows:
-                depth += 1
-                continue
-            if is_witnessed(contacts, n_rows, friction, b, room, coulomb):
-                return OTHER_FOUND
-            unclear = True
-            if sectors == SECTORS[-1]:
-                return NOT_SHOWN
-        if not unclear:
+    for place in range(CONTACT_LIMIT):
+        room.modes[place] = UNDECIDED
+        room.starts[place] = room.widths[place] = 0.0
+    n_waiting = branch(n_rows, int(np.int64(0)), room)
+    for _ in range(SYSTEM_LIMIT):
+        if n_waiting == 0:
             return UNIQUE
+        if n_waiting > WAITING - FIRST_SECTORS - 2:
+            return NOT_SHOWN
+        n_waiting -= 1
+        n_undecided = 0
+        for place in range(n_rows):
+            room.modes[place] = room.waiting_modes[n_waiting, place]
+            room.starts[place] = room.waiting_starts[n_waiting, place]
+            room.widths[place] = room.waiting_widths[n_waiting, place]
+            if room.modes[place] == UNDECIDED:
+                n_undecided += 1
+        if not is_possible(contacts, n_rows, friction, b, room):
+            continue
+        if n_undecided == 0 and is_witnessed(contacts, n_rows, friction, b, room, coulomb):
+            return OTHER_FOUND
+        n_waiting = branch(n_rows, n_waiting, room)
+        if n_waiting < 0:
+            return NOT_SHOWN
     return NOT_SHOWN

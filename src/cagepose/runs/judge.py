@@ -41,6 +41,7 @@ REASONS = {
     PROVEN_MOVES: "no contact forces balance the load",
 }
 NOT_SHOWN = "the contacts can balance the load with friction, but that the object cannot move was not shown"
+WEDGED = "; the contacts can press against each other without a load, as in a wedge"
 SAME_NORMAL = 1e-9
 """Radians, as in the kernels: flush faces of two boxes are one contact."""
 IN_SPAN = 1e-6
@@ -94,15 +95,12 @@ class Judge:
         room = self._room
         names = self.scene.cage.names
         held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
+        is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
         shared = room.rest.is_shared[: room.contacts.used[0]] if held else np.zeros(0, np.bool_)
         motion = {PROVEN_MOVES: room.solver.y, OTHER_ONSET: room.modes.y}.get(code)
         proof = Proof(
-            verdict="moves"
-            if not held
-            else "rests"
-            if code in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
-            else "may rest",
-            reason=REASONS.get(code, NOT_SHOWN),
+            verdict="moves" if not held else "may rest" if is_open else "rests",
+            reason=REASONS.get(code, NOT_SHOWN) + (WEDGED if is_open and room.wedged[0] else ""),
             residual=float(room.solver.residual[0]),
             needs_friction=held and code != PROVEN_WITHOUT_FRICTION,
             stability=STABILITY_NAMES[steady] if held else None,
