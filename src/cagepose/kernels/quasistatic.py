@@ -44,7 +44,19 @@ from cagepose.kernels.path import (
 from cagepose.kernels.pose import Quaternion
 from cagepose.kernels.stiff import StiffRoom, curvature_along, empty_stiff_room, stiff_step
 from cagepose.kernels.tolerances import KernelTolerances
-from cagepose.kernels.trace import ESCAPES, LIMIT, NONE, PLAIN, RESTS, SCREW, STALLED, TRAVEL, Trace, empty_trace
+from cagepose.kernels.trace import (
+    ESCAPES,
+    LET_GO,
+    LIMIT,
+    NONE,
+    PLAIN,
+    RESTS,
+    SCREW,
+    STALLED,
+    TRAVEL,
+    Trace,
+    empty_trace,
+)
 from cagepose.kernels.vector import Vector, norm
 
 RULE_NAMES = ("free", "slide", "pivot", "held")
@@ -283,6 +295,8 @@ def write_step(
         trace.touching[event, work.contacts.points[i]] = True
     for point in range(len(work.touched)):
         trace.hit[event, point] = trace.touching[event, point] and not work.touched[point]
+        if work.touched[point] and not trace.touching[event, point]:
+            trace.notes[event] = LET_GO
 
 
 @kernel
