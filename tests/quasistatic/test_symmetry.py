@@ -125,9 +125,13 @@ def decided(request):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_random_scene_seen_otherwise_ends_alike(decided, kind, capsys):
-    """The same verdict in every phase, and the same rest to 1e-8 of the size."""
+    """The same verdict in every phase, and the same rest: to 1e-8 of the size without friction. With friction a path
+    ends where the forces first balance, to 1e-10 of them; where that changes little along the path, its end is as much
+    less sure.
+    """
     rng = np.random.default_rng(5)
     kept, n_ties = decided
+    alike = 1e-8 if kept[0][1].friction_coefficient is None else 1e-6
     worst, n_rests, differ = 0.0, 0, []
     for number, scene, expected in kept:
         other, back = seen_otherwise(scene, kind, rng)
@@ -138,7 +142,7 @@ def test_a_random_scene_seen_otherwise_ends_alike(decided, kind, capsys):
             n_rests += 1
             distance = apart(scene, back(found.pose), expected.pose)
             worst = max(worst, distance)
-            if distance > 1e-8:
+            if distance > alike:
                 differ.append((number, distance))
     with capsys.disabled():
         print(f"\n{kind}: {len(kept)} scenes, {n_rests} rests, apart by at most {worst:.1e}; {n_ties} ties left out")
