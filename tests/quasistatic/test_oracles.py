@@ -6,9 +6,13 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
-from cagepose.kernels.cone import HELD, WRENCH, clear_cone, cone_residual, empty_cone_room, write_forces
-from cagepose.kernels.coulomb import coulomb_onset, empty_coulomb_room
-from cagepose.kernels.least_squares import empty_passive_set, nonnegative_least_squares
+from cagepose.kernels.cone import HELD, ConeRoom, clear_cone, cone_residual, write_forces
+from cagepose.kernels.contact_set import ContactRow
+from cagepose.kernels.coulomb import coulomb_onset
+from cagepose.kernels.coulomb_newton import NewtonRoom
+from cagepose.kernels.least_squares import PassiveSet, empty_system, nonnegative_least_squares
+from cagepose.kernels.metric import WRENCH
+from cagepose.kernels.record import empty_record, empty_rows
 from jit import callable_kernel, cases
 
 N_PROBLEMS = 10_000
@@ -36,12 +40,29 @@ def least_squares_problem(rng, number):
     return columns, b
 
 
+def passive_set(n_rows):
+    passive = empty_record(PassiveSet)
+    passive.n_rows = n_rows
+    return passive
+
+
+def contacts_with(columns):
+    """Contacts with these wrenches; and a view on all their forces."""
+    rows = empty_rows(ContactRow, len(columns))
+    rows.columns[:] = columns
+    rows.chosen[:] = True
+    return rows, rows.forces
+
+
 def solved(columns, b, passive):
     """Residual that the kernel returns, and x."""
     n_columns, n_rows = columns.shape
-    left = nonnegative_least_squares(columns, n_columns, n_rows, b, passive, np.zeros(n_columns, np.bool_))
+    system = empty_system(n_columns)
+    system.columns[:, :n_rows] = columns
+    system.right_side[:n_rows] = b
+    left = nonnegative_least_squares(system, n_columns, passive)
     x = np.zeros(n_columns)
-    x[passive.labels[: passive.used[0]]] = passive.x[: passive.used[0]]
+    x[passive.labels[: passive.used]] = passive.x[: passive.used]
     return left, x
 
 
@@ -51,7 +72,7 @@ def test_nonnegative_least_squares_agrees_with_scipy():
     worst = 0.0
     for number in range(cases(N_PROBLEMS)):
         columns, b = least_squares_problem(rng, number)
-        left, x = solved(columns, b, empty_passive_set(columns.shape[1]))
+        left, x = solved(columns, b, passive_set(columns.shape[1]))
         _, expected = nnls(columns.T, b, maxiter=1000)
         scale = np.linalg.norm(b) + x @ np.linalg.norm(columns, axis=1) + 1e-300
         assert (x >= 0.0).all()
@@ -66,7 +87,7 @@ def test_a_warm_start_ends_at_the_same_residual():
     rng = np.random.default_rng(2)
     for number in range(cases(N_PROBLEMS // 10)):
         columns, b = least_squares_problem(rng, number)
-        warm = empty_passive_set(columns.shape[1])
+        warm = passive_set(columns.shape[1])
         for _ in range(5):
             left, x = solved(columns, b, warm)
             _, expected = nnls(columns.T, b, maxiter=1000)
@@ -100,10 +121,11 @@ def test_the_frictionless_onset_obeys_the_optimality_conditions():
     for number in range(cases(N_ONSETS)):
         n = int(rng.integers(1, 13))
         columns, b = contact_columns(rng, n), rng.normal(size=6)
-        room, forces = empty_cone_room(n), np.zeros((n, 3))
+        room = empty_record(ConeRoom)
+        rows, forces = contacts_with(columns)
         clear(room, b, WRENCH)
-        left = cone_residual(columns, np.ones(n, np.bool_), n, 0.0, b, WRENCH, False, room)
-        write(room, n, 0.0, forces)
+        left = cone_residual(rows, n, 0.0, b, False, room)
+        write(room, 0.0, rows, n)
         normals = columns[:, 0]
         y = b - normals.T @ forces[:, 0]
         scale = np.linalg.norm(b) + forces[:, 0] @ np.linalg.norm(normals, axis=1)
@@ -147,11 +169,12 @@ def test_the_onset_with_friction_obeys_coulombs_law(capsys):
     worst = 0.0
     for _ in range(cases(N_ONSETS)):
         n, friction = int(rng.integers(1, 9)), float(rng.uniform(0.05, 1.0))
-        columns, b, chosen = contact_columns(rng, n), rng.normal(size=6), np.ones(n, np.bool_)
-        cone, forces, y = empty_cone_room(n), np.zeros((n, 3)), np.zeros(6)
+        columns, b = contact_columns(rng, n), rng.normal(size=6)
+        cone, y = empty_record(ConeRoom), np.zeros(6)
+        rows, forces = contacts_with(columns)
         clear(cone, b, WRENCH)
-        left = cone_residual(columns, chosen, n, friction, b, WRENCH, False, cone)
-        write(cone, n, friction, forces)
+        left = cone_residual(rows, n, friction, b, False, cone)
+        write(cone, friction, rows, n)
         scale = np.linalg.norm(b) + forces[:, 0] @ np.linalg.norm(columns[:, 0], axis=1)
         if left <= HELD * scale:
             balance = np.einsum("ijk,ij->k", columns, forces)
@@ -159,7 +182,7 @@ def test_the_onset_with_friction_obeys_coulombs_law(capsys):
             assert (np.linalg.norm(forces[:, 1:], axis=1) <= friction * forces[:, 0] * (1.0 + 1e-12)).all()
             continue
         n_moves += 1
-        if not coulomb_onset(columns, chosen, n, friction, b, cone, forces, y, empty_coulomb_room(n)):
+        if not coulomb_onset(rows, n, friction, b, cone, y, empty_record(NewtonRoom)):
             n_unsolved += 1
             continue
         worst = max(worst, coulomb_violation(columns, friction, b, forces))

@@ -9,19 +9,16 @@ the proof of balance, or no generator points along it, and the residual is the p
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Annotated
 
-import numpy as np
-from numpy.typing import NDArray
-
-from cagepose.kernels.geometry import FloatArray
+from cagepose.kernels.contact_set import ContactRow
 from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.least_squares import (
     PRICE,
     PassiveSet,
     aim,
     append_column,
-    empty_passive_set,
+    clear,
     exchange_column,
     inner,
     label_is_passive,
@@ -29,6 +26,8 @@ from cagepose.kernels.least_squares import (
     rounding_scale,
     settle,
 )
+from cagepose.kernels.metric import ScaledVector
+from cagepose.kernels.record import FloatArray, IntArray, Rows
 
 BALANCED = 1e-11
 """In lengths of the terms of the residual. Ten thousand times their rounding: rounding that a nearly dependent set of
@@ -38,53 +37,34 @@ HELD = 1e-9
 STEEPER = 1e-13
 """In lengths of the residual: a generator that points along it by so little more than one in use is no better."""
 GENERATOR_LIMIT = 400
-WRENCH, N_ROWS = 6, 7
-"""A scaled wrench has 6 rows; the 7th, if it is used, adds up the normal forces."""
+N_ROWS = 7
+"""With one more row than a wrench has, the last one adds up the normal forces."""
 
 
-class ConeRoom(NamedTuple):
-    """Room for one problem, and its solution.
+class ConeRoom:
+    """Room for one problem, and its solution; a record.
 
     Attributes
     ----------
     passive
         The generators in use; their labels index the next two.
     contacts, directions
-        Contact and tangent d of each generator, (n_generators,) and (n_generators, 2).
-    slips
-        Slip speed of each contact that its generators are charged for, (n_contacts,): zero for balance (5.4), see
-        `cagepose.kernels.coulomb` for (5.7).
+        Contact and tangent d of each generator.
     column
-        One generator, (7,).
-    rejected
-        Contacts whose generator did not help, (n_contacts,).
+        One generator.
     """
 
     passive: PassiveSet
-    contacts: NDArray[np.int64]
-    directions: FloatArray
-    slips: FloatArray
-    column: FloatArray
-    rejected: NDArray[np.bool_]
-
-
-def empty_cone_room(n_contacts: int) -> ConeRoom:
-    """Return room for ``n_contacts`` contacts (plain Python)."""
-    return ConeRoom(
-        empty_passive_set(N_ROWS),
-        np.zeros(GENERATOR_LIMIT, np.int64),
-        np.zeros((GENERATOR_LIMIT, 2)),
-        np.zeros(n_contacts),
-        np.zeros(N_ROWS),
-        np.zeros(n_contacts, np.bool_),
-    )
+    contacts: Annotated[IntArray, GENERATOR_LIMIT]
+    directions: Annotated[FloatArray, GENERATOR_LIMIT, 2]
+    column: ScaledVector
 
 
 @kernel
-def steepest_tangent(columns: FloatArray, vector: FloatArray) -> tuple[float, float, float]:
+def steepest_tangent(contact: ContactRow, vector: FloatArray) -> tuple[float, float, float]:
     """Return (length of the tangential part of a scaled twist at a contact, its direction)."""
-    one = inner(columns[1], vector, 6)
-    two = inner(columns[2], vector, 6)
+    one = inner(contact.columns[1], vector, 6)
+    two = inner(contact.columns[2], vector, 6)
     size = math.hypot(one, two)
     if size == 0.0:
         return 0.0, 1.0, 0.0
@@ -92,21 +72,21 @@ def steepest_tangent(columns: FloatArray, vector: FloatArray) -> tuple[float, fl
 
 
 @kernel
-def write_generator(columns: FloatArray, friction: float, one: float, two: float, out: FloatArray) -> None:
+def write_generator(contact: ContactRow, friction: float, one: float, two: float, out: FloatArray) -> None:
     for k in range(6):
-        out[k] = columns[0, k] + friction * (one * columns[1, k] + two * columns[2, k])
+        out[k] = contact.columns[0, k] + friction * (one * contact.columns[1, k] + two * contact.columns[2, k])
 
 
 @kernel
-def clear_cone(room: ConeRoom, b: FloatArray, n_rows: int) -> None:
-    """Start from no force."""
-    room.passive.used[0] = 0
-    aim(room.passive, b, n_rows)
+def clear_cone(room: ConeRoom, b: FloatArray, n_rows: int, terms: float) -> None:
+    """Start from no force: b is (6,), or (7,) where a sum of the normal forces is asked for too, of terms so long."""
+    clear(room.passive, n_rows, terms)
+    aim(room.passive, b)
 
 
 @kernel
 def generator_price(
-    columns: FloatArray, contact: int, friction: float, n_rows: int, charged: bool, room: ConeRoom
+    rows: Rows[ContactRow], contact: int, friction: float, charged: bool, room: ConeRoom
 ) -> tuple[float, bool]:
     """Return how far the steepest generator of a contact lies along the residual r, and whether the contact has one.
 
@@ -114,9 +94,9 @@ def generator_price(
     their tangents counts: mu |r_t| (1 - cos), which has its digits however small it is.
     """
     passive = room.passive
-    slip, one, two = steepest_tangent(columns, passive.residual)
+    slip, one, two = steepest_tangent(rows[contact], passive.residual)
     nearest = math.inf
-    for k in range(passive.used[0]):
+    for k in range(passive.used):
         label = passive.labels[k]
         if room.contacts[label] == contact:
             across = one * room.directions[label, 1] - two * room.directions[label, 0]
@@ -125,20 +105,18 @@ def generator_price(
             nearest = min(nearest, apart)
     if nearest < math.inf:
         return friction * slip * nearest, True
-    price = inner(columns[0], passive.residual, 6) + friction * slip
-    if n_rows == N_ROWS:
+    price = inner(rows[contact].columns[0], passive.residual, 6) + friction * slip
+    if passive.n_rows == N_ROWS:
         price += passive.residual[N_ROWS - 1]
-    return (price - friction * room.slips[contact] if charged else price), False
+    return (price - friction * rows[contact].slip if charged else price), False
 
 
 @entry_kernel
 def cone_residual(
-    columns: FloatArray,
-    chosen: NDArray[np.bool_],
+    rows: Rows[ContactRow],
     n_contacts: int,
     friction: float,
     b: FloatArray,
-    n_rows: int,
     charged: bool,
     room: ConeRoom,
 ) -> float:
@@ -146,16 +124,14 @@ def cone_residual(
 
     Parameters
     ----------
-    columns
-        Scaled wrenches along normal and tangents, (n_contacts, 3, 6).
-    chosen
-        Which contacts count, (n_contacts,).
+    rows, n_contacts
+        The contacts: those that are chosen count.
     friction
         Coefficient of friction.
-    b, n_rows
-        Scaled wrench of the load, (6,). With 7 rows: (7,), and the last one asks for a sum of the normal forces.
+    b
+        Scaled wrench of the load, (at least 6,); see `clear_cone`.
     charged
-        Whether ``room.slips`` counts; else it is zero.
+        Whether the contacts' ``slip`` counts; else it is zero.
     room
         The solution. Start with `clear_cone`, or with the solution for a smaller coefficient.
 
@@ -167,57 +143,57 @@ def cone_residual(
     """
     passive = room.passive
     n_generators = 0
-    for k in range(passive.used[0]):  # renumber, so that the room is never full
+    for k in range(passive.used):  # renumber, so that the room is never full
         label = passive.labels[k]
         room.contacts[k] = room.contacts[label]
         room.directions[k, 0], room.directions[k, 1] = room.directions[label, 0], room.directions[label, 1]
         passive.labels[k] = k
         n_generators = k + 1
     for i in range(n_contacts):
-        room.rejected[i] = False
+        rows[i].is_rejected = False
     while n_generators < GENERATOR_LIMIT:
-        scale = rounding_scale(passive, b, n_rows)
-        left = length(passive.residual, n_rows)
+        scale = rounding_scale(passive)
+        left = length(passive.residual, passive.n_rows)
         if friction > 0.0 and not charged and left <= BALANCED * scale:
             break
         best, best_price = -1, 0.0
         for i in range(n_contacts):
-            if not chosen[i] or room.rejected[i]:
+            if not rows[i].chosen or rows[i].is_rejected:
                 continue
-            price, is_steeper = generator_price(columns[i], i, friction, n_rows, charged, room)
-            size = length(columns[i, 0], 6)
+            price, is_steeper = generator_price(rows, i, friction, charged, room)
+            size = length(rows[i].columns[0], 6)
             if price > best_price * size and price > (STEEPER * left if is_steeper else PRICE * scale) * size:
                 best, best_price = i, price / size
         if best < 0:
             break
-        _, one, two = steepest_tangent(columns[best], passive.residual)
-        write_generator(columns[best], friction, one, two, room.column)
+        _, one, two = steepest_tangent(rows[best], passive.residual)
+        write_generator(rows[best], friction, one, two, room.column)
         room.column[N_ROWS - 1] = 1.0
         room.contacts[n_generators] = best
         room.directions[n_generators, 0], room.directions[n_generators, 1] = one, two
-        cost = friction * room.slips[best] if charged else 0.0
-        if append_column(passive, room.column, n_generators, cost, n_rows) or (
-            charged and exchange_column(passive, room.column, n_generators, cost, n_rows)
+        cost = friction * rows[best].slip if charged else 0.0
+        if append_column(passive, room.column, n_generators, cost) or (
+            charged and exchange_column(passive, room.column, n_generators, cost)
         ):
-            settle(passive, b, n_rows)
+            settle(passive, b)
         if label_is_passive(passive, n_generators):
             for i in range(n_contacts):
-                room.rejected[i] = False
+                rows[i].is_rejected = False
         else:
-            room.rejected[best] = True
+            rows[best].is_rejected = True
         n_generators += 1
-    return length(passive.residual, n_rows)
+    return length(passive.residual, passive.n_rows)
 
 
 @kernel
-def write_forces(room: ConeRoom, n_contacts: int, friction: float, forces: FloatArray) -> None:
-    """Write normal and tangential forces of all contacts, (n_contacts, 3)."""
+def write_forces(room: ConeRoom, friction: float, rows: Rows[ContactRow], n_contacts: int) -> None:
+    """Write normal and tangential forces of all contacts."""
     for i in range(n_contacts):
         for k in range(3):
-            forces[i, k] = 0.0
-    for k in range(room.passive.used[0]):
+            rows[i].forces[k] = 0.0
+    for k in range(room.passive.used):
         label = room.passive.labels[k]
-        i, x = room.contacts[label], room.passive.x[k]
-        forces[i, 0] += x
-        forces[i, 1] += x * friction * room.directions[label, 0]
-        forces[i, 2] += x * friction * room.directions[label, 1]
+        contact, x = rows[room.contacts[label]], room.passive.x[k]
+        contact.forces[0] += x
+        contact.forces[1] += x * friction * room.directions[label, 0]
+        contact.forces[2] += x * friction * room.directions[label, 1]

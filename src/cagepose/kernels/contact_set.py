@@ -8,16 +8,16 @@ boxes hold each on its own.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cagepose.kernels.contacts import face_normal, is_hidden, touches_face
-from cagepose.kernels.geometry import FloatArray, Geometry, Placement, box_gap
+from cagepose.kernels.geometry import Geometry, Placement, box_gap
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.metric import Frame, write_scaled_wrench
-from cagepose.kernels.vector import Vector, cross, minus, norm, row
+from cagepose.kernels.record import FloatArray, IntArray, Rows, empty_rows
+from cagepose.kernels.vector import Vector, cross, minus, norm, row, vector_from
 
 SAME_NORMAL = 1e-9
 """Radians. Flush faces of two boxes give one contact."""
@@ -26,71 +26,87 @@ CONTACTS_PER_POINT = 6
 """Faces that one point may touch, flush ones counted once. More: the run stalls, by name."""
 
 
-class ContactSet(NamedTuple):
-    """Rows 0 to used - 1 are in use.
+class ContactRow:
+    """One contact, and what the solvers note beside it; a record.
 
     Attributes
     ----------
-    used
-        How many contacts there are, (1,).
-    points, boxes, axes
-        Indices of the cage point, the box and the axis of the face, (n,).
-    sides
-        +1 or -1: which of the two faces along the axis, (n,).
-    gaps
-        Distance from the plane of the face, below zero inside, (n,), metres.
-    groups
-        The first row of the same point and box, (n,).
+    point, box, axis
+        Indices of the cage point, the box and the axis of the face.
+    side
+        +1 or -1: which of the two faces along the axis.
+    gap
+        Distance from the plane of the face, below zero inside, metres.
+    group
+        The first row of the same point and box.
     chosen
-        Whether this face counts, (n,): all but the other faces on an edge.
-    normals, arms
-        Outward unit normal, and the point as seen from the centre of gravity, in the world, (n, 3).
+        Whether this face counts: all but the other faces on an edge.
+    has_carried
+        In the first row of a group: whether its faces carried in a combination that has been asked.
+    normal, arm
+        Outward unit normal, and the point as seen from the centre of gravity, in the world.
     columns
-        Scaled wrenches of a unit force along the normal and along two tangents, (n, 3, 6). The contact pushes along
-        their negative.
+        Scaled wrenches of a unit force along the normal and along two tangents. The contact pushes
+        along their negative.
     forces
-        What the contact carries along them, (n, 3).
+        What the contact carries along them.
+    is_sticking, step_forces
+        Of the step that is being made: whether the contact sticks, and what it carries on the way.
+    slip, is_rejected
+        Slip speed that its generators are charged for (5.7); whether its generator did not help.
+    mode, first_unknown, kept_forces
+        What the contact does, its place in the system of Newton's method, and its forces before.
+    best_chosen, best_forces
+        Of the best combination of faces so far.
+    is_equality, is_shared
+        Whether it may carry in some balance, so that it can never open without work; whether its normal force could be
+        another.
     """
 
-    used: NDArray[np.int64]
-    points: NDArray[np.int64]
-    boxes: NDArray[np.int64]
-    axes: NDArray[np.int64]
-    sides: FloatArray
-    gaps: FloatArray
-    groups: NDArray[np.int64]
-    chosen: NDArray[np.bool_]
-    normals: FloatArray
-    arms: FloatArray
-    columns: FloatArray
-    forces: FloatArray
+    point: int
+    box: int
+    axis: int
+    side: float
+    gap: float
+    group: int
+    chosen: bool
+    has_carried: bool
+    normal: Annotated[FloatArray, 3]
+    arm: Annotated[FloatArray, 3]
+    columns: Annotated[FloatArray, 3, 6]
+    forces: Annotated[FloatArray, 3]
+    is_sticking: bool
+    step_forces: Annotated[FloatArray, 3]
+    slip: float
+    is_rejected: bool
+    mode: int
+    first_unknown: int
+    kept_forces: Annotated[FloatArray, 3]
+    best_chosen: bool
+    best_forces: Annotated[FloatArray, 3]
+    is_equality: bool
+    is_shared: bool
+
+
+class ContactSet(NamedTuple):
+    """The contacts at one pose: ``rows`` 0 to used - 1; ``used`` is (1,)."""
+
+    used: IntArray
+    rows: Rows[ContactRow]
 
 
 def empty_contact_set(n_rows: int) -> ContactSet:
     """Return room for ``n_rows`` contacts (plain Python)."""
-    return ContactSet(
-        np.zeros(1, np.int64),
-        np.zeros(n_rows, np.int64),
-        np.zeros(n_rows, np.int64),
-        np.zeros(n_rows, np.int64),
-        np.zeros(n_rows),
-        np.zeros(n_rows),
-        np.zeros(n_rows, np.int64),
-        np.zeros(n_rows, np.bool_),
-        np.zeros((n_rows, 3)),
-        np.zeros((n_rows, 3)),
-        np.zeros((n_rows, 3, 6)),
-        np.zeros((n_rows, 3)),
-    )
+    return ContactSet(np.zeros(1, np.int64), empty_rows(ContactRow, n_rows))
 
 
 @kernel
-def face_is_listed(contacts: ContactSet, point: int, normal: Vector) -> bool:
-    """Whether the last rows hold the same point with the same normal: the flush face of another box."""
-    for i in range(contacts.used[0] - 1, -1, -1):
-        if contacts.points[i] != point:
+def face_is_listed(contacts: ContactSet, first: int, point: int, normal: Vector) -> bool:
+    """Whether a row before ``first`` holds the same point with the same normal: the flush face of another box."""
+    for i in range(first - 1, -1, -1):
+        if contacts.rows[i].point != point:
             return False
-        if norm(minus(row(contacts.normals, i), normal)) <= SAME_NORMAL:
+        if norm(minus(vector_from(contacts.rows[i].normal), normal)) <= SAME_NORMAL:
             return True
     return False
 
@@ -99,16 +115,16 @@ def face_is_listed(contacts: ContactSet, point: int, normal: Vector) -> bool:
 def append_contact(
     contacts: ContactSet, placement: Placement, point: int, box: int, axis: int, side: float, arm: Vector, frame: Frame
 ) -> None:
-    i = contacts.used[0]
-    contacts.points[i], contacts.boxes[i], contacts.axes[i], contacts.sides[i] = point, box, axis, side
+    contact = contacts.rows[contacts.used[0]]
+    contact.point, contact.box, contact.axis, contact.side = point, box, axis, side
     normal = face_normal(placement, box, axis, side)
     for k in range(3):
-        contacts.normals[i, k] = normal[k]
-        contacts.arms[i, k] = arm[k]
+        contact.normal[k] = normal[k]
+        contact.arm[k] = arm[k]
     for j in range(3):
         direction = normal if j == 0 else face_normal(placement, box, (axis + j) % 3, 1.0)
-        write_scaled_wrench(direction, cross(arm, direction), frame, contacts.columns[i, j])
-    contacts.used[0] = i + 1
+        write_scaled_wrench(direction, cross(arm, direction), frame, contact.columns[j])
+    contacts.used[0] += 1
 
 
 @kernel
@@ -127,38 +143,62 @@ def find_contacts(
             if box_gap(point_box, half_size) > touch_m:
                 continue
             first = contacts.used[0]
+            n_new = 0
             for axis in range(3):
                 if not touches_face(point_box, half_size, axis, touch_m):
                     continue
                 side = math.copysign(1.0, point_box[axis])
-                if face_is_listed(contacts, point, face_normal(placement, box, axis, side)) or is_hidden(
-                    geometry, placement, box, point, axis, touch_m
-                ):
+                if is_hidden(geometry, placement, box, point, axis, touch_m):
                     continue
-                i = contacts.used[0]
-                if i == len(contacts.points):
+                if contacts.used[0] == len(contacts.rows):
                     return False
-                contacts.gaps[i] = abs(point_box[axis]) - half_size[axis]
-                contacts.groups[i] = first
-                contacts.chosen[i] = i == first
+                if not face_is_listed(contacts, first, point, face_normal(placement, box, axis, side)):
+                    n_new += 1
+                contact = contacts.rows[contacts.used[0]]
+                contact.gap = abs(point_box[axis]) - half_size[axis]
+                contact.group = first
+                contact.chosen = contacts.used[0] == first
+                contact.has_carried = False
                 append_contact(contacts, placement, point, box, axis, side, arm, frame)
+            if n_new == 0:  # another box's flush faces say all this
+                contacts.used[0] = first
     return True
 
 
 @kernel
-def choose_next_faces(contacts: ContactSet) -> bool:
-    """Choose the next combination of faces on edges; False: all have been, and the first is chosen again."""
+def last_of_group(contacts: ContactSet, first: int) -> int:
+    last = first
+    while last + 1 < contacts.used[0] and contacts.rows[last + 1].group == first:
+        last += 1
+    return last
+
+
+@kernel
+def choose_next_faces(contacts: ContactSet, every: bool) -> bool:
+    """Choose the next combination of faces on edges; False: there is none, and the first is chosen again.
+
+    Unless ``every`` one is wanted, those are left out whose answer is known: where no face of a group carried, another
+    face of it would not either, and the same forces balance the load (or leave the same motion).
+    """
+    rows = contacts.rows
     for first in range(contacts.used[0]):
-        if contacts.groups[first] != first:
+        if rows[first].group != first:
             continue
-        last = first
-        while last + 1 < contacts.used[0] and contacts.groups[last + 1] == first:
-            last += 1
-        for i in range(first, last):
-            if contacts.chosen[i]:
-                contacts.chosen[i] = False
-                contacts.chosen[i + 1] = True
-                return True
-        contacts.chosen[last] = False
-        contacts.chosen[first] = True
+        last = last_of_group(contacts, first)
+        for i in range(first, last + 1):
+            if rows[i].chosen and rows[i].forces[0] > 0.0:
+                rows[first].has_carried = True
+    for first in range(contacts.used[0]):
+        if rows[first].group != first:
+            continue
+        last = last_of_group(contacts, first)
+        if every or rows[first].has_carried:
+            for i in range(first, last):
+                if rows[i].chosen:
+                    rows[i].chosen = False
+                    rows[i + 1].chosen = True
+                    return True
+        for i in range(first, last + 1):
+            rows[i].chosen = i == first
+        rows[first].has_carried = False
     return False

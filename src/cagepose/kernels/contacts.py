@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.geometry import (
-    FloatArray,
     Geometry,
     Placement,
     box_gap,
@@ -25,6 +24,7 @@ from cagepose.kernels.geometry import (
 )
 from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.pose import Quaternion
+from cagepose.kernels.record import FloatArray
 from cagepose.kernels.tolerances import KernelTolerances
 from cagepose.kernels.vector import Vector, dot, minus, norm, plus, row, scaled
 

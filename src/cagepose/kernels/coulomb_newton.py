@@ -6,15 +6,13 @@ equations in the motion y and the forces, and a few steps solve it to rounding.
 
 from __future__ import annotations
 
-import math
-from typing import NamedTuple
+from typing import Annotated
 
-import numpy as np
-from numpy.typing import NDArray
-
-from cagepose.kernels.geometry import FloatArray
+from cagepose.kernels.cone import steepest_tangent
+from cagepose.kernels.contact_set import ContactRow
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.least_squares import inner
+from cagepose.kernels.record import FloatArray, IntArray, Rows
 
 CONTACT_LIMIT = 12
 """More contacts than this that carry: left to the sweeps."""
@@ -28,35 +26,19 @@ OPENS, STICKS, SLIPS = 0, 1, 2
 """Codes of what a contact does."""
 
 
-class NewtonRoom(NamedTuple):
-    """Room for one system.
+class NewtonRoom:
+    """Room for one system of n equations; a record.
 
     Attributes
     ----------
     matrix
-        The system, right side last, (n, n + 1).
+        The system, right side last.
     order
-        Which unknown each column holds, (n,).
-    modes
-        What each contact does, (n_contacts,).
-    first
-        The first unknown of each contact, (n_contacts,).
+        Which unknown each column holds.
     """
 
-    matrix: FloatArray
-    order: NDArray[np.int64]
-    modes: NDArray[np.int64]
-    first: NDArray[np.int64]
-
-
-def empty_newton_room(n_contacts: int) -> NewtonRoom:
-    """Return room for ``n_contacts`` contacts (plain Python)."""
-    return NewtonRoom(
-        np.zeros((UNKNOWNS, UNKNOWNS + 1)),
-        np.zeros(UNKNOWNS, np.int64),
-        np.zeros(n_contacts, np.int64),
-        np.zeros(n_contacts, np.int64),
-    )
+    matrix: Annotated[FloatArray, UNKNOWNS, UNKNOWNS + 1]
+    order: Annotated[IntArray, UNKNOWNS]
 
 
 @kernel
@@ -98,15 +80,16 @@ def eliminate(room: NewtonRoom, n: int) -> None:
 
 
 @kernel
-def number_unknowns(columns: FloatArray, n_contacts: int, y: FloatArray, room: NewtonRoom) -> int:
+def number_unknowns(rows: Rows[ContactRow], n_contacts: int, y: FloatArray) -> int:
     """Number the unknowns: six of the motion, one or three forces of each contact; return how many, -1: too many."""
     n = 6
     for i in range(n_contacts):
-        if room.modes[i] == SLIPS and inner(columns[i, 1], y, 6) == 0.0 and inner(columns[i, 2], y, 6) == 0.0:
-            room.modes[i] = STICKS  # a slip without direction
-        room.first[i] = n
-        if room.modes[i] != OPENS:
-            n += 1 if room.modes[i] == SLIPS else 3
+        contact = rows[i]
+        if contact.mode == SLIPS and steepest_tangent(contact, y)[0] == 0.0:
+            contact.mode = STICKS  # a slip without direction
+        contact.first_unknown = n
+        if contact.mode != OPENS:
+            n += 1 if contact.mode == SLIPS else 3
         if n > UNKNOWNS:
             return -1
     return n
@@ -114,14 +97,7 @@ def number_unknowns(columns: FloatArray, n_contacts: int, y: FloatArray, room: N
 
 @kernel
 def write_system(
-    columns: FloatArray,
-    n_contacts: int,
-    friction: float,
-    b: FloatArray,
-    forces: FloatArray,
-    y: FloatArray,
-    n: int,
-    room: NewtonRoom,
+    rows: Rows[ContactRow], n_contacts: int, friction: float, b: FloatArray, y: FloatArray, n: int, room: NewtonRoom
 ) -> None:
     """Write the linear system of one step: balance of y, then one row for each velocity that is zero."""
     m = room.matrix
@@ -132,71 +108,62 @@ def write_system(
         m[k, k] = 1.0
         m[k, n] = b[k] - y[k]
     for i in range(n_contacts):
-        first = room.first[i]
-        if room.modes[i] == OPENS:
-            continue
-        if room.modes[i] == STICKS:
+        contact = rows[i]
+        columns, forces, first = contact.columns, contact.forces, contact.first_unknown
+        if contact.mode == STICKS:
             for j in range(3):
                 for k in range(6):
-                    m[k, first + j] = m[first + j, k] = columns[i, j, k]
-                    m[k, n] -= columns[i, j, k] * forces[i, j]
-                m[first + j, n] = -inner(columns[i, j], y, 6)
-            continue
-        v1, v2 = inner(columns[i, 1], y, 6), inner(columns[i, 2], y, 6)
-        slip = math.hypot(v1, v2)
-        one, two = v1 / slip, v2 / slip
-        turning = forces[i, 0] * friction / slip
-        for k in range(6):
-            generator = columns[i, 0, k] + friction * (one * columns[i, 1, k] + two * columns[i, 2, k])
-            m[first, k] = columns[i, 0, k]
-            m[k, first] = generator
-            m[k, n] -= generator * forces[i, 0]
-            across = two * columns[i, 1, k] - one * columns[i, 2, k]
-            for j in range(6):
-                m[k, j] += turning * across * (two * columns[i, 1, j] - one * columns[i, 2, j])
-        m[first, n] = -inner(columns[i, 0], y, 6)
+                    m[k, first + j] = m[first + j, k] = columns[j, k]
+                    m[k, n] -= columns[j, k] * forces[j]
+                m[first + j, n] = -inner(columns[j], y, 6)
+        elif contact.mode == SLIPS:
+            slip, one, two = steepest_tangent(contact, y)
+            turning = forces[0] * friction / slip
+            for k in range(6):
+                generator = columns[0, k] + friction * (one * columns[1, k] + two * columns[2, k])
+                m[first, k] = columns[0, k]
+                m[k, first] = generator
+                m[k, n] -= generator * forces[0]
+                across = two * columns[1, k] - one * columns[2, k]
+                for j in range(6):
+                    m[k, j] += turning * across * (two * columns[1, j] - one * columns[2, j])
+            m[first, n] = -inner(columns[0], y, 6)
 
 
 @kernel
 def newton_on_modes(
-    columns: FloatArray,
-    n_contacts: int,
-    friction: float,
-    b: FloatArray,
-    forces: FloatArray,
-    y: FloatArray,
-    room: NewtonRoom,
+    rows: Rows[ContactRow], n_contacts: int, friction: float, b: FloatArray, y: FloatArray, room: NewtonRoom
 ) -> None:
     """Move forces and motion to the solution with the present modes, if there is one near; the caller checks it."""
-    n = number_unknowns(columns, n_contacts, y, room)
+    n = number_unknowns(rows, n_contacts, y)
     if n < 0:
         return
     for _ in range(NEWTON_STEPS):
-        write_system(columns, n_contacts, friction, b, forces, y, n, room)
+        write_system(rows, n_contacts, friction, b, y, n, room)
         eliminate(room, n)
         for place in range(n):
             change, unknown = room.matrix[place, n], room.order[place]
             if unknown < 6:
                 y[unknown] += change
         for i in range(n_contacts):
-            if room.modes[i] != OPENS:
-                add_changes(room, n, i, forces)
+            if rows[i].mode != OPENS:
+                add_changes(room, n, rows[i])
     for i in range(n_contacts):
-        if room.modes[i] == OPENS:
+        contact = rows[i]
+        if contact.mode == OPENS:
             for j in range(3):
-                forces[i, j] = 0.0
-        elif room.modes[i] == SLIPS:
-            v1, v2 = inner(columns[i, 1], y, 6), inner(columns[i, 2], y, 6)
-            slip = math.hypot(v1, v2)
+                contact.forces[j] = 0.0
+        elif contact.mode == SLIPS:
+            slip, one, two = steepest_tangent(contact, y)
             if slip > 0.0:
-                forces[i, 1] = friction * forces[i, 0] * v1 / slip
-                forces[i, 2] = friction * forces[i, 0] * v2 / slip
+                contact.forces[1] = friction * contact.forces[0] * one
+                contact.forces[2] = friction * contact.forces[0] * two
 
 
 @kernel
-def add_changes(room: NewtonRoom, n: int, contact: int, forces: FloatArray) -> None:
+def add_changes(room: NewtonRoom, n: int, contact: ContactRow) -> None:
     """Add what the last step found to the forces of one contact."""
     for place in range(n):
-        j = room.order[place] - room.first[contact]
-        if 0 <= j < (1 if room.modes[contact] == SLIPS else 3):
-            forces[contact, j] += room.matrix[place, n]
+        j = room.order[place] - contact.first_unknown
+        if 0 <= j < (1 if contact.mode == SLIPS else 3):
+            contact.forces[j] += room.matrix[place, n]

@@ -8,15 +8,12 @@ world), u_i the way of the object's material at a sticking one.
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
 from cagepose.kernels.contact_set import ContactSet
-from cagepose.kernels.geometry import FloatArray
 from cagepose.kernels.jit import kernel
-from cagepose.kernels.metric import DeadLoads, Frame, load_arm
+from cagepose.kernels.metric import Frame, PhaseLoad, load_arm
 from cagepose.kernels.pose import Quaternion
-from cagepose.kernels.vector import Vector, cross, dot, plus, row, scaled
+from cagepose.kernels.record import FloatArray
+from cagepose.kernels.vector import Vector, cross, dot, plus, row, scaled, vector_from
 
 
 @kernel
@@ -36,33 +33,27 @@ def add_arm_curvature(force: Vector, arm: Vector, sign: float, frame: Frame, out
 
 @kernel
 def write_curvature(
-    contacts: ContactSet,
-    is_sticking: NDArray[np.bool_],
-    loads: DeadLoads,
-    phase: int,
-    quaternion: Quaternion,
-    frame: Frame,
-    out: FloatArray,
+    contacts: ContactSet, load: PhaseLoad, quaternion: Quaternion, frame: Frame, out: FloatArray
 ) -> None:
-    """Write S, (6, 6), for the forces in ``contacts``; ``is_sticking`` (n_contacts,) says where one sticks."""
+    """Write S, (6, 6), for the forces of the contacts, and which of them stick."""
     for j in range(6):
         for k in range(6):
             out[j, k] = 0.0
     for which in range(2):
-        arm = load_arm(loads, phase, which, quaternion)
-        add_arm_curvature(row(loads.forces_world[phase], which), arm, -1.0, frame, out)
+        arm = load_arm(load, which, quaternion)
+        add_arm_curvature(row(load.forces_world, which), arm, -1.0, frame, out)
     for i in range(contacts.used[0]):
-        if contacts.forces[i, 0] <= 0.0:
+        contact = contacts.rows[i]
+        if contact.forces[0] <= 0.0:
             continue
-        normal, arm = row(contacts.normals, i), row(contacts.arms, i)
-        if is_sticking[i]:
+        normal, arm = vector_from(contact.normal), vector_from(contact.arm)
+        if contact.is_sticking:
             force = (0.0, 0.0, 0.0)
             for j in range(3):
-                direction = (contacts.columns[i, j, 0], contacts.columns[i, j, 1], contacts.columns[i, j, 2])
-                force = plus(force, scaled(direction, contacts.forces[i, j]))
+                force = plus(force, scaled(vector_from(contact.columns[j]), contact.forces[j]))
             add_arm_curvature(force, arm, 1.0, frame, out)
             continue
-        carried = contacts.forces[i, 0]
+        carried = contact.forces[0]
         add_arm_curvature(scaled(normal, carried), arm, -1.0, frame, out)
         for j in range(3):
             across = cross(normal, frame.axes[j])

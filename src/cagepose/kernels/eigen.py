@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from cagepose.kernels.geometry import FloatArray
 from cagepose.kernels.jit import kernel
+from cagepose.kernels.record import FloatArray
 
 SWEEPS = 30
 

@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.pose import Quaternion, matrix_from_quaternion
+from cagepose.kernels.record import FloatArray
 from cagepose.kernels.vector import Vector, minus, plus, row, times, transposed_times
-
-FloatArray = NDArray[np.float64]
 
 
 class Geometry(NamedTuple):

@@ -9,14 +9,16 @@ and degenerate sets are safe. At most as many columns are passive as there are r
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.geometry import FloatArray
 from cagepose.kernels.jit import entry_kernel, kernel
+from cagepose.kernels.record import FloatArray, IntArray
 
+MOST_ROWS = 13
+"""Of all systems that are solved with this: those of `cagepose.kernels.uniqueness`."""
 DEPENDENT = 1e-10
 """A column whose part outside the span of the others is smaller than this fraction of it depends on them."""
 PRICE = 1e-14
@@ -25,53 +27,54 @@ ROUNDS_PER_COLUMN = 10
 """The method is finite; in exact arithmetic it takes about one round for each passive column."""
 
 
-class PassiveSet(NamedTuple):
-    """The passive columns and their orthonormal basis, A_p = Q R. Row k of an array belongs to column k.
+class PassiveSet:
+    """The passive columns and their orthonormal basis, A_p = Q R; a record. Row k of an array belongs to column k.
 
     Attributes
     ----------
-    used
-        How many columns are passive, (1,).
+    n_rows, used
+        The length of the columns, and how many are passive.
+    terms
+        Length of the terms of b: where they cancel, b is shorter.
     labels
-        Which column each one is, (m + 1,).
+        Which column each one is.
     columns, basis
-        A_p and Q, transposed, (m + 1, m).
+        A_p and Q, transposed.
     triangle
-        R transposed, (m + 1, m + 1).
+        R transposed.
     costs
-        Cost c of each column, (m + 1,); zero for plain least squares.
+        Cost c of each column; zero for plain least squares.
     x, target, held
-        The present coefficients, those that the passive columns aim at, and room, (m + 1,).
+        The present coefficients, those that the passive columns aim at, and room.
     residual
-        b - A x at the target, (m,).
+        b - A x at the target.
     """
 
-    used: NDArray[np.int64]
-    labels: NDArray[np.int64]
+    n_rows: int
+    used: int
+    terms: float
+    labels: Annotated[IntArray, MOST_ROWS + 1]
+    columns: Annotated[FloatArray, MOST_ROWS + 1, MOST_ROWS]
+    basis: Annotated[FloatArray, MOST_ROWS + 1, MOST_ROWS]
+    triangle: Annotated[FloatArray, MOST_ROWS + 1, MOST_ROWS + 1]
+    costs: Annotated[FloatArray, MOST_ROWS + 1]
+    x: Annotated[FloatArray, MOST_ROWS + 1]
+    target: Annotated[FloatArray, MOST_ROWS + 1]
+    held: Annotated[FloatArray, MOST_ROWS + 1]
+    residual: Annotated[FloatArray, MOST_ROWS]
+
+
+class System(NamedTuple):
+    """Room for the columns of one problem, its right side, and which columns did not help: (n, rows), (rows,), (n,)."""
+
     columns: FloatArray
-    basis: FloatArray
-    triangle: FloatArray
-    costs: FloatArray
-    x: FloatArray
-    target: FloatArray
-    held: FloatArray
-    residual: FloatArray
+    right_side: FloatArray
+    is_rejected: NDArray[np.bool_]
 
 
-def empty_passive_set(n_rows: int) -> PassiveSet:
-    """Return a set without columns for vectors of length ``n_rows`` (plain Python)."""
-    return PassiveSet(
-        np.zeros(1, np.int64),
-        np.zeros(n_rows + 1, np.int64),
-        np.zeros((n_rows + 1, n_rows)),
-        np.zeros((n_rows + 1, n_rows)),
-        np.zeros((n_rows + 1, n_rows + 1)),
-        np.zeros(n_rows + 1),
-        np.zeros(n_rows + 1),
-        np.zeros(n_rows + 1),
-        np.zeros(n_rows + 1),
-        np.zeros(n_rows),
-    )
+def empty_system(n_columns: int) -> System:
+    """Return room for ``n_columns`` columns (plain Python)."""
+    return System(np.zeros((n_columns, MOST_ROWS)), np.zeros(MOST_ROWS), np.zeros(n_columns, np.bool_))
 
 
 @kernel
@@ -89,69 +92,75 @@ def length(a: FloatArray, n: int) -> float:
 
 
 @kernel
-def orthogonalise(passive: PassiveSet, place: int, n_rows: int) -> bool:
+def clear(passive: PassiveSet, n_rows: int, terms: float) -> None:
+    """Start from no columns."""
+    passive.n_rows, passive.used, passive.terms = n_rows, 0, terms
+
+
+@kernel
+def orthogonalise(passive: PassiveSet, place: int) -> bool:
     """Make basis vector ``place`` from its column and those before it; False: the column depends on them."""
     column, vector = passive.columns[place], passive.basis[place]
-    for row in range(n_rows):
+    for row in range(passive.n_rows):
         vector[row] = column[row]
     for k in range(place):
         passive.triangle[place, k] = 0.0
     for _ in range(2):
         for k in range(place):
-            part = inner(passive.basis[k], vector, n_rows)
+            part = inner(passive.basis[k], vector, passive.n_rows)
             passive.triangle[place, k] += part
-            for row in range(n_rows):
+            for row in range(passive.n_rows):
                 vector[row] -= part * passive.basis[k, row]
-    left = length(vector, n_rows)
-    if left <= DEPENDENT * length(column, n_rows):
+    left = length(vector, passive.n_rows)
+    if left <= DEPENDENT * length(column, passive.n_rows):
         return False
     passive.triangle[place, place] = left
-    for row in range(n_rows):
+    for row in range(passive.n_rows):
         vector[row] /= left
     return True
 
 
 @kernel
-def append_column(passive: PassiveSet, column: FloatArray, label: int, cost: float, n_rows: int) -> bool:
+def append_column(passive: PassiveSet, column: FloatArray, label: int, cost: float) -> bool:
     """Add a column with coefficient zero; False: it depends on the others, and nothing has changed."""
-    place = passive.used[0]
-    if place >= n_rows:
+    place = passive.used
+    if place >= passive.n_rows:
         return False
-    for row in range(n_rows):
+    for row in range(passive.n_rows):
         passive.columns[place, row] = column[row]
-    if not orthogonalise(passive, place, n_rows):
+    if not orthogonalise(passive, place):
         return False
     passive.labels[place] = label
     passive.costs[place] = cost
     passive.x[place] = 0.0
-    passive.used[0] = place + 1
+    passive.used = place + 1
     return True
 
 
 @kernel
-def remove_column(passive: PassiveSet, place: int, n_rows: int) -> None:
+def remove_column(passive: PassiveSet, place: int) -> None:
     """Take one column out; the basis behind it is made anew."""
-    passive.used[0] -= 1
-    for k in range(place, passive.used[0]):
+    passive.used -= 1
+    for k in range(place, passive.used):
         passive.labels[k] = passive.labels[k + 1]
         passive.costs[k] = passive.costs[k + 1]
         passive.x[k] = passive.x[k + 1]
-        for row in range(n_rows):
+        for row in range(passive.n_rows):
             passive.columns[k, row] = passive.columns[k + 1, row]
-    for k in range(place, passive.used[0]):
-        orthogonalise(passive, k, n_rows)
+    for k in range(place, passive.used):
+        orthogonalise(passive, k)
 
 
 @kernel
-def aim(passive: PassiveSet, b: FloatArray, n_rows: int) -> None:
+def aim(passive: PassiveSet, b: FloatArray) -> None:
     """Write the unconstrained least squares solution over the passive columns into ``target``."""
-    n = passive.used[0]
-    for row in range(n_rows):
+    n = passive.used
+    for row in range(passive.n_rows):
         passive.residual[row] = b[row]
     for k in range(n):  # one basis vector after the other, from what is left: rounding stays that of the residual
-        part = inner(passive.basis[k], passive.residual, n_rows)
+        part = inner(passive.basis[k], passive.residual, passive.n_rows)
         passive.target[k] = part
-        for row in range(n_rows):
+        for row in range(passive.n_rows):
             passive.residual[row] -= part * passive.basis[k, row]
     for k in range(n):  # costs hold the columns at a_k . residual = c_k: add Q R^-T c
         held = passive.costs[k]
@@ -160,7 +169,7 @@ def aim(passive: PassiveSet, b: FloatArray, n_rows: int) -> None:
         passive.held[k] = held / passive.triangle[k, k]
         passive.target[k] -= passive.held[k]
         if passive.held[k] != 0.0:
-            for row in range(n_rows):
+            for row in range(passive.n_rows):
                 passive.residual[row] += passive.held[k] * passive.basis[k, row]
     solve_triangle(passive)
 
@@ -168,142 +177,137 @@ def aim(passive: PassiveSet, b: FloatArray, n_rows: int) -> None:
 @kernel
 def solve_triangle(passive: PassiveSet) -> None:
     """Replace ``target`` by R^-1 target."""
-    for k in range(passive.used[0] - 1, -1, -1):
-        for later in range(k + 1, passive.used[0]):
+    for k in range(passive.used - 1, -1, -1):
+        for later in range(k + 1, passive.used):
             passive.target[k] -= passive.triangle[later, k] * passive.target[later]
         passive.target[k] /= passive.triangle[k, k]
 
 
 @kernel
-def settle(passive: PassiveSet, b: FloatArray, n_rows: int) -> None:
+def settle(passive: PassiveSet, b: FloatArray) -> None:
     """Go from x towards the target until a coefficient reaches zero, drop its column, and so on."""
-    while passive.used[0] > 0:
-        aim(passive, b, n_rows)
+    while passive.used > 0:
+        aim(passive, b)
         fraction = 1.0
-        for k in range(passive.used[0]):
+        for k in range(passive.used):
             if passive.target[k] <= 0.0:
                 fraction = min(fraction, passive.x[k] / (passive.x[k] - passive.target[k] + 1e-300))
         if fraction == 1.0 and least_target(passive) > 0.0:
-            for k in range(passive.used[0]):
+            for k in range(passive.used):
                 passive.x[k] = passive.target[k]
             return
-        lowest, lowest_x = -1, math.inf
-        for k in range(passive.used[0]):
+        lowest, lowest_x = passive.used, math.inf
+        for k in range(passive.used):
             passive.x[k] += fraction * (passive.target[k] - passive.x[k])
             if passive.target[k] <= 0.0 and passive.x[k] < lowest_x:
                 lowest, lowest_x = k, passive.x[k]
-        remove_column(passive, lowest, n_rows)
-    aim(passive, b, n_rows)
+        remove_column(passive, lowest)
+    aim(passive, b)
 
 
 @kernel
-def exchange_column(passive: PassiveSet, column: FloatArray, label: int, cost: float, n_rows: int) -> bool:
+def exchange_column(passive: PassiveSet, column: FloatArray, label: int, cost: float) -> bool:
     """Let in a cheaper column that depends on the passive ones: it takes over from them until one is at zero.
 
     False: none of them gives way. Only columns with costs need this: without, a dependent column has nothing to offer.
     """
-    n = passive.used[0]
+    n = passive.used
     for k in range(n):
-        passive.target[k] = inner(passive.basis[k], column, n_rows)
+        passive.target[k] = inner(passive.basis[k], column, passive.n_rows)
     solve_triangle(passive)
-    leaves, share = -1, math.inf
+    leaves, share = n, math.inf
     for k in range(n):
         if passive.target[k] > 0.0 and passive.x[k] < share * passive.target[k]:
             leaves, share = k, passive.x[k] / passive.target[k]
-    if leaves < 0:
+    if leaves == n:
         return False
     for k in range(n):
         passive.x[k] = max(0.0, passive.x[k] - share * passive.target[k])
-    remove_column(passive, leaves, n_rows)
-    if append_column(passive, column, label, cost, n_rows):
-        passive.x[passive.used[0] - 1] = share
+    remove_column(passive, leaves)
+    if append_column(passive, column, label, cost):
+        passive.x[passive.used - 1] = share
     return True
 
 
 @kernel
 def least_target(passive: PassiveSet) -> float:
     least = math.inf
-    for k in range(passive.used[0]):
+    for k in range(passive.used):
         least = min(least, passive.target[k])
     return least
 
 
 @kernel
-def rounding_scale(passive: PassiveSet, b: FloatArray, n_rows: int) -> float:
+def rounding_scale(passive: PassiveSet) -> float:
     """Return the length of the terms that the residual is the sum of: its rounding is about 1e-16 of this."""
-    scale = length(b, n_rows)
-    for k in range(passive.used[0]):
-        scale += passive.x[k] * length(passive.columns[k], n_rows)
+    scale = passive.terms
+    for k in range(passive.used):
+        scale += passive.x[k] * length(passive.columns[k], passive.n_rows)
     return scale
 
 
 @kernel
 def label_is_passive(passive: PassiveSet, label: int) -> bool:
     found = False
-    for k in range(passive.used[0]):
+    for k in range(passive.used):
         found = found or passive.labels[k] == label
     return found
 
 
 @entry_kernel
-def nonnegative_least_squares(
-    columns: FloatArray, n_columns: int, n_rows: int, b: FloatArray, passive: PassiveSet, rejected: NDArray[np.bool_]
-) -> float:
+def nonnegative_least_squares(system: System, n_columns: int, passive: PassiveSet) -> float:
     """Return the least |b - sum x_j a_j| over x >= 0; the solution stays in ``passive``.
 
     Parameters
     ----------
-    columns
-        (at least n_columns, at least n_rows): row j is column a_j.
-    n_columns, n_rows
-        How much of the arrays is in use.
-    b
-        (at least n_rows,)
+    system
+        Row j of ``columns`` is a_j; ``right_side`` is b.
+    n_columns
+        How many are in use.
     passive
-        Where to start from, and the solution: set ``used`` to 0 for a cold start; columns from an earlier call with
+        Where to start from, and the solution: `clear` it for a cold start; columns from an earlier call with
         the same ``columns`` and another ``b`` are a warm one.
-    rejected
-        Room, (at least n_columns,).
     """
-    for k in range(passive.used[0]):  # a warm start is any set of columns; from zero, `settle` finds which may stay
+    columns, b, rejected = system
+    for k in range(passive.used):  # a warm start is any set of columns; from zero, `settle` finds which may stay
         passive.x[k] = 0.0
-    warm_start(passive, b, n_rows)
+    warm_start(passive, b)
     for j in range(n_columns):
         rejected[j] = False
-    for _ in range(ROUNDS_PER_COLUMN * (n_columns + n_rows)):
-        least_price = PRICE * rounding_scale(passive, b, n_rows)
-        best, best_price = -1, 0.0
+    for _ in range(ROUNDS_PER_COLUMN * (n_columns + passive.n_rows)):
+        least_price = PRICE * rounding_scale(passive)
+        best, best_price = n_columns, 0.0
         for j in range(n_columns):
             if rejected[j] or label_is_passive(passive, j):
                 continue
-            size = length(columns[j], n_rows)
+            size = length(columns[j], passive.n_rows)
             if size == 0.0:
                 continue
-            price = inner(columns[j], passive.residual, n_rows) / size
+            price = inner(columns[j], passive.residual, passive.n_rows) / size
             if price > least_price and price > best_price:
                 best, best_price = j, price
-        if best < 0:
+        if best == n_columns:
             break
-        if append_column(passive, columns[best], best, 0.0, n_rows):
-            settle(passive, b, n_rows)
+        if append_column(passive, columns[best], best, 0.0):
+            settle(passive, b)
         if label_is_passive(passive, best):
             for j in range(n_columns):
                 rejected[j] = False
         else:  # it depends on the others, or rounding had made its price: it cannot help before something else changes
             rejected[best] = True
-    return length(passive.residual, n_rows)
+    return length(passive.residual, passive.n_rows)
 
 
 @kernel
-def warm_start(passive: PassiveSet, b: FloatArray, n_rows: int) -> None:
+def warm_start(passive: PassiveSet, b: FloatArray) -> None:
     """Keep of the passive columns a set that has positive coefficients for the new ``b``."""
-    aim(passive, b, n_rows)
-    while passive.used[0] > 0 and least_target(passive) <= 0.0:
-        lowest = 0
-        for k in range(passive.used[0]):
+    aim(passive, b)
+    while passive.used > 0 and least_target(passive) <= 0.0:
+        lowest = passive.used - 1
+        for k in range(passive.used):
             if passive.target[k] < passive.target[lowest]:
                 lowest = k
-        remove_column(passive, lowest, n_rows)
-        aim(passive, b, n_rows)
-    for k in range(passive.used[0]):
+        remove_column(passive, lowest)
+        aim(passive, b)
+    for k in range(passive.used):
         passive.x[k] = passive.target[k]

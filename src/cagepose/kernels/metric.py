@@ -8,45 +8,51 @@ moments can be compared with forces. A scaled vector is an array of six: three f
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-from cagepose.kernels.geometry import FloatArray
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.pose import Quaternion, quaternion_about, quaternion_product, rotated
+from cagepose.kernels.record import FloatArray
 from cagepose.kernels.vector import Matrix, Vector, cross, dot, minus, plus, row, scaled, times, transposed_times
 
+WRENCH = 6
+"""Numbers of a wrench or twist."""
+ScaledVector = Annotated[FloatArray, 7]
+"""A scaled twist or wrench in a record: three numbers for travel, three for turning, and one that only the question
+for self-stress uses (5.16)."""
 
-class Body(NamedTuple):
-    """The object's inertia for mass 1.
+
+class Body:
+    """The object's inertia for mass 1; a record.
 
     Attributes
     ----------
     axes_object
-        Principal axes of the inertia about the centre of gravity, rows, in the object's frame, (3, 3).
+        Principal axes of the inertia about the centre of gravity, rows, in the object's frame.
     radii
-        Radii of gyration about them, (3,), metres.
+        Radii of gyration about them, metres.
     reach_m
         Distance of the farthest corner from the centre of gravity, metres.
     """
 
-    axes_object: FloatArray
-    radii: FloatArray
+    axes_object: Annotated[FloatArray, 3, 3]
+    radii: Annotated[FloatArray, 3]
     reach_m: float
 
 
-class DeadLoads(NamedTuple):
-    """Two forces for each phase (of which one may be zero), fixed in direction in the world.
+class PhaseLoad:
+    """The two forces of a phase (of which one may be zero), fixed in direction in the world; a record.
 
     Attributes
     ----------
     forces_world
-        (n_phases, 2, 3)
+        One row each.
     arms_object
-        Where they act, from the centre of gravity, in the object's frame, (n_phases, 2, 3), metres.
+        Where they act, from the centre of gravity, in the object's frame, metres.
     """
 
-    forces_world: FloatArray
-    arms_object: FloatArray
+    forces_world: Annotated[FloatArray, 2, 3]
+    arms_object: Annotated[FloatArray, 2, 3]
 
 
 class Frame(NamedTuple):
@@ -85,37 +91,39 @@ def twist_of(y: FloatArray, frame: Frame) -> tuple[Vector, Vector]:
 
 
 @kernel
-def load_arm(loads: DeadLoads, phase: int, which: int, quaternion: Quaternion) -> Vector:
+def load_arm(load: PhaseLoad, which: int, quaternion: Quaternion) -> Vector:
     """Return where a load acts, from the centre of gravity, in the world."""
-    return rotated(quaternion, row(loads.arms_object[phase], which))
+    return rotated(quaternion, row(load.arms_object, which))
 
 
 @kernel
-def write_load(loads: DeadLoads, phase: int, quaternion: Quaternion, frame: Frame, out: FloatArray) -> None:
-    """Write the scaled wrench of a phase's loads, D^-1/2 w."""
+def write_load(load: PhaseLoad, quaternion: Quaternion, frame: Frame, out: FloatArray) -> float:
+    """Write the scaled wrench of a phase's load, D^-1/2 w; return the length of its terms, which may cancel."""
+    terms = 0.0
     force, moment = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for which in range(2):
-        one = row(loads.forces_world[phase], which)
-        force = plus(force, one)
-        moment = plus(moment, cross(load_arm(loads, phase, which, quaternion), one))
+        one = row(load.forces_world, which)
+        turning = cross(load_arm(load, which, quaternion), one)
+        write_scaled_wrench(one, turning, frame, out)
+        terms += math.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2 + out[3] ** 2 + out[4] ** 2 + out[5] ** 2)
+        force, moment = plus(force, one), plus(moment, turning)
     write_scaled_wrench(force, moment, frame, out)
+    return terms
 
 
 @kernel
-def work_done(
-    loads: DeadLoads, phase: int, start: Vector, start_turned: Quaternion, end: Vector, end_turned: Quaternion
-) -> float:
-    """Return the work of a phase's loads between two poses of the centre of gravity: what the potential falls (5.2)."""
+def work_done(load: PhaseLoad, start: Vector, start_turned: Quaternion, end: Vector, end_turned: Quaternion) -> float:
+    """Return the work of a phase's load between two poses of the centre of gravity: what the potential falls (5.2)."""
     work = 0.0
     for which in range(2):
-        moved = minus(load_arm(loads, phase, which, end_turned), load_arm(loads, phase, which, start_turned))
-        work += dot(row(loads.forces_world[phase], which), plus(minus(end, start), moved))
+        moved = minus(load_arm(load, which, end_turned), load_arm(load, which, start_turned))
+        work += dot(row(load.forces_world, which), plus(minus(end, start), moved))
     return work
 
 
 @kernel
-def total_force(loads: DeadLoads, phase: int) -> Vector:
-    return plus(row(loads.forces_world[phase], 0), row(loads.forces_world[phase], 1))
+def total_force(load: PhaseLoad) -> Vector:
+    return plus(row(load.forces_world, 0), row(load.forces_world, 1))
 
 
 @kernel

@@ -9,13 +9,13 @@ import numpy as np
 
 from cagepose.kernels.contact_set import ContactSet
 from cagepose.kernels.first_contact import allowed_depth, first_contact_screw, first_contact_travel
-from cagepose.kernels.geometry import FloatArray, Geometry, Placement, box_gap, place_object
+from cagepose.kernels.geometry import Geometry, Placement, box_gap, place_object
 from cagepose.kernels.jit import kernel
-from cagepose.kernels.metric import Body, DeadLoads, moved_along_twist, total_force, work_done
+from cagepose.kernels.metric import Body, PhaseLoad, moved_along_twist, total_force, work_done
 from cagepose.kernels.pose import Quaternion
 from cagepose.kernels.projection import Pins, add_pin, empty_pins, pull_back
+from cagepose.kernels.record import FloatArray
 from cagepose.kernels.run_off import first_run_off
-from cagepose.kernels.stiff import StiffRoom
 from cagepose.kernels.tolerances import KernelTolerances
 from cagepose.kernels.vector import Vector, norm, row, scaled
 
@@ -32,8 +32,8 @@ class Setting(NamedTuple):
 
     Attributes
     ----------
-    geometry, body, loads, phase
-        The scene, with its cage points and boxes as seen from the centre of gravity.
+    geometry, body, load
+        The scene, with its cage points and boxes as seen from the centre of gravity, and the load of the phase.
     size_m
         The scene's size, metres.
     friction
@@ -46,8 +46,7 @@ class Setting(NamedTuple):
 
     geometry: Geometry
     body: Body
-    loads: DeadLoads
-    phase: int
+    load: PhaseLoad
     size_m: float
     friction: float
     turn_step_rad: float
@@ -154,21 +153,21 @@ def pin_face(geometry: Geometry, placement: Placement, point: int, box: int, pin
 
 
 @kernel
-def pin_contacts(
-    geometry: Geometry, placement: Placement, contacts: ContactSet, forces: FloatArray, stiff: StiffRoom, pins: Pins
-) -> None:
-    """Pin the contacts that carry: to their faces, and where they stick also in the face."""
-    pins.used[0] = 0
+def pin_contacts(geometry: Geometry, placement: Placement, contacts: ContactSet, pins: Pins) -> None:
+    """Pin the contacts that carry in this step: to their faces, and where they stick also in the face."""
+    pins.room.used = 0
     for i in range(contacts.used[0]):
-        if forces[i, 0] > 0.0:
-            box, axis = contacts.boxes[i], contacts.axes[i]
-            add_pin(pins, contacts.points[i], box, axis, contacts.sides[i], geometry.half_sizes[box, axis])
+        contact = contacts.rows[i]
+        if contact.step_forces[0] > 0.0:
+            at = geometry.half_sizes[contact.box, contact.axis]
+            add_pin(pins, contact.point, contact.box, contact.axis, contact.side, at)
     for i in range(contacts.used[0]):
-        if forces[i, 0] > 0.0 and stiff.is_sticking[i]:
+        contact = contacts.rows[i]
+        if contact.step_forces[0] > 0.0 and contact.is_sticking:
             for turn in range(1, 3):
-                box, axis = contacts.boxes[i], (contacts.axes[i] + turn) % 3
-                at = placement.points_box[box, contacts.points[i], axis]
-                add_pin(pins, contacts.points[i], box, axis, 1.0, at)
+                axis = (contact.axis + turn) % 3
+                at = placement.points_box[contact.box, contact.point, axis]
+                add_pin(pins, contact.point, contact.box, axis, 1.0, at)
 
 
 @kernel
@@ -201,7 +200,7 @@ def pushed_out(
     geometry = setting.geometry
     holds = True
     for _ in range(POINTS_PUSHED):
-        if room.pins.used[0] > 0:
+        if room.pins.room.used > 0:
             holds, position, quaternion = pull_back(
                 geometry, setting.body, position, quaternion, room.pins, setting.size_m
             )
@@ -219,8 +218,6 @@ def stepped(
     setting: Setting,
     placement: Placement,
     contacts: ContactSet,
-    forces: FloatArray,
-    stiff: StiffRoom,
     position: Vector,
     quaternion: Quaternion,
     twist: Twist,
@@ -235,15 +232,15 @@ def stepped(
     placement is that of the new pose, or of the old one.
     """
     geometry = setting.geometry
-    pin_contacts(geometry, placement, contacts, forces, stiff, room.pins)
+    pin_contacts(geometry, placement, contacts, room.pins)
     moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
     if hit_point >= 0:
         place_object(geometry, moved[0], moved[1], placement)
         pin_face(geometry, placement, hit_point, hit_box, room.pins)
     done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], room)
     if done:
-        work = work_done(setting.loads, setting.phase, position, quaternion, new_position, new_quaternion)
-        rounding = setting.tolerances.resolution_m * total_load(setting.loads, setting.phase)
+        work = work_done(setting.load, position, quaternion, new_position, new_quaternion)
+        rounding = setting.tolerances.resolution_m * total_load(setting.load)
         done = work >= -rounding
     if done:
         return True, new_position, new_quaternion
@@ -252,15 +249,15 @@ def stepped(
 
 
 @kernel
-def total_load(loads: DeadLoads, phase: int) -> float:
-    """Return the sum of the magnitudes of a phase's loads."""
-    return norm(row(loads.forces_world[phase], 0)) + norm(row(loads.forces_world[phase], 1))
+def total_load(load: PhaseLoad) -> float:
+    """Return the sum of the magnitudes of a phase's forces."""
+    return norm(row(load.forces_world, 0)) + norm(row(load.forces_world, 1))
 
 
 @kernel
 def nothing_ahead(setting: Setting, position: Vector) -> bool:
     """Whether no cage point can ever be met in free flight: the centre of gravity goes straight along the force."""
-    force = total_force(setting.loads, setting.phase)
+    force = total_force(setting.load)
     size = norm(force)
     if size == 0.0:
         return False
@@ -290,8 +287,6 @@ def furthest_step(
     setting: Setting,
     placement: Placement,
     contacts: ContactSet,
-    forces: FloatArray,
-    stiff: StiffRoom,
     position: Vector,
     quaternion: Quaternion,
     twist: Twist,
@@ -322,7 +317,7 @@ def furthest_step(
         return amount, -1, True, position, quaternion
     for halving in range(HALVINGS):
         done, new_position, new_quaternion = stepped(
-            setting, placement, contacts, forces, stiff, position, quaternion, twist, amount, hit_point, hit_box, room
+            setting, placement, contacts, position, quaternion, twist, amount, hit_point, hit_box, room
         )
         if done:
             return amount, hit_point, halving == 0, new_position, new_quaternion

@@ -32,6 +32,13 @@ def quaternion_about(axis: Vector, angle_rad: float) -> Quaternion:
 
 
 @kernel
+def turned_by(p: Quaternion, q: Quaternion) -> float:
+    """Return twice the sine of half the angle between two orientations: the angle, where it is small."""
+    turn = quaternion_product(q, (p[0], -p[1], -p[2], -p[3]))
+    return 2.0 * math.sqrt(turn[1] ** 2 + turn[2] ** 2 + turn[3] ** 2)
+
+
+@kernel
 def rotated(q: Quaternion, a: Vector) -> Vector:
     """Return the vector ``a`` turned by q: a + 2 w (r x a) + 2 r x (r x a), with r the vector part."""
     r = (q[1], q[2], q[3])

@@ -6,13 +6,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cagepose.kernels.cone import (
     BALANCED,
     HELD,
     N_ROWS,
-    WRENCH,
     ConeRoom,
     clear_cone,
     cone_residual,
@@ -26,27 +24,28 @@ from cagepose.kernels.contact_set import (
     empty_contact_set,
     find_contacts,
 )
-from cagepose.kernels.geometry import FloatArray, Geometry, Placement, place_object
+from cagepose.kernels.geometry import Geometry, Placement, empty_placement, place_object
 from cagepose.kernels.jit import entry_kernel, kernel
-from cagepose.kernels.least_squares import length, rounding_scale
-from cagepose.kernels.metric import Body, DeadLoads, frame_at, write_load
+from cagepose.kernels.least_squares import System, clear, empty_system, length, rounding_scale
+from cagepose.kernels.metric import WRENCH, Body, Frame, PhaseLoad, ScaledVector, frame_at, write_load
 from cagepose.kernels.onset import (
     COMBINATIONS_LIMIT,
     HELD_BY_FRICTION,
     HELD_WITHOUT_FRICTION,
     MOVES,
     OnsetRoom,
-    empty_onset_room,
     onset,
+    onset_with_faces,
 )
 from cagepose.kernels.pose import Quaternion
-from cagepose.kernels.stability import STABLE_REST, StabilityRoom, empty_stability_room, stability
+from cagepose.kernels.record import empty_record
+from cagepose.kernels.stability import MARGINAL, STABLE_REST, StabilityRoom, find_held, find_shared, stability
 from cagepose.kernels.tolerances import KernelTolerances
 from cagepose.kernels.uniqueness import (
+    N_COLUMNS,
     OTHER_FOUND,
     UNIQUE,
     ModesRoom,
-    empty_modes_room,
     other_onset,
 )
 from cagepose.kernels.vector import Vector
@@ -69,51 +68,46 @@ SURE = 1e-6
 """In lengths of the terms: a residual small enough for one last step, and large enough to have its digits."""
 
 
-class ProofRoom(NamedTuple):
-    """Room for one proof, and its parts.
+class JudgeRoom:
+    """Room of fixed size, and the answer; a record.
 
     Attributes
     ----------
-    placement, contacts
-        At the pose; ``contacts.forces`` are the proof of rest.
-    load
-        Scaled wrench of the load, (6,).
     solver
         ``solver.y``: scaled twist of the motion that nothing stops.
     modes
         ``modes.y``: that of another onset that Coulomb's law allows.
     rest
-        Freedoms, and forces that are not unique.
+        Undetermined freedoms.
     sum_only
-        A load of nothing but a sum of the normal forces, (7,).
+        A load of nothing but a sum of the normal forces.
     wedged
-        Whether the contacts can press against each other without a load; asked only where the object may rest, (1,).
+        Whether the contacts can press against each other without a load; asked only where the object may rest.
     """
 
-    placement: Placement
-    contacts: ContactSet
-    load: FloatArray
     solver: OnsetRoom
     modes: ModesRoom
     rest: StabilityRoom
-    sum_only: FloatArray
-    wedged: NDArray[np.bool_]
+    sum_only: ScaledVector
+    wedged: bool
 
 
-def empty_proof_room(n_boxes: int, n_points: int) -> ProofRoom:
-    """Return room for one proof (plain Python); ``n_boxes`` counts bridges too."""
-    n_contacts = CONTACTS_PER_POINT * n_points
+class ProofRoom(NamedTuple):
+    """Room for one proof: what is at the pose, where ``contacts`` hold the forces of a rest, and the rest."""
+
+    placement: Placement
+    contacts: ContactSet
+    room: JudgeRoom
+    system: System
+
+
+def empty_proof_room(geometry: Geometry) -> ProofRoom:
+    """Return room for one proof (plain Python)."""
+    n_contacts = CONTACTS_PER_POINT * len(geometry.points_world)
+    room = empty_record(JudgeRoom)
+    room.sum_only[6] = 1.0
     return ProofRoom(
-        Placement(
-            np.empty((n_boxes, 3)), np.empty((n_boxes, 3, 3)), np.empty((n_boxes, n_points, 3)), np.empty(n_points)
-        ),
-        empty_contact_set(n_contacts),
-        np.zeros(6),
-        empty_onset_room(n_contacts),
-        empty_modes_room(n_contacts),
-        empty_stability_room(n_contacts),
-        np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]),
-        np.zeros(1, np.bool_),
+        empty_placement(geometry), empty_contact_set(n_contacts), room, empty_system(max(N_COLUMNS, n_contacts))
     )
 
 
@@ -123,51 +117,50 @@ def stand_at(
     body: Body,
     position: Vector,
     quaternion: Quaternion,
-    loads: DeadLoads,
-    phase: int,
+    load: PhaseLoad,
     touch_m: float,
-    room: ProofRoom,
+    at: ProofRoom,
 ) -> bool:
     """Fill placement, contacts and load at a pose; False: too many contacts."""
     frame = frame_at(body, quaternion)
-    place_object(geometry, position, quaternion, room.placement)
-    write_load(loads, phase, quaternion, frame, room.load)
-    return find_contacts(geometry, room.placement, position, frame, touch_m, room.contacts)
+    place_object(geometry, position, quaternion, at.placement)
+    solver = at.room.solver
+    solver.load_terms = write_load(load, quaternion, frame, solver.load)
+    return find_contacts(geometry, at.placement, position, frame, touch_m, at.contacts)
 
 
 @kernel
-def has_self_stress(contacts: ContactSet, friction: float, room: ProofRoom) -> bool:
+def has_self_stress(contacts: ContactSet, friction: float, room: JudgeRoom) -> bool:
     """Whether contact forces other than zero, inside their cones, balance each other: a wedge (5.16).
 
     The sum of their normal forces is asked to be 1, and nothing else.
     """
     cone = room.solver.cone
-    clear_cone(cone, room.sum_only, N_ROWS)
+    clear_cone(cone, room.sum_only, N_ROWS, 1.0)
     charged = bool(np.bool_(False))
-    left = cone_residual(
-        contacts.columns, contacts.chosen, contacts.used[0], friction, room.sum_only, N_ROWS, charged, cone
-    )
-    return left <= HELD * rounding_scale(cone.passive, room.sum_only, N_ROWS)
+    left = cone_residual(contacts.rows, contacts.used[0], friction, room.sum_only, charged, cone)
+    return left <= HELD * rounding_scale(cone.passive)
 
 
 @kernel
-def left_by_friction(contacts: ContactSet, friction: float, b: FloatArray, cone: ConeRoom) -> float:
+def left_by_friction(contacts: ContactSet, friction: float, solver: OnsetRoom) -> float:
     """Return what contact forces with this friction leave of the load, in lengths of the terms."""
-    clear_cone(cone, b, WRENCH)
+    cone = solver.cone
+    clear_cone(cone, solver.load, WRENCH, solver.load_terms)
     charged = bool(np.bool_(False))
-    left = cone_residual(contacts.columns, contacts.chosen, contacts.used[0], friction, b, WRENCH, charged, cone)
-    return left / rounding_scale(cone.passive, b, 6)
+    left = cone_residual(contacts.rows, contacts.used[0], friction, solver.load, charged, cone)
+    return left / rounding_scale(cone.passive)
 
 
 @kernel
-def spare_friction(contacts: ContactSet, friction: float, room: ProofRoom) -> None:
+def spare_friction(contacts: ContactSet, friction: float, room: JudgeRoom) -> None:
     """Take the forces of a balance with a little less friction, if there is one: they lie inside the cones, not on
     them, so that no contact looks as if it were about to slip.
     """
-    left = left_by_friction(contacts, friction, room.load, room.solver.cone)
+    left = left_by_friction(contacts, friction, room.solver)
     if left <= HELD:
-        write_forces(room.solver.cone, contacts.used[0], friction, contacts.forces)
-        room.solver.residual[0] = left
+        write_forces(room.solver.cone, friction, contacts.rows, contacts.used[0])
+        room.solver.residual = left
 
 
 @entry_kernel
@@ -176,88 +169,117 @@ def prove(
     body: Body,
     position: Vector,
     quaternion: Quaternion,
-    loads: DeadLoads,
-    phase: int,
+    load: PhaseLoad,
     friction: float,
     size_m: float,
     tolerances: KernelTolerances,
-    room: ProofRoom,
+    at: ProofRoom,
 ) -> tuple[int, int, int]:
     """Judge a pose; return (code of the proof, code of stability, number of undetermined freedoms).
 
     Parameters
     ----------
-    geometry, body, loads, phase
-        The scene, boxes as seen from the centre of gravity, and which load acts.
+    geometry, body, load
+        The scene, boxes as seen from the centre of gravity, and the load that acts.
     position, quaternion
         Centre of gravity, metres, and unit quaternion (w, x, y, z).
     friction, size_m, tolerances
         Coefficient of friction, the scene's size in metres, and what counts as touching.
-    room
+    at
         Filled: the proof.
     """
-    if not stand_at(geometry, body, position, quaternion, loads, phase, tolerances.touch_m, room):
+    if not stand_at(geometry, body, position, quaternion, load, tolerances.touch_m, at):
         return TOO_MANY_CONTACTS, STABLE_REST, 0
-    code = onset(room.contacts, friction, room.load, room.solver)
+    contacts, room = at.contacts, at.room
+    code = onset(contacts, friction, room.solver)
     if code > HELD_BY_FRICTION:
-        room.solver.residual[0] = left_by_friction(room.contacts, friction, room.load, room.solver.cone)
+        room.solver.residual = left_by_friction(contacts, friction, room.solver)
         if code != MOVES:  # no balance, and no motion found either: what is left of the load separates them
             for k in range(6):
                 room.solver.y[k] = room.solver.cone.passive.residual[k]
         return PROVEN_MOVES, STABLE_REST, 0
-    proof = PROVEN_WITHOUT_FRICTION
-    if code != HELD_WITHOUT_FRICTION:
-        spare_friction(room.contacts, (1.0 - RESERVE) * friction, room)
-        answer = other_onset(room.contacts, friction, room.load, room.modes, room.solver.coulomb)
-        proof = PROVEN_UNIQUE if answer == UNIQUE else UNIQUENESS_NOT_SHOWN
-        if answer == OTHER_FOUND:
-            proof = OTHER_ONSET
-        room.wedged[0] = proof != PROVEN_UNIQUE and has_self_stress(room.contacts, friction, room)
     frame = frame_at(body, quaternion)
-    steady, n_undetermined = stability(
-        room.contacts, friction, loads, phase, quaternion, frame, room.load, size_m, room.rest
-    )
-    return proof, steady, n_undetermined
+    clear(room.rest.ways, WRENCH, 1.0)
+    proof, steady = judge_faces(at, friction, load, quaternion, frame, size_m)
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        contact.chosen = contact.best_chosen
+        for j in range(3):
+            contact.forces[j] = contact.best_forces[j]
+    if code != HELD_WITHOUT_FRICTION:
+        room.wedged = proof != PROVEN_UNIQUE and has_self_stress(contacts, friction, room)
+        spare_friction(contacts, (1.0 - RESERVE) * friction, room)
+    find_held(contacts, friction, room.rest, at.system)
+    find_shared(contacts, room.rest)
+    return proof, steady, room.rest.ways.used
 
 
 @kernel
-def step_to_balance(contacts: ContactSet, friction: float, cone: ConeRoom, forces: FloatArray) -> float:
+def judge_faces(
+    at: ProofRoom, friction: float, load: PhaseLoad, quaternion: Quaternion, frame: Frame, size_m: float
+) -> tuple[int, int]:
+    """Return (code of the proof, code of stability) of a rest: the least sure of all combinations of faces."""
+    contacts, room, solver = at.contacts, at.room, at.room.solver
+    every = bool(np.bool_(True))
+    proof, steady = PROVEN_WITHOUT_FRICTION, STABLE_REST
+    for _ in range(COMBINATIONS_LIMIT):
+        code = onset_with_faces(
+            contacts.rows, contacts.used[0], friction, solver.load, solver.load_terms, solver.trial, solver
+        )
+        if code != HELD_WITHOUT_FRICTION:
+            spare_friction(contacts, (1.0 - RESERVE) * friction, room)
+        with_these = stability(
+            contacts, friction, load, quaternion, frame, solver.load_terms, size_m, room.rest, at.system
+        )
+        steady = max(steady, with_these)
+        if code != HELD_WITHOUT_FRICTION:
+            answer = other_onset(contacts, friction, solver.load, room.modes, solver.newton, at.system)
+            if answer == OTHER_FOUND:
+                return OTHER_ONSET, steady
+            proof = max(proof, PROVEN_UNIQUE if answer == UNIQUE else UNIQUENESS_NOT_SHOWN)
+        if not choose_next_faces(contacts, every):
+            return proof, steady
+    return (proof if proof == PROVEN_WITHOUT_FRICTION else UNIQUENESS_NOT_SHOWN), max(steady, MARGINAL)
+
+
+@kernel
+def step_to_balance(contacts: ContactSet, friction: float, cone: ConeRoom) -> float:
     """Return by how much more friction the residual r would vanish, to first order: |r|^2 / sum f_n |r_t|."""
-    write_forces(cone, contacts.used[0], friction, forces)
+    write_forces(cone, friction, contacts.rows, contacts.used[0])
     gain = 0.0
     for i in range(contacts.used[0]):
-        gain += forces[i, 0] * steepest_tangent(contacts.columns[i], cone.passive.residual)[0]
+        gain += contacts.rows[i].forces[0] * steepest_tangent(contacts.rows[i], cone.passive.residual)[0]
     left = length(cone.passive.residual, 6)
     return left * left / gain if gain > 0.0 else math.inf
 
 
 @kernel
-def least_friction(contacts: ContactSet, b: FloatArray, cone: ConeRoom) -> float:
+def least_friction(contacts: ContactSet, solver: OnsetRoom) -> float:
     """Return the least coefficient at which one choice of faces balances the load (5.17); inf: none.
 
     Bisection, and Newton's method where the residual falls straight to zero: there the last step is taken from a
     residual that is still large enough to be sure of its digits.
     """
     low, high = float(np.float64(0.0)), 1.0
-    if left_by_friction(contacts, low, b, cone) <= BALANCED:
+    if left_by_friction(contacts, low, solver) <= BALANCED:
         return 0.0
-    while left_by_friction(contacts, high, b, cone) > HELD:
+    while left_by_friction(contacts, high, solver) > HELD:
         low, high = high, 4.0 * high
         if high > FRICTION_GREATEST:
             return math.inf
     for _ in range(BISECTIONS):
-        left = left_by_friction(contacts, low, b, cone)
-        following = low + step_to_balance(contacts, low, cone, contacts.forces)
+        left = left_by_friction(contacts, low, solver)
+        following = low + step_to_balance(contacts, low, solver.cone)
         if left <= SURE:
             return min(following, high)
         if not low < following < high:
             following = 0.5 * (low + high)
         if following in (low, high):
             break
-        if left_by_friction(contacts, following, b, cone) <= HELD:
+        if left_by_friction(contacts, following, solver) <= HELD:
             high = following
             following = 0.5 * (low + high)
-            if left_by_friction(contacts, following, b, cone) <= HELD:
+            if left_by_friction(contacts, following, solver) <= HELD:
                 high = following
                 continue
         low = following
@@ -270,20 +292,21 @@ def critical_friction(
     body: Body,
     position: Vector,
     quaternion: Quaternion,
-    loads: DeadLoads,
-    phase: int,
+    load: PhaseLoad,
     tolerances: KernelTolerances,
-    room: ProofRoom,
+    at: ProofRoom,
 ) -> float:
     """Return the least coefficient of friction at which the contacts can balance the load at a pose (5.17); inf: none.
 
     Parameters as for `prove`.
     """
-    if not stand_at(geometry, body, position, quaternion, loads, phase, tolerances.touch_m, room):
+    if not stand_at(geometry, body, position, quaternion, load, tolerances.touch_m, at):
         return math.nan
     least = 0.0
+    every = bool(np.bool_(False))
     for _ in range(COMBINATIONS_LIMIT):
-        least = max(least, least_friction(room.contacts, room.load, room.solver.cone))
-        if not choose_next_faces(room.contacts):
-            break
-    return least
+        least = max(least, least_friction(at.contacts, at.room.solver))
+        write_forces(at.room.solver.cone, least, at.contacts.rows, at.contacts.used[0])
+        if least == math.inf or not choose_next_faces(at.contacts, every):
+            return least
+    return math.nan

@@ -13,18 +13,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.contact_set import CONTACTS_PER_POINT, ContactSet, empty_contact_set, find_contacts
+from cagepose.kernels.contact_set import CONTACTS_PER_POINT, ContactRow, ContactSet, empty_contact_set, find_contacts
 from cagepose.kernels.curvature import write_curvature
-from cagepose.kernels.geometry import FloatArray, Geometry, Placement, place_object
+from cagepose.kernels.geometry import Geometry, Placement, empty_placement, place_object
 from cagepose.kernels.jit import entry_kernel, kernel
-from cagepose.kernels.metric import Body, DeadLoads, Frame, frame_at, twist_of, write_load
+from cagepose.kernels.metric import Body, Frame, PhaseLoad, frame_at, twist_of, write_load
 from cagepose.kernels.onset import (
     HELD_BY_FRICTION,
     HELD_WITHOUT_FRICTION,
     MOVES,
     UNSOLVED,
     OnsetRoom,
-    empty_onset_room,
     is_held,
     onset,
     sticks,
@@ -43,9 +42,10 @@ from cagepose.kernels.path import (
     stepped,
     straightened,
 )
-from cagepose.kernels.pose import Quaternion
+from cagepose.kernels.pose import Quaternion, turned_by
 from cagepose.kernels.projection import ON_FACE
-from cagepose.kernels.stiff import StiffRoom, curvature_along, empty_stiff_room, stiff_step
+from cagepose.kernels.record import Rows, empty_record, empty_rows
+from cagepose.kernels.stiff import StiffRoom, curvature_along, stiff_step
 from cagepose.kernels.tolerances import KernelTolerances
 from cagepose.kernels.trace import (
     ESCAPES,
@@ -59,12 +59,13 @@ from cagepose.kernels.trace import (
     TRAVEL,
     Trace,
     empty_trace,
+    write_pose,
 )
-from cagepose.kernels.vector import Vector, norm
+from cagepose.kernels.vector import Vector, minus, norm
 
-RULE_NAMES = ("free", "slide", "pivot", "held")
-FREE, SLIDE, PIVOT, HELD = 0, 1, 2, 3
-"""No contact carries; those that carry slide; one of them sticks; the contacts hold the object."""
+RULE_NAMES = ("free", "slide", "pivot", "held", "stalled")
+FREE, SLIDE, PIVOT, HELD, STUCK = 0, 1, 2, 3, 4
+"""No contact carries; those that carry slide; one of them sticks; the contacts hold the object; nothing was found."""
 
 STIFF = 0.25
 """Curvature times step above which the explicit step would no longer follow the path: then it is made implicit."""
@@ -96,6 +97,13 @@ class QuasistaticRules(NamedTuple):
     step_limit: int
 
 
+class RunRoom:
+    """Room of fixed size: what the solvers need; a record."""
+
+    solver: OnsetRoom
+    stiff: StiffRoom
+
+
 class QuasistaticWorkspace(NamedTuple):
     """All arrays that a run writes to, so that compiled code makes none.
 
@@ -105,9 +113,11 @@ class QuasistaticWorkspace(NamedTuple):
         The state at the present pose.
     ahead
         Room for contacts at a pose that is tried.
-    load
-        Scaled wrench of the load, (6,).
-    solver, stiff, path
+    turned
+        Room for the contacts in the coordinates of an implicit step.
+    room
+        Room of fixed size.
+    path
         Room of the steps.
     touched
         Which points touched before the step, (n_points,).
@@ -120,27 +130,24 @@ class QuasistaticWorkspace(NamedTuple):
     placement: Placement
     contacts: ContactSet
     ahead: ContactSet
-    load: FloatArray
-    solver: OnsetRoom
-    stiff: StiffRoom
+    turned: Rows[ContactRow]
+    room: RunRoom
     path: PathRoom
     touched: NDArray[np.bool_]
     trace: Trace
     verdicts: NDArray[np.int64]
 
 
-def empty_quasistatic_workspace(n_boxes: int, n_points: int, n_phases: int, step_limit: int) -> QuasistaticWorkspace:
-    """Return room for one run (plain Python); ``n_boxes`` counts bridges too."""
+def empty_quasistatic_workspace(geometry: Geometry, n_phases: int, step_limit: int) -> QuasistaticWorkspace:
+    """Return room for one run (plain Python)."""
+    n_points = len(geometry.points_world)
     n_contacts = CONTACTS_PER_POINT * n_points
     return QuasistaticWorkspace(
-        Placement(
-            np.empty((n_boxes, 3)), np.empty((n_boxes, 3, 3)), np.empty((n_boxes, n_points, 3)), np.empty(n_points)
-        ),
+        empty_placement(geometry),
         empty_contact_set(n_contacts),
         empty_contact_set(n_contacts),
-        np.zeros(6),
-        empty_onset_room(n_contacts),
-        empty_stiff_room(n_contacts),
+        empty_rows(ContactRow, n_contacts),
+        empty_record(RunRoom),
         empty_path_room(n_points),
         np.zeros(n_points, np.bool_),
         empty_trace(n_phases * step_limit, n_points),
@@ -149,46 +156,51 @@ def empty_quasistatic_workspace(n_boxes: int, n_points: int, n_phases: int, step
 
 
 @kernel
-def carried_by(contacts: ContactSet, forces: FloatArray, stiff: StiffRoom) -> int:
+def carried_by(contacts: ContactSet) -> int:
     """Return the rule of a motion: FREE, SLIDE or PIVOT."""
     rule = FREE
     for i in range(contacts.used[0]):
-        if forces[i, 0] > 0.0:
-            rule = max(rule, PIVOT if stiff.is_sticking[i] else SLIDE)
+        if contacts.rows[i].step_forces[0] > 0.0:
+            rule = max(rule, PIVOT if contacts.rows[i].is_sticking else SLIDE)
     return rule
+
+
+@kernel
+def carry_as_at_onset(contacts: ContactSet) -> None:
+    """Take the forces of the onset for the step."""
+    for i in range(contacts.used[0]):
+        for j in range(3):
+            contacts.rows[i].step_forces[j] = contacts.rows[i].forces[j]
 
 
 @kernel
 def next_twist(
     setting: Setting, quaternion: Quaternion, frame: Frame, turn_step_rad: float, work: QuasistaticWorkspace
-) -> tuple[Twist, bool]:
-    """Return the twist to follow from a pose that moves, and whether it is the implicit one.
-
-    The forces that belong to it are in ``work.stiff.forces``.
-    """
-    contacts, stiff, y = work.contacts, work.stiff, work.solver.y
+) -> Twist:
+    """Return the twist to follow from a pose that moves; the contacts' ``step_forces`` belong to it."""
+    contacts, room = work.contacts, work.room
+    y = room.solver.y
     carries = False
     for i in range(contacts.used[0]):
-        stiff.is_sticking[i] = sticks(contacts, i, setting.friction, work.load, y)
-        carries = carries or contacts.forces[i, 0] > 0.0
-        for j in range(3):
-            stiff.forces[i, j] = contacts.forces[i, j]
+        contact = contacts.rows[i]
+        contact.is_sticking = sticks(contact, setting.friction, room.solver.load_terms, y)
+        carries = carries or contact.forces[0] > 0.0
+    carry_as_at_onset(contacts)
     velocity, spin = twist_of(y, frame)
     spin = straightened(velocity, spin, setting.body.reach_m)
     end = longest_step(velocity, spin, carries, turn_step_rad, setting.size_m)
     if end < math.inf:
-        write_curvature(contacts, stiff.is_sticking, setting.loads, setting.phase, quaternion, frame, stiff.curvature)
-        if abs(curvature_along(stiff.curvature, y)) * end > STIFF:
-            if stiff_step(contacts, setting.friction, work.load, y, 1.0 / end, stiff, work.solver):
-                velocity, spin = twist_of(stiff.delta, frame)
+        write_curvature(contacts, setting.load, quaternion, frame, room.stiff.curvature)
+        if abs(curvature_along(room.stiff.curvature, y)) * end > STIFF:
+            if stiff_step(contacts, work.turned, setting.friction, 1.0 / end, room.stiff, room.solver):
+                velocity, spin = twist_of(room.stiff.delta, frame)
                 end = min(1.0, longest_step(velocity, spin, carries, turn_step_rad, setting.size_m))
                 for i in range(contacts.used[0]):
-                    stiff.is_sticking[i] = stiff.is_sticking[i] and stiff.forces[i, 0] > 0.0
-                return Twist(velocity, spin, end), True
-            for i in range(contacts.used[0]):
-                for j in range(3):
-                    stiff.forces[i, j] = contacts.forces[i, j]
-    return Twist(velocity, spin, end), False
+                    contact = contacts.rows[i]
+                    contact.is_sticking = contact.is_sticking and contact.step_forces[0] > 0.0
+            else:
+                carry_as_at_onset(contacts)
+    return Twist(velocity, spin, end)
 
 
 @kernel
@@ -202,29 +214,27 @@ def is_held_on_the_way(
     kept = 0
     if new_point >= 0:  # its rows are taken out
         for i in range(work.ahead.used[0]):
-            if work.ahead.points[i] != new_point:
-                copy_contact(work.ahead, i, kept)
+            if work.ahead.rows[i].point != new_point:
+                copy_contact(work.ahead.rows, i, kept)
                 kept += 1
         work.ahead.used[0] = kept
-    write_load(setting.loads, setting.phase, quaternion, frame, work.load)
-    return is_held(work.ahead, setting.friction, work.load, work.solver)
+    work.room.solver.load_terms = write_load(setting.load, quaternion, frame, work.room.solver.load)
+    return is_held(work.ahead, setting.friction, work.room.solver)
 
 
 @kernel
-def copy_contact(contacts: ContactSet, source: int, target: int) -> None:
+def copy_contact(rows: Rows[ContactRow], source: int, target: int) -> None:
     """Move what an onset needs of one row to another (groups begin anew at the target)."""
     if source == target:
         return
-    contacts.points[target] = contacts.points[source]
-    contacts.boxes[target] = contacts.boxes[source]
-    same_group = target > 0 and (
-        contacts.points[target - 1] == contacts.points[target] and contacts.boxes[target - 1] == contacts.boxes[target]
-    )
-    contacts.groups[target] = contacts.groups[target - 1] if same_group else target
-    contacts.chosen[target] = not same_group
+    old, new = rows[source], rows[target]
+    new.point, new.box = old.point, old.box
+    same_group = target > 0 and rows[target - 1].point == new.point and rows[target - 1].box == new.box
+    new.group = rows[target - 1].group if same_group else target
+    new.chosen = not same_group
     for j in range(3):
         for k in range(6):
-            contacts.columns[target, j, k] = contacts.columns[source, j, k]
+            new.columns[j, k] = old.columns[j, k]
 
 
 @kernel
@@ -247,8 +257,6 @@ def first_rest(
             setting,
             work.placement,
             work.contacts,
-            work.stiff.forces,
-            work.stiff,
             position,
             quaternion,
             twist,
@@ -271,8 +279,8 @@ def gap_left(contacts: ContactSet) -> float:
     """Return the greatest distance, to either side, of a contact that carries from its face."""
     greatest = 0.0
     for i in range(contacts.used[0]):
-        if contacts.forces[i, 0] > 0.0:
-            greatest = max(greatest, abs(contacts.gaps[i]))
+        if contacts.rows[i].forces[0] > 0.0:
+            greatest = max(greatest, abs(contacts.rows[i].gap))
     return greatest
 
 
@@ -281,10 +289,11 @@ def polished(
     setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace
 ) -> tuple[Vector, Quaternion]:
     """Close the gaps, within the touch tolerance, of the contacts that carry (5.12)."""
+    carry_as_at_onset(work.contacts)
     for i in range(work.contacts.used[0]):
-        work.stiff.is_sticking[i] = False
+        work.contacts.rows[i].is_sticking = False
     allow_depths(work.placement, setting.tolerances, work.path)
-    pin_contacts(setting.geometry, work.placement, work.contacts, work.contacts.forces, work.stiff, work.path.pins)
+    pin_contacts(setting.geometry, work.placement, work.contacts, work.path.pins)
     done, new_position, new_quaternion = pushed_out(setting, work.placement, position, quaternion, work.path)
     if done:
         return new_position, new_quaternion
@@ -298,20 +307,17 @@ def write_step(
 ) -> None:
     """Write a step; which points touch, and which were reached, follows from the contacts after it."""
     trace = work.trace
-    trace.phases[event], trace.rules[event], trace.motions[event] = phase, rule, motion
-    trace.notes[event] = PLAIN
-    for k in range(3):
-        trace.positions[event, k] = position[k]
-    for k in range(4):
-        trace.quaternions[event, k] = quaternion[k]
+    happening = trace.rows[event]
+    happening.phase, happening.rule, happening.motion, happening.note = phase, rule, motion, PLAIN
+    write_pose(happening, position, quaternion)
     for point in range(len(work.touched)):
         trace.touching[event, point] = False
     for i in range(work.contacts.used[0]):
-        trace.touching[event, work.contacts.points[i]] = True
+        trace.touching[event, work.contacts.rows[i].point] = True
     for point in range(len(work.touched)):
         trace.hit[event, point] = trace.touching[event, point] and not work.touched[point]
         if work.touched[point] and not trace.touching[event, point]:
-            trace.notes[event] = LET_GO
+            happening.note = LET_GO
 
 
 @kernel
@@ -320,7 +326,7 @@ def note_touching(work: QuasistaticWorkspace) -> None:
     for point in range(len(work.touched)):
         work.touched[point] = False
     for i in range(work.contacts.used[0]):
-        work.touched[work.contacts.points[i]] = True
+        work.touched[work.contacts.rows[i].point] = True
 
 
 @kernel
@@ -328,6 +334,7 @@ def phase_run(
     setting: Setting,
     position: Vector,
     quaternion: Quaternion,
+    phase: int,
     step_limit: int,
     first_event: int,
     work: QuasistaticWorkspace,
@@ -342,48 +349,47 @@ def phase_run(
     event = first_event
     while event < first_event + step_limit:
         note_touching(work)
-        write_load(setting.loads, setting.phase, quaternion, frame, work.load)
-        code = onset(work.contacts, setting.friction, work.load, work.solver) if fits else UNSOLVED
-        if code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION):
-            if n_polished < POLISHES and gap_left(work.contacts) > ON_FACE * setting.size_m:
-                position, quaternion = polished(setting, position, quaternion, work)
-                frame = frame_at(setting.body, quaternion)
-                fits = find_contacts(setting.geometry, work.placement, position, frame, touch_m, work.contacts)
-                n_polished += 1
-                continue
+        work.room.solver.load_terms = write_load(setting.load, quaternion, frame, work.room.solver.load)
+        code = onset(work.contacts, setting.friction, work.room.solver) if fits else UNSOLVED
+        is_rest = code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
+        if is_rest and n_polished < POLISHES and gap_left(work.contacts) > ON_FACE * setting.size_m:
+            position, quaternion = polished(setting, position, quaternion, work)
+            frame = frame_at(setting.body, quaternion)
+            fits = find_contacts(setting.geometry, work.placement, position, frame, touch_m, work.contacts)
+            n_polished += 1
+            continue
         if code != MOVES:
-            write_step(work, event, setting.phase, HELD, NONE, position, quaternion)
+            rule = STUCK if code == UNSOLVED else HELD
+            write_step(work, event, phase, rule, NONE, position, quaternion)
             return (STALLED if code == UNSOLVED else RESTS), event + 1, position, quaternion
-        twist, _ = next_twist(setting, quaternion, frame, turn_step, work)
-        rule = carried_by(work.contacts, work.stiff.forces, work.stiff)
+        twist = next_twist(setting, quaternion, frame, turn_step, work)
+        rule = carried_by(work.contacts)
         motion = TRAVEL if norm(twist.spin) == 0.0 else SCREW
         if rule == FREE and nothing_ahead(setting, position):
-            write_step(work, event, setting.phase, rule, TRAVEL, position, quaternion)
+            write_step(work, event, phase, rule, TRAVEL, position, quaternion)
             return ESCAPES, event + 1, position, quaternion
         amount, hit_point, as_planned, new_position, new_quaternion = furthest_step(
             setting,
             work.placement,
             work.contacts,
-            work.stiff.forces,
-            work.stiff,
             position,
             quaternion,
             twist,
             work.path,
         )
         if amount == math.inf:
-            write_step(work, event, setting.phase, rule, TRAVEL, position, quaternion)
+            write_step(work, event, phase, rule, TRAVEL, position, quaternion)
             return ESCAPES, event + 1, position, quaternion
         could_rest = setting.friction > 0.0 and rule != FREE and amount > 0.0
         if could_rest and is_held_on_the_way(setting, new_position, new_quaternion, hit_point, work):
             new_position, new_quaternion = first_rest(setting, position, quaternion, twist, amount, work)
-        speed = norm(twist.velocity) + norm(twist.spin) * setting.body.reach_m
-        still = 0 if amount * speed > STILL * setting.size_m else still + 1
+        moved = norm(minus(new_position, position)) + setting.body.reach_m * turned_by(quaternion, new_quaternion)
+        still = 0 if moved > STILL * setting.size_m else still + 1
         turn_step = min(2.0 * turn_step, setting.turn_step_rad) if as_planned else 0.25 * turn_step
         position, quaternion = new_position, new_quaternion
         frame = frame_at(setting.body, quaternion)
         fits = find_contacts(setting.geometry, work.placement, position, frame, touch_m, work.contacts)
-        write_step(work, event, setting.phase, rule, motion, position, quaternion)
+        write_step(work, event, phase, rule, motion, position, quaternion)
         event += 1
         if still == STILL_STEPS:
             return STALLED, event, position, quaternion
@@ -396,7 +402,7 @@ def quasistatic_run(
     body: Body,
     start_position: Vector,
     start_quaternion: Quaternion,
-    loads: DeadLoads,
+    loads: Rows[PhaseLoad],
     rules: QuasistaticRules,
     size_m: float,
     tolerances: KernelTolerances,
@@ -422,9 +428,9 @@ def quasistatic_run(
     position, quaternion = start_position, start_quaternion
     n_events = int(np.int64(0))  # a plain 0 would compile `phase_run` twice, once for the literal
     for phase in range(len(work.verdicts)):
-        setting = Setting(geometry, body, loads, phase, size_m, rules.friction, rules.turn_step_rad, tolerances)
+        setting = Setting(geometry, body, loads[phase], size_m, rules.friction, rules.turn_step_rad, tolerances)
         work.verdicts[phase], n_events, position, quaternion = phase_run(
-            setting, position, quaternion, rules.step_limit, n_events, work
+            setting, position, quaternion, phase, rules.step_limit, n_events, work
         )
         if work.verdicts[phase] != RESTS:
             return phase + 1, n_events

@@ -37,16 +37,17 @@ def first_run_off(
     first = math.inf
     rate = norm(spin)
     for i in range(contacts.used[0]):
-        if contacts.forces[i, 0] <= 0.0:
+        contact = contacts.rows[i]
+        if contact.forces[0] <= 0.0:
             continue
-        box = contacts.boxes[i]
+        box = contact.box
         half_size = row(geometry.half_sizes, box)
-        point_box = row(placement.points_box[box], contacts.points[i])
+        point_box = row(placement.points_box[box], contact.point)
         spin_box = vector_in_box(placement, box, spin)
         arm = minus(point_box, point_in_box(placement, box, center))
         moves = plus(vector_in_box(placement, box, velocity), cross(spin_box, arm))
         for k in range(3):
-            if k == contacts.axes[i]:
+            if k == contact.axis:
                 continue
             limit = half_size[k] + CLEAR * touch_m
             if rate == 0.0:

@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.first_contact import first_contact_travel, first_contact_turn
-from cagepose.kernels.geometry import FloatArray, Geometry, Placement
+from cagepose.kernels.geometry import Geometry, Placement
 from cagepose.kernels.jit import kernel
+from cagepose.kernels.record import FloatArray
 from cagepose.kernels.support import PointLoad, held, moment_about
 from cagepose.kernels.tolerances import KernelTolerances
 from cagepose.kernels.trace import PLAIN, TRAVEL, TURN, Step

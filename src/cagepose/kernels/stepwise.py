@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.first_contact import first_contact_travel
-from cagepose.kernels.geometry import FloatArray, Geometry, Placement, empty_placement, place_object
+from cagepose.kernels.geometry import Geometry, Placement, empty_placement, place_object
 from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.pose import Quaternion, rotated
+from cagepose.kernels.record import FloatArray
 from cagepose.kernels.slip import SlipRules, slip_step
 from cagepose.kernels.support import PointLoad, SupportRules, pairwise_stability, turn_about_one, turn_about_two
 from cagepose.kernels.tolerances import KernelTolerances
@@ -37,7 +38,7 @@ from cagepose.kernels.trace import (
     pose_during,
     write_event,
 )
-from cagepose.kernels.vector import Vector, minus, norm, plus, row
+from cagepose.kernels.vector import Vector, minus, norm, plus, row, vector_from
 
 RULE_NAMES = ("A-1", "A-2", "A-3", "A-4", "B-1", "B-2", "B-3", "B-4", "Slp-1", "Slp-2")
 PHASE_A, PHASE_B = 0, 4  # codes of A-1 and B-1; steps 2, 3 and 4 follow
@@ -145,14 +146,15 @@ def was_met(trace: Trace, first: int, last: int, size_m: float, resolution_m: fl
     for ever.
     """
     for event in range(first, last):
-        offset = norm(minus(row(trace.positions, event), row(trace.positions, last)))
+        then, now = trace.rows[event], trace.rows[last]
+        offset = norm(minus(vector_from(then.position), vector_from(now.position)))
         overlap = 0.0
         for k in range(4):
-            overlap += trace.quaternions[event, k] * trace.quaternions[last, k]
+            overlap += then.quaternion[k] * now.quaternion[k]
         sign = math.copysign(1.0, overlap)
         turned = 0.0
         for k in range(4):
-            turned = max(turned, abs(trace.quaternions[event, k] - sign * trace.quaternions[last, k]))
+            turned = max(turned, abs(then.quaternion[k] - sign * now.quaternion[k]))
         if offset <= resolution_m and turned * size_m <= resolution_m:
             same_contacts = True
             for point in range(trace.touching.shape[1]):

@@ -10,16 +10,14 @@ the balance is unstable, rho is raised until the matrix is positive, and delta l
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Annotated
 
-import numpy as np
-from numpy.typing import NDArray
-
-from cagepose.kernels.contact_set import ContactSet
-from cagepose.kernels.geometry import FloatArray
+from cagepose.kernels.contact_set import ContactRow, ContactSet
 from cagepose.kernels.jit import kernel
-from cagepose.kernels.least_squares import inner
+from cagepose.kernels.least_squares import inner, length
+from cagepose.kernels.metric import ScaledVector
 from cagepose.kernels.onset import MOVES, OnsetRoom, onset_with_faces
+from cagepose.kernels.record import FloatArray, Rows
 
 RAISES = 12
 """How often rho is raised, four times each, before the explicit step is taken after all."""
@@ -30,45 +28,23 @@ HOLD = 10.0
 nothing but that the matrix need be positive only along the faces."""
 
 
-class StiffRoom(NamedTuple):
-    """Room for one step.
+class StiffRoom:
+    """Room for one step; a record.
 
     Attributes
     ----------
     curvature
-        S, (6, 6).
+        S.
     factor
-        Cholesky factor, lower, (6, 6).
-    columns
-        Wrenches of the contacts in its coordinates, (n_contacts, 3, 6).
+        Cholesky factor, lower.
     b, delta
-        Load and step in its coordinates, then the step, (6,).
-    forces
-        What the contacts carry during the step, (n_contacts, 3).
-    is_sticking
-        Which contacts stick, (n_contacts,).
+        Load and step in its coordinates, then the step.
     """
 
-    curvature: FloatArray
-    factor: FloatArray
-    columns: FloatArray
-    b: FloatArray
-    delta: FloatArray
-    forces: FloatArray
-    is_sticking: NDArray[np.bool_]
-
-
-def empty_stiff_room(n_contacts: int) -> StiffRoom:
-    """Return room for ``n_contacts`` contacts (plain Python)."""
-    return StiffRoom(
-        np.zeros((6, 6)),
-        np.zeros((6, 6)),
-        np.zeros((n_contacts, 3, 6)),
-        np.zeros(6),
-        np.zeros(6),
-        np.zeros((n_contacts, 3)),
-        np.zeros(n_contacts, np.bool_),
-    )
+    curvature: Annotated[FloatArray, 6, 6]
+    factor: Annotated[FloatArray, 6, 6]
+    b: ScaledVector
+    delta: ScaledVector
 
 
 @kernel
@@ -133,10 +109,11 @@ def write_matrix(contacts: ContactSet, room: StiffRoom, rho: float, hold: float)
             room.factor[j, k] = room.curvature[j, k]
         room.factor[j, j] += rho
     for i in range(contacts.used[0]):
-        if contacts.forces[i, 0] <= 0.0:
+        contact = contacts.rows[i]
+        if contact.forces[0] <= 0.0:
             continue
-        for which in range(3 if room.is_sticking[i] else 1):
-            a = contacts.columns[i, which]
+        for which in range(3 if contact.is_sticking else 1):
+            a = contact.columns[which]
             weight = hold / inner(a, a, 6)
             for j in range(6):
                 for k in range(6):
@@ -145,11 +122,18 @@ def write_matrix(contacts: ContactSet, room: StiffRoom, rho: float, hold: float)
 
 @kernel
 def stiff_step(
-    contacts: ContactSet, friction: float, b: FloatArray, y: FloatArray, rho: float, room: StiffRoom, solver: OnsetRoom
+    contacts: ContactSet,
+    turned: Rows[ContactRow],
+    friction: float,
+    rho: float,
+    room: StiffRoom,
+    solver: OnsetRoom,
 ) -> bool:
-    """Write the step into ``room.delta`` and its forces into ``room.forces``; False: take the explicit step.
+    """Write the step into ``room.delta`` and what the contacts carry into their ``step_forces``; False: take the
+    explicit step.
 
-    ``room.curvature`` and ``room.is_sticking`` are given; y is the explicit motion.
+    Given are the explicit motion ``solver.y``, ``room.curvature`` and which contacts stick; ``turned`` is room for the
+    contacts.
     """
     n_contacts = contacts.used[0]
     size = greatest_curvature(room.curvature)
@@ -162,12 +146,14 @@ def stiff_step(
     else:
         return False
     for i in range(n_contacts):
+        turned[i].chosen = contacts.rows[i].chosen
         for j in range(3):
-            solve_lower(room.factor, contacts.columns[i, j], room.columns[i, j])
-            room.forces[i, j] = 0.0
-    solve_lower(room.factor, b, room.b)
-    code = onset_with_faces(
-        room.columns, contacts.chosen, n_contacts, friction, room.b, room.forces, room.delta, solver
-    )
+            solve_lower(room.factor, contacts.rows[i].columns[j], turned[i].columns[j])
+    solve_lower(room.factor, solver.load, room.b)
+    terms = solver.load_terms * length(room.b, 6) / length(solver.load, 6)
+    code = onset_with_faces(turned, n_contacts, friction, room.b, terms, room.delta, solver)
+    for i in range(n_contacts):
+        for j in range(3):
+            contacts.rows[i].step_forces[j] = turned[i].forces[j]
     solve_upper(room.factor, room.delta)
-    return code == MOVES and inner(room.delta, y, 6) > 0.0
+    return code == MOVES and inner(room.delta, solver.y, 6) > 0.0

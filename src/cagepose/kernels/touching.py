@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.contacts import steepest_contact
-from cagepose.kernels.geometry import FloatArray, Geometry, Placement
+from cagepose.kernels.geometry import Geometry, Placement
 from cagepose.kernels.jit import kernel
+from cagepose.kernels.record import FloatArray
 from cagepose.kernels.support import PointLoad
 from cagepose.kernels.tolerances import KernelTolerances
 from cagepose.kernels.vector import Vector, cross, dot, norm

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.geometry import FloatArray
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.pose import Quaternion, moved_pose
+from cagepose.kernels.record import FloatArray, Rows, empty_rows
 from cagepose.kernels.turn import angle_of_key
 from cagepose.kernels.vector import Vector
 
@@ -68,35 +68,41 @@ class Step(NamedTuple):
     note: int
 
 
-class Trace(NamedTuple):
-    """Events, one row each, of all phases one after the other.
+class Happening:
+    """One event of a run; a record.
 
     Attributes
     ----------
-    phases, rules, motions
-        Phase index, rule code, motion code, (n_events,).
+    phase, rule, motion
+        Phase index, rule code, motion code.
     along, through
-        As in `Step`, (n_events, 3).
-    distances, angles
-        Metres and radians, (n_events,).
-    positions, quaternions
-        Pose of the object after the event, (n_events, 3) metres and (n_events, 4).
-    notes
-        As in `Step`, (n_events,).
-    touching, hit
-        Which points touch after the event, and which of them the motion reached, (n_events, n_points).
+        As in `Step`.
+    distance, angle
+        Metres and radians.
+    position, quaternion
+        Pose of the object after the event, metres.
+    note
+        As in `Step`.
     """
 
-    phases: NDArray[np.int64]
-    rules: NDArray[np.int64]
-    motions: NDArray[np.int64]
-    along: FloatArray
-    through: FloatArray
-    distances: FloatArray
-    angles: FloatArray
-    positions: FloatArray
-    quaternions: FloatArray
-    notes: NDArray[np.int64]
+    phase: int
+    rule: int
+    motion: int
+    along: Annotated[FloatArray, 3]
+    through: Annotated[FloatArray, 3]
+    distance: float
+    angle: float
+    position: Annotated[FloatArray, 3]
+    quaternion: Annotated[FloatArray, 4]
+    note: int
+
+
+class Trace(NamedTuple):
+    """Events of all phases one after the other; and which points touch after each, and which of them the motion
+    reached, (n_events, n_points).
+    """
+
+    rows: Rows[Happening]
     touching: NDArray[np.bool_]
     hit: NDArray[np.bool_]
 
@@ -104,16 +110,7 @@ class Trace(NamedTuple):
 def empty_trace(n_events: int, n_points: int) -> Trace:
     """Return room for the events of a run (plain Python)."""
     return Trace(
-        np.empty(n_events, np.int64),
-        np.empty(n_events, np.int64),
-        np.empty(n_events, np.int64),
-        np.empty((n_events, 3)),
-        np.empty((n_events, 3)),
-        np.empty(n_events),
-        np.empty(n_events),
-        np.empty((n_events, 3)),
-        np.empty((n_events, 4)),
-        np.empty(n_events, np.int64),
+        empty_rows(Happening, n_events),
         np.zeros((n_events, n_points), np.bool_),
         np.zeros((n_events, n_points), np.bool_),
     )
@@ -142,16 +139,20 @@ def pose_during(step: Step, position: Vector, quaternion: Quaternion, fraction: 
 
 
 @kernel
+def write_pose(happening: Happening, position: Vector, quaternion: Quaternion) -> None:
+    for k in range(3):
+        happening.position[k] = position[k]
+    for k in range(4):
+        happening.quaternion[k] = quaternion[k]
+
+
+@kernel
 def write_event(trace: Trace, event: int, phase: int, step: Step, position: Vector, quaternion: Quaternion) -> None:
     """Write everything of an event but its contacts."""
-    trace.phases[event] = phase
-    trace.rules[event] = step.rule
-    trace.motions[event] = step.motion
-    trace.distances[event], trace.angles[event] = step_amounts(step)
-    trace.notes[event] = step.note
+    happening = trace.rows[event]
+    happening.phase, happening.rule, happening.motion, happening.note = phase, step.rule, step.motion, step.note
+    happening.distance, happening.angle = step_amounts(step)
     for k in range(3):
-        trace.along[event, k] = step.along[k]
-        trace.through[event, k] = step.through[k]
-        trace.positions[event, k] = position[k]
-    for k in range(4):
-        trace.quaternions[event, k] = quaternion[k]
+        happening.along[k] = step.along[k]
+        happening.through[k] = step.through[k]
+    write_pose(happening, position, quaternion)

@@ -10,17 +10,17 @@ out so is ruled out in truth.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cagepose.kernels.contact_set import ContactSet
-from cagepose.kernels.coulomb import CoulombRoom, coulomb_error, motion_left
-from cagepose.kernels.coulomb_newton import OPENS, SLIPS, STICKS, newton_on_modes
-from cagepose.kernels.geometry import FloatArray
+from cagepose.kernels.coulomb import coulomb_error, motion_left
+from cagepose.kernels.coulomb_newton import OPENS, SLIPS, STICKS, NewtonRoom, newton_on_modes
 from cagepose.kernels.jit import kernel
-from cagepose.kernels.least_squares import PassiveSet, empty_passive_set, inner, length, nonnegative_least_squares
+from cagepose.kernels.least_squares import PassiveSet, System, clear, inner, length, nonnegative_least_squares
+from cagepose.kernels.metric import ScaledVector
+from cagepose.kernels.record import FloatArray, IntArray
 
 CONTACT_LIMIT = 4
 """More contacts than this: not tried."""
@@ -45,67 +45,39 @@ UNIQUE, OTHER_FOUND, NOT_SHOWN = 0, 1, 2
 UNDECIDED = -1
 
 
-class ModesRoom(NamedTuple):
-    """Room for one system.
+class ModesRoom:
+    """Room for one search; a record.
 
     Attributes
     ----------
-    rows
-        Contacts in question, (CONTACT_LIMIT,).
+    contacts
+        Contacts in question.
     modes, starts, widths
-        What each contact does (-1: undecided) and, if it slips, from which angle on and over which, (CONTACT_LIMIT,).
+        What each does (-1: undecided) and, if it slips, from which angle on and over which.
     waiting_modes, waiting_starts, waiting_widths
-        The same for the combinations still to be looked at, (WAITING, CONTACT_LIMIT).
-    columns, right_side
-        The system, (N_COLUMNS, N_ROWS) and (N_ROWS,).
+        The same for the combinations still to be looked at.
     owners, directions
-        Contact and tangent of each column that is a force, -1 where it is none, (N_COLUMNS,) and (N_COLUMNS, 2).
-    passive, rejected
-        Room of the solver.
+        Contact and tangent of each column that is a force, -1 where it is none.
+    passive
+        The system's solution.
     wrench
-        One generator, (6,).
-    forces, y
-        A consistent onset, if one is found, (n_contacts, 3) and (6,).
+        One generator.
+    y
+        Scaled twist of a consistent onset, if one is found.
     """
 
-    rows: NDArray[np.int64]
-    modes: NDArray[np.int64]
-    starts: FloatArray
-    widths: FloatArray
-    waiting_modes: NDArray[np.int64]
-    waiting_starts: FloatArray
-    waiting_widths: FloatArray
-    columns: FloatArray
-    right_side: FloatArray
-    owners: NDArray[np.int64]
-    directions: FloatArray
+    contacts: Annotated[IntArray, CONTACT_LIMIT]
+    modes: Annotated[IntArray, CONTACT_LIMIT]
+    starts: Annotated[FloatArray, CONTACT_LIMIT]
+    widths: Annotated[FloatArray, CONTACT_LIMIT]
+    waiting_modes: Annotated[IntArray, WAITING, CONTACT_LIMIT]
+    waiting_starts: Annotated[FloatArray, WAITING, CONTACT_LIMIT]
+    waiting_widths: Annotated[FloatArray, WAITING, CONTACT_LIMIT]
+    owners: Annotated[IntArray, N_COLUMNS]
+    directions: Annotated[FloatArray, N_COLUMNS, 2]
     passive: PassiveSet
-    rejected: NDArray[np.bool_]
-    wrench: FloatArray
-    forces: FloatArray
-    y: FloatArray
-
-
-def empty_modes_room(n_contacts: int) -> ModesRoom:
-    """Return room for ``n_contacts`` contacts (plain Python)."""
-    return ModesRoom(
-        np.zeros(CONTACT_LIMIT, np.int64),
-        np.zeros(CONTACT_LIMIT, np.int64),
-        np.zeros(CONTACT_LIMIT),
-        np.zeros(CONTACT_LIMIT),
-        np.zeros((WAITING, CONTACT_LIMIT), np.int64),
-        np.zeros((WAITING, CONTACT_LIMIT)),
-        np.zeros((WAITING, CONTACT_LIMIT)),
-        np.zeros((N_COLUMNS, N_ROWS)),
-        np.zeros(N_ROWS),
-        np.zeros(N_COLUMNS, np.int64),
-        np.zeros((N_COLUMNS, 2)),
-        empty_passive_set(N_ROWS),
-        np.zeros(N_COLUMNS, np.bool_),
-        np.zeros(6),
-        np.zeros((n_contacts, 3)),
-        np.zeros(6),
-    )
+    wrench: ScaledVector
+    y: ScaledVector
 
 
 @kernel
@@ -114,7 +86,7 @@ def write_velocity(
 ) -> None:
     """Write what one scaled wrench adds to the velocities that the modes speak of, and to w . nu."""
     for place in range(n_rows):
-        columns = contacts.columns[room.rows[place]]
+        columns = contacts.rows[room.contacts[place]].columns
         mode = room.modes[place]
         size = length(columns[0], 6)
         for j in range(3):
@@ -133,105 +105,111 @@ def add_force_column(
     angle: float,
     n_columns: int,
     room: ModesRoom,
+    system: System,
 ) -> int:
     """Add the force along one generator of a cone; return the number of columns."""
-    columns = contacts.columns[room.rows[place]]
+    columns = contacts.rows[room.contacts[place]].columns
     one, two = math.cos(angle), math.sin(angle)
     for k in range(6):
         room.wrench[k] = columns[0, k] + friction * (one * columns[1, k] + two * columns[2, k])
-    write_velocity(contacts, n_rows, b, room.wrench, -1.0, room.columns[n_columns], room)
+    write_velocity(contacts, n_rows, b, room.wrench, -1.0, system.columns[n_columns], room)
     room.owners[n_columns] = place
     room.directions[n_columns, 0], room.directions[n_columns, 1] = friction * one, friction * two
     return n_columns + 1
 
 
 @kernel
-def add_slack(n_rows: int, row: int, one: float, two: float, n_columns: int, room: ModesRoom) -> int:
+def add_slack(n_rows: int, row: int, one: float, two: float, n_columns: int, room: ModesRoom, system: System) -> int:
     """Add a column with two entries, at ``row`` and the one below; return the number of columns."""
     for k in range(3 * n_rows + 1):
-        room.columns[n_columns, k] = 0.0
-    room.columns[n_columns, row] = one
-    room.columns[n_columns, row + 1] = two
+        system.columns[n_columns, k] = 0.0
+    system.columns[n_columns, row] = one
+    system.columns[n_columns, row + 1] = two
     room.owners[n_columns] = -1
     return n_columns + 1
 
 
 @kernel
-def write_modes(contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesRoom) -> int:
+def write_modes(
+    contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesRoom, system: System
+) -> int:
     """Write the system of the present modes; return the number of columns. Column 0 is the scale of the load."""
-    write_velocity(contacts, n_rows, b, b, 1.0, room.columns[0], room)
+    write_velocity(contacts, n_rows, b, b, 1.0, system.columns[0], room)
     room.owners[0] = -1
     n_columns = 1
     around = friction / math.cos(math.pi / GENERATORS)
     for place in range(n_rows):
         mode = room.modes[place]
         if mode in (UNDECIDED, OPENS):
-            n_columns = add_slack(n_rows, 3 * place, 1.0, 0.0, n_columns, room)
+            n_columns = add_slack(n_rows, 3 * place, 1.0, 0.0, n_columns, room, system)
         if mode in (UNDECIDED, STICKS):
             for g in range(GENERATORS):
                 angle = (g + 0.5) * 2.0 * math.pi / GENERATORS
-                n_columns = add_force_column(contacts, n_rows, b, place, around, angle, n_columns, room)
+                n_columns = add_force_column(contacts, n_rows, b, place, around, angle, n_columns, room, system)
         if mode == SLIPS:
             for side in range(2):
                 angle = room.starts[place] + side * room.widths[place]
-                n_columns = add_force_column(contacts, n_rows, b, place, friction, angle, n_columns, room)
-                n_columns = add_slack(n_rows, 3 * place + 1, -math.cos(angle), -math.sin(angle), n_columns, room)
+                n_columns = add_force_column(contacts, n_rows, b, place, friction, angle, n_columns, room, system)
+                n_columns = add_slack(
+                    n_rows, 3 * place + 1, -math.cos(angle), -math.sin(angle), n_columns, room, system
+                )
             # The arc lies between its chord and the corner of the tangents at its ends.
             middle = room.starts[place] + 0.5 * room.widths[place]
             corner = friction / math.cos(0.5 * room.widths[place])
-            n_columns = add_force_column(contacts, n_rows, b, place, corner, middle, n_columns, room)
+            n_columns = add_force_column(contacts, n_rows, b, place, corner, middle, n_columns, room, system)
     for k in range(3 * n_rows):
-        room.right_side[k] = 0.0
-    room.right_side[3 * n_rows] = 1.0
+        system.right_side[k] = 0.0
+    system.right_side[3 * n_rows] = 1.0
     return n_columns
 
 
 @kernel
-def is_possible(contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesRoom) -> bool:
+def is_possible(
+    contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesRoom, system: System
+) -> bool:
     """Whether the present modes are not ruled out."""
-    n_columns = write_modes(contacts, n_rows, friction, b, room)
-    room.passive.used[0] = 0
-    left = nonnegative_least_squares(
-        room.columns, n_columns, 3 * n_rows + 1, room.right_side, room.passive, room.rejected
-    )
-    return left <= IMPOSSIBLE
+    n_columns = write_modes(contacts, n_rows, friction, b, room, system)
+    clear(room.passive, 3 * n_rows + 1, 1.0)
+    return nonnegative_least_squares(system, n_columns, room.passive) <= IMPOSSIBLE
 
 
 @kernel
 def is_witnessed(
-    contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesRoom, coulomb: CoulombRoom
+    contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesRoom, newton: NewtonRoom
 ) -> bool:
-    """Whether Newton's method from the solution of the system ends in a motion that obeys Coulomb's law."""
+    """Whether Newton's method from the solution of the system ends in a motion that obeys Coulomb's law.
+
+    The forces of the contacts are those of that motion afterwards.
+    """
     scale = 0.0
-    n_contacts = contacts.used[0]
+    rows, n_contacts = contacts.rows, contacts.used[0]
     for i in range(n_contacts):
-        coulomb.newton.modes[i] = OPENS
+        rows[i].mode = OPENS
         for j in range(3):
-            room.forces[i, j] = 0.0
-    for k in range(room.passive.used[0]):
+            rows[i].forces[j] = 0.0
+    for k in range(room.passive.used):
         if room.passive.labels[k] == 0:
             scale = room.passive.x[k]
     if scale <= 0.0:
         return False
-    for k in range(room.passive.used[0]):
+    for k in range(room.passive.used):
         label = room.passive.labels[k]
         place = room.owners[label]
         if place >= 0:
             share = room.passive.x[k] / scale
-            room.forces[room.rows[place], 0] += share
-            room.forces[room.rows[place], 1] += share * room.directions[label, 0]
-            room.forces[room.rows[place], 2] += share * room.directions[label, 1]
+            forces = rows[room.contacts[place]].forces
+            forces[0] += share
+            forces[1] += share * room.directions[label, 0]
+            forces[2] += share * room.directions[label, 1]
     for place in range(n_rows):
-        coulomb.newton.modes[room.rows[place]] = room.modes[place]
-    motion_left(contacts.columns, contacts.chosen, n_contacts, b, room.forces, room.y)
+        rows[room.contacts[place]].mode = room.modes[place]
+    motion_left(rows, n_contacts, b, room.y)
     for attempt in range(2):
-        if coulomb_error(contacts.columns, contacts.chosen, n_contacts, friction, room.forces, room.y) <= (
-            MOVES_AT_ALL * MOVES_AT_ALL * length(b, 6)
-        ):
+        if coulomb_error(rows, n_contacts, friction, room.y) <= MOVES_AT_ALL * MOVES_AT_ALL * length(b, 6):
             return length(room.y, 6) > MOVES_AT_ALL * length(b, 6)
         if attempt == 0:
-            newton_on_modes(contacts.columns, n_contacts, friction, b, room.forces, room.y, coulomb.newton)
-            motion_left(contacts.columns, contacts.chosen, n_contacts, b, room.forces, room.y)
+            newton_on_modes(rows, n_contacts, friction, b, room.y, newton)
+            motion_left(rows, n_contacts, b, room.y)
     return False
 
 
@@ -272,14 +250,19 @@ def branch(n_rows: int, n_waiting: int, room: ModesRoom) -> int:
 
 
 @kernel
-def other_onset(contacts: ContactSet, friction: float, b: FloatArray, room: ModesRoom, coulomb: CoulombRoom) -> int:
-    """Return UNIQUE if Coulomb's law allows no onset but rest; OTHER_FOUND: one is in ``room``; or NOT_SHOWN."""
+def other_onset(
+    contacts: ContactSet, friction: float, b: FloatArray, room: ModesRoom, newton: NewtonRoom, system: System
+) -> int:
+    """Return UNIQUE if Coulomb's law allows no onset but rest; OTHER_FOUND: one is in ``room``; or NOT_SHOWN.
+
+    The forces of the contacts are lost.
+    """
     n_rows = 0
     for i in range(contacts.used[0]):
-        if contacts.chosen[i]:
+        if contacts.rows[i].chosen:
             if n_rows == CONTACT_LIMIT:
                 return NOT_SHOWN
-            room.rows[n_rows] = i
+            room.contacts[n_rows] = i
             n_rows += 1
     for place in range(CONTACT_LIMIT):
         room.modes[place] = UNDECIDED
@@ -298,9 +281,9 @@ def other_onset(contacts: ContactSet, friction: float, b: FloatArray, room: Mode
             room.widths[place] = room.waiting_widths[n_waiting, place]
             if room.modes[place] == UNDECIDED:
                 n_undecided += 1
-        if not is_possible(contacts, n_rows, friction, b, room):
+        if not is_possible(contacts, n_rows, friction, b, room, system):
             continue
-        if n_undecided == 0 and is_witnessed(contacts, n_rows, friction, b, room, coulomb):
+        if n_undecided == 0 and is_witnessed(contacts, n_rows, friction, b, room, newton):
             return OTHER_FOUND
         n_waiting = branch(n_rows, n_waiting, room)
         if n_waiting < 0:

@@ -50,6 +50,12 @@ def row(array: NDArray[np.float64], index: int) -> Vector:
 
 
 @kernel
+def vector_from(array: NDArray[np.float64]) -> Vector:
+    """The first three numbers of an array."""
+    return (array[0], array[1], array[2])
+
+
+@kernel
 def times(m: Matrix, a: Vector) -> Vector:
     """m a."""
     return (dot(m[0], a), dot(m[1], a), dot(m[2], a))

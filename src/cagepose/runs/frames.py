@@ -35,9 +35,10 @@ class Frames:
 
     def outward(self, trace: Trace, event: int) -> Pose:
         """Return the object's pose in the world after an event."""
-        turned = Pose(quaternion_wxyz=trace.quaternions[event])
-        middle_world = trace.positions[event] + self.origin_world
-        return Pose(middle_world - turned.transform(self.middle_object), trace.quaternions[event])
+        happening = trace.rows[event]
+        turned = Pose(quaternion_wxyz=happening.quaternion)
+        middle_world = happening.position + self.origin_world
+        return Pose(middle_world - turned.transform(self.middle_object), happening.quaternion)
 
 
 def middle_of_boxes(scene: Scene) -> FloatArray:

@@ -22,6 +22,7 @@ from cagepose.kernels.proof import (
     empty_proof_room,
     prove,
 )
+from cagepose.kernels.record import empty_record
 from cagepose.kernels.stability import STABILITY_NAMES
 from cagepose.kernels.tolerances import kernel_tolerances
 from cagepose.kernels.vector import Vector
@@ -39,6 +40,7 @@ REASONS = {
     PROVEN_UNIQUE: "the contacts balance the load with friction, and every other contact mode is ruled out",
     OTHER_ONSET: "the contacts can balance the load with friction, but Coulomb's law allows this motion too",
     PROVEN_MOVES: "no contact forces balance the load",
+    TOO_MANY_CONTACTS: "more faces touch at one place than a proof has room for",
 }
 NOT_SHOWN = "the contacts can balance the load with friction, but that the object cannot move was not shown"
 WEDGED = "; the contacts can press against each other without a load, as in a wedge"
@@ -56,10 +58,15 @@ def body_of(scene: Scene) -> Body:
     corners = np.concatenate([box.corners_object() for box in scene.object.boxes])
     reach_m = float(np.linalg.norm(corners - scene.object.center_of_gravity_m, axis=1).max())
     if (scene.metric or METRIC_DEFAULT) == "drag":
-        return Body(np.eye(3), np.full(3, np.sqrt(np.trace(gyration) / 3.0)), reach_m)
-    squares, axes = np.linalg.eigh(gyration)
+        squares, axes = np.full(3, np.trace(gyration) / 3.0), np.eye(3)
+    else:
+        squares, axes = np.linalg.eigh(gyration)
+    body = empty_record(Body)
+    body.axes_object[:] = axes.T
     # A needle's inertia about its own axis may come out as zero: no body is thinner than a box may be.
-    return Body(np.ascontiguousarray(axes.T), np.sqrt(np.maximum(squares, (1e-9 * reach_m) ** 2)), reach_m)
+    body.radii[:] = np.sqrt(np.maximum(squares, (1e-9 * reach_m) ** 2))
+    body.reach_m = reach_m
+    return body
 
 
 class Judge:
@@ -76,7 +83,7 @@ class Judge:
 
     @cached_property
     def _room(self) -> ProofRoom:
-        return empty_proof_room(len(self.geometry.half_sizes), len(self.geometry.points_world))
+        return empty_proof_room(self.geometry)
 
     def proof(self, pose: Pose, phase: int) -> tuple[Proof, tuple[Contact, ...]]:
         """Return the proof at a pose under the load of a phase, and the contacts with their forces."""
@@ -85,35 +92,35 @@ class Judge:
             self.geometry,
             self.body,
             *inside,
-            self.loads,
-            phase,
+            self.loads[phase],
             self.friction,
             self.scene.size_m,
             self.tolerances,
             self._room,
         )
-        room = self._room
+        room, contacts = self._room.room, self._room.contacts
+        touching = [contacts.rows[i] for i in range(contacts.used[0])]
         names = self.scene.cage.names
         held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
         is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
-        shared = room.rest.is_shared[: room.contacts.used[0]] if held else np.zeros(0, np.bool_)
+        shared = {names[contact.point] for contact in touching if contact.is_shared} if held else set()
         motion = {PROVEN_MOVES: room.solver.y, OTHER_ONSET: room.modes.y}.get(code)
         proof = Proof(
             verdict="moves" if not held else "may rest" if is_open else "rests",
-            reason=REASONS.get(code, NOT_SHOWN) + (WEDGED if is_open and room.wedged[0] else ""),
-            residual=float(room.solver.residual[0]),
+            reason=REASONS.get(code, NOT_SHOWN) + (WEDGED if is_open and room.wedged else ""),
+            residual=float(room.solver.residual),
             needs_friction=held and code != PROVEN_WITHOUT_FRICTION,
             stability=STABILITY_NAMES[steady] if held else None,
-            undetermined=self._freedoms(pose, room.rest.undetermined[:n_undetermined]) if held else (),
-            shared=tuple(sorted({names[room.contacts.points[i]] for i in np.nonzero(shared)[0]}, key=names.index)),
+            undetermined=self._freedoms(pose, room.rest.ways.basis[:n_undetermined, :6]) if held else (),
+            shared=tuple(sorted(shared, key=names.index)),
             motion=None if motion is None else self._motion(pose, motion),
         )
-        return proof, self._contacts(inside, room.contacts, held)
+        return proof, self._contacts(inside, contacts, held)
 
     def with_critical_friction(self, proof: Proof, pose: Pose, phase: int) -> Proof:
         """Return the proof with the least coefficient of friction at which the contacts balance the load."""
         least = critical_friction(
-            self.geometry, self.body, *self.frames.inward(pose), self.loads, phase, self.tolerances, self._room
+            self.geometry, self.body, *self.frames.inward(pose), self.loads[phase], self.tolerances, self._room
         )
         return replace(proof, critical_friction=float(least))
 
@@ -140,7 +147,7 @@ class Judge:
     def _twist(self, pose: Pose, y: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return (velocity of the centre of gravity, angular velocity) of a scaled twist (5.3)."""
         axes_world = self.body.axes_object @ pose.rotation.T
-        return y[:3].copy(), axes_world.T @ (y[3:] / self.body.radii)
+        return y[:3].copy(), axes_world.T @ (y[3:6] / self.body.radii)
 
     def _motion(self, pose: Pose, y: FloatArray) -> FreeMotion:
         velocity, spin = self._twist(pose, y)
@@ -177,9 +184,9 @@ def _is_in_span(basis: FloatArray, vector: FloatArray) -> bool:
 def _force(contacts: ContactSet, point: int, box: int, normal: FloatArray) -> tuple[float, FloatArray]:
     """What the contact of a point with a face carries: zero where a flush face of another box stands for it."""
     for i in range(contacts.used[0]):
-        same_face = contacts.points[i] == point and contacts.boxes[i] == box
-        if same_face and np.linalg.norm(contacts.normals[i] - normal) <= SAME_NORMAL:
-            one, two = contacts.columns[i, 1, :3], contacts.columns[i, 2, :3]
-            tangential = contacts.forces[i, 1] * one + contacts.forces[i, 2] * two
-            return float(contacts.forces[i, 0]), -tangential
+        contact = contacts.rows[i]
+        same_face = contact.point == point and contact.box == box
+        if same_face and np.linalg.norm(contact.normal - normal) <= SAME_NORMAL:
+            tangential = contact.forces[1:] @ contact.columns[1:, :3]
+            return float(contact.forces[0]), -tangential
     return 0.0, np.zeros(3)

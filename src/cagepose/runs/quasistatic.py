@@ -32,9 +32,7 @@ def run_quasistatic(scene: Scene, turn_step_rad: float = TURN_STEP_RAD) -> Run:
     judge = Judge(scene, friction)
     frames = judge.frames
     rules = QuasistaticRules(friction, turn_step_rad, STEP_LIMIT)
-    work = empty_quasistatic_workspace(
-        len(judge.geometry.half_sizes), len(judge.geometry.points_world), len(scene.loads), STEP_LIMIT
-    )
+    work = empty_quasistatic_workspace(judge.geometry, len(scene.loads), STEP_LIMIT)
     start = frames.inward(scene.object.pose_world_object)
     arguments = (judge.geometry, judge.body, *start, judge.loads, rules, scene.size_m, judge.tolerances, work)
     if not is_loaded(quasistatic_run):
@@ -46,7 +44,7 @@ def run_quasistatic(scene: Scene, turn_step_rad: float = TURN_STEP_RAD) -> Run:
     phases = list[PhaseRun]()
     pose = scene.object.pose_world_object
     for phase in range(n_phases):
-        steps = [step for step in range(n_steps) if work.trace.phases[step] == phase]
+        steps = [step for step in range(n_steps) if work.trace.rows[step].phase == phase]
         events = _events(scene, work.trace, steps, frames, pose)
         proof, contacts = judge.proof(events[-1].pose_world_object, phase)
         verdict: Verdict = VERDICT_NAMES[work.verdicts[phase]]
@@ -82,8 +80,8 @@ def _events(scene: Scene, trace: Trace, steps: list[int], frames: Frames, start:
             continue
         events.append(
             Event(
-                rule=RULE_NAMES[trace.rules[step]],
-                motion=None if trace.motions[step] == NONE else motion_between(before, pose, frames.middle_object),
+                rule=RULE_NAMES[trace.rows[step].rule],
+                motion=None if trace.rows[step].motion == NONE else motion_between(before, pose, frames.middle_object),
                 hit=touching_names(scene, trace.hit[step]),
                 contacts=touching_names(scene, trace.touching[step]),
                 pose_world_object=pose,
@@ -97,5 +95,7 @@ def _events(scene: Scene, trace: Trace, steps: list[int], frames: Frames, start:
 
 def _goes_on(trace: Trace, step: int, following: int) -> bool:
     return bool(
-        trace.rules[step] == trace.rules[following] and not trace.hit[step].any() and trace.notes[step] != LET_GO
+        trace.rows[step].rule == trace.rows[following].rule
+        and not trace.hit[step].any()
+        and trace.rows[step].note != LET_GO
     )

@@ -75,7 +75,7 @@ def run_stepwise(scene: Scene) -> Run:
     trace, phases = workspace.trace, list[PhaseRun]()
     pose = scene.object.pose_world_object
     for phase in range(n_phases):
-        places = [event for event in range(n_events) if trace.phases[event] == phase]
+        places = [event for event in range(n_events) if trace.rows[event].phase == phase]
         events = tuple(_event(scene, trace, event, frames) for event in places)
         proof, contacts = judge.proof(events[-1].pose_world_object, phase)
         verdict: Verdict = VERDICT_NAMES[workspace.verdicts[phase]]
@@ -118,27 +118,27 @@ def _phase_loads(scene: Scene, middle_object: FloatArray) -> PhaseLoads:
 
 def _event(scene: Scene, trace: Trace, event: int, frames: Frames) -> Event:
     return Event(
-        rule=RULE_NAMES[trace.rules[event]],
+        rule=RULE_NAMES[trace.rows[event].rule],
         motion=_motion(trace, event, frames.origin_world),
         hit=touching_names(scene, trace.hit[event]),
         contacts=touching_names(scene, trace.touching[event]),
         pose_world_object=frames.outward(trace, event),
-        note=None if trace.notes[event] == PLAIN else NOTE_NAMES[trace.notes[event]],
+        note=None if trace.rows[event].note == PLAIN else NOTE_NAMES[trace.rows[event].note],
     )
 
 
 def _motion(trace: Trace, event: int, origin: FloatArray) -> Motion | None:
-    code = trace.motions[event]
+    code = trace.rows[event].motion
     if code == NONE:
         return None
     is_travel = code == TRAVEL
     return Motion(
         kind=MOTION_NAMES[code],
-        direction_world=trace.along[event].copy() if is_travel else None,
-        axis_world=None if is_travel else trace.along[event].copy(),
-        through_world=None if is_travel else trace.through[event] + origin,
-        distance_m=float(trace.distances[event]),
-        angle_rad=float(trace.angles[event]),
+        direction_world=trace.rows[event].along.copy() if is_travel else None,
+        axis_world=None if is_travel else trace.rows[event].along.copy(),
+        through_world=None if is_travel else trace.rows[event].through + origin,
+        distance_m=float(trace.rows[event].distance),
+        angle_rad=float(trace.rows[event].angle),
     )
 
 

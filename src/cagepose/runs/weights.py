@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cagepose.kernels.metric import DeadLoads
+from cagepose.kernels.metric import PhaseLoad
+from cagepose.kernels.record import Rows, empty_rows
 from cagepose.nouns.checks import FloatArray, unit_vector
 from cagepose.nouns.load import Load
 from cagepose.nouns.scene import Scene
@@ -45,12 +46,12 @@ def weigh(scene: Scene, load: Load) -> Weighed:
     return Weighed(weight * unit_vector(load.gravity_world, "gravity"), force, in_newtons=False)
 
 
-def dead_loads(scene: Scene) -> DeadLoads:
+def dead_loads(scene: Scene) -> Rows[PhaseLoad]:
     """Return the loads of all phases as the kernels take them."""
-    forces, arms = [], []
-    for load in scene.loads:
+    loads = empty_rows(PhaseLoad, len(scene.loads))
+    for index, load in enumerate(scene.loads):
         weighed = weigh(scene, load)
-        forces.append([weighed.gravity, weighed.force])
-        center = scene.object.center_of_gravity_m
-        arms.append([np.zeros(3), np.zeros(3) if load.force is None else load.force.at_object_m - center])
-    return DeadLoads(np.array(forces), np.array(arms))
+        loads[index].forces_world[:] = weighed.gravity, weighed.force
+        if load.force is not None:
+            loads[index].arms_object[1] = load.force.at_object_m - scene.object.center_of_gravity_m
+    return loads

@@ -1,0 +1,65 @@
+"""Records: memory of fixed size that kernels write to, one pointer each.
+
+A tuple of arrays is seven numbers for each of them. With some seventy arrays of room a kernel passed five hundred
+numbers to every kernel it called, and compiling all that copying took longer than compiling the mechanics. A record
+holds the arrays of fixed size, a row of records what there is for each contact, point or event.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Protocol, TypeVar, get_args, get_origin, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
+
+R_co = TypeVar("R_co", covariant=True)
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+_SCALARS: dict[Any, type[np.generic]] = {int: np.int64, float: np.float64, bool: np.bool_}
+_LAYOUTS: dict[type[object], np.dtype[Any]] = {}
+"""Asking for the annotations takes longer than many a run."""
+
+
+class Rows(Protocol[R_co]):
+    """An array of records, (n,): ``rows[i].field`` is one record's, and can be written to."""
+
+    def __getitem__(self, index: int, /) -> R_co: ...
+
+    def __len__(self) -> int: ...
+
+
+def dtype_of(record: type[object]) -> np.dtype[Any]:
+    """Return the layout that a class's annotations describe.
+
+    A field is an ``int``, ``float`` or ``bool``, another such class, or an array of fixed shape, as in
+    ``Annotated[FloatArray, 6, 6]``.
+    """
+    if record in _LAYOUTS:
+        return _LAYOUTS[record]
+    fields = list[tuple[Any, ...]]()
+    for name, hint in get_type_hints(record, include_extras=True).items():
+        if get_origin(hint) is Annotated:
+            array, *shape = get_args(hint)
+            fields.append((name, get_args(get_args(array)[1])[0], tuple(shape)))
+        elif hint in _SCALARS:
+            fields.append((name, _SCALARS[hint]))
+        else:
+            fields.append((name, dtype_of(hint)))
+        if hasattr(np.record, name):
+            raise TypeError(f"{record.__name__}.{name}: NumPy's records have an attribute of that name; choose another")
+    _LAYOUTS[record] = np.dtype((np.record, np.dtype(fields, align=True)))
+    return _LAYOUTS[record]
+
+
+def empty_record(record: type[R_co]) -> R_co:
+    """Return one record, all zero (plain Python)."""
+    made: R_co = np.zeros(1, dtype_of(record)).view(np.recarray)[0]
+    return made
+
+
+def empty_rows(record: type[R_co], n_rows: int) -> Rows[R_co]:
+    """Return an array of ``n_rows`` records, all zero (plain Python)."""
+    made: Rows[R_co] = np.zeros(n_rows, dtype_of(record)).view(np.recarray)
+    return made
