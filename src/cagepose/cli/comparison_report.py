@@ -22,16 +22,28 @@ def print_comparison(comparison: Comparison, unit: LengthUnit) -> None:
         table.add_column(heading, overflow="fold")
     for variant in comparison.variants:
         table.add_row(*_row(variant, unit))
+    blocks = []
+    for (where, reason), labels in _partings(comparison).items():
+        part = "parts" if len(labels) == 1 else "part"
+        blocks.append("\n".join((*labels, f"    {part} from stepwise {where}: {reason}")))
+    n_others = len(comparison.variants) - 1
+    together = n_others - len(comparison.partings)
+    if together:
+        blocks.append(f"{together} of {n_others} {'goes' if together == 1 else 'go'} the way of stepwise to its end")
     with console.capture() as captured:
         console.print(Text(comparison.variants[0].run.scene.name), "", table, "", sep="\n")
-        for parting in comparison.partings:
-            where = "the end" if parting.first_number is None else f"event {parting.first_number} of stepwise"
-            console.print(Text(f"{parting.label}: parts in {parting.phase!r} at {where}: {parting.reason}"))
-        together = len(comparison.variants) - 1 - len(comparison.partings)
-        if together:
-            console.print(Text(f"{together} of {len(comparison.variants) - 1} go the way of stepwise to its end"))
+        console.print(Text("\n\n".join(blocks)))
     text = captured.get()
     sys.stdout.write(text if console.is_terminal else "".join(f"{line.rstrip()}\n" for line in text.splitlines()))
+
+
+def _partings(comparison: Comparison) -> dict[tuple[str, str], list[str]]:
+    """Variants that part at one place for one reason are told together."""
+    found: dict[tuple[str, str], list[str]] = {}
+    for parting in comparison.partings:
+        place = "the end" if parting.first_number is None else f"event {parting.first_number}"
+        found.setdefault((f"at {place} of {parting.phase!r}", parting.reason), []).append(parting.label)
+    return found
 
 
 def _row(variant: Variant, unit: LengthUnit) -> list[Text]:
