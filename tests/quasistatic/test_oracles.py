@@ -123,7 +123,7 @@ def test_the_frictionless_onset_obeys_the_optimality_conditions():
         columns, b = contact_columns(rng, n), rng.normal(size=6)
         room = empty_record(ConeRoom)
         rows, forces = contacts_with(columns)
-        clear(room, b, WRENCH)
+        clear(room, b, WRENCH, np.linalg.norm(b))
         left = cone_residual(rows, n, 0.0, b, False, room)
         write(room, 0.0, rows, n)
         normals = columns[:, 0]
@@ -172,7 +172,7 @@ def test_the_onset_with_friction_obeys_coulombs_law(capsys):
         columns, b = contact_columns(rng, n), rng.normal(size=6)
         cone, y = empty_record(ConeRoom), np.zeros(6)
         rows, forces = contacts_with(columns)
-        clear(cone, b, WRENCH)
+        clear(cone, b, WRENCH, np.linalg.norm(b))
         left = cone_residual(rows, n, friction, b, False, cone)
         write(cone, friction, rows, n)
         scale = np.linalg.norm(b) + forces[:, 0] @ np.linalg.norm(columns[:, 0], axis=1)

@@ -66,7 +66,7 @@ class _Writer:
             "undetermined": list(proof.undetermined),
             "shared": list(proof.shared),
             "motion": None if proof.motion is None else self._free_motion(proof.motion),
-            "critical_friction": None if critical is None or math.isinf(critical) else critical,
+            "critical_friction": "none" if critical is not None and math.isinf(critical) else critical,
         }
 
     def _free_motion(self, motion: FreeMotion) -> dict[str, Any]:

@@ -46,7 +46,8 @@ class Proof:
     reason
         Why, in words.
     residual
-        What the contact forces leave of the load, as a fraction of it (moments at the scale of the radii of gyration).
+        What the contact forces leave of the load, as a fraction of the sum of the load's and the forces' magnitudes
+        (moments at the scale of the radii of gyration). Rounding is 1e-16 of this.
     needs_friction
         Whether there is a balance with friction only.
     stability
