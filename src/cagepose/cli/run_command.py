@@ -7,16 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from cagepose.cli.compiling import say_if_compiling
 from cagepose.cli.options import SceneArgument, SetOption, Switch
 
 if TYPE_CHECKING:
     from cagepose.files.scene_file import SceneFile
-
-FIRST_RUN = "cagepose: compiling the kernels for the first time on this machine; about half a minute, only once\n"
-EVERY_RUN = (
-    "cagepose: compiling the kernels, about half a minute, at each start: no folder for machine code can be written;"
-    " let NUMBA_CACHE_DIR name one that can\n"
-)
 
 
 def run_command(
@@ -38,13 +33,10 @@ def run_command(
 
     from dataclasses import replace
 
-    from cagepose.kernels.jit import CACHE_FOLDER
-    from cagepose.runs.solve import chosen_method, kernels_are_compiled, run
+    from cagepose.runs.solve import chosen_method, run
     from cagepose.runs.tolerance_check import verdict_changes
 
-    if not kernels_are_compiled(chosen_method(scene_file.scene, method)):
-        sys.stderr.write(EVERY_RUN if CACHE_FOLDER is None else FIRST_RUN)
-        sys.stderr.flush()
+    say_if_compiling(chosen_method(scene_file.scene, method))
     result = run(scene_file.scene, method)
     notes = []
     if check_tolerance:
