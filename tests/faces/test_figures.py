@@ -76,9 +76,10 @@ def test_rules_and_contacts_are_named(rail):
 
 def test_a_full_dot_is_a_point_that_the_motion_reached(sample):
     panel = pose_figure(sample).axes[2]
-    dots = [line for line in panel.lines if line.get_marker() == "o"]
-    full = {(line.get_xdata()[0], line.get_ydata()[0]) for line in dots if line.get_markerfacecolor() != "white"}
-    assert full == {(1, 0), (11, 1), (21, 2)}  # C1 after the travel, C4 and C3 after a turn each
+    looks = {line.get_markerfacecolor(): line for line in panel.lines if line.get_marker() == "o"}
+    dots = {face: set(zip(*line.get_data(), strict=True)) for face, line in looks.items()}
+    assert dots.pop("white") == {(11, 0), (21, 0), (21, 1)}
+    assert list(dots.values()) == [{(1, 0), (11, 1), (21, 2)}]  # C1 after the travel, C4 and C3 after a turn each
 
 
 def test_unknown_rules_get_no_band_and_are_named_all_the_same(rail):
@@ -109,10 +110,10 @@ def test_each_event_has_its_snapshot_and_the_weight_its_view(sample):
 def test_snapshots_show_where_things_are(sample):
     """After the last turn: all four points in place, and the CoG where the run left it."""
     last = event_figure(sample).axes[3]
-    places = {tuple(np.round([float(xyz[0]) for xyz in line.get_data_3d()], 6)) for line in last.lines}
+    places = {tuple(point) for line in last.lines for point in np.round(np.array(line.get_data_3d()).T, 6).tolist()}
     assert {(4, 4, 0), (4, -4, 0), (-4, -4, 0), (-4, 4, 0)} <= places
-    assert tuple(np.round(sample.center_of_gravity_world * 1000, 6)) in places
-    axis = next(line for line in last.lines if len(line.get_data_3d()[0]) == 2)
+    assert tuple(np.round(sample.center_of_gravity_world * 1000, 6).tolist()) in places
+    axis = next(line for line in last.lines if line.get_linestyle() == "-.")
     x, y, z = axis.get_data_3d()
     assert y == pytest.approx([4, 4])
     assert z == pytest.approx([0, 0])

@@ -14,17 +14,15 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
-from cagepose.faces.scene_drawing import SceneDrawing
+from cagepose.faces.scene_drawing import POINT_LOOKS, SceneDrawing
 from cagepose.faces.style import (
     BLACK,
     BLUE,
     GREEN,
     GREY,
-    ORANGE,
     PAGE_WIDTH_IN,
     PURPLE,
     SKY,
-    VERMILLION,
     Look,
     styled,
 )
@@ -140,12 +138,7 @@ def _draw_view(panel: Axes, run: Run, phase_index: int, length_unit: LengthUnit)
     points = from_metres(view.project(run.scene.cage.points_world()), length_unit)
     for name, point in zip(run.scene.cage.names, points, strict=True):
         touches = name in touching
-        look: Look = (
-            {"color": VERMILLION, "markerfacecolor": ORANGE, "markersize": 5.0, "zorder": 3.0}
-            if touches
-            else {"color": GREY, "markerfacecolor": "white", "markersize": 3.0}
-        )
-        panel.plot(*point, "o", **look)
+        panel.plot(*point, "o", zorder=2.0 + touches, **POINT_LOOKS["touching" if touches else "free"])
         if touches:
             panel.annotate(name, point, xytext=(3.0, 3.0), textcoords="offset points", fontsize=7.0)
     panel.plot(*from_metres(view.load_point, length_unit), marker="D", color=BLUE, markersize=5.0)
@@ -176,12 +169,12 @@ def _axis_name(axis_world: np.ndarray) -> str:
 
 
 def _draw_legend(figure: Figure) -> None:
-    point: Look = {"marker": "o", "linestyle": "none", "markersize": 5.0}
+    point: Look = {"marker": "o", "linestyle": "none"}
     figure.legend(
         handles=[
-            Line2D([], [], color=VERMILLION, label="reached by this motion", **point),
-            Line2D([], [], color=VERMILLION, markerfacecolor=ORANGE, label="touches as well", **point),
-            Line2D([], [], color=GREY, markerfacecolor="white", label="cage point", **point),
+            Line2D([], [], label="reached by this motion", **point, **POINT_LOOKS["reached"]),
+            Line2D([], [], label="touches as well", **point, **POINT_LOOKS["touching"]),
+            Line2D([], [], label="cage point", **point, **POINT_LOOKS["free"]),
             Line2D([], [], color=BLUE, marker="D", linestyle="none", markersize=4.0, label="centre of gravity (CoG)"),
             Line2D([], [], color=PURPLE, linestyle="-.", label="axis of turning, or travel"),
             Line2D([], [], color=BLACK, label="load"),

@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -121,14 +122,21 @@ def _draw_series(panel: Axes, values: FloatArray, names: tuple[str, ...], least_
 
 
 def _draw_contacts(panel: Axes, steps: _Steps, names: list[str]) -> None:
+    dots: dict[bool, list[tuple[int, int]]] = {False: [], True: []}  # by whether the motion reached the point
+    stays: list[list[tuple[int, int]]] = []
     for row, name in enumerate(names):
         ends = [(last, name in event.contacts, name in event.hit) for _, _, last, event in steps.spans]
-        for (start, before, _), (end, after, _) in pairwise(ends):
-            if before and after:
-                panel.plot([start, end], [row, row], color=BLACK, linewidth=2.2, solid_capstyle="butt")
+        stays += [
+            [(start, row), (end, row)] for (start, before, _), (end, after, _) in pairwise(ends) if before and after
+        ]
         for step, touches, is_hit in ends:
             if touches:
-                panel.plot(step, row, "o", color=BLACK, markersize=5.0, markerfacecolor=BLACK if is_hit else "white")
+                dots[is_hit].append((step, row))
+    panel.add_collection(LineCollection(stays, colors=BLACK, linewidths=2.2, capstyle="butt"))
+    for is_hit, places in dots.items():
+        xs, ys = np.array(places).reshape(-1, 2).T
+        face = BLACK if is_hit else "white"
+        panel.plot(xs, ys, "o", color=BLACK, markersize=5.0, markerfacecolor=face, zorder=3.0)
     panel.set_yticks(range(len(names)), names)
     panel.set_ylim(max(len(names), 1) - 0.4, -0.6)
     panel.set_ylabel("contacts")

@@ -71,6 +71,6 @@ def _draw(panel: Axes, studies: Sequence[RangeStudy], angle: int, *, is_varied: 
     )  # fmt: skip
     for study, look in zip(studies, PIN_LOOKS, strict=False):
         label = f"after the push, pin at y = {study.pin_y_m * 1000.0:+.0f} mm"
-        panel.plot(misalignments, np.degrees(study.after_push_rad[:, angle]), markevery=4, label=label, **look)
+        panel.plot(misalignments, np.degrees(study.after_push_rad[:, angle]), markevery=2, label=label, **look)
     panel.grid(color=PALE, linewidth=0.6)
     panel.set_axisbelow(True)

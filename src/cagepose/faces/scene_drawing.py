@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from matplotlib.backend_bases import RendererBase
 from matplotlib.patches import FancyArrowPatch
@@ -10,7 +12,7 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 from mpl_toolkits.mplot3d.proj3d import proj_transform
 
-from cagepose.faces.style import BLACK, BLUE, GREY, ORANGE, PURPLE, SKY, VERMILLION
+from cagepose.faces.style import BLACK, BLUE, GREY, ORANGE, PURPLE, SKY, VERMILLION, Look
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.nouns.checks import FloatArray
 from cagepose.nouns.pose import Pose
@@ -21,6 +23,12 @@ SLIMMEST = 0.45
 """No edge of a picture is shorter than this fraction of its longest; a slimmer scene is stretched, and says so."""
 MOST_NAMED_POINTS = 8
 """All points of a cage this small are named; of a larger one, those that touch."""
+POINT_LOOKS: Mapping[str, Look] = {
+    "free": {"color": GREY, "markerfacecolor": "white", "markersize": 3.0},
+    "touching": {"color": VERMILLION, "markerfacecolor": ORANGE, "markersize": 5.0},
+    "reached": {"color": VERMILLION, "markersize": 5.0},
+}
+"""Cage points, by what they do at the end of an event; drawn in this order."""
 TOGETHER = 0.04
 """Points nearer than this fraction of the picture share one label."""
 MARGIN = 0.04
@@ -109,19 +117,15 @@ class SceneDrawing:
     def _draw_points(self, panel: Axes3D, contacts: tuple[str, ...], hit: tuple[str, ...]) -> None:
         names = self.run.scene.cage.names
         labels: list[tuple[FloatArray, list[str], bool]] = []
-        for name, point in sorted(zip(names, self.points, strict=True), key=lambda named: named[0] in contacts):
+        chosen: dict[str, list[FloatArray]] = {look: [] for look in POINT_LOOKS}
+        for name, point in zip(names, self.points, strict=True):
             touches = name in contacts
-            panel.plot(
-                *point[:, None],
-                marker="o",
-                markersize=5.0 if touches else 3.0,
-                color=VERMILLION if touches else GREY,
-                markerfacecolor=VERMILLION if name in hit else ORANGE if touches else "white",
-                linestyle="none",
-                zorder=7,
-            )
+            chosen["reached" if name in hit else "touching" if touches else "free"].append(point)
             if touches or len(names) <= MOST_NAMED_POINTS:
                 self._add_label(labels, point, name, touches)
+        for look, points in chosen.items():
+            if points:
+                panel.plot(*np.array(points).T, marker="o", linestyle="none", zorder=7, **POINT_LOOKS[look])
         for point, together, touches in labels:
             panel.text(*point, f" {' '.join(together)}", fontsize=7.0, color=BLACK if touches else GREY, zorder=8)
 

@@ -21,7 +21,7 @@ METHODS = ("stepwise",)
 """Those that the report compares: each gets its columns in the table and its pictures."""
 TIMED_RUNS = 21
 """Runs of each case whose median is the measured time."""
-RANGE_RAD = np.radians(np.linspace(-0.5, 0.5, 41))
+RANGE_RAD = np.radians(np.linspace(-0.5, 0.5, 21))
 """Misalignments of the range study."""
 
 Progress = Callable[[str], None]
