@@ -20,7 +20,7 @@ def without_compiling(text: str) -> str:
 
 @pytest.mark.parametrize("kind", ["pose", "events"])
 def test_a_scene_becomes_a_picture(command: Command, sample: str, kind: str) -> None:
-    answer = command("plot", sample, "--out", f"{kind}.png", "--kind", kind)
+    answer = command("plot", sample, "--out", f"{kind}.png", "--kind", kind, "--method", "stepwise")
     assert (answer.code, answer.out) == (0, f"wrote {kind}.png: sample, stable (stepwise)\n")
     with Image.open(f"{kind}.png") as picture:
         picture.load()
