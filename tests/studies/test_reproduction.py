@@ -119,7 +119,7 @@ def test_a_method_with_other_rules_leaves_gaps_and_no_error(result):
 
 @pytest.mark.parametrize("pin_y_m", [0.02, -0.02])
 def test_pitch_passes_zero_within_the_theorys_range_and_only_there(pin_y_m):
-    """(5.8): |misalignment| <= 0.3131 deg."""
+    """(6.8): |misalignment| <= 0.3131 deg."""
     misalignments = np.radians([-0.5, -0.32, -0.31, -0.1, 0.1, 0.31, 0.32, 0.5])
     study = range_study("pitch", misalignments, pin_y_m, "stepwise")
     expected = [zero_is_within_reach(value, study.permitted_rad).holds for value in misalignments.tolist()]

@@ -1,6 +1,6 @@
 """The paper's planar theory of the rail (its section IV): play, moments and what lining up requires.
 
-Equations (5.x): docs/theory/planar. Signs are right-handed throughout: a positive pitch or moment is about +y and
+Equations (6.x): docs/theory/planar. Signs are right-handed throughout: a positive pitch or moment is about +y and
 lowers what lies at +x, a positive yaw or moment is about +z and takes +x towards +y. The rail's front, where the pins
 are, points along -x. O is the centre of rotation, the origin of the rail's frame.
 """
@@ -28,7 +28,7 @@ class Requirement:
 
 
 def play_angle_rad(points_apart_m: float, faces_apart_m: float, spacing_m: float) -> float:
-    """Return how far two parallel faces can turn from level between two pairs of points, exactly (5.1).
+    """Return how far two parallel faces can turn from level between two pairs of points, exactly (6.1).
 
     Parameters
     ----------
@@ -52,12 +52,12 @@ def play_angle_rad(points_apart_m: float, faces_apart_m: float, spacing_m: float
 
 
 def small_play_angle_rad(points_apart_m: float, faces_apart_m: float, spacing_m: float) -> float:
-    """Return `play_angle_rad` for small angles: the play over the spacing, ``|a - b| / l`` (5.2)."""
+    """Return `play_angle_rad` for small angles: the play over the spacing, ``|a - b| / l`` (6.2)."""
     return abs(points_apart_m - faces_apart_m) / spacing_m
 
 
 def gravity_moment_nm(weight_n: float, center_of_gravity_x_m: float) -> float:
-    """Return the moment of the weight about O around +y, M_G = W x (5.3).
+    """Return the moment of the weight about O around +y, M_G = W x (6.3).
 
     ``center_of_gravity_x_m`` is horizontal, in the world, from O. Positive where the weight lies behind O: it lifts the
     pins.
@@ -66,7 +66,7 @@ def gravity_moment_nm(weight_n: float, center_of_gravity_x_m: float) -> float:
 
 
 def push_pitch_moment_nm(force_n: float, pitch_rad: float, pin_height_m: float, reach_m: float) -> float:
-    """Return the moment of a push along +x at a pin's tip about O around +y, T = -F (H cos p - L sin p) (5.4).
+    """Return the moment of a push along +x at a pin's tip about O around +y, T = -F (H cos p - L sin p) (6.4).
 
     The paper prints it without the minus sign, and then says T < 0, as it is here: below `pitch_limit_rad` the push
     lowers the pins.
@@ -75,7 +75,7 @@ def push_pitch_moment_nm(force_n: float, pitch_rad: float, pin_height_m: float, 
 
 
 def push_yaw_moment_nm(force_n: float, yaw_rad: float, pin_y_m: float, reach_m: float) -> float:
-    """Return the moment of a push along +x at a pin's tip about O around +z, M_F = -F (y cos w - L sin w) (5.5).
+    """Return the moment of a push along +x at a pin's tip about O around +z, M_F = -F (y cos w - L sin w) (6.5).
 
     ``pin_y_m`` is the tip's sideways position in the rail's frame; half the pin spacing, with its sign. The paper
     prints ``|w|``, which is this at the pin that touches first (`first_pin_y_m`), again without the minus sign.
@@ -84,12 +84,12 @@ def push_yaw_moment_nm(force_n: float, yaw_rad: float, pin_y_m: float, reach_m: 
 
 
 def pitch_limit_rad(pin_height_m: float, reach_m: float) -> float:
-    """Return the pitch at which T changes its sign, atan(H / L) (5.6)."""
+    """Return the pitch at which T changes its sign, atan(H / L) (6.6)."""
     return math.atan2(pin_height_m, reach_m)
 
 
 def yaw_limit_rad(pin_spacing_m: float, reach_m: float) -> float:
-    """Return the yaw at which M_F at the pin that touches first changes its sign, atan(W / 2 L) (5.6)."""
+    """Return the yaw at which M_F at the pin that touches first changes its sign, atan(W / 2 L) (6.6)."""
     return math.atan2(pin_spacing_m / 2.0, reach_m)
 
 
@@ -99,7 +99,7 @@ def first_pin_y_m(yaw_rad: float, pin_spacing_m: float) -> float:
 
 
 def push_opposes_weight(gravity_moment: float, push_moment: float) -> Requirement:
-    """Say whether a push turns the rail against its weight: (Rq.1) in pitch (5.7).
+    """Say whether a push turns the rail against its weight: (Rq.1) in pitch (6.7).
 
     The moments, in N m, must have opposite signs. The margin is what the smaller of them may lose before that changes,
     in N m.
@@ -110,7 +110,7 @@ def push_opposes_weight(gravity_moment: float, push_moment: float) -> Requiremen
 
 
 def push_reduces_yaw(yaw_rad: float, pin_y_m: float, reach_m: float) -> Requirement:
-    """Say whether a push at a pin turns the rail's yaw back towards zero: (Rq.1) in yaw (5.7).
+    """Say whether a push at a pin turns the rail's yaw back towards zero: (Rq.1) in yaw (6.7).
 
     The margin is how far the yaw is from where the moment changes its sign, in radians. At the pin that touches second
     the push turns the rail away from zero at every yaw. A yaw of zero cannot be reduced either.
@@ -121,7 +121,7 @@ def push_reduces_yaw(yaw_rad: float, pin_y_m: float, reach_m: float) -> Requirem
 
 
 def zero_is_within_reach(misalignment_rad: float, play_angle_rad: float) -> Requirement:
-    """Say whether the rail can lie at zero though its rollers do not: (Rq.2), ``|misalignment| <= play angle`` (5.8).
+    """Say whether the rail can lie at zero though its rollers do not: (Rq.2), ``|misalignment| <= play angle`` (6.8).
 
     The margin is how much more misalignment the play allows, in radians.
     """

@@ -37,7 +37,7 @@ class RangeStudy:
     verdicts
         Of each run, n.
     permitted_rad
-        The planar theory's limit of ``|misalignment|`` for this angle, (5.8); None: the theory has none (roll).
+        The planar theory's limit of ``|misalignment|`` for this angle, (6.8); None: the theory has none (roll).
     """
 
     method: str
