@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from cagepose.nouns.scene import Adjustable as Adjustable
     from cagepose.nouns.scene import Scene as Scene
     from cagepose.nouns.tolerances import Tolerances as Tolerances
+    from cagepose.runs.critical import with_critical_friction as with_critical_friction
+    from cagepose.runs.proof import FreeMotion as FreeMotion
+    from cagepose.runs.proof import Proof as Proof
     from cagepose.runs.run import Contact as Contact
     from cagepose.runs.run import Event as Event
     from cagepose.runs.run import Frame as Frame
@@ -39,6 +42,10 @@ if TYPE_CHECKING:
     from cagepose.runs.run import PhaseRun as PhaseRun
     from cagepose.runs.run import Run as Run
     from cagepose.runs.solve import run as run
+    from cagepose.studies.comparison import Comparison as Comparison
+    from cagepose.studies.comparison import Parting as Parting
+    from cagepose.studies.comparison import Variant as Variant
+    from cagepose.studies.comparison import compare as compare
 
     __version__: str
 
@@ -57,8 +64,11 @@ _HOMES = {
     "cagepose.nouns.pose": ("Pose",),
     "cagepose.nouns.scene": ("Adjustable", "Scene"),
     "cagepose.nouns.tolerances": ("Tolerances",),
+    "cagepose.runs.critical": ("with_critical_friction",),
+    "cagepose.runs.proof": ("FreeMotion", "Proof"),
     "cagepose.runs.run": ("Contact", "Event", "Frame", "Motion", "PhaseRun", "Run"),
     "cagepose.runs.solve": ("run",),
+    "cagepose.studies.comparison": ("Comparison", "Parting", "Variant", "compare"),
     "cagepose.files.run_file": ("load_run", "save_run"),
     "cagepose.files.scene_file": ("load_scene",),
 }
@@ -69,28 +79,35 @@ __all__ = [
     "Box",
     "Cage",
     "CageposeError",
+    "Comparison",
     "Contact",
     "Event",
     "Force",
     "Frame",
+    "FreeMotion",
     "Load",
     "MissingExtraError",
     "Motion",
     "Object",
+    "Parting",
     "PhaseRun",
     "Pose",
     "Problem",
+    "Proof",
     "Run",
     "RunFileError",
     "Scene",
     "SceneError",
     "SceneFileError",
     "Tolerances",
+    "Variant",
     "__version__",
+    "compare",
     "load_run",
     "load_scene",
     "run",
     "save_run",
+    "with_critical_friction",
 ]
 
 

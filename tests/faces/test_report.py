@@ -18,7 +18,7 @@ from cagepose.faces.report import check_report_folder, report_files, write_repor
 from cagepose.faces.report_html import html_page
 from cagepose.faces.report_markdown import markdown_text
 from cagepose.studies import reproduction
-from cagepose.studies.comparison import Printed, Row
+from cagepose.studies.printed import Printed, Row
 from cagepose.studies.reproduction import METHODS, reproduce
 
 VOID = {"meta", "img", "link", "br", "hr", "input"}

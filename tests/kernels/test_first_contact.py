@@ -35,7 +35,8 @@ def turn(point, through, axis, half=CUBE, depth=RESOLUTION):
 
 
 def screw(point, through, axis, pitch, end=2.0 * math.pi, half=CUBE, depth=RESOLUTION):
-    return _screw(point, through, axis, pitch, end, half, depth, RESOLUTION)
+    velocity = np.cross(axis, np.subtract(point, through)) + pitch * np.array(axis)
+    return _screw(point, tuple(velocity.tolist()), axis, end, half, depth, RESOLUTION)
 
 
 def negated(vector):

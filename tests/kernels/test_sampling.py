@@ -91,8 +91,8 @@ class Screw(Turn):
         self.pitch = rng.uniform(-0.5, 0.5)
 
     def entry(self, point, half, depth):
-        arguments = tuple(point), tuple(self.through), tuple(self.axis), self.pitch, self.end, tuple(half)
-        return _screw(*arguments, depth, RESOLUTION)
+        velocity = np.cross(self.axis, point - self.through) + self.pitch * self.axis
+        return _screw(tuple(point), tuple(velocity), tuple(self.axis), self.end, tuple(half), depth, RESOLUTION)
 
 
 @pytest.mark.parametrize("motion_kind", [Travel, Turn, Screw])

@@ -25,6 +25,10 @@ BROKEN_PIPE = 141  # 128 + SIGPIPE
 PURPOSE = "Where a loosely held part comes to rest in its cage of points, through which contacts, and why."
 COMMANDS = {
     "run": ("cagepose.cli.run_command:run_command", "Run a scene: events, final pose, verdict."),
+    "compare": (
+        "cagepose.cli.compare_command:compare_command",
+        "Run a scene by both methods: final poses, verdicts, where they part.",
+    ),
     "check": ("cagepose.cli.check_command:check_command", "Check a scene file without running it."),
     "plot": ("cagepose.cli.plot_command:plot_command", "Draw a scene's run, or a saved run, into a picture file."),
     "reproduce": (

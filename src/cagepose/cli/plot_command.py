@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from cagepose.cli.compiling import say_if_compiling
+from cagepose.cli.first_run import announce_compilation
 from cagepose.cli.options import SetOption
 
 if TYPE_CHECKING:
@@ -85,5 +85,5 @@ def _read(
         return None
     if isinstance(source, RunFile):
         return source.run, source.length_unit
-    say_if_compiling(chosen_method(source.scene, method))
+    announce_compilation([chosen_method(source.scene, method)])
     return run(source.scene, method), source.length_unit

@@ -12,7 +12,7 @@ from rich.text import Text
 from cagepose.cli.console import print_all
 from cagepose.errors import printable
 from cagepose.files.units import LengthUnit, from_metres
-from cagepose.runs.run import AT_REST, FAILURES, Event, Motion, Run
+from cagepose.runs.run import AT_REST, FAILURES, Event, Motion, PhaseRun, Run
 
 
 def print_report(run: Run, unit: LengthUnit, notes: Sequence[str] = ()) -> None:
@@ -31,7 +31,7 @@ class _Writer:
     def title(self) -> Text:
         solve_ms = self.run.solve_s * 1000.0
         title = Text(f"{self.run.scene.name}: ")
-        title.append(self.run.verdict, style=_style(self.run.verdict))
+        title.append(self.run.verdict, style=verdict_style(self.run.verdict))
         return title.append(f"  ({self.run.method}, {solve_ms:.3g} ms)")
 
     def events(self) -> Table:
@@ -50,7 +50,7 @@ class _Writer:
 
     def _event_row(self, number: int, phase: str, event: Event, verdict: str | None) -> list[Text]:
         if event.motion is None:
-            motion = Text(verdict or "-", style=_style(verdict) if verdict else "")
+            motion = Text(verdict or "-", style=verdict_style(verdict) if verdict else "")
             along = amount = ""
         else:
             motion, along, amount = Text(event.motion.kind), _line(event.motion), self._amount(event.motion)
@@ -60,19 +60,24 @@ class _Writer:
     def summary(self) -> Table:
         run = self.run
         table = Table.grid(padding=(0, 2))
-        angles = ", ".join(_short(math.degrees(angle), 6, 1e-10) for angle in run.pose.euler_zyx)
+        angles = ", ".join(short(math.degrees(angle), 6, 1e-10) for angle in run.pose.euler_zyx)
         for name, value in (
             ("position", f"({self._lengths(run.pose.position_m)}) {self.unit}"),
             ("yaw, pitch, roll", f"({angles}) deg"),
             ("centre of gravity", f"({self._lengths(run.center_of_gravity_world)}) {self.unit}"),
             ("contacts", ", ".join(_contact_texts(run)) or "none"),
+            ("forces", _forces(run)),
             ("verdict", _verdicts(run)),
+            ("proof", _proof(run)),
+            ("critical friction", _critical(run)),
         ):
+            if not value:
+                continue
             table.add_row(Text(name), Text(value, overflow="fold"))
         return table
 
     def _amount(self, motion: Motion) -> str:
-        angle = f"{_short(math.degrees(motion.angle_rad), 6, 1e-10)} deg"
+        angle = f"{short(math.degrees(motion.angle_rad), 6, 1e-10)} deg"
         if motion.kind == "turn":
             return angle
         if not math.isfinite(motion.distance_m):
@@ -81,15 +86,16 @@ class _Writer:
         return distance if motion.kind == "travel" else f"{distance}, {angle}"
 
     def _lengths(self, lengths_m: Iterable[float]) -> str:
-        return ", ".join(_short(float(from_metres(length, self.unit)), 6, self.noise) for length in lengths_m)
+        return ", ".join(short(float(from_metres(length, self.unit)), 6, self.noise) for length in lengths_m)
 
 
 def _line(motion: Motion) -> str:
     along = motion.direction_world if motion.axis_world is None else motion.axis_world
-    return "" if along is None else f"({', '.join(_short(value, 4, 5e-5) for value in along.tolist())})"
+    return "" if along is None else f"({', '.join(short(value, 4, 5e-5) for value in along.tolist())})"
 
 
-def _short(value: float, digits: int, noise: float) -> str:
+def short(value: float, digits: int, noise: float) -> str:
+    """Return a number as people read it; below ``noise`` it is zero."""
     return "0" if abs(value) < noise else f"{value:.{digits}g}"
 
 
@@ -103,11 +109,51 @@ def _contact_texts(run: Run) -> list[str]:
     return [f"{' '.join(names)} on {box}" for box, names in points.items()]
 
 
+def _forces(run: Run) -> str:
+    """``C1 0.5, C3 0.5 (+ 0.05 sideways)``: what presses at the end, one part of the load or newtons."""
+    texts = []
+    for contact in run.contacts:
+        if contact.force_normal_n:
+            sideways = math.hypot(*contact.force_tangential_n) if contact.force_tangential_n is not None else 0.0
+            beside = f" (+ {sideways:.4g} sideways)" if sideways > 1e-9 * contact.force_normal_n else ""
+            texts.append(f"{contact.point} {contact.force_normal_n:.4g}{beside}")
+    shared = run.phases[-1].proof.shared
+    if shared:
+        texts.append(f"one way of many to share it between {' '.join(shared)}")
+    return ", ".join(texts)
+
+
 def _verdicts(run: Run) -> str:
-    return ", ".join(f"{phase.name}: {phase.verdict}" for phase in run.phases)
+    return ", ".join(f"{phase.name}: {phase.verdict}{_firmness(phase)}" for phase in run.phases)
 
 
-def _style(verdict: str) -> str:
+def _firmness(phase: PhaseRun) -> str:
+    """How a held phase answers small disturbances, and which freedoms its load leaves open."""
+    proof = phase.proof
+    if phase.verdict not in AT_REST or proof.stability is None:
+        return ""
+    left = f", free along {' '.join(proof.undetermined)}" if proof.undetermined else ""
+    return f" ({proof.stability}{left})"
+
+
+def _proof(run: Run) -> str:
+    proof = run.phases[-1].proof
+    if run.phases[-1].verdict not in AT_REST:
+        return ""
+    return f"{proof.verdict}: {proof.reason} (residual {proof.residual:.1e})"
+
+
+def _critical(run: Run) -> str:
+    texts = []
+    for phase in run.phases:
+        least = phase.proof.critical_friction
+        if least is not None:
+            texts.append(f"{phase.name}: {'none is enough' if math.isinf(least) else f'{least:.10g}'}")
+    return ", ".join(texts)
+
+
+def verdict_style(verdict: str) -> str:
+    """Return the colour of a verdict."""
     if verdict in AT_REST:
         return "bold green"
     return "bold red" if verdict in FAILURES else "bold yellow"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from cagepose.cli.compiling import say_if_compiling
+from cagepose.cli.first_run import announce_compilation
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -30,7 +30,7 @@ def reproduce_command(
     try:
         check_report_folder(out, METHODS)
         for method in METHODS:
-            say_if_compiling(method)
+            announce_compilation([method])
         progress = _teller()
         reproduction = reproduce(METHODS, progress)
         written = write_report(out, reproduction, progress)

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from cagepose.cli.compiling import say_if_compiling
 from cagepose.cli.options import SceneArgument, SetOption, Switch
 
 if TYPE_CHECKING:
@@ -22,6 +21,9 @@ def run_command(
     set_values: SetOption = (),
     json: Annotated[bool, Switch, Parameter(help="Print one JSON document instead of the table.")] = False,
     out: Annotated[str | None, Parameter(help="Save the run to this file, every number exactly.")] = None,
+    critical_friction: Annotated[
+        bool, Switch, Parameter(help="Find the least coefficient of friction that each rest needs.")
+    ] = False,
     check_tolerance: Annotated[
         bool, Switch, Parameter(help="Run again with other touch tolerances and warn if the verdict changes.")
     ] = False,
@@ -33,11 +35,15 @@ def run_command(
 
     from dataclasses import replace
 
+    from cagepose.cli.first_run import announce_compilation
+    from cagepose.runs.critical import with_critical_friction
     from cagepose.runs.solve import chosen_method, run
     from cagepose.runs.tolerance_check import verdict_changes
 
-    say_if_compiling(chosen_method(scene_file.scene, method))
+    announce_compilation([chosen_method(scene_file.scene, method)])
     result = run(scene_file.scene, method)
+    if critical_friction:
+        result = with_critical_friction(result)
     notes = []
     if check_tolerance:
         changes = verdict_changes(result)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cagepose.studies.comparison import Printed, Row, Unit, Value, in_unit
+from cagepose.studies.printed import Printed, Row, Unit, Value, in_unit
 
 MORE_DIGITS = 3
 """Decimals shown beyond those that the paper prints."""

@@ -15,7 +15,7 @@ from cagepose.faces.event_figure import event_figure
 from cagepose.faces.planar_table import planar_table
 from cagepose.faces.pose_figure import pose_figure
 from cagepose.faces.range_figure import range_figure
-from cagepose.studies.comparison import Row
+from cagepose.studies.printed import Row
 from cagepose.studies.range_study import RangeStudy
 from cagepose.studies.reproduction import TIMED_RUNS, Progress, Reproduction
 

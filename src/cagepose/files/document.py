@@ -9,9 +9,10 @@ from cagepose.files.units import LengthUnit, from_metres
 from cagepose.nouns.checks import FloatArray
 from cagepose.nouns.pose import Pose
 from cagepose.nouns.scene import Scene
+from cagepose.runs.proof import FreeMotion, Proof
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
 
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 """Of the document and of saved runs. Counts up when a reader of the old form would misread the new one."""
 
 
@@ -51,7 +52,30 @@ class _Writer:
             "pose": self.pose(phase.pose),
             "events": [self._event(event) for event in phase.events],
             "contacts": [self._contact(contact) for contact in phase.contacts],
-            "proof": None,
+            "proof": self._proof(phase.proof),
+        }
+
+    def _proof(self, proof: Proof) -> dict[str, Any]:
+        critical = proof.critical_friction
+        return {
+            "verdict": proof.verdict,
+            "reason": proof.reason,
+            "residual": proof.residual,
+            "needs_friction": proof.needs_friction,
+            "stability": proof.stability,
+            "undetermined": list(proof.undetermined),
+            "shared": list(proof.shared),
+            "motion": None if proof.motion is None else self._free_motion(proof.motion),
+            "critical_friction": None if critical is None or math.isinf(critical) else critical,
+        }
+
+    def _free_motion(self, motion: FreeMotion) -> dict[str, Any]:
+        return {
+            "kind": motion.kind,
+            "direction": _vector_or_none(motion.direction_world),
+            "axis": _vector_or_none(motion.axis_world),
+            "through": None if motion.through_world is None else self._lengths(motion.through_world),
+            "pitch": self._length(motion.pitch_m),
         }
 
     def _event(self, event: Event) -> dict[str, Any]:

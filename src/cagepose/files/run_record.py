@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -18,6 +18,7 @@ from cagepose.files.scene_record import (
     scene_of_record,
 )
 from cagepose.nouns.checks import FloatArray
+from cagepose.runs.proof import FreeMotion, Proof, ProofVerdict, Stability
 from cagepose.runs.run import Contact, Event, Motion, MotionKind, Note, PhaseRun, Run, Verdict
 
 
@@ -48,6 +49,7 @@ class EventRecord(Record):
     contacts: list[str]
     pose: PoseRecord
     note: Note | None
+    path: list[PoseRecord]
 
 
 class ContactRecord(Record):
@@ -62,6 +64,30 @@ class ContactRecord(Record):
     force_tangential_n: Three | None
 
 
+class FreeMotionRecord(Record):
+    """A `FreeMotion`."""
+
+    kind: MotionKind
+    direction: Three | None
+    axis: Three | None
+    through_m: Three | None
+    pitch_m: float
+
+
+class ProofRecord(Record):
+    """A `Proof`."""
+
+    verdict: ProofVerdict
+    reason: str
+    residual: float
+    needs_friction: bool
+    stability: Stability | None
+    undetermined: list[str]
+    shared: list[str]
+    motion: FreeMotionRecord | None
+    critical_friction: float | Literal["none"] | None  # "none": no coefficient is enough
+
+
 class PhaseRecord(Record):
     """A `PhaseRun`."""
 
@@ -70,6 +96,7 @@ class PhaseRecord(Record):
     start_pose: PoseRecord
     events: list[EventRecord]
     contacts: list[ContactRecord]
+    proof: ProofRecord
 
 
 class RunRecord(Record):
@@ -125,6 +152,30 @@ def _phase_record(phase: PhaseRun) -> PhaseRecord:
             )
             for contact in phase.contacts
         ],
+        proof=_proof_record(phase.proof),
+    )
+
+
+def _proof_record(proof: Proof) -> ProofRecord:
+    motion, critical = proof.motion, proof.critical_friction
+    return ProofRecord(
+        verdict=proof.verdict,
+        reason=proof.reason,
+        residual=proof.residual,
+        needs_friction=proof.needs_friction,
+        stability=proof.stability,
+        undetermined=list(proof.undetermined),
+        shared=list(proof.shared),
+        motion=None
+        if motion is None
+        else FreeMotionRecord(
+            kind=motion.kind,
+            direction=list_or_none(motion.direction_world),
+            axis=list_or_none(motion.axis_world),
+            through_m=list_or_none(motion.through_world),
+            pitch_m=motion.pitch_m,
+        ),
+        critical_friction="none" if critical is not None and math.isinf(critical) else critical,
     )
 
 
@@ -146,6 +197,7 @@ def _event_record(event: Event) -> EventRecord:
         contacts=list(event.contacts),
         pose=PoseRecord.of(event.pose_world_object),
         note=event.note,
+        path=[PoseRecord.of(pose) for pose in event.path],
     )
 
 
@@ -163,12 +215,32 @@ def _phase(record: PhaseRecord) -> PhaseRun:
         for contact in record.contacts
     )
     events = tuple(_event(event) for event in record.events)
-    return PhaseRun(record.name, record.verdict, record.start_pose.pose(), events, contacts)
+    return PhaseRun(record.name, record.verdict, record.start_pose.pose(), events, contacts, _proof(record.proof))
+
+
+def _proof(record: ProofRecord) -> Proof:
+    motion = record.motion
+    return Proof(
+        record.verdict,
+        record.reason,
+        record.residual,
+        record.needs_friction,
+        record.stability,
+        tuple(record.undetermined),
+        tuple(record.shared),
+        None
+        if motion is None
+        else FreeMotion(
+            motion.kind, _array(motion.direction), _array(motion.axis), _array(motion.through_m), motion.pitch_m
+        ),
+        math.inf if record.critical_friction == "none" else record.critical_friction,
+    )
 
 
 def _event(record: EventRecord) -> Event:
     motion = None if record.motion is None else _motion(record.motion)
-    return Event(record.rule, motion, tuple(record.hit), tuple(record.contacts), record.pose.pose(), record.note)
+    path = tuple(pose.pose() for pose in record.path)
+    return Event(record.rule, motion, tuple(record.hit), tuple(record.contacts), record.pose.pose(), record.note, path)
 
 
 def _motion(record: MotionRecord) -> Motion:

@@ -11,13 +11,13 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.geometry import Geometry, Placement, point_in_box, vector_in_box
+from cagepose.kernels.geometry import Geometry, Placement, box_gap, point_in_box, vector_in_box
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.screw import screw_entry
 from cagepose.kernels.tolerances import KernelTolerances
 from cagepose.kernels.travel import travel_entry
 from cagepose.kernels.turn import turn_entry
-from cagepose.kernels.vector import Vector, row
+from cagepose.kernels.vector import Vector, cross, minus, norm, plus, row
 
 
 @kernel
@@ -32,24 +32,31 @@ def allowed_depth(depth_m: float, tolerances: KernelTolerances) -> float:
 
 @kernel
 def first_contact_travel(
-    geometry: Geometry, placement: Placement, direction: Vector, tolerances: KernelTolerances
-) -> tuple[float, int]:
-    """Return (distance, point index) of the first contact on a travel along ``direction``; (inf, -1): none ahead."""
-    least, first_point = math.inf, -1
+    geometry: Geometry, placement: Placement, direction: Vector, skip_gap_m: float, tolerances: KernelTolerances
+) -> tuple[float, int, int]:
+    """Return (distance, point index, box index) of the first contact on a travel along ``direction``; (inf, -1, -1):
+    none ahead.
+
+    Points within ``skip_gap_m`` of a box are not asked about that box: -inf skips none.
+    """
+    least, first_point, first_box = math.inf, -1, -1
     for box in range(len(geometry.half_sizes)):
         half_size = row(geometry.half_sizes, box)
         velocity_box = vector_in_box(placement, box, direction)
         for point in range(len(geometry.points_world)):
+            point_box = row(placement.points_box[box], point)
+            if box_gap(point_box, half_size) <= skip_gap_m:
+                continue
             entry = travel_entry(
-                row(placement.points_box[box], point),
+                point_box,
                 velocity_box,
                 half_size,
                 allowed_depth(placement.depths[point], tolerances),
                 tolerances.resolution_m,
             )
             if entry < least:
-                least, first_point = entry, point
-    return least, first_point
+                least, first_point, first_box = entry, point, box
+    return least, first_point, first_box
 
 
 @kernel
@@ -115,29 +122,43 @@ def turn_is_blocked_at_once(
 def first_contact_screw(
     geometry: Geometry,
     placement: Placement,
-    through: Vector,
+    center: Vector,
+    velocity: Vector,
     axis: Vector,
-    pitch_m: float,
     angle_end_rad: float,
+    skip_gap_m: float,
     tolerances: KernelTolerances,
-) -> tuple[float, int]:
-    """Return (angle, point index) of the first contact on a screw before ``angle_end_rad``; (inf, -1): none."""
-    least, first_point = math.inf, -1
+) -> tuple[float, int, int]:
+    """Return (angle, point index, box index) of the first contact on a screw before ``angle_end_rad``; (inf, -1, -1):
+    none.
+
+    ``velocity`` is that of the object at ``center`` for each radian about the unit vector ``axis``, metres. Points
+    within ``skip_gap_m`` of a box are not asked about that box.
+    """
+    least, first_point, first_box = math.inf, -1, -1
+    angle_end = angle_end_rad
     for box in range(len(geometry.half_sizes)):
         half_size = row(geometry.half_sizes, box)
-        through_box = point_in_box(placement, box, through)
         axis_box = vector_in_box(placement, box, axis)
+        velocity_box = vector_in_box(placement, box, velocity)
+        center_box = point_in_box(placement, box, center)
         for point in range(len(geometry.points_world)):
+            point_box = row(placement.points_box[box], point)
+            point_velocity = plus(velocity_box, cross(axis_box, minus(point_box, center_box)))
+            gap = box_gap(point_box, half_size)
+            # No point moves farther than its path is long, and a screw's path has a constant speed.
+            if gap <= skip_gap_m or gap > norm(point_velocity) * angle_end:
+                continue
             entry = screw_entry(
-                row(placement.points_box[box], point),
-                through_box,
+                point_box,
+                point_velocity,
                 axis_box,
-                pitch_m,
-                angle_end_rad,
+                angle_end,
                 half_size,
                 allowed_depth(placement.depths[point], tolerances),
                 tolerances.resolution_m,
             )
             if entry < least:
-                least, first_point = entry, point
-    return least, first_point
+                least, first_point, first_box = entry, point, box
+                angle_end = entry
+    return least, first_point, first_box

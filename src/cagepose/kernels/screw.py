@@ -4,6 +4,9 @@ Seen from the box, coordinate k of the point runs along
 
     q_k(s) = q0_k + A_k (cos s - 1) + B_k sin s + D_k s,    A = u_perp, B = -a x u_perp, D = -pitch a.
 
+All three come from the velocity V of the object at the point, for each radian: D = -a (a.V), B = -(V - a (a.V)),
+A = a x B. The place of the axis itself is not used: it may lie a million sizes away, where the object hardly turns.
+
 Between two zeros of its derivative q_k is monotone, so each piece holds at most one crossing of a face, which is
 bracketed. cos s - 1 is taken as -2 sin^2(s/2): near s = 0, where re-contact is decided, nothing cancels. Contact is
 decided by equation (2.5), see `cagepose.kernels.travel`.
@@ -150,9 +153,8 @@ def entry_start(waves: tuple[Wave, ...], s_inside: float) -> float:
 @kernel
 def screw_entry(
     point_box: Vector,
-    through_box: Vector,
+    velocity_box: Vector,
     axis_box: Vector,
-    pitch_m: float,
     angle_end_rad: float,
     half_size: Vector,
     allowed_depth_m: float,
@@ -164,10 +166,11 @@ def screw_entry(
     ----------
     point_box
         The cage point at the start, in the box's frame, metres.
-    through_box, axis_box
-        A point on the axis, metres, and its unit vector, in the box's frame. The object turns right-handed.
-    pitch_m
-        Travel along the axis for each radian of turning, metres; 0 is a turn. A motion that hardly turns is a travel.
+    velocity_box
+        How far the object moves where the point is, for each radian of turning, at the start, metres, in the box's
+        frame: a x u + pitch a.
+    axis_box
+        Unit vector of the axis in the box's frame. The object turns right-handed.
     angle_end_rad
         Where to stop looking, finite and above 0; more than one turn is fine.
     half_size
@@ -175,10 +178,9 @@ def screw_entry(
     allowed_depth_m, resolution_m
         See equation (2.5) in `cagepose.kernels.travel`; metres.
     """
-    u = minus(point_box, through_box)
-    w = cross(axis_box, u)
-    u_perp = minus(u, scaled(axis_box, dot(axis_box, u)))
-    rise = scaled(axis_box, pitch_m)
+    rise = scaled(axis_box, dot(axis_box, velocity_box))
+    w = minus(velocity_box, rise)
+    u_perp = cross(w, axis_box)
 
     inner_waves = face_waves(point_box, u_perp, w, rise, half_size, -allowed_depth_m)
     inner = 0.0

@@ -116,7 +116,7 @@ def travel_between_faces(
     if abs(work) <= tolerances.tie:
         return held(SLP_2, PLAIN)
     direction = across if work > 0.0 else scaled(across, -1.0)
-    distance, hit_point = first_contact_travel(geometry, placement, direction, tolerances)
+    distance, hit_point, _ = first_contact_travel(geometry, placement, direction, -math.inf, tolerances)
     if distance <= 0.0:
         return held(SLP_2, PLAIN)
     return Step(SLP_2, TRAVEL, direction, (0.0, 0.0, 0.0), distance, hit_point, PLAIN)

@@ -113,7 +113,7 @@ def next_step(
     phase_code = PHASE_B if is_push else PHASE_A
     n_chosen = choose_below(touching, rules.slip.contactless_angle_rad if is_push else math.inf)
     if n_chosen == 0:
-        distance, hit_point = first_contact_travel(geometry, placement, load.direction, tolerances)
+        distance, hit_point, _ = first_contact_travel(geometry, placement, load.direction, -math.inf, tolerances)
         return Step(phase_code, TRAVEL, load.direction, (0.0, 0.0, 0.0), distance, hit_point, PLAIN)
     if is_push:
         slide = slip_step(

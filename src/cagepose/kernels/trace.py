@@ -13,18 +13,20 @@ from cagepose.kernels.pose import Quaternion, moved_pose
 from cagepose.kernels.turn import angle_of_key
 from cagepose.kernels.vector import Vector
 
-TRAVEL, TURN, NONE = 0, 1, 2
+TRAVEL, TURN, SCREW, NONE = 0, 1, 2, 3
 """Codes of motions: the index into `MOTION_NAMES`; NONE has no name."""
-MOTION_NAMES: tuple[Literal["travel", "turn"], ...] = ("travel", "turn")
+MOTION_NAMES: tuple[Literal["travel", "turn", "screw"], ...] = ("travel", "turn", "screw")
 
-STABLE, ESCAPES, SPINS, CYCLING, LIMIT = 0, 1, 2, 3, 4
+STABLE, ESCAPES, SPINS, CYCLING, LIMIT, RESTS, STALLED = 0, 1, 2, 3, 4, 5, 6
 """Codes of how a phase ended: the index into `VERDICT_NAMES`."""
-VERDICT_NAMES: tuple[Literal["stable", "escapes", "spins", "cycling", "limit"], ...] = (
+VERDICT_NAMES: tuple[Literal["stable", "escapes", "spins", "cycling", "limit", "rests", "stalled"], ...] = (
     "stable",
     "escapes",
     "spins",
     "cycling",
     "limit",
+    "rests",
+    "stalled",
 )
 
 

@@ -137,6 +137,32 @@ class Scene:
         ):
             _set_field(self, field, value)
 
+    def changed(
+        self,
+        *,
+        friction_coefficient: float | None = None,
+        metric: Metric | None = None,
+        tolerances: Tolerances | None = None,
+    ) -> Scene:
+        """Return the same scene but for what is given.
+
+        Raises
+        ------
+        SceneError
+            As for a new scene.
+        """
+        return Scene(
+            self.object,
+            self.cage,
+            self.loads,
+            name=self.name,
+            friction_coefficient=self.friction_coefficient if friction_coefficient is None else friction_coefficient,
+            method=self.method,
+            metric=self.metric if metric is None else metric,
+            tolerances=self.tolerances if tolerances is None else tolerances,
+            adjustable=self.adjustable,
+        )
+
     @property
     def touch_m(self) -> float:
         """The touch tolerance as a length, metres."""

@@ -1,9 +1,9 @@
-"""Volume and centroid of a union of boxes, exactly: what two boxes share counts once.
+"""Volume, centroid and second moments of a union of boxes, exactly: what two boxes share counts once.
 
 Box after box, the part outside all earlier boxes is added up. To take one box out of a convex piece, the piece is cut
 at the box's six planes in turn; what lies beyond a plane is a new convex piece, and what is left after all six lies
-inside the box and is dropped. The volume and the centroid of a convex piece come from the tetrahedra over its faces
-(divergence theorem), seen from one of its own corners, so that a far-away origin costs no digits.
+inside the box and is dropped. The moments of a convex piece come from the tetrahedra over its faces (divergence
+theorem), seen from one of its own corners, so that a far-away origin costs no digits.
 """
 
 from __future__ import annotations
@@ -29,10 +29,21 @@ _BOX_FACES = ([0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 
 
 @dataclass(frozen=True, eq=False)
 class VolumeMoments:
-    """Volume (cubic metres) and centroid (3,) (metres) of a body of uniform density."""
+    """Moments of a body of uniform density.
+
+    Attributes
+    ----------
+    volume_m3
+        Cubic metres.
+    centroid_m
+        (3,), metres.
+    second_moment_m2
+        Mean of (x - centroid) (x - centroid)^T over the volume, (3, 3), metres squared.
+    """
 
     volume_m3: float
     centroid_m: FloatArray
+    second_moment_m2: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +55,7 @@ class _Piece:
 
 
 def union_moments(half_sizes_m: FloatArray, positions_m: FloatArray, rotations: FloatArray) -> VolumeMoments:
-    """Return volume and centroid of the union of n boxes; parts that several boxes share count once.
+    """Return the moments of the union of n boxes; parts that several boxes share count once.
 
     Parameters
     ----------
@@ -72,20 +83,27 @@ def union_moments(half_sizes_m: FloatArray, positions_m: FloatArray, rotations: 
     tolerance = ON_PLANE * max(float(np.abs(box.points).max()) for box in boxes)
     # Large boxes first: they swallow small ones whole, which otherwise would cut them up (40 boxes: 0.4 s, not 2.4 s).
     order = np.argsort(-half_sizes.prod(axis=1), kind="stable").tolist()
-    volume = 0.0
-    first_moment = np.zeros(3)
+    parts = []
     for place, index in enumerate(order):
         pieces = [boxes[index]]
         for other in order[:place]:
             cutter = (half_sizes[other], centers[other], rotations[other])
             pieces = [left for piece in pieces for left in _outside(piece, *cutter, tolerance)]
-        for piece in pieces:
-            piece_volume, piece_centroid = _piece_moments(piece)
-            volume += piece_volume
-            first_moment += piece_volume * piece_centroid
-    centroid_m = origin + first_moment / volume * unit_m
+        if len(pieces) == 1 and pieces[0] is boxes[index]:
+            parts.append(_box_samples(boxes[index], half_sizes[index], centers[index]))
+        else:
+            parts += [_piece_samples(piece) for piece in pieces]
+    weights = np.concatenate([part[0] for part in parts])
+    points = np.concatenate([part[1] for part in parts])
+    volume = float(weights.sum())
+    centroid = weights @ points / volume
+    arms = points - centroid  # all terms of the second moment are then squares, and none takes digits from another
+    second_moment = np.einsum("n,ni,nj->ij", weights, arms, arms) / volume
+    centroid_m = origin + centroid * unit_m
+    second_moment_m2 = (second_moment + second_moment.T) / 2.0 * unit_m**2  # its two sides are rounded differently
     centroid_m.setflags(write=False)
-    return VolumeMoments(volume * unit_m**3, centroid_m)
+    second_moment_m2.setflags(write=False)
+    return VolumeMoments(volume * unit_m**3, centroid_m, second_moment_m2)
 
 
 def _outside(
@@ -180,13 +198,25 @@ def _closed(points: list[FloatArray], faces: list[list[int]]) -> _Piece:
     )
 
 
-def _piece_moments(piece: _Piece) -> tuple[float, FloatArray]:
-    """Volume and centroid from the tetrahedra between one corner and the triangles of all faces."""
+def _box_samples(box: _Piece, half: FloatArray, center: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """As `_piece_samples`, for a whole box: also right where it is too thin for its corners to tell its volume."""
+    volume = 8.0 * half.prod()
+    return volume * np.append(np.full(8, 1.0 / 24.0), 2.0 / 3.0), np.append(box.points, center[None], axis=0)
+
+
+def _piece_samples(piece: _Piece) -> tuple[FloatArray, FloatArray]:
+    """Weights (n,) and points (n, 3) at which sums stand for integrals, up to squares of the coordinates.
+
+    They are those of the tetrahedra between one corner and the triangles of all faces: a twentieth of the volume at
+    each corner, and the rest at the centroid.
+    """
     triangles = [(face[0], *pair) for face in piece.faces for pair in pairwise(face[1:])]
     apex = piece.points[0]
     arms = piece.points[np.array(triangles)] - apex  # (n_triangles, 3 corners, 3)
     volumes = np.einsum("ij,ij->i", arms[:, 0], np.cross(arms[:, 1], arms[:, 2])) / 6.0
-    volume = float(volumes.sum())
-    if volume <= 0.0:  # a sliver of rounding size
-        return 0.0, apex
-    return volume, apex + volumes @ arms.sum(axis=1) / (4.0 * volume)
+    if volumes.sum() <= 0.0:  # a sliver of rounding size
+        return np.zeros(0), np.zeros((0, 3))
+    corners = np.concatenate([np.zeros((len(arms), 1, 3)), arms], axis=1)
+    samples = np.concatenate([corners, corners.mean(axis=1, keepdims=True)], axis=1)
+    weights = np.outer(volumes, [0.05, 0.05, 0.05, 0.05, 0.8])
+    return weights.ravel(), apex + samples.reshape(-1, 3)

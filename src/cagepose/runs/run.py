@@ -13,6 +13,7 @@ from cagepose.kernels.pose import moved_pose
 from cagepose.nouns.checks import FloatArray, as_vector
 from cagepose.nouns.pose import Pose
 from cagepose.nouns.scene import Scene
+from cagepose.runs.proof import Proof
 
 MotionKind = Literal["travel", "turn", "screw"]
 Note = Literal["tie", "balanced", "small turn", "edge tie"]
@@ -87,7 +88,8 @@ class Contact:
     near_edge
         The point lies within the touch tolerance of an edge where the object's surface really ends.
     force_normal_n, force_tangential_n
-        What the contact carries; None where the method does not compute forces.
+        Force on the object: its part along -n, and the rest, (3,), in the world. Newtons if mass and magnitude are
+        given as far as they count, else per unit load. None where no forces balance the load.
     """
 
     point: str
@@ -120,6 +122,9 @@ class Event:
         was decided by convention), "balanced" (the load's line passes through the one contact that holds), "small
         turn" (held, though the load could still turn the object by less than counts), "edge tie" (a contact on an edge
         whose faces make the same angle with the push); None: nothing.
+    path
+        Poses on the way to ``pose_world_object``, the last of them, where the way is not that of ``motion`` alone (a
+        sliding contact bends it); empty: it is.
     """
 
     rule: str
@@ -128,17 +133,31 @@ class Event:
     contacts: tuple[str, ...]
     pose_world_object: Pose
     note: Note | None
+    path: tuple[Pose, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
 class PhaseRun:
-    """One load from its start to its verdict."""
+    """One load from its start to its verdict.
+
+    Attributes
+    ----------
+    name, verdict
+        The load's name, and how it ended.
+    start_pose, events
+        Where it began, and what happened.
+    contacts
+        At the end, with what they carry if the load is balanced.
+    proof
+        What the mechanics says of the pose at the end, whatever the method.
+    """
 
     name: str
     verdict: Verdict
     start_pose: Pose
     events: tuple[Event, ...]
     contacts: tuple[Contact, ...]
+    proof: Proof
 
     @property
     def pose(self) -> Pose:

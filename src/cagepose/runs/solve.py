@@ -7,14 +7,18 @@ from collections.abc import Callable
 from cagepose.errors import Problem, SceneError
 from cagepose.kernels.jit import is_compiled
 from cagepose.nouns.scene import Scene
+from cagepose.runs.quasistatic import run_quasistatic
 from cagepose.runs.run import Run
 from cagepose.runs.stepwise import run_stepwise
 
-_SOLVERS: dict[str, tuple[Callable[[Scene], Run], str]] = {"stepwise": (run_stepwise, "stepwise_run")}
-"""For each method what runs it, and the kernel that is compiled for it."""
+_SOLVERS: dict[str, tuple[Callable[[Scene], Run], tuple[str, ...]]] = {
+    "stepwise": (run_stepwise, ("stepwise_run", "prove")),
+    "quasistatic": (run_quasistatic, ("quasistatic_run", "prove")),
+}
+"""For each method what runs it, and the kernels that are compiled for it."""
 
 METHODS = tuple(_SOLVERS)
-DEFAULT_METHOD = "stepwise"
+DEFAULT_METHOD = "quasistatic"
 
 
 def run(scene: Scene, method: str | None = None) -> Run:
@@ -25,7 +29,7 @@ def run(scene: Scene, method: str | None = None) -> Run:
     scene
         What to run.
     method
-        One of `METHODS`; None: the scene's own choice, else "stepwise".
+        One of `METHODS`; None: the scene's own choice, else "quasistatic".
 
     Raises
     ------
@@ -52,4 +56,4 @@ def chosen_method(scene: Scene, method: str | None = None) -> str:
 
 def kernels_are_compiled(method: str = DEFAULT_METHOD) -> bool:
     """Whether the machine code of a method lies on disk already, so that the first run starts at once."""
-    return is_compiled(_SOLVERS[method][1])
+    return all(is_compiled(kernel) for kernel in _SOLVERS[method][1])

@@ -7,21 +7,19 @@ import time
 
 import numpy as np
 
-from cagepose.kernels.contacts import contact_rows
-from cagepose.kernels.geometry import Geometry
 from cagepose.kernels.jit import is_loaded
-from cagepose.kernels.pose import Quaternion
 from cagepose.kernels.slip import SlipRules
 from cagepose.kernels.stepwise import RULE_NAMES, PhaseLoads, StepwiseRules, empty_workspace, stepwise_run
 from cagepose.kernels.support import SupportRules
 from cagepose.kernels.tolerances import kernel_tolerances
 from cagepose.kernels.trace import MOTION_NAMES, NONE, NOTE_NAMES, PLAIN, TRAVEL, VERDICT_NAMES, Trace
 from cagepose.kernels.turn import key_of_angle
-from cagepose.kernels.vector import Vector
-from cagepose.nouns.checks import FloatArray, as_vector, unit_vector
-from cagepose.nouns.pose import Pose
+from cagepose.nouns.checks import FloatArray, unit_vector
 from cagepose.nouns.scene import Scene
-from cagepose.runs.run import Contact, Event, Motion, Note, PhaseRun, Run, Verdict
+from cagepose.runs.frames import Frames, middle_of_boxes, touching_names
+from cagepose.runs.judge import Judge
+from cagepose.runs.remarks import edge_remarks, proof_remarks, seam_remarks
+from cagepose.runs.run import Event, Motion, Note, PhaseRun, Run, Verdict
 
 NO_SLIP_ANGLE_DEFAULT_RAD = 0.1
 """The paper's threshold, from the friction of metal on metal."""
@@ -50,56 +48,40 @@ SMALL_POSE_RAD = math.radians(45.0)
 """Assumption E of the paper: the method is meant for smaller angles per axis (R11)."""
 
 
-class _Frames:
-    """The frames of the compiled run: both cage and object are seen from their own middle, so that neither a cage far
-    from the world's origin nor an object drawn far from its own costs digits, or tells in the result.
-    """
-
-    def __init__(self, scene: Scene) -> None:
-        self.origin_world = scene.cage.points_world().mean(axis=0)
-        self.middle_object = scene.geometry.box_positions[: scene.geometry.n_own_boxes].mean(axis=0)
-
-    def geometry(self, scene: Scene) -> Geometry:
-        return scene.geometry._replace(
-            box_positions=scene.geometry.box_positions - self.middle_object,
-            points_world=scene.geometry.points_world - self.origin_world,
-        )
-
-    def start(self, scene: Scene) -> tuple[Vector, Quaternion]:
-        pose = scene.object.pose_world_object
-        return as_vector(pose.transform(self.middle_object) - self.origin_world), pose.as_tuples()[1]
-
-    def pose(self, trace: Trace, event: int) -> Pose:
-        """The object's pose in the world after an event."""
-        turned = Pose(quaternion_wxyz=trace.quaternions[event])
-        middle_world = trace.positions[event] + self.origin_world
-        return Pose(middle_world - turned.transform(self.middle_object), trace.quaternions[event])
-
-
 def run_stepwise(scene: Scene) -> Run:
     """Run a scene by the paper's rules (docs/theory)."""
-    frames = _Frames(scene)
+    frames = Frames(scene, middle_of_boxes(scene))
     geometry, rules = frames.geometry(scene), _rules(scene)
     loads = _phase_loads(scene, frames.middle_object)
     tolerances = kernel_tolerances(scene.size_m, scene.tolerances.touch)
     workspace = empty_workspace(geometry, len(scene.loads), rules)
-    arguments = (geometry, *frames.start(scene), loads, rules, scene.size_m, tolerances, workspace)
+    arguments = (
+        geometry,
+        *frames.inward(scene.object.pose_world_object),
+        loads,
+        rules,
+        scene.size_m,
+        tolerances,
+        workspace,
+    )
     if not is_loaded(stepwise_run):
         stepwise_run(*arguments)  # so that the time measured is that of the run
     began = time.perf_counter()
     n_phases, n_events = stepwise_run(*arguments)
     solve_s = time.perf_counter() - began
 
+    friction = scene.friction_coefficient
+    judge = Judge(scene, math.tan(NO_SLIP_ANGLE_DEFAULT_RAD) if friction is None else friction)
     trace, phases = workspace.trace, list[PhaseRun]()
     pose = scene.object.pose_world_object
     for phase in range(n_phases):
         places = [event for event in range(n_events) if trace.phases[event] == phase]
         events = tuple(_event(scene, trace, event, frames) for event in places)
-        contacts = _contacts(scene, geometry, trace, places[-1])
+        proof, contacts = judge.proof(events[-1].pose_world_object, phase)
         verdict: Verdict = VERDICT_NAMES[workspace.verdicts[phase]]
-        phases.append(PhaseRun(scene.loads[phase].name, verdict, pose, events, contacts))
+        phases.append(PhaseRun(scene.loads[phase].name, verdict, pose, events, contacts, proof))
         pose = events[-1].pose_world_object
-    return Run(scene, "stepwise", tuple(phases), tuple(_warnings(scene, phases)), solve_s)
+    return Run(scene, "stepwise", tuple(phases), tuple(_warnings(scene, phases, judge.friction)), solve_s)
 
 
 def _rules(scene: Scene) -> StepwiseRules:
@@ -134,13 +116,13 @@ def _phase_loads(scene: Scene, middle_object: FloatArray) -> PhaseLoads:
     return PhaseLoads(np.array(directions), np.array(points) - middle_object, np.array(is_push))
 
 
-def _event(scene: Scene, trace: Trace, event: int, frames: _Frames) -> Event:
+def _event(scene: Scene, trace: Trace, event: int, frames: Frames) -> Event:
     return Event(
         rule=RULE_NAMES[trace.rules[event]],
         motion=_motion(trace, event, frames.origin_world),
-        hit=_names(scene, trace.hit[event]),
-        contacts=_names(scene, trace.touching[event]),
-        pose_world_object=frames.pose(trace, event),
+        hit=touching_names(scene, trace.hit[event]),
+        contacts=touching_names(scene, trace.touching[event]),
+        pose_world_object=frames.outward(trace, event),
         note=None if trace.notes[event] == PLAIN else NOTE_NAMES[trace.notes[event]],
     )
 
@@ -160,32 +142,11 @@ def _motion(trace: Trace, event: int, origin: FloatArray) -> Motion | None:
     )
 
 
-def _names(scene: Scene, chosen: np.ndarray) -> tuple[str, ...]:
-    return tuple(scene.cage.names[index] for index in np.nonzero(chosen)[0])
-
-
-def _contacts(scene: Scene, geometry: Geometry, trace: Trace, event: int) -> tuple[Contact, ...]:
-    w, x, y, z = trace.quaternions[event].tolist()
-    rows = contact_rows(geometry, as_vector(trace.positions[event]), (w, x, y, z), scene.touch_m)
-    return tuple(
-        Contact(
-            point=scene.cage.names[rows.points[i]],
-            box=str(scene.object.boxes[rows.boxes[i]].name),
-            normal_world=rows.normals_world[i].copy(),
-            gap_m=float(rows.gaps[i]),
-            near_edge=bool(rows.near_edge[i]),
-        )
-        for i in range(len(rows.points))
-    )
-
-
-def _warnings(scene: Scene, phases: list[PhaseRun]) -> list[str]:
-    """What a careful reader should know: ties, conventions, poses beyond the method's range, contacts on edges."""
-    warnings = [
-        f"boxes {one} and {other} meet flush with outlines that cross: a point that moves exactly in their common plane"
-        " is not stopped by the seam; let them overlap a little"
-        for one, other in scene.open_seams
-    ]
+def _warnings(scene: Scene, phases: list[PhaseRun], friction: float) -> list[str]:
+    """What a careful reader should know: ties, conventions, poses beyond the method's range, contacts on edges, and
+    where the mechanics contradicts the rules.
+    """
+    warnings = list(seam_remarks(scene))
     largest = 0.0
     start = scene.object.pose_world_object.inverse()
     for phase, load in zip(phases, scene.loads, strict=False):
@@ -195,12 +156,11 @@ def _warnings(scene: Scene, phases: list[PhaseRun]) -> list[str]:
             largest = max(largest, *(abs(angle) for angle in (start @ event.pose_world_object).euler_zyx))
             if event.note is not None:
                 warnings.append(f"{phase.name}, event {number} ({event.rule}): {NOTES[event.note]}")
-        edges = sorted({contact.point for contact in phase.contacts if contact.near_edge})
-        if edges:
-            warnings.append(f"{phase.name}: {', '.join(edges)} within the touch tolerance of a face's edge")
+        warnings.extend(edge_remarks(phase))
     if largest > SMALL_POSE_RAD:
         warnings.append(
             f"turned by {math.degrees(largest):.1f} deg about one axis from the start; the paper's rules are meant for"
             " at most 45 deg (assumption E)"
         )
+    warnings.extend(proof_remarks(phases, friction))
     return warnings

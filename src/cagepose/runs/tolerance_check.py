@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from cagepose.errors import SceneError
-from cagepose.nouns.scene import Scene
 from cagepose.nouns.tolerances import TOUCH_GREATEST, TOUCH_LEAST
 from cagepose.runs import solve
 from cagepose.runs.run import Run
@@ -20,7 +19,9 @@ def verdict_changes(checked: Run) -> tuple[str, ...]:
     for factor in FACTORS:
         other = min(max(touch * factor, TOUCH_LEAST), TOUCH_GREATEST)
         try:
-            verdict = solve.run(_with_touch(checked.scene, other), checked.method).verdict
+            verdict = solve.run(
+                checked.scene.changed(tolerances=replace(checked.scene.tolerances, touch=other)), checked.method
+            ).verdict
         except SceneError as error:
             found = f"the scene cannot be run ({error.problems[0]})"
         else:
@@ -32,17 +33,3 @@ def verdict_changes(checked: Run) -> tuple[str, ...]:
             " do not rely on it: look for a point that only just touches"
         )
     return tuple(warnings)
-
-
-def _with_touch(scene: Scene, touch: float) -> Scene:
-    return Scene(
-        scene.object,
-        scene.cage,
-        scene.loads,
-        name=scene.name,
-        friction_coefficient=scene.friction_coefficient,
-        method=scene.method,
-        metric=scene.metric,
-        tolerances=replace(scene.tolerances, touch=touch),
-        adjustable=scene.adjustable,
-    )

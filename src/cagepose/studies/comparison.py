@@ -1,123 +1,152 @@
-"""One printed number of the paper beside what the program finds: the row of a table, without its looks."""
+"""The same scene by several methods, metrics and coefficients of friction, and where the runs part."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import get_args
 
-Unit = Literal["mm", "deg", "rad", "s", ""]
-"""How the paper prints a quantity; "": words."""
-Value = float | str | None
-"""A number in metres, radians or seconds; words; None where there is none."""
-Status = Literal["agrees", "differs", "not derivable", "measured"]
+import numpy as np
 
-_SI: dict[Unit, float] = {"mm": 1e-3, "deg": math.pi / 180.0, "rad": 1.0, "s": 1.0, "": 1.0}
-_ROUNDED = 0.5 + 1e-9
-"""Half a unit of the last digit, and rounding of binary fractions."""
+from cagepose.nouns.pose import Pose
+from cagepose.nouns.scene import Metric, Scene
+from cagepose.runs.run import Event, PhaseRun, Run
+from cagepose.runs.solve import run
+from cagepose.runs.stepwise import NO_SLIP_ANGLE_DEFAULT_RAD
 
-
-@dataclass(frozen=True)
-class Printed:
-    """What the paper prints.
-
-    Attributes
-    ----------
-    text
-        The number as printed, such as "28.96", or words.
-    unit
-        Its unit there.
-    is_bound
-        It is given as an upper limit ("< 5 deg"), so a greater limit agrees with it.
-    """
-
-    text: str
-    unit: Unit = ""
-    is_bound: bool = False
-
-    @property
-    def value(self) -> Value:
-        """The number in metres, radians or seconds; or the words."""
-        return self.text if self.unit == "" else float(self.text) * _SI[self.unit]
-
-    @property
-    def last_digit(self) -> float:
-        """One unit of the last printed digit, in metres, radians or seconds.
-
-        >>> Printed("0.554", "s").last_digit
-        0.001
-        """
-        decimals = len(self.text.partition(".")[2])
-        return float(f"1e-{decimals}") * _SI[self.unit]
-
-    def agrees_with(self, value: float | str) -> bool:
-        """Whether ``value`` is this to the last printed digit, or lies beyond it if this is an upper limit."""
-        if isinstance(value, str) or isinstance(self.value, str) or self.value is None:
-            return value == self.value
-        if self.is_bound:
-            return value >= self.value
-        return abs(value - self.value) <= _ROUNDED * self.last_digit
+SAME_POSE_OF_SIZE = 1e-6
+"""Two poses are one where no corner of the scene's size is farther apart than this fraction of it."""
 
 
-def in_unit(value: float, unit: Unit) -> float:
-    """Turn metres, radians or seconds into what the paper prints.
-
-    >>> in_unit(0.005, "mm")
-    5.0
-    """
-    return value / _SI[unit]
-
-
-@dataclass(frozen=True)
-class Row:
-    """One line of the comparison.
+@dataclass(frozen=True, eq=False)
+class Variant:
+    """One way to run the scene, and what came of it.
 
     Attributes
     ----------
-    section
-        Of the paper, such as "IV.B".
-    quantity
-        What it is.
-    printed
-        What the paper prints.
-    found
-        What each method finds, by its name; None: the method does not speak about it.
-    closed_form
-        From geometry alone; None where there is none.
-    status
-        "agrees" to the paper's last digit, "differs", "not derivable" from the paper's text, or "measured" on this
-        machine.
-    explanation
-        Why.
+    label
+        "stepwise", or "quasistatic" with metric and coefficient of friction.
+    friction
+        The coefficient of friction that was used.
+    run
+        The run.
     """
 
-    section: str
-    quantity: str
-    printed: Printed
-    found: Mapping[str, Value]
-    closed_form: Value
-    status: Status
-    explanation: str
-
-    def difference(self, method: str) -> float | None:
-        """Return what a method finds (without one, the closed form) less what the paper prints; None for words."""
-        value = self.found[method]
-        value = self.closed_form if value is None else value
-        return _difference(value, self.printed.value)
-
-    def error(self, method: str) -> float | None:
-        """Return what a method finds less the closed form; None where either is missing or a word."""
-        return _difference(self.found[method], self.closed_form)
+    label: str
+    friction: float
+    run: Run
 
 
-def compared(found: Mapping[str, Value], closed_form: Value, printed: Printed) -> Status:
-    """Say whether all that is known of a quantity agrees with what the paper prints."""
-    known = [value for value in (*found.values(), closed_form) if value is not None]
-    return "agrees" if known and all(printed.agrees_with(value) for value in known) else "differs"
+@dataclass(frozen=True, eq=False)
+class Parting:
+    """Where a variant leaves the way of the first one.
+
+    Attributes
+    ----------
+    label
+        Of the variant.
+    phase
+        Name of the phase.
+    number, first_number
+        Number of the event in that phase, from 1, of the variant and of the first one; None: it ended before.
+    reason
+        What each of the two does there, and why.
+    """
+
+    label: str
+    phase: str
+    number: int | None
+    first_number: int | None
+    reason: str
 
 
-def _difference(value: Value, other: Value) -> float | None:
-    if isinstance(value, float) and isinstance(other, float):
-        return value - other
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """All variants, the first one being what the others are compared with, and where they part from it."""
+
+    variants: tuple[Variant, ...]
+    partings: tuple[Parting, ...]
+
+
+def compare(scene: Scene, frictions: Sequence[float] | None = None) -> Comparison:
+    """Run ``scene`` by the paper's rules and by the mechanics, under both metrics and each coefficient of friction.
+
+    Parameters
+    ----------
+    scene
+        What to run.
+    frictions
+        Coefficients of friction; None: without friction, and with the scene's own (else that of the paper's rules).
+
+    Raises
+    ------
+    SceneError
+        A coefficient below zero.
+    """
+    own = float(np.tan(NO_SLIP_ANGLE_DEFAULT_RAD)) if scene.friction_coefficient is None else scene.friction_coefficient
+    variants = [Variant("stepwise", own, run(scene, "stepwise"))]
+    for friction in dict.fromkeys((0.0, own) if frictions is None else frictions):
+        for metric in get_args(Metric):
+            label = f"quasistatic, {metric}, friction {friction:.4g}"
+            changed = scene.changed(friction_coefficient=friction, metric=metric)
+            variants.append(Variant(label, friction, run(changed, "quasistatic")))
+    partings = [parting_of(variants[0], variant) for variant in variants[1:]]
+    return Comparison(tuple(variants), tuple(parting for parting in partings if parting is not None))
+
+
+def parting_of(first: Variant, other: Variant) -> Parting | None:
+    """Return where ``other`` leaves the way of ``first``; None: it ends every motion at the same pose."""
+    for one, two in zip(first.run.phases, other.run.phases, strict=False):
+        moves, others = _motions(one), _motions(two)
+        for place in range(max(len(moves), len(others))):
+            event = moves[place] if place < len(moves) else None
+            rival = others[place] if place < len(others) else None
+            if event is not None and rival is not None and same_pose(first.run.scene, event, rival):
+                continue
+            if event is None and rival is None:
+                continue
+            return Parting(
+                other.label,
+                two.name,
+                None if rival is None else two.events.index(rival) + 1,
+                None if event is None else one.events.index(event) + 1,
+                f"{_says(first, one, event)}; {_says(other, two, rival)}",
+            )
+    if len(first.run.phases) != len(other.run.phases):
+        phase = first.run.scene.loads[min(len(first.run.phases), len(other.run.phases)) - 1].name
+        return Parting(other.label, phase, None, None, f"{first.run.verdict} against {other.run.verdict}")
     return None
+
+
+def same_pose(scene: Scene, one: Event, two: Event) -> bool:
+    """Whether two events end at one pose."""
+    return _distance(scene, one.pose_world_object, two.pose_world_object) <= SAME_POSE_OF_SIZE * scene.size_m
+
+
+def _distance(scene: Scene, one: Pose, two: Pose) -> float:
+    corners = np.concatenate([box.corners_object() for box in scene.object.boxes])
+    return float(np.linalg.norm(one.transform(corners) - two.transform(corners), axis=1).max())
+
+
+def _motions(phase: PhaseRun) -> list[Event]:
+    return [event for event in phase.events if event.motion is not None]
+
+
+def _says(variant: Variant, phase: PhaseRun, event: Event | None) -> str:
+    """What a variant does at an event, and on what ground; None: it has ended."""
+    name = variant.run.method
+    if event is None:
+        ground = phase.proof.reason if name == "quasistatic" else "no pair of contacts lets the load turn it"
+        return f"{name} ends there: {phase.verdict} ({ground})"
+    assert event.motion is not None
+    ground = {
+        "free": "no contact carries: it follows load and inertia",
+        "slide": "the contacts that carry slide",
+        "pivot": "friction makes a contact stick",
+        "Slp-1": "the angles of the normals to the load say that it slips on one face",
+        "Slp-2": "the angles of the normals to the load say that it slips on two faces",
+    }.get(
+        event.rule, "the rule turns it about contacts that stay where they are" if event.motion.kind == "turn" else ""
+    )
+    motion = f"{name} goes on with a {event.motion.kind} ({event.rule}"
+    return f"{motion}: {ground})" if ground else f"{motion})"

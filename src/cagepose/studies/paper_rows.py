@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from cagepose.runs.run import Event, Motion, Run
 from cagepose.runs.stepwise import BLOCKED_ANGLE_RAD
 from cagepose.studies import planar, sample
-from cagepose.studies.comparison import Printed, Status, Value
+from cagepose.studies.printed import Printed, Status, Value
 from cagepose.studies.rail import PAPER_RAIL, relative_tilt_rad
 from cagepose.studies.support import load_view
 

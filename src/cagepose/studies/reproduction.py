@@ -11,8 +11,8 @@ import numpy as np
 from cagepose.nouns.scene import Scene
 from cagepose.runs.run import Run
 from cagepose.runs.solve import run
-from cagepose.studies.comparison import Row, compared
 from cagepose.studies.paper_rows import MISALIGNMENT_RAD, CaseRuns, Question, questions
+from cagepose.studies.printed import Row, compared
 from cagepose.studies.rail import PAPER_RAIL, rail_scene
 from cagepose.studies.range_study import ANGLES, RangeStudy, range_study
 from cagepose.studies.sample import sample_scene

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from cagepose.studies.comparison import Printed, Row, compared
+from cagepose.studies.printed import Printed, Row, compared
 
 
 @pytest.mark.parametrize(

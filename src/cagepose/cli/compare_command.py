@@ -1,0 +1,90 @@
+"""``cagepose compare``: the same scene by both methods, side by side."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from cagepose.cli.options import SceneArgument, SetOption, Switch
+
+if TYPE_CHECKING:
+    from cagepose.studies.comparison import Comparison
+
+
+def compare_command(
+    scene: SceneArgument,
+    /,
+    *,
+    friction: Annotated[
+        tuple[float, ...],
+        Parameter(
+            help="A coefficient of friction to run the mechanics with; may be given several times. Left out: none, and"
+            " the scene's own.",
+            negative=(),
+        ),
+    ] = (),
+    set_values: SetOption = (),
+    json: Annotated[bool, Switch, Parameter(help="Print one JSON document instead of the tables.")] = False,
+) -> int:
+    """Print final poses and verdicts of all variants, and where each parts from the paper's rules."""
+    from cagepose.errors import SceneFileError
+    from cagepose.files.scene_file import read_scene_file
+
+    wrong = [value for value in friction if not 0.0 <= value < float("inf")]
+    for value in wrong:
+        sys.stderr.write(f"--friction {value:g}: is no coefficient of friction; give a finite number, zero or above\n")
+    try:
+        scene_file = read_scene_file(scene, set_values)
+    except SceneFileError as error:
+        sys.stderr.write(f"{error}\n")
+        return 2
+    if wrong:
+        return 2
+
+    from cagepose.cli.first_run import announce_compilation
+    from cagepose.runs.solve import METHODS
+    from cagepose.studies.comparison import compare
+
+    announce_compilation(METHODS)
+    comparison = compare(scene_file.scene, friction or None)
+    if json:
+        from json import dumps
+
+        from cagepose.files.document import run_document
+
+        document = {
+            "scene": scene_file.scene.name,
+            "variants": [
+                {
+                    "label": variant.label,
+                    "friction": variant.friction,
+                    "metric": None if variant.run.method == "stepwise" else variant.run.scene.metric,
+                    **run_document(variant.run, scene_file.length_unit),
+                }
+                for variant in comparison.variants
+            ],
+            "partings": [
+                {
+                    "label": parting.label,
+                    "phase": parting.phase,
+                    "event": parting.number,
+                    "stepwise_event": parting.first_number,
+                    "reason": parting.reason,
+                }
+                for parting in comparison.partings
+            ],
+        }
+        sys.stdout.write(dumps(document, indent=1, allow_nan=False) + "\n")
+        return _exit_code(comparison)
+
+    from cagepose.cli.comparison_report import print_comparison
+
+    print_comparison(comparison, scene_file.length_unit)
+    return _exit_code(comparison)
+
+
+def _exit_code(comparison: Comparison) -> int:
+    """1 where every variant failed: then nothing was reached."""
+    return 1 if all(variant.run.failed for variant in comparison.variants) else 0

@@ -1,0 +1,49 @@
+"""A comparison as text: a table of the variants, then where they part."""
+
+from __future__ import annotations
+
+import math
+
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+from rich.text import Text
+
+from cagepose.cli.console import print_all
+from cagepose.cli.report import short, verdict_style
+from cagepose.files.units import LengthUnit, from_metres
+from cagepose.studies.comparison import Comparison, Variant
+
+
+def print_comparison(comparison: Comparison, unit: LengthUnit) -> None:
+    """Print to standard output, lengths in ``unit``."""
+    table = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
+    for heading in ("variant", "verdict", "proof", f"centre of gravity ({unit})", "yaw, pitch, roll (deg)", "events"):
+        table.add_column(heading, overflow="fold")
+    for variant in comparison.variants:
+        table.add_row(*_row(variant, unit))
+    lines = []
+    for parting in comparison.partings:
+        where = "the end" if parting.first_number is None else f"event {parting.first_number} of stepwise"
+        lines.append(Text(f"{parting.label}: parts in {parting.phase!r} at {where}: {parting.reason}"))
+    together = len(comparison.variants) - 1 - len(comparison.partings)
+    if together:
+        lines.append(Text(f"{together} of {len(comparison.variants) - 1} go the way of stepwise to its end"))
+    print_all(Text(comparison.variants[0].run.scene.name), "", table, "", *lines)
+
+
+def _row(variant: Variant, unit: LengthUnit) -> list[Text]:
+    run = variant.run
+    proof = run.phases[-1].proof
+    noise = 1e-12 * float(from_metres(run.scene.size_m, unit))
+    center = ", ".join(short(float(from_metres(value, unit)), 6, noise) for value in run.center_of_gravity_world)
+    angles = ", ".join(short(math.degrees(angle), 6, 1e-10) for angle in run.pose.euler_zyx)
+    held = proof.verdict if proof.stability is None else f"{proof.verdict}, {proof.stability}"
+    n_events = sum(len(phase.events) for phase in run.phases)
+    return [
+        Text(variant.label),
+        Text(run.verdict, style=verdict_style(run.verdict)),
+        Text(held),
+        Text(center),
+        Text(angles),
+        Text(str(n_events)),
+    ]

@@ -1,0 +1,22 @@
+"""Say so when kernels are about to be compiled: it takes a while, once."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+
+FIRST_RUN = "cagepose: compiling the kernels for the first time on this machine; about a minute, only once\n"
+EVERY_RUN = (
+    "cagepose: compiling the kernels, about a minute, at each start: no folder for machine code can be written;"
+    " let NUMBA_CACHE_DIR name one that can\n"
+)
+
+
+def announce_compilation(methods: Iterable[str]) -> None:
+    """Write a line to standard error if the first run by one of ``methods`` will compile."""
+    from cagepose.kernels.jit import CACHE_FOLDER
+    from cagepose.runs.solve import kernels_are_compiled
+
+    if not all(kernels_are_compiled(method) for method in methods):
+        sys.stderr.write(EVERY_RUN if CACHE_FOLDER is None else FIRST_RUN)
+        sys.stderr.flush()

@@ -1,0 +1,74 @@
+"""What proves a verdict: `Proof`, and `FreeMotion`, the onset of a motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from cagepose.nouns.checks import FloatArray
+
+ProofVerdict = Literal["rests", "may rest", "moves"]
+Stability = Literal["stable", "marginal", "unstable"]
+
+
+@dataclass(frozen=True, eq=False)
+class FreeMotion:
+    """How an object begins to move, at any speed.
+
+    Attributes
+    ----------
+    kind
+        "travel", "turn" or "screw".
+    direction_world
+        Unit vector of a travel, (3,); None for a turn or a screw.
+    axis_world, through_world
+        Unit vector of the axis and a point on it, (3,) each, metres; None for a travel. Turns are right-handed.
+    pitch_m
+        Travel along the axis for each radian, metres; zero for a travel or a turn.
+    """
+
+    kind: Literal["travel", "turn", "screw"]
+    direction_world: FloatArray | None
+    axis_world: FloatArray | None
+    through_world: FloatArray | None
+    pitch_m: float
+
+
+@dataclass(frozen=True, eq=False)
+class Proof:
+    """The verdict of the mechanics on a pose under a load (docs/theory/mechanics).
+
+    Attributes
+    ----------
+    verdict
+        "rests": the contacts' forces balance the load, and the object cannot begin to move. "may rest": they can, but
+        Coulomb's law allows a motion too, or that could not be ruled out. "moves": no contact forces balance the load.
+    reason
+        Why, in words.
+    residual
+        What the contact forces leave of the load, as a fraction of it (moments at the scale of the radii of gyration).
+    needs_friction
+        Whether there is a balance with friction only.
+    stability
+        Against small disturbances; None where the object moves.
+    undetermined
+        Freedoms in the cage's frame ("x", "y", "z", "roll", "pitch", "yaw") along which the load does not tell poses
+        apart, with "and others" where these do not span them all.
+    shared
+        Names of the cage points whose normal force is not unique: the one given is one of many.
+    motion
+        Where the object moves: what nothing stops; where it may rest: the other motion, if one was found.
+    critical_friction
+        The least coefficient of friction at which the contacts balance the load: None if not asked for, infinite if
+        there is none.
+    """
+
+    verdict: ProofVerdict
+    reason: str
+    residual: float
+    needs_friction: bool
+    stability: Stability | None
+    undetermined: tuple[str, ...]
+    shared: tuple[str, ...]
+    motion: FreeMotion | None
+    critical_friction: float | None = None

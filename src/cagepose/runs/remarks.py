@@ -1,0 +1,47 @@
+"""Warnings that do not depend on the method: seams, edges, weights, and what the proof says against a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from cagepose.nouns.scene import Scene
+from cagepose.runs.run import PhaseRun
+from cagepose.runs.weights import WEIGHT_BESIDE_FORCE, weigh
+
+
+def seam_remarks(scene: Scene) -> Iterator[str]:
+    for one, other in scene.open_seams:
+        yield (
+            f"boxes {one} and {other} meet flush with outlines that cross: a point that moves exactly in their common"
+            " plane is not stopped by the seam; let them overlap a little"
+        )
+
+
+def edge_remarks(phase: PhaseRun) -> Iterator[str]:
+    edges = sorted({contact.point for contact in phase.contacts if contact.near_edge})
+    if edges:
+        yield f"{phase.name}: {', '.join(edges)} within the touch tolerance of a face's edge"
+
+
+def weight_remarks(scene: Scene, n_phases: int) -> Iterator[str]:
+    for load in scene.loads[:n_phases]:
+        if load.gravity_world is not None and load.force is not None and not weigh(scene, load).in_newtons:
+            yield (
+                f"{load.name}: gravity and force act together, but mass or magnitude is not given: the force dominates"
+                f" (weight = {WEIGHT_BESIDE_FORCE:g} of it)"
+            )
+
+
+def proof_remarks(phases: Sequence[PhaseRun], friction: float) -> Iterator[str]:
+    """What the mechanics says against a phase that ended held, or about how firmly it is held."""
+    for phase in phases:
+        proof = phase.proof
+        if phase.verdict == "stable" and proof.verdict == "moves":
+            yield (
+                f"{phase.name}: the mechanics contradicts this verdict: with a friction coefficient of {friction:.4g}"
+                " no contact forces balance the load at this pose"
+            )
+        elif phase.verdict in ("stable", "may rest") and proof.verdict == "may rest":
+            yield f"{phase.name}: {proof.reason}"
+        if phase.verdict in ("stable", "rests", "may rest") and proof.stability == "unstable":
+            yield f"{phase.name}: the balance is unstable: the least disturbance moves the object on"

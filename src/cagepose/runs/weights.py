@@ -1,0 +1,56 @@
+"""How much gravity and force weigh against each other when both act."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from cagepose.kernels.metric import DeadLoads
+from cagepose.nouns.checks import FloatArray, unit_vector
+from cagepose.nouns.load import Load
+from cagepose.nouns.scene import Scene
+
+WEIGHT_BESIDE_FORCE = 1e-6
+"""Weight of an object beside a force, as a fraction of it, where mass or magnitude is not given: the force dominates,
+and gravity settles only what the force leaves open."""
+
+
+class Weighed(NamedTuple):
+    """Gravity and force of one phase: vectors in the world, (3,). In newtons if all that needs is given, else per unit
+    load.
+    """
+
+    gravity: FloatArray
+    force: FloatArray
+    in_newtons: bool
+
+
+def weigh(scene: Scene, load: Load) -> Weighed:
+    """Return the two loads of a phase, at the scale in which they act together."""
+    none = np.zeros(3)
+    mass = scene.object.mass_kg
+    if load.force is None:
+        assert load.gravity_world is not None
+        if mass is None:
+            return Weighed(unit_vector(load.gravity_world, "gravity"), none, in_newtons=False)
+        return Weighed(mass * load.gravity_world, none, in_newtons=True)
+    magnitude = load.force.magnitude_n
+    force = load.force.direction_world * (1.0 if magnitude is None else magnitude)
+    if load.gravity_world is None:
+        return Weighed(none, force, in_newtons=magnitude is not None)
+    if mass is not None and magnitude is not None:
+        return Weighed(mass * load.gravity_world, force, in_newtons=True)
+    weight = WEIGHT_BESIDE_FORCE * float(np.linalg.norm(force))
+    return Weighed(weight * unit_vector(load.gravity_world, "gravity"), force, in_newtons=False)
+
+
+def dead_loads(scene: Scene) -> DeadLoads:
+    """Return the loads of all phases as the kernels take them."""
+    forces, arms = [], []
+    for load in scene.loads:
+        weighed = weigh(scene, load)
+        forces.append([weighed.gravity, weighed.force])
+        center = scene.object.center_of_gravity_m
+        arms.append([np.zeros(3), np.zeros(3) if load.force is None else load.force.at_object_m - center])
+    return DeadLoads(np.array(forces), np.array(arms))
