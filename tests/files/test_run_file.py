@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cagepose import Run, RunFileError, Scene, load_run, run, save_run
+from cagepose import Run, RunFileError, Scene, load_run, run, save_run, with_critical_friction
 from cagepose.files.document import run_document
 from cagepose.files.run_record import run_from_record, run_record
 from cagepose.files.scene_file import parse_scene
 from cagepose.files.scene_record import scene_from_record, scene_record
+from cagepose.runs.solve import METHODS
 
 PUSH = "  - {name: push, force: {direction: [1, 0.3, 0.2], at: [1, 2, 3], magnitude: 7}}\n"
 FULL = """
@@ -57,8 +58,9 @@ def test_records_of_many_directions_and_turns_come_back_to_the_last_digit(sample
         assert scene_record(scene_from_record(scene_record(scene))) == scene_record(scene)
 
 
-def test_a_run_is_the_same_after_saving_and_loading(full_scene: Scene, tmp_path: Path) -> None:
-    before = run(full_scene)
+@pytest.mark.parametrize("method", METHODS)
+def test_a_run_is_the_same_after_saving_and_loading(full_scene: Scene, tmp_path: Path, method: str) -> None:
+    before = with_critical_friction(run(full_scene, method))
     save_run(before, tmp_path / "run.json")
     after = load_run(tmp_path / "run.json")
     assert run_record(after) == run_record(before)
@@ -71,15 +73,74 @@ def test_a_run_is_the_same_after_saving_and_loading(full_scene: Scene, tmp_path:
         assert np.array_equal(one.pose_world_object.quaternion_wxyz, other.pose_world_object.quaternion_wxyz)
 
 
-def test_a_loaded_run_can_be_run_again_with_the_same_result(sample_text: str, tmp_path: Path) -> None:
-    save_run(run(parse_scene(sample_text)), tmp_path / "run.json")
+@pytest.mark.parametrize("method", METHODS)
+def test_a_loaded_run_can_be_run_again_with_the_same_result(sample_text: str, tmp_path: Path, method: str) -> None:
+    save_run(run(parse_scene(sample_text), method), tmp_path / "run.json")
     loaded = load_run(tmp_path / "run.json")
-    again, first = run_record(run(loaded.scene)), run_record(loaded)
+    again, first = run_record(run(loaded.scene, loaded.method)), run_record(loaded)
     assert {**again, "solve_s": 0.0} == {**first, "solve_s": 0.0}
 
 
-def test_an_escape_without_end_survives(sample_text: str) -> None:
-    away = run(parse_scene(sample_text, set_values=["loads[0].gravity=[0, 0, 1]"]))
+def test_the_way_of_a_sliding_contact_survives(sample_text: str, tmp_path: Path) -> None:
+    """Without friction the first point slides under the turning cube: that event's motion alone is not its way."""
+    before = run(parse_scene(sample_text), "quasistatic")
+    save_run(before, tmp_path / "run.json")
+    after = load_run(tmp_path / "run.json")
+    assert max(len(event.path) for event in before.phases[0].events) > 10
+    for one, other in zip(before.phases[0].events, after.phases[0].events, strict=True):
+        for pose, again in zip(one.path, other.path, strict=True):
+            assert np.array_equal(pose.position_m, again.position_m)
+            assert np.array_equal(pose.quaternion_wxyz, again.quaternion_wxyz)
+
+
+def test_forces_and_their_proof_survive(sample_text: str, tmp_path: Path) -> None:
+    """On a floor of 20 deg, held by friction: no number of it is round."""
+    gravity = f"loads[0].gravity=[{math.sin(math.radians(20.0))}, 0, {-math.cos(math.radians(20.0))}]"
+    changes = ["object.pose.position=[0, 0, 5]", "friction.coefficient=0.5", gravity]
+    before = with_critical_friction(run(parse_scene(sample_text, set_values=changes), "quasistatic"))
+    save_run(before, tmp_path / "run.json")
+    after = load_run(tmp_path / "run.json")
+    assert [contact.force_normal_n for contact in after.contacts] == [
+        contact.force_normal_n for contact in before.contacts
+    ]
+    for one, other in zip(before.contacts, after.contacts, strict=True):
+        assert one.force_tangential_n is not None
+        assert other.force_tangential_n is not None
+        assert np.linalg.norm(one.force_tangential_n) > 0.0
+        assert np.array_equal(one.force_tangential_n, other.force_tangential_n)
+    proof, again = before.phases[0].proof, after.phases[0].proof
+    assert proof.critical_friction == pytest.approx(math.tan(math.radians(20.0)), rel=1e-9)
+    for name in ("verdict", "reason", "residual", "needs_friction", "stability", "undetermined", "shared"):
+        assert getattr(again, name) == getattr(proof, name)
+    assert again.critical_friction == proof.critical_friction
+    assert again.motion is proof.motion is None
+
+
+def test_the_motion_of_a_proof_survives(sample_text: str, tmp_path: Path) -> None:
+    """The cube on three points, which no friction of the default holds: it begins to move by a screw."""
+    before = run(parse_scene(sample_text), "stepwise")
+    save_run(before, tmp_path / "run.json")
+    motion, again = before.phases[0].proof.motion, load_run(tmp_path / "run.json").phases[0].proof.motion
+    assert motion is not None
+    assert again is not None
+    assert (again.kind, again.pitch_m) == (motion.kind, motion.pitch_m)
+    assert again.direction_world is motion.direction_world is None
+    assert np.array_equal(again.axis_world, motion.axis_world)  # type: ignore[arg-type]
+    assert np.array_equal(again.through_world, motion.through_world)  # type: ignore[arg-type]
+
+
+def test_a_critical_friction_without_bound_survives(sample_text: str, tmp_path: Path) -> None:
+    """The centre of gravity is a hair beside the floor's points: held by the paper's R3, by no friction."""
+    changes = ["object.pose.position=[0, 0, 5]", "object.center_of_gravity=[4.0001, 0, 0]"]
+    held = with_critical_friction(run(parse_scene(sample_text, set_values=changes), "stepwise"))
+    assert held.phases[0].proof.critical_friction == math.inf
+    save_run(held, tmp_path / "run.json")
+    assert load_run(tmp_path / "run.json").phases[0].proof.critical_friction == math.inf
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_an_escape_without_end_survives(sample_text: str, method: str) -> None:
+    away = run(parse_scene(sample_text, set_values=["loads[0].gravity=[0, 0, 1]"]), method)
     assert away.verdict == "escapes"
     again = run_from_record(json.loads(json.dumps(run_record(away), allow_nan=False)))
     assert run_record(again) == run_record(away)
@@ -101,7 +162,7 @@ def test_saving_replaces_a_file_whole_and_leaves_nothing_else(sample_text: str, 
     path = tmp_path / "run.json"
     path.write_text('{"version": 0}', encoding="utf-8")
     save_run(run(parse_scene(sample_text)), path)
-    assert load_run(path).verdict == "stable"
+    assert load_run(path).verdict == "rests"
     assert list(tmp_path.iterdir()) == [path]
 
 
@@ -128,7 +189,7 @@ def test_saving_through_a_link_keeps_the_link(sample_text: str, tmp_path: Path) 
     link.symlink_to(target)
     save_run(run(parse_scene(sample_text)), link)
     assert link.is_symlink()
-    assert load_run(target).verdict == "stable"
+    assert load_run(target).verdict == "rests"
 
 
 def test_a_device_is_not_replaced_by_a_file(sample_text: str) -> None:
@@ -154,9 +215,9 @@ def _changed(change: Callable[[dict[str, Any]], None]) -> Callable[[dict[str, An
         (lambda _: "[" * 200_000, "is JSON nested too deep; it is no saved run"),
         (lambda _: "[1, 2]", "is JSON, but not a run; name a file that cagepose run --out wrote"),
         (lambda _: '{"a": 1}', "is JSON, but not a run; name a file that cagepose run --out wrote"),
-        (_changed(lambda content: content.update(version=2)), "has format version 2, and this cagepose knows 1;"
+        (_changed(lambda content: content.update(version=1)), "has format version 1, and this cagepose knows 2;"
          " read it with the cagepose that wrote it, or run the scene again"),
-        (_changed(lambda content: content.update(version=True)), "has format version True, and this cagepose knows 1;"),
+        (_changed(lambda content: content.update(version=True)), "has format version True, and this cagepose knows 2;"),
         (_changed(lambda content: content.pop("exact")), "is what --json prints, without the exact numbers;"
          " save the run with --out FILE instead"),
         (_changed(lambda content: content.update(exact=3)), "is damaged: exact: "),
@@ -170,6 +231,16 @@ def _changed(change: Callable[[dict[str, Any]], None]) -> Callable[[dict[str, An
          "is damaged: exact.phases[0].start_pose.position_m[2]: "),
         (_changed(lambda content: content["exact"]["phases"][0]["events"][0]["motion"].update(direction=None)),
          "is damaged: exact.phases[0].events[0].motion: "),
+        (_changed(lambda content: content["exact"]["phases"][0].pop("proof")),
+         "is damaged: exact.phases[0].proof: field required; run the scene"),
+        (_changed(lambda content: content["exact"]["phases"][0]["proof"].update(verdict="fine")),
+         "is damaged: exact.phases[0].proof.verdict: "),
+        (_changed(lambda content: content["exact"]["phases"][0]["proof"].update(critical_friction="plenty")),
+         "is damaged: exact.phases[0].proof.critical_friction"),
+        (_changed(lambda content: content["exact"]["phases"][0]["contacts"][0].update(force_tangential_n=[0, 0])),
+         "is damaged: exact.phases[0].contacts[0].force_tangential_n: "),
+        (_changed(lambda content: content["exact"]["phases"][0]["events"][0]["path"].append(3)),
+         "is damaged: exact.phases[0].events[0].path["),
         (_changed(lambda content: content["exact"]["scene"].update(touch=3.0)),
          "is damaged: its scene cannot be right ("),
         (_changed(lambda content: content["exact"]["scene"]["point_names"].pop()),

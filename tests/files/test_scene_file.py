@@ -45,7 +45,7 @@ def _scaled(text: str, factor: float) -> str:
 
 
 def test_an_inertia_is_given_in_the_length_unit_squared(sample_text: str) -> None:
-    inertia = "  inertia: [[2, 0, 0], [0, 2, 0], [0, 0, 2]]\n  pose:"
+    inertia = "  mass: 1\n  inertia: [[2, 0, 0], [0, 2, 0], [0, 0, 2]]\n  pose:"
     scene = parse_scene(sample_text.replace("  pose:", inertia))
     assert scene.object.inertia_kg_m2 is not None
     assert np.allclose(scene.object.inertia_kg_m2, 2e-6 * np.eye(3), rtol=1e-15)

@@ -13,12 +13,23 @@ from cagepose.files.schema import scene_json_schema
 from cagepose.files.starter import starter_text, write_starter
 
 
-def test_the_starter_runs_through_all_its_phases_and_ends_stable() -> None:
+def test_the_starter_runs_through_all_its_phases_and_ends_in_a_proven_rest() -> None:
     result = run(parse_scene(starter_text("mine")))
-    assert result.scene.name == "mine"
+    assert (result.scene.name, result.method) == ("mine", "quasistatic")
+    assert [phase.verdict for phase in result.phases] == ["rests", "rests"]
+    assert [(phase.proof.verdict, phase.proof.needs_friction) for phase in result.phases] == [("rests", False)] * 2
+    assert result.phases[-1].proof.stability == "stable"
+    assert result.warnings == ()
+
+
+def test_the_rules_of_the_paper_hold_the_starter_before_its_last_stop() -> None:
+    """At side1 and end; side2 is not reached, and the mechanics says that the clamp would turn it on."""
+    result = run(parse_scene(starter_text("mine")), "stepwise")
     assert [phase.verdict for phase in result.phases] == ["stable", "stable"]
     assert {event.rule for phase in result.phases for event in phase.events} >= {"A-1", "A-4", "Slp-1", "Slp-2", "B-4"}
-    assert result.warnings == ()
+    assert {contact.point for contact in result.contacts} == {"pin1", "pin2", "pin3", "side1", "end"}
+    (warning,) = result.warnings
+    assert warning.startswith("clamp: the mechanics contradicts this verdict")
 
 
 def test_the_starter_names_every_key_of_the_schema() -> None:
@@ -34,15 +45,16 @@ def test_every_option_of_the_starter_works_when_its_hash_is_removed() -> None:
     scene = parse_scene(text)
     assert scene.object.mass_kg is not None
     assert scene.object.inertia_kg_m2 is not None
-    assert (scene.method, scene.metric) == ("stepwise", "release")
+    assert (scene.method, scene.metric) == ("quasistatic", "release")
     assert scene.adjustable[0].key == "cage.points.end[0]"
     assert len(text.splitlines()) == len(starter_text("x").splitlines())
+    assert run(scene).verdict == "rests"
 
 
 def test_the_change_that_the_starter_proposes_works() -> None:
     text = starter_text("x")
     (change,) = re.findall(r"--set (\S+)", text)
-    assert run(parse_scene(text, set_values=[change])).verdict == "stable"
+    assert run(parse_scene(text, set_values=[change])).verdict == "rests"
 
 
 @pytest.mark.parametrize("name", ["null", "True", "fixture-2", "Größe", "a_b"])

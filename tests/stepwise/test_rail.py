@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cagepose import run
 from jit import cases
 from rails import exact_tilt_deg, rail_scene, tilt_deg
+from stepwise_run import run
 
 MISALIGNED = [{"pitch_deg": 0.1}, {"yaw_deg": 0.1}, {"roll_deg": 0.1}]
 TILT_DEG = 0.313084

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, Tolerances, run
+from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, Tolerances
 from jit import cases
 from random_scenes import random_scenes
+from stepwise_run import run
 
 DOWN = Load("gravity", gravity=(0, 0, -1))
 FLOOR = [(1.0, 1.0, 0.0), (1.0, -1.0, 0.0), (-1.0, -1.0, 0.0), (-1.0, 1.0, 0.0)]

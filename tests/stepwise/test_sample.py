@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cagepose import Box, Cage, Load, Object, Pose, Run, Scene, run
+from cagepose import Box, Cage, Load, Object, Pose, Run, Scene
+from stepwise_run import run
 
 MM = 1e-3
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, run
+from cagepose import Box, Cage, Force, Load, Object, Pose, Scene
 from jit import cases
 from random_scenes import random_scenes
+from stepwise_run import run
 
 N_SCENES = 300
 
@@ -50,12 +53,15 @@ def log(result):
     ]
 
 
+@functools.cache
 def scenes_without_ties():
     """A tie is decided by convention, which a mirror or a new order of points need not respect."""
-    for scene in random_scenes(cases(N_SCENES), seed=11):
-        result = run(scene)
-        if not any(event.note == "tie" for phase in result.phases for event in phase.events):
-            yield scene, result
+    results = [(scene, run(scene)) for scene in random_scenes(cases(N_SCENES), seed=11)]
+    return [
+        (scene, result)
+        for scene, result in results
+        if not any(event.note == "tie" for phase in result.phases for event in phase.events)
+    ]
 
 
 @pytest.mark.parametrize("kind", ["turned", "small", "large", "mirrored", "renumbered", "far"])

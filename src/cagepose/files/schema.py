@@ -24,7 +24,9 @@ from pydantic_core import PydanticCustomError
 
 from cagepose.files.units import LengthUnit
 from cagepose.nouns.tolerances import TOUCH_DEFAULT, TOUCH_GREATEST, TOUCH_LEAST
-from cagepose.runs.solve import METHODS
+from cagepose.runs.judge import METRIC_DEFAULT
+from cagepose.runs.solve import DEFAULT_METHOD, METHODS
+from cagepose.runs.stepwise import NO_SLIP_ANGLE_DEFAULT_RAD
 
 LARGEST = 1e12
 """Greatest number in a scene file. The fifth power of a length (a moment of inertia) must stay a finite double."""
@@ -137,12 +139,14 @@ class ObjectModel(_Mapping):
         None, description="In the object's frame; left out: the centroid of the union's volume.", examples=[[0, 0, 0]]
     )
     mass: Positive | None = Field(
-        None, description="Kilograms; left out: results are per unit load (or density 1 of the union).", examples=[0.5]
+        None,
+        description="Kilograms; left out: forces are per unit load, and beside a force the weight hardly counts.",
+        examples=[0.5],
     )
     inertia: Annotated[list[Vector], Field(min_length=3, max_length=3)] | None = Field(
         None,
         description="3 x 3 matrix about the centre of gravity, in the object's axes, kilograms by length unit squared;"
-        " left out: uniform density of the union.",
+        " only together with mass; left out: uniform density of the union.",
         examples=[[[100, 0, 0], [0, 100, 0], [0, 0, 100]]],
     )
     pose: PoseModel | None = Field(None, description="Where the object starts: its origin in the world.")
@@ -219,7 +223,9 @@ class TolerancesModel(_Mapping):
         None, description=f"As a fraction of the scene's size; left out: {TOUCH_DEFAULT:g}.", examples=[1e-8]
     )
     grazing_band_deg: Annotated[float, Field(ge=0.0, lt=45.0)] | None = Field(
-        None, description="How far past perpendicular to the load a face still slips; left out: 1.", examples=[1]
+        None,
+        description="How far past perpendicular to the load a face still slips (stepwise); left out: 1.",
+        examples=[1],
     )
 
 
@@ -244,10 +250,14 @@ class SceneModel(_Mapping):
     loads: list[LoadModel] = Field(
         min_length=1, description="Phases, run in order.", examples=[[{"name": "gravity", "gravity": [0, 0, -1]}]]
     )
-    friction: FrictionModel | None = Field(None, description="Left out: the method's own default.")
-    method: Method | None = Field(None, description="How to run the scene; left out: the default method.")
+    friction: FrictionModel | None = Field(
+        None, description=f"Left out: none for quasistatic, an angle of {NO_SLIP_ANGLE_DEFAULT_RAD:g} rad for stepwise."
+    )
+    method: Method | None = Field(None, description=f"How to run the scene; left out: {DEFAULT_METHOD}.")
     metric: Literal["release", "drag"] | None = Field(
-        None, description="How the object answers a load: released from rest, or dragged slowly."
+        None,
+        description="How the object answers a load (quasistatic): released from rest, or dragged slowly; left out:"
+        f" {METRIC_DEFAULT}.",
     )
     tolerances: TolerancesModel | None = Field(None, description="Left out: the defaults.")
     adjustable: dict[Name, AdjustableModel] | None = Field(None, description="Named numbers for sliders and studies.")

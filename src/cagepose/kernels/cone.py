@@ -35,9 +35,8 @@ BALANCED = 1e-11
 contacts has magnified still counts as balance."""
 HELD = 1e-9
 """The same at the limit of friction, where round cones leave more: rounding counts by its square root there."""
-STEEPER, STEEPER_CHARGED = 1e-13, 1e-9
-"""In lengths of the residual: a generator that points along it by so little more than one in use is no better. With
-charges it is one of many rounds, and Newton's method comes after them."""
+STEEPER = 1e-13
+"""In lengths of the residual: a generator that points along it by so little more than one in use is no better."""
 GENERATOR_LIMIT = 400
 WRENCH, N_ROWS = 6, 7
 """A scaled wrench has 6 rows; the 7th, if it is used, adds up the normal forces."""
@@ -182,13 +181,12 @@ def cone_residual(
         if friction > 0.0 and not charged and left <= BALANCED * scale:
             break
         best, best_price = -1, 0.0
-        steeper = STEEPER_CHARGED if charged else STEEPER
         for i in range(n_contacts):
             if not chosen[i] or room.rejected[i]:
                 continue
             price, is_steeper = generator_price(columns[i], i, friction, n_rows, charged, room)
             size = length(columns[i, 0], 6)
-            if price > best_price * size and price > (steeper * left if is_steeper else PRICE * scale) * size:
+            if price > best_price * size and price > (STEEPER * left if is_steeper else PRICE * scale) * size:
                 best, best_price = i, price / size
         if best < 0:
             break

@@ -36,9 +36,9 @@ DAMPED = 0.4
 """Contacts that take turns in slipping meet half way if each goes only this part of its way."""
 ROUNDS_BETWEEN = 6
 """Rounds before Newton's method is tried (again)."""
-OBEYS = 1e-9
-"""In lengths of the motion: the greatest violation of Coulomb's law; where that is not reached, of the load. It bends
-the path by less than a step does."""
+OBEYS, LAST_RESORT = 1e-9, 1e-6
+"""In lengths of the motion: the greatest violation of Coulomb's law. Where that is not reached, in lengths of the load:
+it bends the path by far less than a step does."""
 ROUNDING = 1e-5
 """In lengths of the load: the violation of the law by a motion slower than this is measured as if it were as fast."""
 SLOW, SLOWEST = 1e-6, 1e-10
@@ -96,6 +96,12 @@ def coulomb_error(
 
 
 @kernel
+def allowed_error(b: FloatArray, y: FloatArray) -> float:
+    """Return which violation of the law, as a velocity, is rounding."""
+    return OBEYS * max(length(y, 6), ROUNDING * length(b, 6))
+
+
+@kernel
 def obeys(
     columns: FloatArray,
     chosen: NDArray[np.bool_],
@@ -106,8 +112,7 @@ def obeys(
     y: FloatArray,
 ) -> bool:
     """Whether forces and motion obey Coulomb's law, but for a small part of the motion (or rounding of the load)."""
-    allowed = OBEYS * max(length(y, 6), ROUNDING * length(b, 6))
-    return coulomb_error(columns, chosen, n_contacts, friction, forces, y) <= allowed
+    return coulomb_error(columns, chosen, n_contacts, friction, forces, y) <= allowed_error(b, y)
 
 
 @kernel
@@ -224,4 +229,4 @@ def coulomb_onset(
     read_modes(columns, n_contacts, SLOW * length(y, 6), forces, y, room)
     if solves_with_any_modes(columns, chosen, n_contacts, friction, b, forces, y, room):
         return True
-    return coulomb_error(columns, chosen, n_contacts, friction, forces, y) <= OBEYS * length(b, 6)
+    return coulomb_error(columns, chosen, n_contacts, friction, forces, y) <= LAST_RESORT * length(b, 6)

@@ -22,18 +22,24 @@ from cagepose.kernels.cone import (
     write_forces,
 )
 from cagepose.kernels.contact_set import ContactSet, choose_next_faces
-from cagepose.kernels.coulomb import CoulombRoom, coulomb_onset, empty_coulomb_room
+from cagepose.kernels.coulomb import CoulombRoom, allowed_error, coulomb_onset, empty_coulomb_room
 from cagepose.kernels.geometry import FloatArray
 from cagepose.kernels.jit import kernel
-from cagepose.kernels.least_squares import length, rounding_scale
+from cagepose.kernels.least_squares import (
+    PassiveSet,
+    append_column,
+    empty_passive_set,
+    inner,
+    length,
+    rounding_scale,
+)
 
 HELD_WITHOUT_FRICTION, HELD_BY_FRICTION, UNSOLVED, MOVES = 0, 1, 2, 3
 """Codes of an onset, from the least to the most that moves."""
 COMBINATIONS_LIMIT = 64
 """Of faces on edges: three points on corners of the object have 27."""
 
-STICKING = 1e-9
-"""In lengths of the motion: a slower slip of a contact is rounding."""
+STRICTER = 0.1
 
 
 class OnsetRoom(NamedTuple):
@@ -45,6 +51,8 @@ class OnsetRoom(NamedTuple):
         See there.
     y, trial
         Scaled twist of the motion, and that of one combination of faces, (6,).
+    span
+        Basis of all that the carrying contacts can push along, if none of them slips.
     best_chosen, best_forces
         Faces and forces of the answer so far, (n_contacts,) and (n_contacts, 3).
     residual
@@ -55,6 +63,7 @@ class OnsetRoom(NamedTuple):
     coulomb: CoulombRoom
     y: FloatArray
     trial: FloatArray
+    span: PassiveSet
     best_chosen: NDArray[np.bool_]
     best_forces: FloatArray
     residual: FloatArray
@@ -67,10 +76,38 @@ def empty_onset_room(n_contacts: int) -> OnsetRoom:
         empty_coulomb_room(n_contacts),
         np.zeros(6),
         np.zeros(6),
+        empty_passive_set(WRENCH),
         np.zeros(n_contacts, np.bool_),
         np.zeros((n_contacts, 3)),
         np.zeros(1),
     )
+
+
+@kernel
+def is_balance(
+    columns: FloatArray, left: float, friction: float, strictness: float, scale: float, room: OnsetRoom
+) -> bool:
+    """Whether a residual counts as zero: up to BALANCED, and where contacts slip up to HELD, in lengths of the terms.
+
+    The part of it that slips at no contact (a swing about one that sticks) has nothing to do with the limit of
+    friction, and has all its digits.
+    """
+    if left <= strictness * BALANCED * scale:
+        return True
+    if friction == 0.0 or left > strictness * HELD * scale:
+        return False
+    span, cone = room.span, room.cone
+    span.used[0] = 0
+    for k in range(cone.passive.used[0]):
+        for j in range(3):
+            append_column(span, columns[cone.contacts[cone.passive.labels[k]], j], j, 0.0, WRENCH)
+    for k in range(6):
+        span.target[k] = cone.passive.residual[k]
+    for k in range(span.used[0]):
+        part = inner(span.basis[k], span.target, 6)
+        for row in range(6):
+            span.target[row] -= part * span.basis[k, row]
+    return length(span.target, 6) <= strictness * BALANCED * scale
 
 
 @kernel
@@ -100,7 +137,7 @@ def onset_with_faces(
     scale = rounding_scale(cone.passive, b, 6)
     for k in range(6):
         y[k] = cone.passive.residual[k]
-    if left <= (BALANCED if used == 0.0 else HELD) * scale:
+    if is_balance(columns, left, used, 1.0, scale, room):
         room.residual[0] = left / scale if scale > 0.0 else 0.0
         return code
     if friction > 0.0 and not coulomb_onset(columns, chosen, n_contacts, friction, b, cone, forces, y, room.coulomb):
@@ -144,8 +181,7 @@ def onset(contacts: ContactSet, friction: float, b: FloatArray, room: OnsetRoom)
 def is_held(contacts: ContactSet, friction: float, b: FloatArray, room: OnsetRoom) -> bool:
     """Whether the contacts hold the object, whichever faces count on edges.
 
-    Asked four times as strictly as by `onset`, so that a pose found by halving a step is held when it is looked at
-    again.
+    Asked more strictly than by `onset`, so that a pose found by halving a step is held when it is looked at again.
     """
     n_contacts = contacts.used[0]
     charged = bool(np.bool_(False))
@@ -153,22 +189,22 @@ def is_held(contacts: ContactSet, friction: float, b: FloatArray, room: OnsetRoo
     for _ in range(COMBINATIONS_LIMIT):
         clear_cone(room.cone, b, WRENCH)
         left = cone_residual(contacts.columns, contacts.chosen, n_contacts, friction, b, WRENCH, charged, room.cone)
-        allowed = BALANCED if friction == 0.0 else 0.25 * HELD
-        holds = holds and left <= allowed * rounding_scale(room.cone.passive, b, 6)
+        scale = rounding_scale(room.cone.passive, b, 6)
+        holds = holds and is_balance(contacts.columns, left, friction, STRICTER, scale, room)
         if not choose_next_faces(contacts):
             break
     return holds
 
 
 @kernel
-def sticks(contacts: ContactSet, i: int, friction: float, y: FloatArray) -> bool:
-    """Whether a contact carries and does not slip: its tangential velocity is rounding."""
+def sticks(contacts: ContactSet, i: int, friction: float, b: FloatArray, y: FloatArray) -> bool:
+    """Whether a contact carries and does not slip, to the digits that `coulomb_onset` asks of y."""
     if contacts.forces[i, 0] <= 0.0 or friction == 0.0:
         return False
     for j in range(1, 3):
         rate = 0.0
         for k in range(6):
             rate += contacts.columns[i, j, k] * y[k]
-        if abs(rate) > STICKING * length(contacts.columns[i, j], 6) * length(y, 6):
+        if abs(rate) > allowed_error(b, y) * length(contacts.columns[i, j], 6):
             return False
     return True

@@ -60,6 +60,8 @@ PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE, OTHER_ONSET, UNIQUENESS_NOT_SHOWN, PROVE
     5,
 )
 """Codes of a proof."""
+RESERVE = 1e-6
+"""A balance that needs all but this part of the friction is at its limit."""
 FRICTION_GREATEST = 1e4
 """A coefficient above which a balance counts as none."""
 BISECTIONS = 100
@@ -148,6 +150,26 @@ def has_self_stress(contacts: ContactSet, friction: float, room: ProofRoom) -> b
     return left <= HELD * rounding_scale(cone.passive, room.sum_only, N_ROWS)
 
 
+@kernel
+def left_by_friction(contacts: ContactSet, friction: float, b: FloatArray, cone: ConeRoom) -> float:
+    """Return what contact forces with this friction leave of the load, in lengths of the terms."""
+    clear_cone(cone, b, WRENCH)
+    charged = bool(np.bool_(False))
+    left = cone_residual(contacts.columns, contacts.chosen, contacts.used[0], friction, b, WRENCH, charged, cone)
+    return left / rounding_scale(cone.passive, b, 6)
+
+
+@kernel
+def spare_friction(contacts: ContactSet, friction: float, room: ProofRoom) -> None:
+    """Take the forces of a balance with a little less friction, if there is one: they lie inside the cones, not on
+    them, so that no contact looks as if it were about to slip.
+    """
+    left = left_by_friction(contacts, friction, room.load, room.solver.cone)
+    if left <= HELD:
+        write_forces(room.solver.cone, contacts.used[0], friction, contacts.forces)
+        room.solver.residual[0] = left
+
+
 @entry_kernel
 def prove(
     geometry: Geometry,
@@ -178,13 +200,14 @@ def prove(
         return TOO_MANY_CONTACTS, STABLE_REST, 0
     code = onset(room.contacts, friction, room.load, room.solver)
     if code > HELD_BY_FRICTION:
+        room.solver.residual[0] = left_by_friction(room.contacts, friction, room.load, room.solver.cone)
         if code != MOVES:  # no balance, and no motion found either: what is left of the load separates them
             for k in range(6):
                 room.solver.y[k] = room.solver.cone.passive.residual[k]
-            room.solver.residual[0] = length(room.solver.y, 6) / length(room.load, 6)
         return PROVEN_MOVES, STABLE_REST, 0
     proof = PROVEN_WITHOUT_FRICTION
     if code != HELD_WITHOUT_FRICTION:
+        spare_friction(room.contacts, (1.0 - RESERVE) * friction, room)
         answer = other_onset(room.contacts, friction, room.load, room.modes, room.solver.coulomb)
         proof = PROVEN_UNIQUE if answer == UNIQUE else UNIQUENESS_NOT_SHOWN
         if answer == OTHER_FOUND:
@@ -195,15 +218,6 @@ def prove(
         room.contacts, friction, loads, phase, quaternion, frame, room.load, size_m, room.rest
     )
     return proof, steady, n_undetermined
-
-
-@kernel
-def left_by_friction(contacts: ContactSet, friction: float, b: FloatArray, cone: ConeRoom) -> float:
-    """Return what contact forces with this friction leave of the load, in lengths of the terms."""
-    clear_cone(cone, b, WRENCH)
-    charged = bool(np.bool_(False))
-    left = cone_residual(contacts.columns, contacts.chosen, contacts.used[0], friction, b, WRENCH, charged, cone)
-    return left / rounding_scale(cone.passive, b, 6)
 
 
 @kernel

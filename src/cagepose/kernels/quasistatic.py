@@ -19,6 +19,8 @@ from cagepose.kernels.geometry import FloatArray, Geometry, Placement, place_obj
 from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.metric import Body, DeadLoads, Frame, frame_at, twist_of, write_load
 from cagepose.kernels.onset import (
+    HELD_BY_FRICTION,
+    HELD_WITHOUT_FRICTION,
     MOVES,
     UNSOLVED,
     OnsetRoom,
@@ -42,9 +44,22 @@ from cagepose.kernels.path import (
     straightened,
 )
 from cagepose.kernels.pose import Quaternion
+from cagepose.kernels.projection import ON_FACE
 from cagepose.kernels.stiff import StiffRoom, curvature_along, empty_stiff_room, stiff_step
 from cagepose.kernels.tolerances import KernelTolerances
-from cagepose.kernels.trace import ESCAPES, LIMIT, NONE, PLAIN, RESTS, SCREW, STALLED, TRAVEL, Trace, empty_trace
+from cagepose.kernels.trace import (
+    ESCAPES,
+    LET_GO,
+    LIMIT,
+    NONE,
+    PLAIN,
+    RESTS,
+    SCREW,
+    STALLED,
+    TRAVEL,
+    Trace,
+    empty_trace,
+)
 from cagepose.kernels.vector import Vector, norm
 
 RULE_NAMES = ("free", "slide", "pivot", "held")
@@ -59,6 +74,8 @@ STILL = 1e-14
 """In sizes of the scene: a shorter step is no progress."""
 STILL_STEPS = 6
 """Steps without progress after which the run has stalled."""
+POLISHES = 3
+"""How often, in a phase, a rest is put on its faces and looked at again: what balanced before may not quite, then."""
 
 
 class QuasistaticRules(NamedTuple):
@@ -152,7 +169,7 @@ def next_twist(
     contacts, stiff, y = work.contacts, work.stiff, work.solver.y
     carries = False
     for i in range(contacts.used[0]):
-        stiff.is_sticking[i] = sticks(contacts, i, setting.friction, y)
+        stiff.is_sticking[i] = sticks(contacts, i, setting.friction, work.load, y)
         carries = carries or contacts.forces[i, 0] > 0.0
         for j in range(3):
             stiff.forces[i, j] = contacts.forces[i, j]
@@ -250,6 +267,16 @@ def first_rest(
 
 
 @kernel
+def gap_left(contacts: ContactSet) -> float:
+    """Return the greatest distance, to either side, of a contact that carries from its face."""
+    greatest = 0.0
+    for i in range(contacts.used[0]):
+        if contacts.forces[i, 0] > 0.0:
+            greatest = max(greatest, abs(contacts.gaps[i]))
+    return greatest
+
+
+@kernel
 def polished(
     setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace
 ) -> tuple[Vector, Quaternion]:
@@ -283,6 +310,8 @@ def write_step(
         trace.touching[event, work.contacts.points[i]] = True
     for point in range(len(work.touched)):
         trace.hit[event, point] = trace.touching[event, point] and not work.touched[point]
+        if work.touched[point] and not trace.touching[event, point]:
+            trace.notes[event] = LET_GO
 
 
 @kernel
@@ -309,14 +338,20 @@ def phase_run(
     frame = frame_at(setting.body, quaternion)
     fits = find_contacts(setting.geometry, work.placement, position, frame, touch_m, work.contacts)
     turn_step = setting.turn_step_rad
-    still = 0
-    for event in range(first_event, first_event + step_limit):
+    still, n_polished = 0, 0
+    event = first_event
+    while event < first_event + step_limit:
         note_touching(work)
         write_load(setting.loads, setting.phase, quaternion, frame, work.load)
         code = onset(work.contacts, setting.friction, work.load, work.solver) if fits else UNSOLVED
-        if code != MOVES:
-            if code != UNSOLVED:
+        if code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION):
+            if n_polished < POLISHES and gap_left(work.contacts) > ON_FACE * setting.size_m:
                 position, quaternion = polished(setting, position, quaternion, work)
+                frame = frame_at(setting.body, quaternion)
+                fits = find_contacts(setting.geometry, work.placement, position, frame, touch_m, work.contacts)
+                n_polished += 1
+                continue
+        if code != MOVES:
             write_step(work, event, setting.phase, HELD, NONE, position, quaternion)
             return (STALLED if code == UNSOLVED else RESTS), event + 1, position, quaternion
         twist, _ = next_twist(setting, quaternion, frame, turn_step, work)
@@ -349,8 +384,9 @@ def phase_run(
         frame = frame_at(setting.body, quaternion)
         fits = find_contacts(setting.geometry, work.placement, position, frame, touch_m, work.contacts)
         write_step(work, event, setting.phase, rule, motion, position, quaternion)
+        event += 1
         if still == STILL_STEPS:
-            return STALLED, event + 1, position, quaternion
+            return STALLED, event, position, quaternion
     return LIMIT, first_event + step_limit, position, quaternion
 
 

@@ -30,8 +30,8 @@ VERDICT_NAMES: tuple[Literal["stable", "escapes", "spins", "cycling", "limit", "
 )
 
 
-TIE, BALANCED, SMALL_TURN, EDGE_TIE, PLAIN = 0, 1, 2, 3, 4
-"""Codes of notes: the index into `NOTE_NAMES`; PLAIN has no name."""
+TIE, BALANCED, SMALL_TURN, EDGE_TIE, PLAIN, LET_GO = 0, 1, 2, 3, 4, 5
+"""Codes of notes: the index into `NOTE_NAMES`; PLAIN and LET_GO (a contact was lost) have no name."""
 NOTE_NAMES: tuple[Literal["tie", "balanced", "small turn", "edge tie"], ...] = (
     "tie",
     "balanced",

@@ -132,7 +132,7 @@ class Object:
         """Inertia for each unit of mass, about the centre of gravity, in the object's axes, (3, 3), metres squared.
 
         The given inertia by the given mass; without one, that of the union at uniform density: the mean of
-        |d|^2 1 - d d^T over its volume, d from the centre of gravity, be that the centroid or not.
+        (d.d) 1 - d d^T over its volume, d from the centre of gravity, be that the centroid or not.
         """
         if self.inertia_kg_m2 is not None and self.mass_kg is not None:
             gyration = self.inertia_kg_m2 / self.mass_kg

@@ -11,7 +11,7 @@ from cagepose.kernels.quasistatic import (
     empty_quasistatic_workspace,
     quasistatic_run,
 )
-from cagepose.kernels.trace import NONE, VERDICT_NAMES, Trace
+from cagepose.kernels.trace import LET_GO, NONE, VERDICT_NAMES, Trace
 from cagepose.nouns.pose import Pose
 from cagepose.nouns.scene import Scene
 from cagepose.runs.frames import Frames, touching_names
@@ -97,7 +97,5 @@ def _events(scene: Scene, trace: Trace, steps: list[int], frames: Frames, start:
 
 def _goes_on(trace: Trace, step: int, following: int) -> bool:
     return bool(
-        trace.rules[step] == trace.rules[following]
-        and not trace.hit[step].any()
-        and (trace.touching[step] == trace.touching[following]).all()
+        trace.rules[step] == trace.rules[following] and not trace.hit[step].any() and trace.notes[step] != LET_GO
     )

@@ -1,0 +1,28 @@
+"""What the contacts of a phase leave of its load, summed up by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cagepose import PhaseRun, Scene
+from cagepose.runs.weights import weigh
+
+
+def imbalance(scene: Scene, phase: PhaseRun) -> float:
+    """Net force, and net moment about the centre of gravity by the scene's size, as a fraction of the load."""
+    load = next(load for load in scene.loads if load.name == phase.name)
+    weighed = weigh(scene, load)
+    center = phase.pose.transform(scene.object.center_of_gravity_m)
+    acts = [(weighed.gravity, center)]
+    if load.force is not None:
+        acts.append((weighed.force, phase.pose.transform(load.force.at_object_m)))
+    size_of_load = sum(np.linalg.norm(force) for force, _ in acts)
+    points = dict(zip(scene.cage.names, scene.cage.points_world(), strict=True))
+    for contact in phase.contacts:
+        assert contact.force_normal_n is not None
+        assert contact.force_tangential_n is not None
+        force = contact.force_tangential_n - contact.force_normal_n * contact.normal_world
+        acts.append((force, points[contact.point]))
+    net = sum(force for force, _ in acts)
+    moment = sum(np.cross(at - center, force) for force, at in acts)
+    return float(max(np.linalg.norm(net), np.linalg.norm(moment) / scene.size_m) / size_of_load)
