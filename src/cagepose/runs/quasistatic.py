@@ -83,7 +83,9 @@ def _events(scene: Scene, trace: Trace, steps: list[int], frames: Frames, start:
         events.append(
             Event(
                 rule=RULE_NAMES[trace.rules[step]],
-                motion=None if trace.motions[step] == NONE else motion_between(before, pose, frames.middle_object),
+                motion=None
+                if trace.motions[step] == NONE
+                else motion_between(before, pose, frames.middle_object, scene.size_m),
                 hit=touching_names(scene, trace.hit[step]),
                 contacts=touching_names(scene, trace.touching[step]),
                 pose_world_object=pose,

@@ -233,7 +233,9 @@ class Run:
         return self.pose.transform(self.scene.object.center_of_gravity_m)
 
     def frames(self, per_turn: int = 10) -> Iterator[Frame]:
-        """Yield the start pose, then ``per_turn`` pictures of each turn and one of each travel (the paper's steps).
+        """Yield the start pose, then ``per_turn`` pictures of each turn or screw and one of each travel.
+
+        Those of a sliding contact's bent way lie on it: see `Event.path`.
 
         Raises
         ------
@@ -250,6 +252,19 @@ class Run:
                     n_frames = 1 if event.motion.kind == "travel" else per_turn
                     for step in range(1, n_frames):
                         fraction = step / n_frames
-                        yield Frame(phase_index, event_index, fraction, event.motion.pose_at(pose, fraction))
+                        yield Frame(phase_index, event_index, fraction, self._on_the_way(pose, event, fraction))
                     yield Frame(phase_index, event_index, 1.0, event.pose_world_object)
                 pose = event.pose_world_object
+
+    def _on_the_way(self, start: Pose, event: Event, fraction: float) -> Pose:
+        """Return where the object is after ``fraction`` of an event, along its path if it has one."""
+        assert event.motion is not None
+        if not event.path:
+            return event.motion.pose_at(start, fraction)
+        from cagepose.runs.screw_between import motion_between  # which needs `Motion` from here
+
+        n_done = int(fraction * len(event.path))
+        before = event.path[n_done - 1] if n_done else start
+        center, size_m = self.scene.object.center_of_gravity_m, self.scene.size_m
+        step = motion_between(before, event.path[n_done], center, size_m)
+        return before if step is None else step.pose_at(before, fraction * len(event.path) - n_done)
