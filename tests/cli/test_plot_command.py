@@ -88,7 +88,7 @@ def test_a_saved_run_cannot_be_changed(command: Command, sample: str, flags: tup
 
 
 def test_a_damaged_run_is_told(command: Command, in_folder: Path) -> None:
-    (in_folder / "run.json").write_text('{"version": 1, "phases": []}', encoding="utf-8")
+    (in_folder / "run.json").write_text('{"version": 2, "phases": []}', encoding="utf-8")
     answer = command("plot", "run.json", "--out", "x.png")
     assert answer.code == 2
     assert answer.err.startswith("run.json: is what --json prints, without the exact numbers")

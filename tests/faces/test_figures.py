@@ -206,6 +206,30 @@ def test_the_range_is_drawn_with_the_theorys_limit():
     )
 
 
+def test_the_curves_follow_a_sliding_contact():
+    """Without friction the cube slides on C1 as it tips: at each step the point is on the underside, not inside."""
+    slid = run(sample_scene(), method="quasistatic")
+    frames = [frame for frame in slid.frames(10) if frame.event_index == 1]
+    assert len(frames) == 10
+    below = [frame.pose_world_object.inverse_transform((0.004, 0.004, 0.0))[2] + 0.005 for frame in frames]
+    assert below == pytest.approx([0.0] * 10, abs=2e-7)
+    assert pose_figure(slid).axes[0].lines[1].get_ydata()[-1] == pytest.approx(-45.0, abs=1e-6)
+
+
+def test_an_unstable_rest_is_named_so_and_lies_over_the_line_of_its_contacts():
+    slid = run(sample_scene(), method="quasistatic")
+    assert pose_figure(slid).get_suptitle() == "sample: rests, unstable (quasistatic)"
+    figure = event_figure(slid)
+    assert figure.axes[-1].get_title() == "end of gravity, seen along it:\nCoG right over the contacts' outline"
+
+
+def test_a_long_title_takes_two_lines():
+    found = run(rail_scene(misalignment_zyx=(0.0, np.radians(0.1), 0.0)), method="quasistatic")
+    titles = [panel.get_title() for panel in event_figure(found).axes]
+    assert max(len(line) for title in titles for line in title.splitlines()) <= 40
+    assert any(title.startswith("5. push, slide:\nscrew ") for title in titles)
+
+
 @pytest.mark.parametrize("name", ["connector"])
 def test_every_scene_of_ours_can_be_drawn(name):
     """The others are drawn by the report."""

@@ -11,7 +11,7 @@ from cagepose.studies import reproduction
 from cagepose.studies.planar import zero_is_within_reach
 from cagepose.studies.rail import relative_tilt_rad
 from cagepose.studies.range_study import permitted, range_study
-from cagepose.studies.reproduction import reproduce
+from cagepose.studies.reproduction import METHODS, reproduce
 
 DEG = math.pi / 180.0
 
@@ -26,7 +26,7 @@ def result(steps):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(reproduction, "TIMED_RUNS", 3)
         patch.setattr(reproduction, "RANGE_RAD", np.radians([-0.5, -0.25, 0.0, 0.25, 0.5]))
-        return reproduce(["stepwise"], steps.append)
+        return reproduce(METHODS, steps.append)
 
 
 def row(result, quantity):
@@ -41,13 +41,43 @@ def test_the_samples_three_numbers_are_exact_to_1e_9(result):
     assert row(result, "A-3: turn").found["stepwise"] / DEG == pytest.approx(math.acos(5 / 8) / DEG, abs=1e-9)
 
 
-def test_the_rails_relative_pitch_is_exact(result):
-    """0.313084 deg up under the weight, down under the push; to 1e-6 of the printed value and 1e-9 of (4.3)."""
-    runs = result.runs["stepwise"]
-    for run in (runs.pitch, runs.yaw, runs.roll):
-        assert relative_tilt_rad(run, 0) / DEG == pytest.approx(0.313084, abs=1e-6)
-        assert relative_tilt_rad(run, 1) / DEG == pytest.approx(-0.313084, abs=1e-6)
-        assert relative_tilt_rad(run, 1) == pytest.approx(-permitted("pitch"), abs=1e-11)
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("case", ["pitch", "yaw", "roll"])
+def test_each_method_swings_the_rail_through_all_of_its_play(result, method, case):
+    """0.313084 deg up under the weight, as much down under the push: 0.626168 deg; and (4.3) to 1e-9 of the angle.
+
+    cos t - 91.5 sin t = 0.5 at t = 0.0054643 rad, worked out in `test_planar`.
+    """
+    run = getattr(result.runs[method], case)
+    before, after = relative_tilt_rad(run, 0), relative_tilt_rad(run, 1)
+    assert before / DEG == pytest.approx(0.313084, abs=1e-6)
+    assert after / DEG == pytest.approx(-0.313084, abs=1e-6)
+    assert (before - after) / DEG == pytest.approx(0.626168, abs=1e-6)
+    assert after == pytest.approx(-permitted("pitch"), rel=1e-9)
+
+
+def test_the_mechanics_ends_where_the_contacts_balance_the_push(result):
+    """Relative yaw 0.33220, pitch 0.31308 deg; in the world 0.1 deg is added to the angle that is out of line."""
+    runs = result.runs["quasistatic"]
+    for run, expected_deg in (
+        (runs.pitch, (-0.3322, -0.2131, 0.0012)),
+        (runs.yaw, (-0.2322, -0.3131, 0.0018)),
+        (runs.roll, (-0.3327, -0.3125, 0.1018)),
+    ):
+        assert run.verdict == "rests"
+        assert np.degrees(run.pose.euler_zyx) == pytest.approx(expected_deg, abs=5e-5)
+
+
+def test_the_mechanics_has_its_column_where_it_applies(result):
+    """The fall is the same; the wedge at -45 deg on C1 and C4 is no stable rest, and no rule A-2 leads there."""
+    found = {row.quantity: row.found["quasistatic"] for row in result.rows}
+    assert found["A-1: travel"] == pytest.approx(0.005, abs=1e-12)
+    assert found["A-1: first contact"] == "C1"
+    assert found["A-2: turn"] is None
+    assert found["A-4: verdict"] == "rests, unstable"
+    assert found["centre of gravity over the triangle C1 C3 C4"] is None
+    assert found["range of the relative pitch"] / DEG == pytest.approx(0.626168, abs=1e-6)
+    assert found["permitted misalignment in yaw"] / DEG == pytest.approx(0.33220, abs=1e-5)
 
 
 def test_every_printed_number_has_its_row(result):
@@ -78,21 +108,21 @@ def test_differences_are_shown_as_they_are(result):
         ("pitch after the push", -0.0451),
         ("yaw after the push", -0.0799),
     ):
-        assert row(result, quantity).difference("stepwise") / DEG == pytest.approx(difference_deg, abs=5e-5)
+        assert row(result, quantity).difference() / DEG == pytest.approx(difference_deg, abs=5e-5)
 
 
 def test_measured_times_are_those_of_the_runs(result):
-    runs = result.runs["stepwise"]
-    assert 0.0 < runs.pitch_s <= runs.slowest_s
-    assert row(result, "time of the run").found["stepwise"] == runs.pitch_s
+    for method, runs in result.runs.items():
+        assert 0.0 < runs.pitch_s <= runs.slowest_s
+        assert row(result, "time of the run").found[method] == runs.pitch_s
 
 
 def test_progress_names_each_case_and_the_range(steps, result):
-    assert result.methods == ("stepwise",)
+    assert result.methods == METHODS
     assert [step.partition(": ")[2] for step in steps[:4]] == [
         "sample", "rail, yaw 0.1 deg", "rail, pitch 0.1 deg", "rail, roll 0.1 deg",
     ]  # fmt: skip
-    assert len(steps) == 5
+    assert len(steps) == 5 * len(METHODS)
 
 
 def test_a_method_with_other_rules_leaves_gaps_and_no_error(result):
@@ -117,29 +147,39 @@ def test_a_method_with_other_rules_leaves_gaps_and_no_error(result):
     assert values["pitch after the push"] == pytest.approx(row(result, "pitch after the push").found["stepwise"])
 
 
+@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("pin_y_m", [0.02, -0.02])
-def test_pitch_passes_zero_within_the_theorys_range_and_only_there(pin_y_m):
+def test_pitch_passes_zero_within_the_theorys_range_and_only_there(pin_y_m, method):
     """(6.8): |misalignment| <= 0.3131 deg."""
     misalignments = np.radians([-0.5, -0.32, -0.31, -0.1, 0.1, 0.31, 0.32, 0.5])
-    study = range_study("pitch", misalignments, pin_y_m, "stepwise")
+    study = range_study("pitch", misalignments, pin_y_m, method)
     expected = [zero_is_within_reach(value, study.permitted_rad).holds for value in misalignments.tolist()]
     assert expected == [False, False, True, True, True, True, False, False]
     assert study.passes_zero().tolist() == expected
     assert study.improved().tolist() == [False, False, False, False, True, True, True, True]
-    assert set(study.verdicts) == {"stable"}
+    assert set(study.verdicts) == {"stable" if method == "stepwise" else "rests"}
 
 
-def test_the_two_pins_turn_the_rail_to_opposite_sides():
+def test_yaw_passes_zero_at_the_pin_that_touches_first_within_the_theorys_range():
+    """(6.8) and (6.7): by the mechanics up to 0.3322 deg to the pin's own side, and not at all to the other."""
+    study = range_study("yaw", np.radians([-0.3, -0.1, 0.1, 0.33, 0.335, 0.5]), 0.02, "quasistatic")
+    assert study.passes_zero().tolist() == [False, False, True, True, False, False]
+    assert study.improved().tolist() == [False, False, False, True, True, True]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_two_pins_turn_the_rail_to_opposite_sides(method):
     """Mirror the scene in the xz plane: the other pin, yaw and roll of the other sign, the same pitch."""
     misalignments = np.radians([-0.4, 0.1, 0.3])
-    left = range_study("yaw", misalignments, 0.02, "stepwise")
-    right = range_study("yaw", -misalignments, -0.02, "stepwise")
+    left = range_study("yaw", misalignments, 0.02, method)
+    right = range_study("yaw", -misalignments, -0.02, method)
     assert left.after_push_rad == pytest.approx(right.after_push_rad * [-1, 1, -1], abs=1e-12)
     assert left.improved().tolist() == right.improved().tolist()
 
 
-def test_roll_is_left_as_it_is():
-    study = range_study("roll", np.radians([-0.5, 0.5]), 0.02, "stepwise")
+@pytest.mark.parametrize("method", METHODS)
+def test_roll_is_left_as_it_is(method):
+    study = range_study("roll", np.radians([-0.5, 0.5]), 0.02, method)
     assert study.permitted_rad is None
     assert not study.improved().any()
     assert not study.passes_zero().any()

@@ -29,8 +29,7 @@ def reproduce_command(
 
     try:
         check_report_folder(out, METHODS)
-        for method in METHODS:
-            announce_compilation([method])
+        announce_compilation(METHODS)
         progress = _teller()
         reproduction = reproduce(METHODS, progress)
         written = write_report(out, reproduction, progress)

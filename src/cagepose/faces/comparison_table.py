@@ -12,9 +12,8 @@ NOTHING = "-"
 
 
 def headings(methods: Sequence[str]) -> list[str]:
-    """Return the table's columns: one for each method, and one for its difference from the paper."""
-    differences = ["difference"] if len(methods) == 1 else [f"{method} - paper" for method in methods]
-    return ["section", "quantity", "paper", *methods, "closed form", *differences, "explanation"]
+    """Return the table's columns; the difference is that of the paper's method."""
+    return ["section", "quantity", "paper", *methods, "closed form", "difference", "explanation"]
 
 
 def cells(row: Row) -> list[str]:
@@ -26,7 +25,7 @@ def cells(row: Row) -> list[str]:
         _printed(printed),
         *(_value(value, printed) for value in row.found.values()),
         _value(row.closed_form, printed),
-        *(_difference(row, method) for method in row.found),
+        _difference(row),
         f"{row.status.capitalize()}. {row.explanation}",
     ]
 
@@ -54,8 +53,8 @@ def _value(value: Value, printed: Printed) -> str:
     return f"{_rounded(in_unit(value, printed.unit), printed)} {printed.unit}"
 
 
-def _difference(row: Row, method: str) -> str:
-    difference = row.difference(method)
+def _difference(row: Row) -> str:
+    difference = row.difference()
     if difference is None:
         return NOTHING
     unit: Unit = row.printed.unit

@@ -29,6 +29,7 @@ from cagepose.faces.style import (
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.nouns.pose import Pose
 from cagepose.runs.run import Event, Run
+from cagepose.studies.ending import ending
 from cagepose.studies.support import LoadView, convex_hull, load_view
 
 COLUMNS = 3
@@ -39,9 +40,14 @@ HEAD_IN, FOOT_IN = 0.55, 0.6
 MOST_SNAPSHOTS = 14
 """A longer run shows its start, its first events and its last one, and says how many it leaves out."""
 
+RIGHT_OVER = 1e-9
+"""A load's line is on the outline of the contacts within this fraction of its length."""
+
 LENGTH_WORDS: Mapping[LengthUnit, str] = {"mm": "mm", "m": "m", "in": "inches"}
 LONGEST_NAME = 12
 """Characters of a phase's name in a title."""
+LONGEST_TITLE = 40
+"""Characters that fit above a panel; a longer title takes two lines."""
 
 
 def event_figure(run: Run, length_unit: LengthUnit = "mm") -> Figure:
@@ -63,7 +69,7 @@ def event_figure(run: Run, length_unit: LengthUnit = "mm") -> Figure:
             drawing.draw(panel, phase_index, event, before, title)
         for place, phase_index in enumerate(weights, start=len(shots)):
             _draw_view(figure.add_axes(grid.cell(place, (0.2, 0.19, 0.72, 0.58))), run, phase_index, length_unit)
-        notes = [f"{run.scene.name}: {run.verdict} ({run.method})", f"x, y and z in {LENGTH_WORDS[length_unit]}"]
+        notes = [f"{run.scene.name}: {ending(run)} ({run.method})", f"x, y and z in {LENGTH_WORDS[length_unit]}"]
         if scales := drawing.scales():
             notes[1] += f"; not to one scale: {scales}"
         if n_left_out:
@@ -102,8 +108,9 @@ def _snapshots(run: Run, length_unit: LengthUnit) -> tuple[list[tuple[int, Event
         for event in phase.events:
             number += 1
             if event.motion is not None:
-                title = f"{number}. {_cut(phase.name)}, {event.rule}: {_amount(event, length_unit)}"
-                shots.append((phase_index, event, before, title))
+                name, amount = f"{number}. {_cut(phase.name)}, {event.rule}:", _amount(event, length_unit)
+                gap = " " if len(name) + len(amount) < LONGEST_TITLE else "\n"
+                shots.append((phase_index, event, before, f"{name}{gap}{amount}"))
             before = event.pose_world_object
     if len(shots) <= MOST_SNAPSHOTS:
         return shots, 0
@@ -156,6 +163,8 @@ def _draw_view(panel: Axes, run: Run, phase_index: int, length_unit: LengthUnit)
 def _position(view: LoadView, length_unit: LengthUnit) -> str:
     if len(view.polygon) == 0:
         return "no contacts"
+    if abs(view.margin_m) < RIGHT_OVER * float(np.ptp(view.polygon, axis=0).max()):
+        return "CoG right over the contacts' outline"
     margin = float(from_metres(abs(view.margin_m), length_unit))
     return f"CoG {margin:.3g} {length_unit} {'inside' if view.margin_m > 0.0 else 'outside'} the contacts"
 

@@ -1,6 +1,6 @@
 """A run as curves: the object's angles and the way of its centre of gravity against the step, and who touched when.
 
-A step is one frame of `Run.frames`: ten for each turn and one for each travel, as in the paper's figures.
+A step is one frame of `Run.frames`: ten for each turn or screw and one for each travel, as in the paper's figures.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from cagepose.faces.style import BLACK, GREEN, GREY, PAGE_WIDTH_IN, PALE, PURPLE
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.nouns.checks import FloatArray
 from cagepose.runs.run import Event, Run
+from cagepose.studies.ending import ending
 
 STEPS_PER_TURN = 10
 """As in the paper's figures."""
@@ -71,10 +72,10 @@ def pose_figure(run: Run, length_unit: LengthUnit = "mm") -> Figure:
         for panel in (angles, way, contacts):
             _draw_phases(panel, run, steps)
         _name_rules(angles, steps)
-        contacts.set_xlabel(f"step ({STEPS_PER_TURN} for each turn, 1 for each travel)")
+        contacts.set_xlabel(f"step ({STEPS_PER_TURN} for each turn or screw, 1 for each travel)")
         contacts.set_xlim(-0.5, max(len(steps.angles_deg) - 0.5, 1.0))
         contacts.xaxis.set_major_locator(MaxNLocator(integer=True))
-        figure.suptitle(f"{run.scene.name}: {run.verdict} ({run.method})", fontsize=11)
+        figure.suptitle(f"{run.scene.name}: {ending(run)} ({run.method})", fontsize=11)
         _draw_legend(figure, run, steps)
     return figure
 

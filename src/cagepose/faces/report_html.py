@@ -15,6 +15,7 @@ body { margin: 0 auto; max-width: 68rem; padding: 2rem 1.5rem 4rem; background: 
   font: 16px/1.55 system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; }
 h1 { font-size: 2rem; line-height: 1.2; margin: 0 0 1rem; }
 h2 { font-size: 1.35rem; margin: 2.6rem 0 .6rem; padding-top: .6rem; border-top: 2px solid #0072b2; }
+h3 { font-size: 1.1rem; margin: 2rem 0 .4rem; }
 p, ul { max-width: 46rem; }
 li { margin: .35rem 0; }
 table { border-collapse: collapse; width: 100%; margin: 1.2rem 0; font-size: .86rem; line-height: 1.4; }
@@ -41,7 +42,7 @@ figcaption { max-width: 46rem; margin-top: .5rem; font-size: .9rem; color: #3c3c
   thead { display: table-header-group; }
   tr, figure { break-inside: avoid; }
   figure img { max-height: 170mm; width: auto; max-width: 100%; }
-  h2 { break-after: avoid; }
+  h2, h3 { break-after: avoid; }
   .scroll { overflow: visible; }
 }
 """

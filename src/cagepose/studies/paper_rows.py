@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from cagepose.runs.run import Event, Motion, Run
 from cagepose.runs.stepwise import BLOCKED_ANGLE_RAD
 from cagepose.studies import planar, sample
-from cagepose.studies.printed import Printed, Status, Value
+from cagepose.studies.ending import ending
+from cagepose.studies.printed import PAPER_METHOD, Printed, Status, Value
 from cagepose.studies.rail import PAPER_RAIL, relative_tilt_rad
 from cagepose.studies.support import load_view
 
@@ -76,7 +77,7 @@ def _general() -> list[Question]:
         ),
         Question(
             "III.D", "small turn of the stability test", Printed("0.01", "deg"),
-            lambda runs: BLOCKED_ANGLE_RAD if runs.sample.method == "stepwise" else None, math.pi / 10000.0,
+            lambda runs: BLOCKED_ANGLE_RAD if runs.sample.method == PAPER_METHOD else None, math.pi / 10000.0,
             "The paper has 0.01 deg = π/1800 rad and then takes π/10000 rad. These are three angles: π/1800 rad is 0.1"
             " deg, π/10000 rad is 0.018 deg. We take the last, which its program uses.",
         ),
@@ -88,11 +89,11 @@ def _of_the_sample() -> list[Question]:
     section = "III.F"
     return [
         Question(
-            section, "A-1: travel", Printed("5", "mm"), lambda runs: _amount(runs.sample, "A-1"), sample.DROP_M,
+            section, "A-1: travel", Printed("5", "mm"), lambda runs: _amount(runs.sample, "A-1", "free"), sample.DROP_M,
             "Underside at 5 mm, points at 0.",
         ),
         Question(
-            section, "A-1: first contact", Printed("C1"), lambda runs: _hit(runs.sample, "A-1"), "C1",
+            section, "A-1: first contact", Printed("C1"), lambda runs: _hit(runs.sample, "A-1", "free"), "C1",
             "The only point under the cube.",
         ),
         Question(
@@ -128,13 +129,13 @@ def _of_the_sample() -> list[Question]:
             "The point that the side at low y meets.",
         ),
         Question(
-            section, "A-4: verdict", Printed("stable"), lambda runs: str(runs.sample.verdict), None,
-            "No turn about two of C1, C3, C4 is free. A balance of forces it is only with friction of 0.457 or more.",
+            section, "A-4: verdict", Printed("stable"), lambda runs: ending(runs.sample), None,
+            "No turn about two of C1, C3, C4 is free. A balance of forces it is only with friction of 0.457 or more."
+            " Without friction the cube tips over C1 to a pitch of -45 deg, on C1 and C4 alone.",
         ),
         Question(
             section, "centre of gravity over the triangle C1 C3 C4", Printed("inside"),
-            lambda runs: "inside" if load_view(runs.sample, 0).margin_m > 0.0 else "outside", None,
-            "Seen from above, 1.07 mm from the nearest side.",
+            lambda runs: _place_of_load(runs.sample), None, "Seen from above, 1.07 mm from the nearest side.",
         ),
     ]  # fmt: skip
 
@@ -178,8 +179,8 @@ def _of_the_pitch_case() -> list[Question]:
         Question(
             section, "step at which the pitch is first read", Printed("40"),
             lambda runs: str(sum(frame.phase_index == 0 for frame in runs.pitch.frames()) - 1), None,
-            "Our first phase ends after 11 steps. The paper's start pose, and with it its first motions, are not"
-            " given.", "not derivable",
+            "The last step of our first phase. The paper's start pose, and with it its first motions, are not given.",
+            "not derivable",
         ),
         Question(
             section, "time of the run", Printed("0.554", "s"), lambda runs: runs.pitch_s, None,
@@ -198,8 +199,11 @@ def _of_the_yaw_case() -> list[Question]:
             " is 0.664 deg.",
         ),
         Question(
-            section, "permitted misalignment in yaw", Printed("0.320", "deg"), lambda _: None, SIDE_RAD,
-            "1.06 mm of side play over 183 mm: 29.52 cos w + 91.5 sin w = 30.05.",
+            section, "permitted misalignment in yaw", Printed("0.320", "deg"),
+            lambda runs: None if runs.yaw.method == PAPER_METHOD else abs(_euler(runs.yaw, -1, YAW) - MISALIGNMENT_RAD),
+            SIDE_RAD,
+            "1.06 mm of side play over 183 mm: 29.52 cos w + 91.5 sin w = 30.05. By the mechanics the push turns the"
+            " rail all that way, and 1e-5 deg more as it is tilted too.",
         ),
         Question(
             section, "yaw up to which the push reduces it", Printed("1.91", "deg"), lambda _: None,
@@ -213,8 +217,8 @@ def _of_the_yaw_case() -> list[Question]:
         Question(
             section, "yaw after the push", Printed("0.014", "deg"),
             lambda runs: _euler(runs.yaw, -1, YAW), MISALIGNMENT_RAD - SIDE_RAD,
-            f"{lost} Ours turns by half the side play until a first roller is met; without friction it would go on"
-            " until a second one is, which is the closed form.", "not derivable",
+            f"{lost} By the paper's rules ours turns by half the side play, until it meets a first roller; by the"
+            " mechanics it goes on until it meets a second one, which is the closed form.", "not derivable",
         ),
         Question(
             section, "change of yaw by the push", Printed("-0.086", "deg"),
@@ -223,23 +227,23 @@ def _of_the_yaw_case() -> list[Question]:
         Question(
             section, "roll after the push", Printed("-0.44", "deg"),
             lambda runs: _euler(runs.yaw, -1, ROLL), None,
-            f"{lost} In ours the guide plates lie between two pairs of rollers, at the tilt that the play allows: no"
-            " roll is left.", "not derivable",
+            f"{lost} In ours the guide plates lie between two pairs of rollers, at the tilt that the play allows: all"
+            " the roll that is left comes from how ZYX angles share out tilt and yaw.", "not derivable",
         ),
     ]  # fmt: skip
 
 
-def _event(run: Run, rule: str) -> Event | None:
-    return next((event for phase in run.phases for event in phase.events if event.rule == rule), None)
+def _event(run: Run, *rules: str) -> Event | None:
+    return next((event for phase in run.phases for event in phase.events if event.rule in rules), None)
 
 
-def _motion(run: Run, rule: str) -> Motion | None:
-    event = _event(run, rule)
+def _motion(run: Run, *rules: str) -> Motion | None:
+    event = _event(run, *rules)
     return None if event is None else event.motion
 
 
-def _amount(run: Run, rule: str) -> Value:
-    motion = _motion(run, rule)
+def _amount(run: Run, *rules: str) -> Value:
+    motion = _motion(run, *rules)
     if motion is None:
         return None
     return motion.distance_m if motion.kind == "travel" else motion.angle_rad
@@ -252,9 +256,15 @@ def _axis(run: Run, rule: str) -> Value:
     return f"({', '.join(f'{component + 0.0:g}' for component in motion.axis_world.round(12).tolist())})"
 
 
-def _hit(run: Run, rule: str) -> Value:
-    event = _event(run, rule)
+def _hit(run: Run, *rules: str) -> Value:
+    event = _event(run, *rules)
     return None if event is None else " ".join(event.hit)
+
+
+def _place_of_load(run: Run) -> Value:
+    if {contact.point for contact in run.contacts} != {"C1", "C3", "C4"}:
+        return None
+    return "inside" if load_view(run, 0).margin_m > 0.0 else "outside"
 
 
 def _euler(run: Run, phase_index: int, angle: int) -> float:

@@ -13,6 +13,9 @@ Value = float | str | None
 """A number in metres, radians or seconds; words; None where there is none."""
 Status = Literal["agrees", "differs", "not derivable", "measured"]
 
+PAPER_METHOD = "stepwise"
+"""The method that the paper describes: its value, and geometry, are what a printed number is held against."""
+
 _SI: dict[Unit, float] = {"mm": 1e-3, "deg": math.pi / 180.0, "rad": 1.0, "s": 1.0, "": 1.0}
 _ROUNDED = 0.5 + 1e-9
 """Half a unit of the last digit, and rounding of binary fractions."""
@@ -82,7 +85,7 @@ class Row:
     printed
         What the paper prints.
     found
-        What each method finds, by its name; None: the method does not speak about it.
+        What each method finds, by its name; None: the method does not speak about it. One is `PAPER_METHOD`.
     closed_form
         From geometry alone; None where there is none.
     status
@@ -100,9 +103,9 @@ class Row:
     status: Status
     explanation: str
 
-    def difference(self, method: str) -> float | None:
-        """Return what a method finds (without one, the closed form) less what the paper prints; None for words."""
-        value = self.found[method]
+    def difference(self) -> float | None:
+        """Return what the paper's method finds, else the closed form, less what the paper prints; None for words."""
+        value = self.found[PAPER_METHOD]
         value = self.closed_form if value is None else value
         return _difference(value, self.printed.value)
 
@@ -112,8 +115,8 @@ class Row:
 
 
 def compared(found: Mapping[str, Value], closed_form: Value, printed: Printed) -> Status:
-    """Say whether all that is known of a quantity agrees with what the paper prints."""
-    known = [value for value in (*found.values(), closed_form) if value is not None]
+    """Say whether what the paper's method finds, and the closed form, agree with what the paper prints."""
+    known = [value for value in (found[PAPER_METHOD], closed_form) if value is not None]
     return "agrees" if known and all(printed.agrees_with(value) for value in known) else "differs"
 
 

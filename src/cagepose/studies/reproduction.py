@@ -12,14 +12,14 @@ from cagepose.nouns.scene import Scene
 from cagepose.runs.run import Run
 from cagepose.runs.solve import run
 from cagepose.studies.paper_rows import MISALIGNMENT_RAD, CaseRuns, Question, questions
-from cagepose.studies.printed import Row, compared
+from cagepose.studies.printed import PAPER_METHOD, Row, compared
 from cagepose.studies.rail import PAPER_RAIL, rail_scene
 from cagepose.studies.range_study import ANGLES, RangeStudy, range_study
 from cagepose.studies.sample import sample_scene
 
-METHODS = ("stepwise",)
-"""Those that the report compares: each gets its columns in the table and its pictures."""
-TIMED_RUNS = 21
+METHODS = (PAPER_METHOD, "quasistatic")
+"""Those that the report compares: each gets its column in the table and its pictures."""
+TIMED_RUNS = 9
 """Runs of each case whose median is the measured time."""
 RANGE_RAD = np.radians(np.linspace(-0.5, 0.5, 21))
 """Misalignments of the range study."""
