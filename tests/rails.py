@@ -6,10 +6,11 @@ import math
 
 from cagepose import Run, Scene, Tolerances
 from cagepose.studies.planar import play_angle_rad
-from cagepose.studies.rail import RailDimensions, relative_tilt_rad
+from cagepose.studies.rail import PAPER_RAIL, RailDimensions, relative_tilt_rad
 from cagepose.studies.rail import rail_scene as build
 
 MM = 1e-3
+SIDE_PLAY_MM = (PAPER_RAIL.rail_gap_m - PAPER_RAIL.side_points_apart_m) / MM
 
 
 def rail_scene(

@@ -13,7 +13,7 @@ import pytest
 
 import cagepose.runs.solve
 from cagepose import Run, RunFileError, Scene, load_run, load_scene
-from cagepose.cli import compiling, report
+from cagepose.cli import first_run, report
 
 Command = Callable[..., Any]
 
@@ -95,10 +95,10 @@ def test_json_is_one_document_and_nothing_else(command: Command, sample: str) ->
     document = json.loads(answer.out)
     assert (document["version"], document["scene"], document["verdict"]) == (1, "sample", "stable")
     assert answer.code == 0
-    assert answer.err in ("", compiling.FIRST_RUN)
+    assert answer.err in ("", first_run.FIRST_RUN)
 
 
-@pytest.mark.parametrize(("folder", "message"), [(Path("/cache"), compiling.FIRST_RUN), (None, compiling.EVERY_RUN)])
+@pytest.mark.parametrize(("folder", "message"), [(Path("/cache"), first_run.FIRST_RUN), (None, first_run.EVERY_RUN)])
 def test_a_run_that_must_compile_says_so_on_standard_error(
     command: Command, sample: str, monkeypatch: pytest.MonkeyPatch, folder: Path | None, message: str
 ) -> None:

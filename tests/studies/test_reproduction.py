@@ -168,6 +168,14 @@ def test_yaw_passes_zero_at_the_pin_that_touches_first_within_the_theorys_range(
 
 
 @pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("angle", ["yaw", "roll"])
+def test_a_rail_that_starts_at_zero_does_not_pass_it(angle, method):
+    """Whatever the sign that rounding leaves of its angle after the weight."""
+    for pin_y_m in (0.02, -0.02):
+        assert not range_study(angle, [0.0], pin_y_m, method).passes_zero().any()
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_the_two_pins_turn_the_rail_to_opposite_sides(method):
     """Mirror the scene in the xz plane: the other pin, yaw and roll of the other sign, the same pitch."""
     misalignments = np.radians([-0.4, 0.1, 0.3])
