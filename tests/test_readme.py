@@ -21,7 +21,7 @@ def test_the_python_example_prints_what_stands_below_it():
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
         exec(block("python", holding="import cagepose"), {})
-    assert printed.getvalue() == block("text", holding="stable [")
+    assert printed.getvalue() == block("text", holding="rests (stable):")
 
 
 def test_the_scene_shown_is_the_sample():

@@ -46,8 +46,8 @@ def test_the_version_is_that_of_the_package(command: Command) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["rnu"], 'Unknown command "rnu". Did you mean "run"? Available commands: run, check, plot, reproduce, schema,'
-                  " init. See: cagepose --help"),
+        (["rnu"], 'Unknown command "rnu". Did you mean "run"? Available commands: run, compare, check, plot, reproduce,'
+                  " schema, init. See: cagepose --help"),
         (["run"], 'Command "run" parameter SCENE requires an argument. See: cagepose run --help'),
         (["run", "a.yaml", "--jsn"], "Unknown option: --jsn. Did you mean --json? See: cagepose run --help"),
         (["run", "a.yaml", "--set"], 'Command "run" parameter --set requires an argument. See: cagepose run --help'),
@@ -88,7 +88,7 @@ def test_init_writes_a_scene_that_check_and_run_accept(command: Command, in_fold
     assert command("init", "mine") == (0, "wrote mine.yaml; try: cagepose run mine.yaml\n", "")
     assert (in_folder / "mine.yaml").is_file()
     assert command("check", "mine.yaml").code == 0
-    assert command("run", "mine.yaml").out.startswith("mine: stable")
+    assert command("run", "mine.yaml").out.startswith("mine: rests")
 
 
 def test_init_leaves_an_existing_file_alone(command: Command, in_folder: Path) -> None:

@@ -102,7 +102,8 @@ EDITS = [
      "17:12: loads[1].force.at: is missing; add it, for example at: [0, 0, 0]"),
     ("neither gravity nor force", GRAVITY, "",
      "14:5: loads[0]: has neither gravity nor a force; give at least one of them"),
-    ("unknown method", "name: sample", "name: sample\nmethod: magic", "2:9: method: is 'magic'; use one of: stepwise"),
+    ("unknown method", "name: sample", "name: sample\nmethod: magic", "2:9: method: is 'magic';"
+     " use one of: stepwise, quasistatic"),
     ("unknown unit", "name: sample", "name: sample\nunits: {length: ft}",
      "2:17: units.length: is text 'ft'; use one of: mm, m, in"),
     ("unknown metric", "name: sample", "name: sample\nmetric: slow",
@@ -126,8 +127,10 @@ EDITS = [
     ("adjustable with an empty range", "name: sample",
      "name: sample\nadjustable: {x: {key: 'object.boxes[0].size[0]', range: [9, 9]}}",
      "2:57: adjustable.x.range: runs from 9.0 to 9.0; give the lower number first"),
-    ("inertia that no body has", "  pose: {", "  inertia: [[1, 0, 0], [0, 1, 0], [0, 0, 3]]\n  pose: {",
-     "6:12: object.inertia: has principal moments 1e-06, 1e-06, 3e-06, which no body has:"
+    ("inertia without mass", "  pose: {", "  inertia: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n  pose: {",
+     "6:12: object.inertia: is given without a mass; give object.mass too, or leave the inertia out"),
+    ("inertia that no body has", "  pose: {", "  mass: 1\n  inertia: [[1, 0, 0], [0, 1, 0], [0, 0, 3]]\n  pose: {",
+     "7:12: object.inertia: has principal moments 1e-06, 1e-06, 3e-06, which no body has:"
      " each must be above zero and at most the sum of the others"),
     ("points file missing", POINTS, "  points: {file: points.csv}\n",
      "8:18: cage.points.file: points.csv does not exist; check the name and the folder"),

@@ -37,7 +37,7 @@ def test_the_overview_imports_nothing_heavy(arguments: str) -> None:
     assert done.stdout.splitlines()[-1] == "[]"
 
 
-@pytest.mark.parametrize("name", ["run", "check", "plot", "reproduce", "schema", "init"])
+@pytest.mark.parametrize("name", ["run", "compare", "check", "plot", "reproduce", "schema", "init"])
 def test_the_help_of_a_command_waits_for_no_kernels(name: str) -> None:
     code = (
         "import sys; from cagepose.cli.app import main\n"
@@ -68,7 +68,7 @@ def test_a_verdict_ends_with_0_and_bad_input_with_2_without_a_traceback(tmp_path
     scene.write_text(sample_text, encoding="utf-8")
     good, bad = _run("run", str(scene)), _run("run", str(scene), "--set", "object.mass=ten")
     assert good.returncode == 0
-    assert good.stdout.startswith("sample: stable")
+    assert good.stdout.startswith("sample: rests")
     assert bad.returncode == 2
     assert bad.stderr == "--set object.mass=ten: object.mass: is text 'ten'; give a number\n"
     assert bad.stdout == ""
@@ -113,7 +113,7 @@ def test_output_survives_a_terminal_that_knows_only_ascii(tmp_path: Path, sample
     scene.write_text(sample_text.replace("name: sample", "name: Lehre für Öse"), encoding="utf-8")
     done = _run("run", str(scene), PYTHONIOENCODING="ascii", PYTHONUTF8="0", LC_ALL="C")
     assert done.returncode == 0
-    assert "stable" in done.stdout
+    assert "rests" in done.stdout
 
 
 def test_forced_colours_do_not_reach_a_pipe(tmp_path: Path, sample_text: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,12 +15,20 @@ import pytest
 import cagepose.runs.solve
 from cagepose import Run, RunFileError, Scene, load_run, load_scene
 from cagepose.cli import first_run, report
+from cagepose.runs.solve import METHODS
 
 Command = Callable[..., Any]
+SCENES = Path(__file__).resolve().parents[2] / "scenes"
+
+
+def summary(out: str) -> dict[str, str]:
+    """The lines ``name  value`` below the table of events."""
+    rows = out.split("\n\n")[-1].splitlines()
+    return dict(re.split(r"\s{2,}", row, maxsplit=1) for row in rows if not row.startswith("warning: "))
 
 
 def test_the_table_shows_every_event_of_the_sample(command: Command, sample: str) -> None:
-    answer = command("run", sample)
+    answer = command("run", sample, "--method", "stepwise")
     rows = [re.split(r"\s{2,}", line.strip()) for line in answer.out.splitlines() if re.match(r"\d+  ", line)]
     assert rows == [
         ["1", "gravity", "A-1", "travel", "(0, 0, -1)", "5 mm", "C1", "C1"],
@@ -31,7 +40,7 @@ def test_the_table_shows_every_event_of_the_sample(command: Command, sample: str
 
 
 def test_the_report_names_pose_contacts_verdict_time_and_warnings(command: Command, sample: str) -> None:
-    lines = command("run", sample).out.splitlines()
+    lines = command("run", sample, "--method", "stepwise").out.splitlines()
     assert re.fullmatch(r"sample: stable  \(stepwise, [0-9.e+]+ ms\)", lines[0])
     assert "position           (-0.170615, 1.3406, 2.12922) mm" in lines
     assert "yaw, pitch, roll   (-23.3598, -17.6124, 54.9864) deg" in lines
@@ -39,13 +48,15 @@ def test_the_report_names_pose_contacts_verdict_time_and_warnings(command: Comma
     assert "contacts           C1 C3 C4 on box1" in lines
     assert "verdict            gravity: stable" in lines
     warnings = [line for line in lines if line.startswith("warning: ")]
-    assert len(warnings) == 2
+    assert len(warnings) == 3
     assert "tie" in warnings[0]
     assert "45 deg" in warnings[1]
+    assert "the mechanics contradicts this verdict: with a friction coefficient of 0.1003" in warnings[2]
 
 
 def test_lengths_are_shown_in_the_scenes_unit(command: Command, sample: str) -> None:
-    out = command("run", sample, "--set", "units.length=in", "--set", "tolerances.touch=1e-8").out
+    changes = ("--set", "units.length=in", "--set", "tolerances.touch=1e-8")
+    out = command("run", sample, "--method", "stepwise", *changes).out
     assert "5 in" in out
     assert "(-0.170615, 1.3406, 2.12922) in" in out
     assert " mm" not in out
@@ -58,7 +69,7 @@ def test_piped_output_has_no_escapes_no_trailing_blanks_and_nothing_cut(
     for name in ("C1", "C2", "C3", "C4"):
         long_names = long_names.replace(f"{name}:", f"a_very_long_name_for_a_cage_point_of_this_part_{name}:")
     (in_folder / "long.yaml").write_text(long_names, encoding="utf-8")
-    out = command("run", "long.yaml").out
+    out = command("run", "long.yaml", "--method", "stepwise").out
     assert "\x1b" not in out
     assert "…" not in out
     assert " ".join(f"a_very_long_name_for_a_cage_point_of_this_part_{name}" for name in ("C1", "C3", "C4")) in out
@@ -79,21 +90,22 @@ def test_a_screen_gets_colours_and_wrapped_cells(
     monkeypatch.delenv("NO_COLOR", raising=False)
     report.print_report(cagepose.runs.solve.run(load_scene(sample)), "mm")
     out = capsys.readouterr().out
-    assert "\x1b[1;32mstable\x1b[0m" in out
+    assert "\x1b[1;32mrests\x1b[0m" in out
     plain = re.sub(r"\x1b\[[0-9;]*m", "", out)
     assert max(len(line) for line in plain.splitlines()) <= 100
 
 
 def test_names_with_rich_markup_and_emoji_codes_are_shown_as_they_are(command: Command, sample: str) -> None:
     out = command("run", sample, "--set", "name='[red]:smile:'", "--set", "object.boxes[0].name='[b]'").out
-    assert out.startswith("[red]:smile:: stable")
+    assert out.startswith("[red]:smile:: rests")
     assert "on [b]" in out
 
 
 def test_json_is_one_document_and_nothing_else(command: Command, sample: str) -> None:
     answer = command("run", sample, "--json")
     document = json.loads(answer.out)
-    assert (document["version"], document["scene"], document["verdict"]) == (1, "sample", "stable")
+    assert (document["version"], document["scene"]) == (2, "sample")
+    assert (document["method"], document["verdict"]) == ("quasistatic", "rests")
     assert answer.code == 0
     assert answer.err in ("", first_run.FIRST_RUN)
 
@@ -106,14 +118,15 @@ def test_a_run_that_must_compile_says_so_on_standard_error(
     monkeypatch.setattr("cagepose.kernels.jit.CACHE_FOLDER", folder)
     answer = command("run", sample)
     assert answer.err == message
-    assert answer.out.startswith("sample: stable")
+    assert answer.out.startswith("sample: rests")
+    assert command("compare", sample).err == message
 
 
 def test_out_saves_the_run_and_the_table_is_still_printed(command: Command, sample: str) -> None:
     answer = command("run", sample, "--out", "run.json", "--set", "units.length=in")
     assert answer.code == 0
-    assert "stable" in answer.out
-    assert load_run("run.json").verdict == "stable"
+    assert answer.out.startswith("sample: rests")
+    assert load_run("run.json").verdict == "rests"
     assert json.loads(Path("run.json").read_text(encoding="utf-8"))["units"] == {"length": "in"}
 
 
@@ -144,7 +157,7 @@ def test_an_out_that_fails_after_the_run_still_leaves_the_table(
     answer = command("run", sample, "--out", "run.json")
     assert answer.code == 2
     assert answer.err.endswith("--out run.json: No space left on device\n")
-    assert "stable" in answer.out
+    assert answer.out.startswith("sample: rests")
     assert not Path("run.json").exists()
 
 
@@ -159,7 +172,7 @@ def test_problems_of_all_arguments_come_at_once(command: Command, in_folder: Pat
         2,
         "",
         "nothing.yaml: does not exist; check the name and the folder\n"
-        "--method magic: is no known method; use one of: stepwise\n"
+        "--method magic: is no known method; use one of: stepwise, quasistatic\n"
         "--out no/run.json: its folder does not exist; make the folder first\n",
     )
 
@@ -175,6 +188,25 @@ def test_set_changes_the_scene_for_run_and_check(command: Command, sample: str) 
         "",
         "--set object.mass=true: object.mass: is true; give a number\n",
     )
+
+
+@pytest.mark.parametrize(
+    ("scene", "method", "verdict", "code"),
+    [
+        ("pendulum", "stepwise", "spins", 1),
+        ("wedge", "stepwise", "cycling", 1),
+        ("wedge", "quasistatic", "may rest", 0),
+        ("slope", "quasistatic", "rests", 0),
+        ("slope", "stepwise", "stable", 0),
+    ],
+)
+def test_failures_by_name_end_with_1_and_verdicts_with_0(
+    command: Command, scene: str, method: str, verdict: str, code: int
+) -> None:
+    answer = command("run", str(SCENES / f"{scene}.yaml"), "--method", method)
+    assert answer.code == code
+    assert answer.out.startswith(f"{scene}: {verdict}  ({method}, ")
+    assert ("\nproof " in answer.out) == (code == 0)  # nothing is held that could be proven
 
 
 def test_a_run_that_failed_by_name_ends_with_1_and_is_still_printed_and_saved(
@@ -194,11 +226,106 @@ def test_a_run_that_failed_by_name_ends_with_1_and_is_still_printed_and_saved(
     assert json.loads(command("run", sample, "--json").out)["verdict"] == "spins"
 
 
-def test_an_escape_is_a_verdict(command: Command, sample: str) -> None:
-    answer = command("run", sample, "--set", "loads[0].gravity=[0, 0, 1]")
+@pytest.mark.parametrize("method", METHODS)
+def test_an_escape_is_a_verdict_and_has_no_proof_line(command: Command, sample: str, method: str) -> None:
+    answer = command("run", sample, "--method", method, "--set", "loads[0].gravity=[0, 0, 1]")
     assert answer.code == 0
     assert answer.out.startswith("sample: escapes")
     assert "inf" not in answer.out
+    below = summary(answer.out)
+    assert below.keys() == {"position", "yaw, pitch, roll", "centre of gravity", "contacts", "verdict", "onset"}
+    assert below["onset"] == "travel along (0, 0, 1)"
+
+
+def test_the_default_method_shows_forces_and_proof(command: Command, sample: str) -> None:
+    """The wedged cube: C1 and C4 each carry cos 45 deg of the load, since both faces are at 45 deg."""
+    answer = command("run", sample)
+    below = summary(answer.out)
+    assert answer.out.startswith("sample: rests  (quasistatic, ")
+    assert below["forces"] == "C1 0.7071, C4 0.7071"
+    assert below["verdict"] == "gravity: rests (unstable)"
+    assert re.fullmatch(
+        r"rests: the contacts balance the load without friction \(residual \d\.\de-\d+\)", below["proof"]
+    )
+    assert "onset" not in below
+    assert "critical friction" not in below
+    assert answer.out.splitlines()[-1].startswith("warning: gravity: the balance is unstable")
+
+
+def test_forces_are_newtons_where_a_mass_is_given(command: Command, sample: str) -> None:
+    """2 kg under 9.81 m/s2: each of the two faces at 45 deg carries 19.62 N cos 45 deg = 13.87 N."""
+    out = command("run", sample, "--set", "object.mass=2", "--set", "loads[0].gravity=[0, 0, -9.81]").out
+    assert summary(out)["forces"] == "C1 13.87, C4 13.87"
+
+
+def test_sideways_forces_and_sharing_are_named(command: Command) -> None:
+    """On the slope of 30 deg the contacts carry cos 30 deg in all across the slope, and sin 30 deg along it."""
+    out = command("run", str(SCENES / "slope.yaml"), "--set", "friction.coefficient=0.58").out
+    forces = re.findall(r"(\S+(?: \S+)?) ([0-9.]+) \(\+ ([0-9.]+) sideways\)", summary(out)["forces"])
+    assert sum(float(across) for _, across, _ in forces) == pytest.approx(0.8660, abs=2e-4)
+    assert sum(float(along) for _, _, along in forces) == pytest.approx(0.5, abs=2e-3)
+    assert all(float(along) <= 0.58 * float(across) + 1e-3 for _, across, along in forces)
+    rail = summary(command("run", str(SCENES / "rail-pitch.yaml")).out)
+    assert rail["forces"].endswith("one way of many to share it between C1 C3 C6 C8")
+
+
+def test_what_may_rest_names_the_other_onset(command: Command) -> None:
+    out = command("run", str(SCENES / "wedge.yaml")).out
+    assert out.startswith("wedge: may rest")
+    below = summary(out)
+    assert below["proof"].startswith("may rest: the contacts can balance the load with friction, but Coulomb's law")
+    assert below["onset"] == "travel along (0, 0, -1)"
+    assert "as in a wedge" in out.splitlines()[-1]
+
+
+def test_an_onset_that_turns_by_rounding_only_is_a_travel(command: Command) -> None:
+    """Between the critical 0.06175 and tan 5 deg / 1.414 = 0.0619 the bar may slide along its groove."""
+    out = command("run", str(SCENES / "v-groove.yaml"), "--set", "friction.coefficient=0.0618").out
+    assert summary(out)["onset"] == "travel along (0, 1, 0)"
+
+
+def test_a_verdict_that_the_mechanics_contradicts_shows_its_proof_and_onset(command: Command, sample: str) -> None:
+    below = summary(command("run", sample, "--method", "stepwise").out)
+    assert "forces" not in below
+    assert below["proof"].startswith("moves: no contact forces balance the load (residual ")
+    assert re.fullmatch(r"screw about \(.*\) through \(.*\) mm, [0-9.-]+ mm along it per radian", below["onset"])
+
+
+@pytest.mark.parametrize(("height", "expected"), [(10, 0.4569067), (20, 0.3820166)])
+def test_critical_friction_of_the_papers_pose(command: Command, sample: str, height: int, expected: float) -> None:
+    changes = (f"object.boxes[0].size[2]={height}", f"object.pose.position[2]={height / 2 + 5}")
+    out = command(
+        "run", sample, "--method", "stepwise", "--critical-friction", *(f"--set={change}" for change in changes)
+    ).out
+    name, value = summary(out)["critical friction"].split(": ")
+    assert name == "gravity"
+    assert float(value) == pytest.approx(expected, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("scene", "changes", "expected"),
+    [
+        ("slope", ["friction.coefficient=0.58"], math.tan(math.radians(30.0))),
+        ("ladder", [], math.tan(math.radians(15.0))),
+        ("wedge", [], 0.2),
+        ("pendulum", [], math.tan(math.radians(19.2307))),
+    ],
+)
+def test_critical_friction_of_closed_forms(command: Command, scene: str, changes: list[str], expected: float) -> None:
+    """Slope tan t; ladder tan(45 deg - t/2) at 60 deg; wedge d/w = 2/10; a nail carries the load at the bar's tilt."""
+    out = command(
+        "run", str(SCENES / f"{scene}.yaml"), "--critical-friction", *(f"--set={change}" for change in changes)
+    ).out
+    assert float(summary(out)["critical friction"].split(": ")[1]) == pytest.approx(expected, abs=1e-6)
+
+
+def test_critical_friction_stands_in_the_document_and_is_null_where_not_asked_for(
+    command: Command, sample: str
+) -> None:
+    asked = json.loads(command("run", sample, "--json", "--critical-friction").out)["phases"][0]["proof"]
+    assert asked["critical_friction"] == 0.0
+    plain = json.loads(command("run", sample, "--json").out)["phases"][0]["proof"]
+    assert plain == {**asked, "critical_friction": None}
 
 
 def test_check_tolerance_says_that_nothing_changes(command: Command, sample: str) -> None:
@@ -220,7 +347,7 @@ def test_check_tolerance_warns_when_the_verdict_hangs_on_it(command: Command, sa
 def test_check_says_what_a_scene_holds(command: Command, sample: str) -> None:
     assert command("check", sample) == (
         0,
-        "sample: 1 box, 4 cage points, 1 load (gravity), method stepwise\n"
+        "sample: 1 box, 4 cage points, 1 load (gravity), method quasistatic\n"
         "size 17.3205 mm, touch tolerance 1.73e-08 mm; no problems found\n",
         "",
     )

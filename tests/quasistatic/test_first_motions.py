@@ -42,7 +42,7 @@ def test_a_released_rod_turns_about_the_axis_of_its_inertia(c_mm, d_mm, metric):
 
     result = run_quasistatic(rod_on_a_point(c_mm, d_mm, metric), turn_step_rad=1e-6)
     first = result.phases[0].events[0]
-    motion = motion_between(result.phases[0].start_pose, first.path[0], np.zeros(3))
+    motion = motion_between(result.phases[0].start_pose, first.path[0], np.zeros(3), result.scene.size_m)
     assert motion.axis_world == pytest.approx(spin / np.linalg.norm(spin), abs=1e-5)
     fall_mm = first.path[0].position_m[2] / MM
     assert fall_mm / motion.angle_rad == pytest.approx(per_radian_mm, rel=1e-5)
@@ -62,7 +62,7 @@ def test_a_sticking_point_turns_it_about_the_inertia_at_the_point(c_mm, d_mm, me
     result = run_quasistatic(rod_on_a_point(c_mm, d_mm, metric, friction=20.0), turn_step_rad=1e-6)
     first = result.phases[0].events[0]
     assert first.rule == "pivot"
-    motion = motion_between(result.phases[0].start_pose, first.path[0], np.zeros(3))
+    motion = motion_between(result.phases[0].start_pose, first.path[0], np.zeros(3), result.scene.size_m)
     assert motion.kind == "turn"
     assert motion.axis_world == pytest.approx(spin / np.linalg.norm(spin), abs=1e-5)
     away = np.array((c_mm, d_mm, -1.0)) * MM - motion.through_world
@@ -107,7 +107,7 @@ def test_a_force_off_the_centre_turns_it_in_flight(metric):
     scene = Scene(Object([Box(np.full(3, 10.0) * MM)]), Cage(points), [push], metric=metric)
     result = run_quasistatic(scene, turn_step_rad=1e-3)
     first = result.phases[0].events[0].path[0]
-    motion = motion_between(scene.object.pose_world_object, first, np.zeros(3))
+    motion = motion_between(scene.object.pose_world_object, first, np.zeros(3), scene.size_m)
     assert motion.axis_world == pytest.approx((0.0, 0.0, -1.0), abs=1e-9)
     assert np.linalg.norm(first.position_m) / motion.angle_rad == pytest.approx(100.0 / 6.0 / 4.0 * MM, rel=1e-6)
     flight = path_of(result.phases[0])

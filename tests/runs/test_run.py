@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cagepose import Box, Cage, Load, Object, Scene, SceneError, run
+from cagepose import Box, Cage, Load, Object, Scene, SceneError, load_scene, run
+from cagepose.runs.solve import METHODS
 from rails import rail_scene
 from random_scenes import random_scenes
 
@@ -23,10 +24,11 @@ def assert_replays(result):
         assert_allclose(pose.position_m, phase.pose.position_m)
 
 
-def test_motions_lead_from_each_pose_to_the_next():
-    assert_replays(run(rail_scene(pitch_deg=0.1)))
+@pytest.mark.parametrize("method", METHODS)
+def test_motions_lead_from_each_pose_to_the_next(method):
+    assert_replays(run(rail_scene(pitch_deg=0.1), method))
     for scene in random_scenes(30, seed=3):
-        assert_replays(run(scene))
+        assert_replays(run(scene, method))
 
 
 def test_each_phase_starts_where_the_one_before_ended():
@@ -34,12 +36,13 @@ def test_each_phase_starts_where_the_one_before_ended():
     assert push.start_pose is gravity.pose
 
 
-def test_a_turn_has_ten_frames_and_a_travel_one():
-    result = run(rail_scene(pitch_deg=0.1))
+@pytest.mark.parametrize("method", METHODS)
+def test_a_turn_or_screw_has_ten_frames_and_a_travel_one(method):
+    result = run(rail_scene(pitch_deg=0.1), method)
     motions = [event.motion for phase in result.phases for event in phase.events if event.motion is not None]
-    n_turns = sum(motion.kind == "turn" for motion in motions)
+    n_travels = sum(motion.kind == "travel" for motion in motions)
     frames = list(result.frames(per_turn=10))
-    assert len(frames) == 1 + 10 * n_turns + (len(motions) - n_turns)
+    assert len(frames) == 1 + 10 * (len(motions) - n_travels) + n_travels
     assert_allclose(frames[-1].pose_world_object.position_m, result.pose.position_m)
 
 
@@ -51,6 +54,20 @@ def test_frames_of_a_turn_are_evenly_spaced():
     assert_allclose(np.diff([0.1, *angles]), np.full(4, 0.313084 / 4), atol=1e-6)
 
 
+def test_frames_of_a_bent_way_lie_on_it():
+    """The sample's corner slides on C1 while the cube turns by 34 deg: one turn to the end would be 0.6 mm off."""
+    result = run(load_scene("scenes/sample.yaml"), "quasistatic")
+    (before, bent) = result.phases[0].events[:2]
+    assert len(bent.path) > 20
+    frames = [frame.pose_world_object for frame in result.frames(len(bent.path)) if frame.event_index == 1]
+    for frame, pose in zip(frames, bent.path, strict=True):
+        assert_allclose(frame.position_m, pose.position_m, atol=1e-12)
+        assert_allclose(frame.rotation, pose.rotation, atol=1e-12)
+    straight = bent.motion.pose_at(before.pose_world_object, 0.5).position_m
+    half_way = bent.path[len(bent.path) // 2 - 1].position_m
+    assert np.linalg.norm(straight - half_way) > 5e-4
+
+
 def test_fewer_than_one_frame_for_a_turn_is_refused():
     with pytest.raises(ValueError, match="per_turn is 0"):
         next(run(rail_scene()).frames(0))
@@ -58,7 +75,7 @@ def test_fewer_than_one_frame_for_a_turn_is_refused():
 
 def test_an_endless_travel_has_no_poses_on_its_way():
     scene = Scene(Object([Box((1, 1, 1))]), Cage([(0, 0, 9)]), [Load("gravity", gravity=(0, 0, -1))])
-    result = run(scene)
+    result = run(scene, "stepwise")
     motion = result.phases[0].events[0].motion
     with pytest.raises(ValueError, match="no end"):
         motion.pose_at(result.pose, 0.5)
@@ -66,5 +83,5 @@ def test_an_endless_travel_has_no_poses_on_its_way():
 
 
 def test_an_unknown_method_is_refused_with_the_known_ones():
-    with pytest.raises(SceneError, match="known methods: stepwise"):
+    with pytest.raises(SceneError, match="known methods: stepwise, quasistatic"):
         run(rail_scene(), method="magic")

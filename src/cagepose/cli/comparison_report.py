@@ -21,14 +21,25 @@ def print_comparison(comparison: Comparison, unit: LengthUnit) -> None:
         table.add_column(heading, overflow="fold")
     for variant in comparison.variants:
         table.add_row(*_row(variant, unit))
-    lines = []
-    for parting in comparison.partings:
-        where = "the end" if parting.first_number is None else f"event {parting.first_number} of stepwise"
-        lines.append(Text(f"{parting.label}: parts in {parting.phase!r} at {where}: {parting.reason}"))
-    together = len(comparison.variants) - 1 - len(comparison.partings)
+    blocks = []
+    for (where, reason), labels in _partings(comparison).items():
+        part = "parts" if len(labels) == 1 else "part"
+        blocks.append("\n".join((*labels, f"    {part} from stepwise {where}: {reason}")))
+    n_others = len(comparison.variants) - 1
+    together = n_others - len(comparison.partings)
     if together:
-        lines.append(Text(f"{together} of {len(comparison.variants) - 1} go the way of stepwise to its end"))
-    print_all(Text(comparison.variants[0].run.scene.name), "", table, "", *lines)
+        blocks.append(f"{together} of {n_others} {'goes' if together == 1 else 'go'} the way of stepwise to its end")
+    name = comparison.variants[0].run.scene.name
+    print_all(Text(name), "", table, "", Text("\n\n".join(blocks)))
+
+
+def _partings(comparison: Comparison) -> dict[tuple[str, str], list[str]]:
+    """Variants that part at one place for one reason are told together."""
+    found: dict[tuple[str, str], list[str]] = {}
+    for parting in comparison.partings:
+        place = "the end" if parting.first_number is None else f"event {parting.first_number}"
+        found.setdefault((f"at {place} of {parting.phase!r}", parting.reason), []).append(parting.label)
+    return found
 
 
 def _row(variant: Variant, unit: LengthUnit) -> list[Text]:

@@ -12,6 +12,7 @@ from rich.text import Text
 from cagepose.cli.console import print_all
 from cagepose.errors import printable
 from cagepose.files.units import LengthUnit, from_metres
+from cagepose.nouns.checks import FloatArray
 from cagepose.runs.run import AT_REST, FAILURES, Event, Motion, PhaseRun, Run
 
 
@@ -69,6 +70,7 @@ class _Writer:
             ("forces", _forces(run)),
             ("verdict", _verdicts(run)),
             ("proof", _proof(run)),
+            ("onset", self._onset()),
             ("critical friction", _critical(run)),
         ):
             if not value:
@@ -85,13 +87,30 @@ class _Writer:
         distance = f"{self._lengths([motion.distance_m])} {self.unit}"
         return distance if motion.kind == "travel" else f"{distance}, {angle}"
 
+    def _onset(self) -> str:
+        """How the object begins to move where nothing stops it, or could begin to where it only may rest."""
+        motion = self.run.phases[-1].proof.motion
+        if motion is None or self.run.failed:
+            return ""
+        if motion.direction_world is not None:
+            return f"travel along ({_components(motion.direction_world)})"
+        assert motion.axis_world is not None
+        assert motion.through_world is not None
+        line = f"({_components(motion.axis_world)}) through ({self._lengths(motion.through_world)}) {self.unit}"
+        pitch = f", {self._lengths([motion.pitch_m])} {self.unit} along it per radian" if motion.kind == "screw" else ""
+        return f"{motion.kind} about {line}{pitch}"
+
     def _lengths(self, lengths_m: Iterable[float]) -> str:
         return ", ".join(short(float(from_metres(length, self.unit)), 6, self.noise) for length in lengths_m)
 
 
 def _line(motion: Motion) -> str:
     along = motion.direction_world if motion.axis_world is None else motion.axis_world
-    return "" if along is None else f"({', '.join(short(value, 4, 5e-5) for value in along.tolist())})"
+    return "" if along is None else f"({_components(along)})"
+
+
+def _components(direction: FloatArray) -> str:
+    return ", ".join(short(value, 4, 5e-5) for value in direction.tolist())
 
 
 def short(value: float, digits: int, noise: float) -> str:

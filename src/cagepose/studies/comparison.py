@@ -4,18 +4,41 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isfinite
 from typing import get_args
 
 import numpy as np
 
+from cagepose.nouns.checks import FloatArray
 from cagepose.nouns.pose import Pose
 from cagepose.nouns.scene import Metric, Scene
-from cagepose.runs.run import Event, PhaseRun, Run
+from cagepose.runs.run import AT_REST, Event, Motion, PhaseRun, Run, Verdict
 from cagepose.runs.solve import run
 from cagepose.runs.stepwise import NO_SLIP_ANGLE_DEFAULT_RAD
 
 SAME_POSE_OF_SIZE = 1e-6
-"""Two poses are one where no corner of the scene's size is farther apart than this fraction of it."""
+"""Two poses are one where no corner of a box is farther apart than this fraction of the scene's size."""
+HARDLY = 5e-5
+"""Components of a direction below this are shown as 0."""
+GROUNDS = {
+    "free": "nothing holds it back",
+    "slide": "the contacts cannot hold it, and those that carry slide",
+    "pivot": "the contacts cannot hold it, but friction makes one of them stick",
+    **dict.fromkeys(("A-1", "B-1"), "no contact, so along the load"),
+    **dict.fromkeys(("A-2", "B-2"), "about its one contact, taken as fixed, along the load's moment"),
+    **dict.fromkeys(("A-3", "B-3"), "about the line through two contacts, taken as fixed"),
+    "Slp-1": "every normal is more than the friction angle off the load, so it slips on that face",
+    "Slp-2": "every normal is more than the friction angle off the load, so it slips on two faces",
+}
+"""Why a rule moves the object as it does."""
+ENDS: dict[Verdict, str] = {
+    "escapes": "nothing is ahead",
+    "spins": "a full turn meets nothing",
+    "cycling": "a pose came back",
+    "stalled": "no progress",
+    "limit": "too many events",
+}
+"""Why a run ends that does not end at rest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +71,7 @@ class Parting:
     phase
         Name of the phase.
     number, first_number
-        Number of the event in that phase, from 1, of the variant and of the first one; None: it ended before.
+        Number of the event in that phase, from 1, of the variant and of the first one; None: it has ended.
     reason
         What each of the two does there, and why.
     """
@@ -103,8 +126,6 @@ def parting_of(first: Variant, other: Variant) -> Parting | None:
             rival = others[place] if place < len(others) else None
             if event is not None and rival is not None and same_pose(first.run.scene, event, rival):
                 continue
-            if event is None and rival is None:
-                continue
             return Parting(
                 other.label,
                 two.name,
@@ -112,9 +133,8 @@ def parting_of(first: Variant, other: Variant) -> Parting | None:
                 None if event is None else one.events.index(event) + 1,
                 f"{_says(first, one, event)}; {_says(other, two, rival)}",
             )
-    if len(first.run.phases) != len(other.run.phases):
-        phase = first.run.scene.loads[min(len(first.run.phases), len(other.run.phases)) - 1].name
-        return Parting(other.label, phase, None, None, f"{first.run.verdict} against {other.run.verdict}")
+        if (one.verdict in AT_REST) != (two.verdict in AT_REST):
+            return Parting(other.label, two.name, None, None, f"{_says(first, one, None)}; {_says(other, two, None)}")
     return None
 
 
@@ -129,24 +149,35 @@ def _distance(scene: Scene, one: Pose, two: Pose) -> float:
 
 
 def _motions(phase: PhaseRun) -> list[Event]:
-    return [event for event in phase.events if event.motion is not None]
+    """The motions that end somewhere: an escape is told by the verdict."""
+    return [event for event in phase.events if event.motion is not None and isfinite(event.motion.distance_m)]
 
 
 def _says(variant: Variant, phase: PhaseRun, event: Event | None) -> str:
     """What a variant does at an event, and on what ground; None: it has ended."""
     name = variant.run.method
-    if event is None:
-        ground = phase.proof.reason if name == "quasistatic" else "no pair of contacts lets the load turn it"
-        return f"{name} ends there: {phase.verdict} ({ground})"
-    assert event.motion is not None
-    ground = {
-        "free": "no contact carries: it follows load and inertia",
-        "slide": "the contacts that carry slide",
-        "pivot": "friction makes a contact stick",
-        "Slp-1": "the angles of the normals to the load say that it slips on one face",
-        "Slp-2": "the angles of the normals to the load say that it slips on two faces",
-    }.get(
-        event.rule, "the rule turns it about contacts that stay where they are" if event.motion.kind == "turn" else ""
+    if event is None or event.motion is None:
+        return f"{name} ends: {phase.verdict} ({_ground_of_end(phase)})"
+    return f"{name} {_moves(event.motion)} ({event.rule}: {GROUNDS[event.rule]})"
+
+
+def _ground_of_end(phase: PhaseRun) -> str:
+    if phase.verdict != "stable":
+        return ENDS.get(phase.verdict, phase.proof.reason)
+    is_needle = phase.events[-1].note == "balanced"
+    return "the load passes through its one contact" if is_needle else "no turn about two of its contacts is free"
+
+
+def _moves(motion: Motion) -> str:
+    """``turns about (0, 1, 0) by 19.23 deg``; lengths are left out, they would need the scene's unit."""
+    if motion.axis_world is None:
+        assert motion.direction_world is not None
+        return f"travels along ({_components(motion.direction_world)})"
+    return (
+        f"{'turns' if motion.kind == 'turn' else 'moves by a screw'} about ({_components(motion.axis_world)})"
+        f" by {np.degrees(motion.angle_rad):.4g} deg"
     )
-    motion = f"{name} goes on with a {event.motion.kind} ({event.rule}"
-    return f"{motion}: {ground})" if ground else f"{motion})"
+
+
+def _components(direction: FloatArray) -> str:
+    return ", ".join("0" if abs(value) < HARDLY else f"{value:.4g}" for value in direction)
