@@ -12,7 +12,7 @@ import math
 from typing import Annotated
 
 from cagepose.kernels.contact_set import ContactRow
-from cagepose.kernels.jit import entry_kernel, kernel
+from cagepose.kernels.jit import kernel
 from cagepose.kernels.least_squares import (
     PRICE,
     PassiveSet,
@@ -111,7 +111,7 @@ def generator_price(
     return (price - friction * rows[contact].slip if charged else price), False
 
 
-@entry_kernel
+@kernel
 def cone_residual(
     rows: Rows[ContactRow],
     n_contacts: int,

@@ -24,7 +24,7 @@ from cagepose.kernels.coulomb_newton import (
     NewtonRoom,
     newton_on_modes,
 )
-from cagepose.kernels.jit import entry_kernel, kernel
+from cagepose.kernels.jit import kernel
 from cagepose.kernels.least_squares import inner, length
 from cagepose.kernels.metric import WRENCH
 from cagepose.kernels.record import FloatArray, Rows
@@ -58,7 +58,7 @@ def motion_left(rows: Rows[ContactRow], n_contacts: int, b: FloatArray, y: Float
                     y[k] -= rows[i].columns[j, k] * rows[i].forces[j]
 
 
-@entry_kernel
+@kernel
 def coulomb_error(rows: Rows[ContactRow], n_contacts: int, friction: float, y: FloatArray) -> float:
     """Return the greatest violation of Coulomb's law, as a velocity: going in, forces at an open contact, a cone left,
     or friction not along the slip, equation (5.7).
@@ -155,7 +155,7 @@ def read_modes(rows: Rows[ContactRow], n_contacts: int, slow_speed: float, y: Fl
             contact.mode = SLIPS if slip > slow_speed * length(contact.columns[0], 6) else STICKS
 
 
-@entry_kernel
+@kernel
 def coulomb_onset(
     rows: Rows[ContactRow],
     n_contacts: int,

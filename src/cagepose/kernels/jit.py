@@ -13,7 +13,7 @@ import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numba
 
@@ -47,31 +47,33 @@ def _cache_folder() -> Path | None:
     return folder
 
 
+NO_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 CACHE_FOLDER = None if numba.config.DISABLE_JIT else _cache_folder()
 
 
 def kernel(function: F) -> F:
-    """Compile a function that only other kernels call: no Python objects, no GIL, IEEE arithmetic, kept on disk.
+    """Compile a function that only other kernels call, as a part of them."""
+    if numba.config.DISABLE_JIT:
+        return function
+    from cagepose.kernels.linking import LinkedCompiler, is_tried
 
-    Without the wrappers that let Python call it a third of the compile time is saved (14 instead of 21 s of CPU for
-    all).
-    """
-    return _compiled(function, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    if is_tried():
+        return _compiled(function, cache=False, pipeline_class=LinkedCompiler, **NO_WRAPPERS)
+    return _compiled(function, cache=CACHE_FOLDER is not None, **NO_WRAPPERS)
 
 
 def entry_kernel(function: F) -> F:
-    """Compile a function that Python calls too."""
-    return _compiled(function)
+    """Compile a function that Python calls too, and keep it on disk."""
+    return function if numba.config.DISABLE_JIT else _compiled(function, cache=CACHE_FOLDER is not None)
 
 
-def _compiled(function: F, **options: bool) -> F:
-    if numba.config.DISABLE_JIT:
-        return function
+def _compiled(function: F, **options: Any) -> F:
+    """No Python objects, no GIL, IEEE arithmetic; no counting of references, since kernels make no arrays."""
     # Numba reads its setting when the decorator runs; ours must not leak to other users of Numba in this process.
     previous = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = "" if CACHE_FOLDER is None else str(CACHE_FOLDER)
     try:
-        compiled: F = numba.njit(nogil=True, cache=CACHE_FOLDER is not None, error_model="numpy", **options)(function)
+        compiled: F = numba.njit(nogil=True, error_model="numpy", _nrt=False, **options)(function)
     finally:
         numba.config.CACHE_DIR = previous
     return compiled

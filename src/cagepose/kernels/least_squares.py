@@ -14,7 +14,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.jit import entry_kernel, kernel
+from cagepose.kernels.jit import kernel
 from cagepose.kernels.record import FloatArray, IntArray
 
 MOST_ROWS = 13
@@ -254,7 +254,7 @@ def label_is_passive(passive: PassiveSet, label: int) -> bool:
     return found
 
 
-@entry_kernel
+@kernel
 def nonnegative_least_squares(system: System, n_columns: int, passive: PassiveSet) -> float:
     """Return the least |b - sum x_j a_j| over x >= 0; the solution stays in ``passive``.
 

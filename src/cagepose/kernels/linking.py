@@ -1,0 +1,117 @@
+"""Compiling many small kernels into one: a kernel of ours is only typed and lowered, its callers take it in.
+
+Numba makes machine code of every function that another one calls, and optimises it again with each of its callers, so
+a call tree of two hundred small functions ten levels deep is optimised ten times over. Here only the functions that
+Python calls are optimised and made into machine code, each with all that it calls in one piece
+(docs/decisions/0012-linked-kernels).
+
+It hangs on how Numba keeps its LLVM modules, which is none of its public interface; see `TRIED`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba
+from numba import _dynfunc
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler_machinery import LoweringPass, PassManager, register_pass
+from numba.core.typed_passes import AnnotateTypes, NativeLowering
+
+TRIED = ((0, 68),)
+"""Releases of Numba in which all tests passed with this. In others kernels are compiled in Numba's own way, with the
+same results, only more slowly.
+"""
+
+
+def is_tried() -> bool:
+    """Whether kernels can be linked with the installed release of Numba."""
+    return numba.version_info.short in TRIED
+
+
+class LinkedLibrary(JITCodeLibrary):  # type: ignore[misc]
+    """The LLVM module of one kernel, and the libraries of those that it calls."""
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        """Leave optimising to the one that takes it in."""
+        ll_module.data_layout = self._codegen._data_layout
+
+    def finalize(self) -> None:
+        """Let several modules bring the same kernel; make no machine code."""
+        self._raise_if_finalized()
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage.name == "external":
+                function.linkage = "linkonce_odr"
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+    def _get_module_for_linking(self) -> Any:
+        """Return this kernel with all that it calls, directly or not."""
+        self._ensure_finalized()
+        if self._shared_module is None:
+            module = self._final_module.clone()
+            for library in self._called({self}):
+                linked = isinstance(library, LinkedLibrary)
+                module.link_in(library._final_module if linked else library._get_module_for_linking(), preserve=True)
+            self._shared_module = module
+        return self._shared_module
+
+    def _called(self, seen: set[Any]) -> list[Any]:
+        """Return the libraries of all kernels called, callers first: LLVM takes in what has been asked for before."""
+        found = list[Any]()
+        for library in self._linking_libraries:
+            if library not in seen:
+                seen.add(library)
+                library._ensure_finalized()
+                below = library._called(seen) if isinstance(library, LinkedLibrary) else []
+                found = [library, *below, *found]
+        return found
+
+
+@register_pass(mutates_CFG=False, analysis_only=True)
+class UseLinkedLibrary(LoweringPass):  # type: ignore[misc]
+    """Before lowering: give the kernel a library of ours, and ask for no machine code."""
+
+    _name = "use_linked_library"
+
+    def __init__(self) -> None:
+        super().__init__()
+
+    def run_pass(self, state: Any) -> bool:
+        state.library = LinkedLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.flags.no_compile = True
+        return False
+
+
+@register_pass(mutates_CFG=False, analysis_only=True)
+class OfferToCallers(LoweringPass):  # type: ignore[misc]
+    """After lowering: tell other kernels which function to call, as Numba does for what it has compiled."""
+
+    _name = "offer_to_callers"
+
+    def __init__(self) -> None:
+        super().__init__()
+
+    def run_pass(self, state: Any) -> bool:
+        lowered = state.cr
+        name = lowered.fndesc.qualname.rpartition(".")[-1]
+        # Address 0: Python cannot call it, just as a function that Numba compiles without its Python wrapper.
+        handle = _dynfunc.make_function(
+            lowered.fndesc.lookup_module(), name, "a kernel for kernels", 0, lowered.env, (state.library,)
+        )
+        state.targetctx.insert_user_function(handle, lowered.fndesc, [state.library])
+        state.flags.no_compile = False
+        state.cr = lowered._replace(cfunc=handle)
+        return False
+
+
+class LinkedCompiler(CompilerBase):  # type: ignore[misc]
+    """Numba's own passes, with the two above around the lowering."""
+
+    def define_pipelines(self) -> list[PassManager]:
+        passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes.add_pass_after(UseLinkedLibrary, AnnotateTypes)
+        passes.add_pass_after(OfferToCallers, NativeLowering)
+        passes.finalize()
+        return [passes]
