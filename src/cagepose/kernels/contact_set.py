@@ -13,7 +13,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from cagepose.kernels.contacts import face_normal, is_hidden, touches_face
-from cagepose.kernels.geometry import Geometry, Placement, box_gap
+from cagepose.kernels.geometry import Geometry, Placement
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.metric import Frame, write_scaled_wrench
 from cagepose.kernels.record import FloatArray, IntArray, Rows, empty_rows
@@ -140,7 +140,7 @@ def find_contacts(
         for box in range(geometry.n_own_boxes):
             half_size = row(geometry.half_sizes, box)
             point_box = row(placement.points_box[box], point)
-            if box_gap(point_box, half_size) > touch_m:
+            if placement.gaps[box, point] > touch_m:
                 continue
             first = contacts.used[0]
             n_new = 0

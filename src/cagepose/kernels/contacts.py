@@ -137,10 +137,12 @@ def steepest_contact(
     best_cosine = -math.inf
     best_normal = (0.0, 0.0, 0.0)
     is_tie = False
+    if placement.depths[point] < -tolerances.touch_m:
+        return False, best_normal, is_tie
     for box in range(geometry.n_own_boxes):
         half_size = row(geometry.half_sizes, box)
         point_box = row(placement.points_box[box], point)
-        if box_gap(point_box, half_size) > tolerances.touch_m:
+        if placement.gaps[box, point] > tolerances.touch_m:
             continue
         for axis in range(3):
             if not touches_face(point_box, half_size, axis, tolerances.touch_m):
@@ -167,7 +169,7 @@ def fill_contact_rows(geometry: Geometry, placement: Placement, touch_m: float, 
         for box in range(geometry.n_own_boxes):
             half_size = row(geometry.half_sizes, box)
             point_box = row(placement.points_box[box], point)
-            if box_gap(point_box, half_size) > touch_m:
+            if placement.gaps[box, point] > touch_m:
                 continue
             for axis in range(3):
                 if not touches_face(point_box, half_size, axis, touch_m):

@@ -9,7 +9,7 @@ import numpy as np
 from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.record import FloatArray
-from cagepose.kernels.vector import Vector, minus, plus, row, times, transposed_times
+from cagepose.kernels.vector import Vector, matrix, minus, plus, row, times, transposed_times
 
 
 class Geometry(NamedTuple):
@@ -47,6 +47,8 @@ class Placement(NamedTuple):
         Pose of each box in the world, (n_boxes, 3) metres and (n_boxes, 3, 3).
     points_box
         Cage points in the frame of each box, (n_boxes, n_points, 3), metres.
+    gaps
+        `box_gap` of each of them, (n_boxes, n_points), metres.
     depths
         How deep each point lies in the object: the greatest depth over the boxes, below zero outside, (n_points,),
         metres.
@@ -55,6 +57,7 @@ class Placement(NamedTuple):
     box_positions: FloatArray
     box_rotations: FloatArray
     points_box: FloatArray
+    gaps: FloatArray
     depths: FloatArray
 
 
@@ -63,7 +66,11 @@ def empty_placement(geometry: Geometry) -> Placement:
     n_boxes = len(geometry.half_sizes)
     n_points = len(geometry.points_world)
     return Placement(
-        np.empty((n_boxes, 3)), np.empty((n_boxes, 3, 3)), np.empty((n_boxes, n_points, 3)), np.empty(n_points)
+        np.empty((n_boxes, 3)),
+        np.empty((n_boxes, 3, 3)),
+        np.empty((n_boxes, n_points, 3)),
+        np.empty((n_boxes, n_points)),
+        np.empty(n_points),
     )
 
 
@@ -98,15 +105,28 @@ def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, p
             point_box = times(columns, minus(row(geometry.points_world, point), box_position))
             for k in range(3):
                 placement.points_box[box, point, k] = point_box[k]
-            placement.depths[point] = max(placement.depths[point], -box_gap(point_box, half_size))
+            gap = box_gap(point_box, half_size)
+            placement.gaps[box, point] = gap
+            placement.depths[point] = max(placement.depths[point], -gap)
+
+
+@kernel
+def depth_of_point(geometry: Geometry, position: Vector, quaternion: Quaternion, point: int) -> float:
+    """Return how deep one point lies in the object at the given pose, as `Placement.depths` has it."""
+    rotation = matrix_from_quaternion(quaternion)
+    point_object = transposed_times(rotation, minus(row(geometry.points_world, point), position))
+    depth = -np.inf
+    for box in range(len(geometry.half_sizes)):
+        from_box = minus(point_object, row(geometry.box_positions, box))
+        point_box = transposed_times(matrix(geometry.box_rotations, box), from_box)
+        depth = max(depth, -box_gap(point_box, row(geometry.half_sizes, box)))
+    return depth
 
 
 @kernel
 def vector_in_box(placement: Placement, box: int, vector_world: Vector) -> Vector:
     """Turn a world vector into the frame of one box."""
-    r = placement.box_rotations[box]
-    rows = ((r[0, 0], r[0, 1], r[0, 2]), (r[1, 0], r[1, 1], r[1, 2]), (r[2, 0], r[2, 1], r[2, 2]))
-    return transposed_times(rows, vector_world)
+    return transposed_times(matrix(placement.box_rotations, box), vector_world)
 
 
 @kernel

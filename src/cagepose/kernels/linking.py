@@ -49,13 +49,11 @@ class LinkedLibrary(JITCodeLibrary):  # type: ignore[misc]
     def _get_module_for_linking(self) -> Any:
         """Return this kernel with all that it calls, directly or not."""
         self._ensure_finalized()
-        if self._shared_module is None:
-            module = self._final_module.clone()
-            for library in self._called({self}):
-                linked = isinstance(library, LinkedLibrary)
-                module.link_in(library._final_module if linked else library._get_module_for_linking(), preserve=True)
-            self._shared_module = module
-        return self._shared_module
+        module = self._final_module.clone()
+        for library in self._called({self}):
+            linked = isinstance(library, LinkedLibrary)
+            module.link_in(library._final_module if linked else library._get_module_for_linking(), preserve=True)
+        return module
 
     def _called(self, seen: set[Any]) -> list[Any]:
         """Return the libraries of all kernels called, callers first: LLVM takes in what has been asked for before."""

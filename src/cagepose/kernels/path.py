@@ -9,7 +9,7 @@ import numpy as np
 
 from cagepose.kernels.contact_set import ContactSet
 from cagepose.kernels.first_contact import allowed_depth, first_contact_screw, first_contact_travel
-from cagepose.kernels.geometry import Geometry, Placement, box_gap, place_object
+from cagepose.kernels.geometry import Geometry, Placement, place_object
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.metric import Body, PhaseLoad, moved_along_twist, total_force, work_done
 from cagepose.kernels.pose import Quaternion
@@ -186,7 +186,7 @@ def box_around(geometry: Geometry, placement: Placement, point: int) -> int:
     """Return the box that the point lies deepest in."""
     best_box, best_gap = 0, math.inf
     for box in range(len(geometry.half_sizes)):
-        gap = box_gap(row(placement.points_box[box], point), row(geometry.half_sizes, box))
+        gap = placement.gaps[box, point]
         if gap < best_gap:
             best_box, best_gap = box, gap
     return best_box

@@ -25,12 +25,20 @@ Wave = tuple[float, float, float, float]
 
 CROSSING_ITERATIONS = 256  # halving every fourth step, a bracket of 2 pi shrinks to one rounding in about 220
 ROUNDING = 2.220446049250313e-16
+SAFE = 1.0 + 1e-12
+"""So that rounding rules out no crossing."""
 
 
 @kernel
 def wave_at(wave: Wave, s: float) -> float:
     half_sine = math.sin(0.5 * s)
     return wave[0] - 2.0 * wave[1] * half_sine * half_sine + wave[2] * math.sin(s) + wave[3] * s
+
+
+@kernel
+def steepest_slope(wave: Wave) -> float:
+    """Return a bound on |f'|."""
+    return math.sqrt(wave[1] * wave[1] + wave[2] * wave[2]) + abs(wave[3])
 
 
 @kernel
@@ -86,6 +94,13 @@ def crossing(wave: Wave, start: float, end: float) -> float:
 @kernel
 def next_below(wave: Wave, s_from: float, s_end: float) -> float:
     """Return the first s in [s_from, s_end) from which on f < 0; inf: none."""
+    if s_from >= s_end:
+        return math.inf
+    value = wave_at(wave, s_from)
+    if value < 0.0:
+        return s_from
+    if value > SAFE * steepest_slope(wave) * (s_end - s_from):
+        return math.inf
     turning_points = first_turning_points(wave)
     piece = 2 * int(s_from // (2.0 * math.pi))  # two pieces to a turn; those that ended before are passed over below
     start = s_from
@@ -106,6 +121,8 @@ def next_below(wave: Wave, s_from: float, s_end: float) -> float:
 @kernel
 def last_not_below(wave: Wave, s_until: float) -> float:
     """Return the last s in [0, s_until] with f >= 0, given that f < 0 at ``s_until``; -inf: f < 0 all along."""
+    if wave_at(wave, s_until) < -SAFE * steepest_slope(wave) * s_until:
+        return -math.inf
     turning_points = first_turning_points(wave)
     found = -math.inf
     piece = 0

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.first_contact import first_contact_travel
-from cagepose.kernels.geometry import Geometry, Placement, empty_placement, place_object
+from cagepose.kernels.geometry import Geometry, Placement, depth_of_point, empty_placement, place_object
 from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.pose import Quaternion, rotated
 from cagepose.kernels.record import FloatArray
@@ -195,9 +195,9 @@ def phase_run(
         if loads.is_push[phase] and step.note == PLAIN and has_face_tie(touching):
             step = Step(step.rule, step.motion, step.along, step.through, step.amount, step.hit_point, EDGE_TIE)
         halfway = pose_during(step, position, quaternion, 0.5)
-        place_object(geometry, halfway[0], halfway[1], placement)
-        for point in range(len(geometry.points_world)):
-            touching.let_go[point] = placement.depths[point] < -tolerances.touch_m
+        for i in range(touching.n_touching[0]):
+            point = touching.order[i]
+            touching.let_go[point] = depth_of_point(geometry, halfway[0], halfway[1], point) < -tolerances.touch_m
         position, quaternion = pose_during(step, position, quaternion, 1.0)
         write_event(trace, event, phase, step, position, quaternion)
         load = load_at(loads, phase, position, quaternion)

@@ -81,6 +81,8 @@ def find_touching(
         touches, normal, is_tie = steepest_contact(geometry, placement, point, load.direction, tolerances)
         touching.is_touching[point] = touches
         touching.is_tie[point] = is_tie
+        if not touches:
+            continue
         touching.alphas[point] = load_angle(normal, load.direction)
         for k in range(3):
             touching.normals[point, k] = normal[k]

@@ -50,6 +50,16 @@ def row(array: NDArray[np.float64], index: int) -> Vector:
 
 
 @kernel
+def matrix(array: NDArray[np.float64], index: int) -> Matrix:
+    """Matrix ``index`` of an (n, 3, 3) array."""
+    return (
+        (array[index, 0, 0], array[index, 0, 1], array[index, 0, 2]),
+        (array[index, 1, 0], array[index, 1, 1], array[index, 1, 2]),
+        (array[index, 2, 0], array[index, 2, 1], array[index, 2, 2]),
+    )
+
+
+@kernel
 def vector_from(array: NDArray[np.float64]) -> Vector:
     """The first three numbers of an array."""
     return (array[0], array[1], array[2])
