@@ -24,9 +24,13 @@ OPTIMAL, UNBOUNDED, INFEASIBLE, FAILED = range(4)
 FAR_ROUNDING = 1e-11
 """A row with coefficients about one is violated at infinity if it grows by more along x_far."""
 NEAR_ROUNDING = 1e-13
-"""Of the terms of a row and of x: violated by less is rounding."""
+"""Of the terms that x is the sum of: violated by less is rounding."""
 PIVOT_ROUNDING = 1e-11
 """A row of the basis that the entering row depends on by less cannot be dropped for it."""
+MOST_EXCHANGES = 10
+"""So many rows are exchanged before the inverse is made anew: each adds its rounding."""
+SMALL_PIVOT = 1e-3
+"""A smaller one would add more rounding than most."""
 STEEP_PIVOTS = 40
 """So many steps take in the row that is violated most; then it is the first one (Bland), which cannot cycle."""
 MOST_PIVOTS = 400
@@ -50,8 +54,8 @@ class ProgramRoom:
         row that enters.
     reach
         Size of the terms that x_near is the sum of: its rounding is about 1e-16 of this.
-    n_pivots
-        Steps of the last call.
+    n_pivots, n_exchanges
+        Steps of the last call, and since the inverse was made anew.
     """
 
     basis: Annotated[IntArray, N_UNKNOWNS]
@@ -64,6 +68,7 @@ class ProgramRoom:
     step: Annotated[FloatArray, N_UNKNOWNS]
     reach: float
     n_pivots: int
+    n_exchanges: int
 
 
 @kernel
@@ -111,13 +116,20 @@ def invert(room: ProgramRoom) -> bool:
 
 @kernel
 def factorise(rows: FloatArray, bounds: FloatArray, room: ProgramRoom) -> bool:
-    """Find the corner and the multipliers of the basis; False: there is none."""
-    n_rows = len(rows)
+    """Invert the basis and find its corner; False: its rows depend on each other."""
     for i in range(N_UNKNOWNS):
         for k in range(N_UNKNOWNS):
             room.matrix[i, k] = coefficient(rows, room.basis[i], k)
+    room.n_exchanges = 0
     if not invert(room):
         return False
+    find_corner(len(rows), bounds, room)
+    return True
+
+
+@kernel
+def find_corner(n_rows: int, bounds: FloatArray, room: ProgramRoom) -> None:
+    """Write x and the multipliers that belong to the inverse of the basis."""
     room.reach = 0.0
     for k in range(N_UNKNOWNS):
         near, far, multiplier, reach = 0.0, 0.0, 0.0, 0.0
@@ -125,11 +137,30 @@ def factorise(rows: FloatArray, bounds: FloatArray, room: ProgramRoom) -> bool:
             if room.basis[i] >= n_rows:
                 far += room.inverse[k, i]
             else:
-                near += room.inverse[k, i] * bounds[room.basis[i]]
-                reach += abs(room.inverse[k, i] * bounds[room.basis[i]])
+                part = room.inverse[k, i] * bounds[room.basis[i]]
+                near += part
+                reach += abs(part)
             multiplier += room.objective[i] * room.inverse[i, k]
         room.x_near[k], room.x_far[k], room.multipliers[k] = near, far, multiplier
         room.reach = max(room.reach, reach)
+
+
+@kernel
+def exchange(rows: FloatArray, bounds: FloatArray, room: ProgramRoom, enters: int, leaves: int) -> bool:
+    """Take a row into the basis in the place of another; ``room.step`` holds its coefficients over the basis.
+
+    The inverse is only brought up to date; False: it was made anew, and the rows depend on each other.
+    """
+    room.basis[leaves] = enters
+    if room.n_exchanges >= MOST_EXCHANGES or abs(room.step[leaves]) < SMALL_PIVOT:
+        return factorise(rows, bounds, room)
+    room.n_exchanges += 1
+    for k in range(N_UNKNOWNS):
+        room.inverse[k, leaves] /= room.step[leaves]
+        for i in range(N_UNKNOWNS):
+            if i != leaves:
+                room.inverse[k, i] -= room.step[i] * room.inverse[k, leaves]
+    find_corner(len(rows), bounds, room)
     return True
 
 
@@ -167,17 +198,16 @@ def violated_row(rows: FloatArray, bounds: FloatArray, room: ProgramRoom, takes_
     open_end = is_open(n_rows, room)
     worst, worst_far, worst_near = -1, 0.0, 0.0
     for i in range(n_rows):
-        near, far, terms = -bounds[i], 0.0, room.reach + abs(bounds[i])
+        near, far = -bounds[i], 0.0
         for k in range(N_UNKNOWNS):
             near += rows[i, k] * x[k]
-            terms += abs(rows[i, k] * x[k])
         if open_end:
             for k in range(N_UNKNOWNS):
                 far += rows[i, k] * room.x_far[k]
             if bounds[i] == math.inf or far < -FAR_ROUNDING:
                 continue
             far = far if far > FAR_ROUNDING else 0.0
-        if (far == 0.0 and near <= NEAR_ROUNDING * terms) or terms == math.inf:
+        if far == 0.0 and near <= NEAR_ROUNDING * room.reach:
             continue
         if worst < 0 or far > worst_far or (far == worst_far and near > worst_near):
             worst, worst_far, worst_near = i, far, near
@@ -248,6 +278,10 @@ def solve_program(rows: FloatArray, bounds: FloatArray, room: ProgramRoom) -> in
         room.n_pivots = pivot
         takes_first = pivot >= STEEP_PIVOTS
         enters = violated_row(rows, bounds, room, takes_first)
+        if enters < 0 and room.n_exchanges > 0:  # look again, without the rounding of the exchanges
+            if not factorise(rows, bounds, room):
+                return FAILED
+            enters = violated_row(rows, bounds, room, takes_first)
         if enters < 0:
             growth = 0.0
             for k in range(N_UNKNOWNS):
@@ -256,8 +290,7 @@ def solve_program(rows: FloatArray, bounds: FloatArray, room: ProgramRoom) -> in
         leaves = leaving_place(rows, room, enters, takes_first)
         if leaves < 0:
             return INFEASIBLE
-        room.basis[leaves] = enters
-        if not factorise(rows, bounds, room):
+        if not exchange(rows, bounds, room, enters, leaves):
             return FAILED
     return FAILED
 

@@ -24,6 +24,7 @@ from cagepose.kernels.play_newton import (
     take_rows,
 )
 from cagepose.kernels.play_rows import (
+    HARDLY,
     NOT_BEYOND,
     PlayRoom,
     change_faces,
@@ -43,7 +44,7 @@ FIRST_RADIUS = 0.3
 """Radians, and lengths of the scene: the linear rows say little beyond."""
 LAST_RADIUS = 1e-6
 """Of the motion: the value errs by the square of this."""
-LAST_STEP = 1e-9
+LAST_STEP = 1e-7
 """Of the motion: a Newton step that is shorter has arrived; the value errs by the square of this."""
 MOST_PROGRAMS = 200
 """A dozen are usual, forty where curvature alone limits the motion."""
@@ -189,12 +190,12 @@ def total_price(room: PlayRoom) -> float:
 def note_limits(room: PlayRoom, factor: float, extreme: Extreme) -> None:
     """Write which pairs limit the extreme, and the prices of their gaps."""
     extreme.n_limits = 0
-    for k in range(6):
-        pair = room.program.basis[k]
-        if pair < len(room.faces) and room.program.multipliers[k] > 1e-9:
+    for i in range(room.newton.n_rows):
+        pair = room.newton.pairs[i]
+        if room.newton.prices[i] > HARDLY:
             extreme.limits[extreme.n_limits] = pair
             extreme.faces[extreme.n_limits] = room.faces[pair]
-            extreme.prices[extreme.n_limits] = factor * room.program.multipliers[k]
+            extreme.prices[extreme.n_limits] = factor * room.newton.prices[i]
             extreme.n_limits += 1
 
 
@@ -397,10 +398,15 @@ def find_play(geometry: Geometry, length_m: float, goals: Rows[Goal], extremes: 
     room
         See there.
     """
+    place_object(geometry, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0), room.placement)
+    choose_faces(geometry, (0.0, 0.0, 0.0), length_m, room)
+    for pair in range(len(room.faces)):
+        room.start_faces[pair] = room.faces[pair]
     for i in range(len(goals)):
         goal, extreme = goals[i], extremes[i]
+        for pair in range(len(room.faces)):
+            room.faces[pair] = room.start_faces[pair]
         place_object(geometry, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0), room.placement)
-        choose_faces(geometry, room)
         write_rows(geometry, (0.0, 0.0, 0.0), length_m, room)
         for pair in range(len(room.faces)):
             room.bounds[pair] = max(room.bounds[pair], 0.0)  # a start that touches may be inside by rounding

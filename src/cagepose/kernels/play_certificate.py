@@ -15,7 +15,7 @@ from cagepose.kernels.geometry import Geometry, place_object
 from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.linear_program import OPTIMAL, extents, solve_program
 from cagepose.kernels.play import PITCH, SHIFT, YAW, Goal, promised, write_slope
-from cagepose.kernels.play_rows import PlayRoom, choose_faces, write_rows, write_trust_region
+from cagepose.kernels.play_rows import PlayRoom, choose_faces, write_trust_region
 from cagepose.kernels.record import FloatArray, IntArray, Rows, empty_record
 from cagepose.kernels.vector import Vector, cross, dot, minus, norm, row, scaled, vector_from
 
@@ -39,7 +39,7 @@ class Certificate:
         CAGED, FREE (it is unbounded), RAN_OFF (it is, without the rows of points that may run off their faces), or
         TOO_LARGE: what linearising leaves out grows with the polytope without end.
     worst
-        The row that grew most, or the last one that was given up.
+        The row that grew most; where the outcome is RAN_OFF, the one with the smallest gap of those given up.
     n_rounds
         How often the rows were moved out.
     least, greatest
@@ -167,7 +167,6 @@ def move_out(geometry: Geometry, length_m: float, room: PlayRoom, work: Certific
             geometry, pair, length_m, room, certificate
         ):
             work.is_kept[pair] = 0
-            certificate.worst = pair
             closed = False
             continue
         if above + ROUNDING >= work.moved_out[pair]:
@@ -185,6 +184,16 @@ def write_bounds(room: PlayRoom, work: CertificateRoom) -> None:
 
 
 @kernel
+def tightest_given_up(work: CertificateRoom) -> int:
+    """Return the row with the smallest gap of those that no longer count; -1: all do."""
+    tightest = -1
+    for pair in range(len(work.gaps)):
+        if work.is_kept[pair] == 0 and (tightest < 0 or work.gaps[pair] < work.gaps[tightest]):
+            tightest = pair
+    return tightest
+
+
+@kernel
 def close_polytope(geometry: Geometry, length_m: float, room: PlayRoom, work: CertificateRoom) -> int:
     """Move the rows out until what linearising leaves out is less (7.7)."""
     certificate = work.certificate
@@ -199,6 +208,7 @@ def close_polytope(geometry: Geometry, length_m: float, room: PlayRoom, work: Ce
             certificate.turn[k] = max(-certificate.least[3 + k], certificate.greatest[3 + k])
         size = norm(vector_from(certificate.travel)) + norm(vector_from(certificate.turn))
         if size == math.inf:
+            certificate.worst = tightest_given_up(work)
             return FREE if n_dropped == 0 else RAN_OFF
         if norm(vector_from(certificate.turn)) > LARGEST_TURN:
             return TOO_LARGE
@@ -246,8 +256,7 @@ def certify(
         See there; ``work.certificate`` is the result.
     """
     place_object(geometry, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0), room.placement)
-    choose_faces(geometry, room)
-    write_rows(geometry, (0.0, 0.0, 0.0), length_m, room)
+    choose_faces(geometry, (0.0, 0.0, 0.0), length_m, room)
     write_trust_region(room, math.inf)
     for pair in range(len(work.gaps)):
         work.gaps[pair] = max(room.bounds[pair], 0.0)

@@ -18,7 +18,7 @@ DEPENDENT = 1e-7
 """Rows of length about one: a part outside the span of the others that is shorter says nothing new."""
 SETTING_OFF = 1e-3
 """Radians, and lengths of the scene: less than the slope of a step that is worth a look."""
-FLAT = 1e-9
+FLAT = 1e-6
 """Of the curvature: added to it, so that directions in which nothing changes stay where they are."""
 
 

@@ -9,13 +9,17 @@ import numpy as np
 
 from cagepose.kernels.geometry import Geometry, Placement, empty_placement
 from cagepose.kernels.jit import kernel
-from cagepose.kernels.linear_program import ProgramRoom, program_rows
+from cagepose.kernels.linear_program import OPTIMAL, ProgramRoom, extents, program_rows
 from cagepose.kernels.play_newton import NewtonRoom
 from cagepose.kernels.record import FloatArray, IntArray, empty_record
 from cagepose.kernels.vector import Vector, cross, row
 
 N_TRUST = 12
 """Rows |xi_k| <= radius of the trust region."""
+COUNTS = 1e-12
+"""Coefficients of a row below this are rounding: they do not reach for an end that is not there."""
+HARDLY = 1e-9
+"""A gap whose multiplier is smaller does not limit the motion."""
 NOT_BEYOND = 1e-8
 """Lengths of the scene. A point that is beyond another face of the box by less stays with its face."""
 
@@ -34,6 +38,10 @@ class PlayRoom(NamedTuple):
         From the position to the point, lengths of the scene, (n_points * n_boxes, 3).
     rows, bounds
         Those of (7.1), lengths divided by the scene's length, then those of the trust region.
+    least, greatest
+        Extents of the polytope, (6,).
+    start_faces
+        The faces at the start.
     program, newton
         See there.
     """
@@ -43,6 +51,9 @@ class PlayRoom(NamedTuple):
     arms: FloatArray
     rows: FloatArray
     bounds: FloatArray
+    least: FloatArray
+    greatest: FloatArray
+    start_faces: IntArray
     program: ProgramRoom
     newton: NewtonRoom
 
@@ -55,6 +66,9 @@ def empty_play_room(geometry: Geometry) -> PlayRoom:
         np.zeros(n_pairs, np.int64),
         np.zeros((n_pairs, 3)),
         *program_rows(n_pairs + N_TRUST),
+        np.zeros(6),
+        np.zeros(6),
+        np.zeros(n_pairs, np.int64),
         empty_record(ProgramRoom),
         empty_record(NewtonRoom),
     )
@@ -80,31 +94,94 @@ def farthest_face(geometry: Geometry, placement: Placement, point: int, box: int
 
 
 @kernel
-def choose_faces(geometry: Geometry, room: PlayRoom) -> None:
+def choose_farthest_faces(geometry: Geometry, room: PlayRoom) -> None:
     n_boxes = geometry.n_own_boxes
     for pair in range(len(room.faces)):
         room.faces[pair] = farthest_face(geometry, room.placement, pair // n_boxes, pair % n_boxes)
 
 
 @kernel
+def has_choice(geometry: Geometry, room: PlayRoom, pair: int) -> bool:
+    """Whether the point is beyond more than one face of the box."""
+    point, box = pair // geometry.n_own_boxes, pair % geometry.n_own_boxes
+    n_beyond = 0
+    for face in range(6):
+        if gap_beyond(geometry, room.placement, point, box, face) > 0.0:
+            n_beyond += 1
+    return n_beyond > 1
+
+
+@kernel
+def room_left(pair: int, room: PlayRoom) -> float:
+    """Return what is left of a row's gap at the worst corner of the extents; -inf: they have no end there."""
+    left: float = room.bounds[pair]
+    for k in range(6):
+        a = room.rows[pair, k]
+        if abs(a) > COUNTS:
+            left -= a * (room.greatest[k] if a > 0.0 else room.least[k])
+    return left
+
+
+@kernel
+def choose_faces(geometry: Geometry, position: Vector, length_m: float, room: PlayRoom) -> None:
+    """Choose the face that each point stays beyond (7.2), and write the rows.
+
+    Where a point is beyond several faces of a box, it is enough that it stays beyond one. Of these the face is best
+    that the point cannot reach anyhow, by the rows of the points that have no choice.
+    """
+    choose_farthest_faces(geometry, room)
+    write_rows(geometry, position, length_m, room)
+    write_trust_region(room, math.inf)
+    n_choices = 0
+    for pair in range(len(room.faces)):
+        room.bounds[pair] = max(room.bounds[pair], 0.0)
+        if has_choice(geometry, room, pair):
+            room.bounds[pair] = math.inf
+            n_choices += 1
+    if n_choices == 0:
+        return
+    outcome = extents(room.rows, room.bounds, room.program, room.least, room.greatest)
+    for pair in range(len(room.faces)):
+        if room.bounds[pair] < math.inf or outcome != OPTIMAL:
+            continue
+        point, box, best = pair // geometry.n_own_boxes, pair % geometry.n_own_boxes, room.faces[pair]
+        most = -math.inf
+        for face in range(6):
+            if gap_beyond(geometry, room.placement, point, box, face) > 0.0:
+                room.faces[pair] = face
+                write_row(geometry, position, length_m, pair, room)
+                left = room_left(pair, room)
+                if left > most:
+                    most, best = left, face
+        room.faces[pair] = best
+        room.bounds[pair] = math.inf
+    write_rows(geometry, position, length_m, room)
+
+
+@kernel
+def write_row(geometry: Geometry, position: Vector, length_m: float, pair: int, room: PlayRoom) -> None:
+    """Write the row (n, (c - t) x n / L) and the bound gap / L of one point and box (7.1)."""
+    point, box, face = pair // geometry.n_own_boxes, pair % geometry.n_own_boxes, room.faces[pair]
+    sign = 1.0 if face < 3 else -1.0
+    columns = room.placement.box_rotations[box]
+    axis = face % 3
+    normal = (sign * columns[0, axis], sign * columns[1, axis], sign * columns[2, axis])
+    c = row(geometry.points_world, point)
+    arm = ((c[0] - position[0]) / length_m, (c[1] - position[1]) / length_m, (c[2] - position[2]) / length_m)
+    moment = cross(arm, normal)
+    for k in range(3):
+        room.arms[pair, k] = arm[k]
+        room.rows[pair, k] = normal[k]
+        room.rows[pair, 3 + k] = moment[k]
+    room.bounds[pair] = gap_beyond(geometry, room.placement, point, box, face) / length_m
+
+
+@kernel
 def write_rows(geometry: Geometry, position: Vector, length_m: float, room: PlayRoom) -> float:
-    """Write one row (n, (c - t) x n / L) and one bound gap / L for each point and box (7.1); return the least bound."""
-    n_boxes = geometry.n_own_boxes
+    """Write the rows of all points and boxes; return the least bound."""
     least = math.inf
     for pair in range(len(room.faces)):
-        point, box, face = pair // n_boxes, pair % n_boxes, room.faces[pair]
-        sign = 1.0 if face < 3 else -1.0
-        columns = room.placement.box_rotations[box]
-        axis = face % 3
-        normal = (sign * columns[0, axis], sign * columns[1, axis], sign * columns[2, axis])
-        c = row(geometry.points_world, point)
-        arm = ((c[0] - position[0]) / length_m, (c[1] - position[1]) / length_m, (c[2] - position[2]) / length_m)
-        moment = cross(arm, normal)
-        for k in range(3):
-            room.arms[pair, k] = arm[k]
-            room.rows[pair, k] = normal[k]
-            room.rows[pair, 3 + k] = moment[k]
-        room.bounds[pair] = gap_beyond(geometry, room.placement, point, box, face) / length_m
+        write_row(geometry, position, length_m, pair, room)
         least = min(least, room.bounds[pair])
     return least
 
@@ -126,9 +203,9 @@ def change_faces(geometry: Geometry, length_m: float, room: PlayRoom) -> bool:
     """Where a point that limits the motion is beyond another face too, let it stay beyond that one instead."""
     n_boxes = geometry.n_own_boxes
     changed = False
-    for k in range(6):
-        pair = room.program.basis[k]
-        if pair < len(room.faces) and room.program.multipliers[k] > 1e-9:
+    for i in range(room.newton.n_rows):
+        pair = room.newton.pairs[i]
+        if room.newton.prices[i] > HARDLY:
             point, box = pair // n_boxes, pair % n_boxes
             best = farthest_face(geometry, room.placement, point, box)
             beyond = gap_beyond(geometry, room.placement, point, box, best)

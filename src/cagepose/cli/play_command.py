@@ -1,0 +1,104 @@
+"""``cagepose play``: how far the object can move in its cage, and whether it can get out."""
+
+from __future__ import annotations
+
+import sys
+from math import isfinite
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from cagepose.cli.options import SceneArgument, SetOption, Switch
+
+
+def play_command(
+    scene: SceneArgument,
+    /,
+    *,
+    at: Annotated[
+        tuple[str, ...],
+        Parameter(
+            help="A point of the object, x,y,z in its frame and the scene's unit, such as --at=-600,20,-60.7; may be"
+            " given several times.",
+            negative=(),
+            show_default=False,
+            allow_leading_hyphen=True,
+        ),
+    ] = (),
+    direction: Annotated[
+        tuple[str, ...],
+        Parameter(
+            help="A direction x,y,z in the cage's frame to ask the points about; may be given several times. Left out:"
+            " x, y and z.",
+            negative=(),
+            show_default=False,
+            allow_leading_hyphen=True,
+        ),
+    ] = (),
+    set_values: SetOption = (),
+    json: Annotated[bool, Switch, Parameter(help="Print one JSON document instead of the tables.")] = False,
+) -> int:
+    """Print the range of each freedom and of the points, what limits it, and whether the object is caged."""
+    from cagepose.errors import SceneFileError
+    from cagepose.files.scene_file import read_scene_file
+    from cagepose.files.units import to_metres
+
+    problems: list[str] = []
+    points = [_triple("--at", text, problems) for text in at]
+    along = [_triple("--direction", text, problems) for text in direction]
+    problems += [
+        f"--direction {text}: has no direction; give a vector of any other length"
+        for text, found in zip(direction, along, strict=True)
+        if found == (0.0, 0.0, 0.0)
+    ]
+    if direction and not at:
+        problems.append("--direction: says where points go, and there are none; give one with --at")
+    try:
+        scene_file = read_scene_file(scene, set_values)
+    except SceneFileError as error:
+        problems.append(str(error))
+    if problems:
+        sys.stderr.write("\n".join(problems) + "\n")
+        return 2
+
+    from cagepose.cli.first_run import announce_kernels
+    from cagepose.studies.play import play, play_is_compiled
+
+    announce_kernels(play_is_compiled())
+    found = play(
+        scene_file.scene,
+        [to_metres(point, scene_file.length_unit) for point in points],
+        along,
+        progress=_show_search if sys.stderr.isatty() else None,
+    )
+    if json:
+        from json import dumps
+
+        from cagepose.cli.play_document import play_document
+
+        sys.stdout.write(dumps(play_document(found, scene_file.length_unit), indent=1, allow_nan=False) + "\n")
+        return 0
+    from cagepose.cli.play_report import print_play
+
+    print_play(found, scene_file.length_unit)
+    return 0
+
+
+def _triple(flag: str, text: str, problems: list[str]) -> tuple[float, ...]:
+    """Return the three numbers of a flag; what is wrong with them goes to ``problems``."""
+    from cagepose.errors import printable
+
+    try:
+        numbers = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        numbers = ()
+    if len(numbers) != 3 or not all(isfinite(number) for number in numbers):
+        problems.append(printable(f"{flag} {text}: is not three numbers; write them as x,y,z without blanks"))
+        return (1.0, 0.0, 0.0)
+    return numbers
+
+
+def _show_search(share: float) -> None:
+    """Tell on the terminal how much of the search's time has passed."""
+    sys.stderr.write(f"\rsearching for a way out: {share:4.0%}" + ("\n" if share >= 1.0 else ""))
+    sys.stderr.flush()

@@ -1,0 +1,102 @@
+"""A `Play` as the document of ``--json``: lengths in the scene's unit, angles in degrees, null for no end."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from cagepose.files.document import FORMAT_VERSION
+from cagepose.files.units import LengthUnit, from_metres
+from cagepose.nouns.checks import FloatArray
+from cagepose.nouns.pose import Pose
+from cagepose.studies.cage_verdict import PathStep
+from cagepose.studies.play import Play, PlayEnd, PlayRange, PointPlay
+
+LENGTHS = ("x", "y", "z")
+
+
+def play_document(play: Play, unit: LengthUnit) -> dict[str, Any]:
+    """Return the document: only dict, list, str, int, finite float, bool and None."""
+    cage = play.cage
+    return {
+        "version": FORMAT_VERSION,
+        "scene": play.scene.name,
+        "units": {"length": unit},
+        "freedoms": {name: _ends(ends, name in LENGTHS, unit) for name, ends in play.freedoms.items()},
+        "points": [
+            {
+                "at": _lengths(point.at_object, unit),
+                "direction": _numbers(point.direction_cage),
+                **_ends(point, True, unit),
+            }
+            for point in play.points
+        ],
+        "cage": {
+            "verdict": cage.verdict,
+            "reason": cage.reason,
+            "free_directions": list(cage.free_directions),
+            "path": None if cage.path is None else [_step(step, unit) for step in cage.path],
+        },
+        "timing_s": {"analysis": play.analysis_s, "certificate": play.certificate_s},
+    }
+
+
+def _ends(ends: PlayRange | PointPlay, is_length: bool, unit: LengthUnit) -> dict[str, Any]:
+    def shown(value: float | None) -> float | None:
+        if value is None:
+            return None
+        return (float(from_metres(value, unit)) if is_length else math.degrees(value)) + 0.0
+
+    certified = [shown(ends.low.certified), shown(ends.high.certified)]
+    return {
+        "linear": [shown(ends.low.linear), shown(ends.high.linear)],
+        "exact": [shown(ends.low.exact), shown(ends.high.exact)],
+        "certified": None if None in certified else certified,
+        "poses": [_pose(ends.low.pose_world_object, unit), _pose(ends.high.pose_world_object, unit)],
+        "limits": [_limits(ends.low, is_length, unit), _limits(ends.high, is_length, unit)],
+    }
+
+
+def _limits(end: PlayEnd, is_length: bool, unit: LengthUnit) -> list[dict[str, Any]]:
+    """Gains are lengths per length, or degrees per length."""
+    return [
+        {
+            "point": clearance.point,
+            "box": clearance.box,
+            "gap": float(from_metres(clearance.gap_m, unit)),
+            "gain": clearance.gain if is_length else math.degrees(clearance.gain) / float(from_metres(1.0, unit)),
+        }
+        for clearance in end.clearances
+    ]
+
+
+def _pose(pose: Pose | None, unit: LengthUnit) -> dict[str, Any] | None:
+    if pose is None:
+        return None
+    return {
+        "position": _lengths(pose.position_m, unit),
+        "euler_zyx_deg": [math.degrees(angle) + 0.0 for angle in pose.euler_zyx],
+        "quat_wxyz": _numbers(pose.quaternion_wxyz),
+    }
+
+
+def _step(step: PathStep, unit: LengthUnit) -> dict[str, Any]:
+    motion = step.motion
+    through = motion.through_world
+    return {
+        "motion": motion.kind,
+        "direction": None if motion.direction_world is None else _numbers(motion.direction_world),
+        "axis": None if motion.axis_world is None else _numbers(motion.axis_world),
+        "through": None if through is None else _lengths(through, unit),
+        "distance": float(from_metres(motion.distance_m, unit)),
+        "angle_deg": math.degrees(motion.angle_rad),
+        "pose": _pose(step.pose_world_object, unit),
+    }
+
+
+def _lengths(lengths_m: FloatArray, unit: LengthUnit) -> list[float]:
+    return _numbers(from_metres(lengths_m, unit))
+
+
+def _numbers(values: FloatArray) -> list[float]:
+    return [float(value) + 0.0 for value in values]

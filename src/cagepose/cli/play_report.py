@@ -1,0 +1,73 @@
+"""A `Play` as text: a table of ranges, what limits them, the verdict on the cage."""
+
+from __future__ import annotations
+
+import math
+
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+from rich.text import Text
+
+from cagepose.cli.console import print_all
+from cagepose.cli.play_document import LENGTHS
+from cagepose.cli.report import short
+from cagepose.files.units import LengthUnit, from_metres
+from cagepose.studies.play import Play, PlayEnd
+
+STYLES = {"caged": "bold green", "not certified": "bold yellow", "escapes": "bold red"}
+
+
+def print_play(play: Play, unit: LengthUnit) -> None:
+    """Print to standard output, lengths in ``unit``, angles in degrees."""
+    table = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
+    for heading in ("", "unit", "linear", "exact", "certified within"):
+        table.add_column(heading, overflow="fold")
+    why = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
+    for heading in ("end", "limited by", "change for each " + unit + " of gap"):
+        why.add_column(heading, overflow="fold")
+    rows = [(name, name in LENGTHS, ends.low, ends.high) for name, ends in play.freedoms.items()]
+    rows += [(_point_name(place, play, unit), True, point.low, point.high) for place, point in enumerate(play.points)]
+    for name, is_length, low, high in rows:
+        unit_name = str(unit) if is_length else "deg"
+        ranges = [
+            f"{_value(getattr(low, kind), is_length, unit)} to {_value(getattr(high, kind), is_length, unit)}"
+            for kind in ("linear", "exact")
+        ]
+        is_certified = low.certified is not None and high.certified is not None
+        bound = f"{_value(low.certified, is_length, unit)} to {_value(high.certified, is_length, unit)}"
+        table.add_row(*(Text(cell) for cell in (name, unit_name, *ranges, bound if is_certified else "-")))
+        for sign, end in (("least", low), ("greatest", high)):
+            if end.clearances:
+                why.add_row(Text(f"{sign} {name}"), Text(_names(end)), Text(_gains(end, is_length, unit)))
+    cage = play.cage
+    verdict = Text("cage: ")
+    verdict.append(cage.verdict, style=STYLES[cage.verdict])
+    verdict.append(f" ({cage.reason})")
+    times = f"analysis {play.analysis_s * 1e3:.3g} ms, certificate {play.certificate_s * 1e3:.3g} ms"
+    print_all(Text(f"{play.scene.name}: play from the start pose, in the cage's frame"), "", table, "", why, "")
+    print_all(verdict, Text(times))
+    if cage.free_directions:
+        print_all(Text(f"free directions: {' '.join(cage.free_directions)}"))
+
+
+def _point_name(place: int, play: Play, unit: LengthUnit) -> str:
+    point = play.points[place]
+    at = ", ".join(f"{value:.6g}" for value in from_metres(point.at_object, unit).tolist())
+    along = ", ".join(short(value, 4, 1e-12) for value in point.direction_cage.tolist())
+    return f"({at}) along ({along})"
+
+
+def _value(value: float | None, is_length: bool, unit: LengthUnit) -> str:
+    if value is None:
+        return "no end"
+    shown = float(from_metres(value, unit)) if is_length else math.degrees(value)
+    return short(shown, 6, 1e-12)
+
+
+def _names(end: PlayEnd) -> str:
+    return ", ".join(f"{clearance.point} on {clearance.box}" for clearance in end.clearances)
+
+
+def _gains(end: PlayEnd, is_length: bool, unit: LengthUnit) -> str:
+    factor = 1.0 if is_length else math.degrees(1.0) / float(from_metres(1.0, unit))
+    return ", ".join(f"{clearance.gain * factor:.4g}" for clearance in end.clearances)
