@@ -79,7 +79,7 @@ def test_every_extreme_is_a_pose_outside_that_has_the_value():
     rng = np.random.default_rng(6)
     for _ in range(cases(100)):
         scene = caged_scene(rng)
-        found = play(scene)
+        found = play(scene, search_s=0.0)
         for name, ends in found.freedoms.items():
             for end in (ends.low, ends.high):
                 assert end.exact is not None
@@ -133,7 +133,7 @@ def test_no_extreme_can_be_bettered_nearby():
     for _ in range(cases(40)):
         scene = caged_scene(rng)
         name = FREEDOMS[rng.integers(6)]
-        end = play(scene).freedoms[name].high
+        end = play(scene, search_s=0.0).freedoms[name].high
         assert end.exact is not None
         assert end.pose_world_object is not None
         best = best_near(scene, end.pose_world_object, name)
@@ -155,8 +155,7 @@ def with_gap_wider(scene: Scene, point: str, by_m: float) -> Scene:
 
 
 def test_the_gain_of_each_clearance_is_the_slope_of_the_extreme():
-    """Central differences over 10 nm. An extreme on a nearly flat top moves by more than its value: one in twenty may
-    be off."""
+    """Central differences over 20 nm."""
     rng = np.random.default_rng(8)
     deviations = []
     for _ in range(cases(20)):
@@ -173,4 +172,4 @@ def test_the_gain_of_each_clearance_is_the_slope_of_the_extreme():
                 slope = (ends[0] - ends[1]) / 2e-8
                 deviations.append(abs(slope / clearance.gain - 1.0))
     assert len(deviations) >= 10
-    assert np.quantile(deviations, 0.95) < 3e-3
+    assert max(deviations) < 3e-3

@@ -21,7 +21,9 @@ from cagepose.kernels.play_newton import (
     join_steps,
     newton_step,
     size_of_step,
+    take_row,
     take_rows,
+    write_onto,
 )
 from cagepose.kernels.play_rows import (
     HARDLY,
@@ -29,6 +31,7 @@ from cagepose.kernels.play_rows import (
     PlayRoom,
     change_faces,
     choose_faces,
+    gap_beyond,
     least_gap,
     write_rows,
     write_trust_region,
@@ -284,6 +287,41 @@ def write_curvature(goal: Goal, quaternion: Quaternion, length_m: float, factor:
 
 
 @kernel
+def write_newton_step(goal: Goal, quaternion: Quaternion, length_m: float, factor: float, room: PlayRoom) -> bool:
+    """Write Newton's step on the rows that the program leans on, and those that block it; False: it leads to no top."""
+    newton = room.newton
+    take_rows(room.rows, room.bounds, len(room.faces), room.program, newton)
+    is_top = False
+    for _ in range(6):
+        find_prices(room.program, newton)
+        write_curvature(goal, quaternion, length_m, factor, room)
+        is_top = newton_step(room.program, newton)
+        blocks = join_steps(room.rows, room.bounds, len(room.faces), is_top, FIRST_RADIUS, newton)
+        if blocks < 0 or newton.n_rows == 6:
+            break
+        take_row(room.rows, room.bounds, blocks, newton)
+    return is_top
+
+
+@kernel
+def moved_along_faces(
+    geometry: Geometry, length_m: float, position: Vector, quaternion: Quaternion, room: PlayRoom
+) -> tuple[Vector, Quaternion]:
+    """Return the motion after Newton's step, put back on the faces that the step's curvature has left.
+
+    Without this the penalty would refuse good steps along curved limits.
+    """
+    newton = room.newton
+    position, quaternion = moved(position, quaternion, newton.step, length_m)
+    place_object(geometry, position, quaternion, room.placement)
+    for i in range(newton.n_rows):
+        point, box = newton.pairs[i] // geometry.n_own_boxes, newton.pairs[i] % geometry.n_own_boxes
+        newton.bounds[i] = gap_beyond(geometry, room.placement, point, box, room.faces[newton.pairs[i]]) / length_m
+    write_onto(newton)
+    return moved(position, quaternion, newton.onto, length_m)
+
+
+@kernel
 def merit_at(
     geometry: Geometry,
     length_m: float,
@@ -325,16 +363,12 @@ def climb(geometry: Geometry, length_m: float, goal: Goal, room: PlayRoom, extre
                 break
             continue
         penalty = max(penalty, 2.0 * factor * total_price(room))
-        take_rows(room.rows, room.bounds, len(room.faces), room.program, room.newton)
-        find_prices(room.program, room.newton)
-        write_curvature(goal, quaternion, length_m, factor, room)
-        is_top = newton_step(room.program, room.newton)
-        join_steps(room.rows, room.bounds, len(room.faces), is_top, FIRST_RADIUS, room.newton)
+        is_top = write_newton_step(goal, quaternion, length_m, factor, room)
         gain = factor * promised(room.program) + penalty * inside
         size = size_of(position, quaternion, length_m)
         merit = value / unit - penalty * inside
         noise = GAIN * abs(value) / unit + 1e-15
-        by_newton = moved(position, quaternion, room.newton.step, length_m)
+        by_newton = moved_along_faces(geometry, length_m, position, quaternion, room)
         more = merit_at(geometry, length_m, goal, by_newton[0], by_newton[1], penalty, room) - merit
         has_arrived = is_top and size_of_step(room.newton.step) < LAST_STEP * size
         if has_arrived or (max(gain, more) <= noise) or radius < LAST_RADIUS * size:

@@ -81,21 +81,32 @@ def make_orthogonal(room: NewtonRoom, place: int, n_before: int) -> float:
 
 
 @kernel
+def take_row(rows: FloatArray, bounds: FloatArray, pair: int, room: NewtonRoom) -> None:
+    """Take one more row, unless it depends on those that are taken."""
+    if room.n_rows == 6:
+        return
+    for k in range(6):
+        room.basis[room.n_rows, k] = rows[pair, k]
+    size = make_orthogonal(room, room.n_rows, room.n_rows)
+    if size > DEPENDENT:
+        room.triangle[room.n_rows, room.n_rows] = size
+        room.bounds[room.n_rows] = bounds[pair]
+        room.pairs[room.n_rows] = pair
+        room.n_rows += 1
+
+
+@kernel
 def take_rows(rows: FloatArray, bounds: FloatArray, n_pairs: int, program: ProgramRoom, room: NewtonRoom) -> None:
     """Take the rows that the program's solution leans on, without those of the trust region."""
     room.n_rows = 0
     for i in range(6):
-        pair = program.basis[i]
-        if pair >= n_pairs or program.multipliers[i] <= 0.0:
-            continue
-        for k in range(6):
-            room.basis[room.n_rows, k] = rows[pair, k]
-        size = make_orthogonal(room, room.n_rows, room.n_rows)
-        if size > DEPENDENT:
-            room.triangle[room.n_rows, room.n_rows] = size
-            room.bounds[room.n_rows] = bounds[pair]
-            room.pairs[room.n_rows] = pair
-            room.n_rows += 1
+        if program.basis[i] < n_pairs and program.multipliers[i] > 0.0:
+            take_row(rows, bounds, program.basis[i], room)
+
+
+@kernel
+def complete_basis(room: NewtonRoom) -> None:
+    """Write an orthonormal basis of what the rows leave free behind theirs."""
     found = room.n_rows
     for k in range(6):
         if found == 6:
@@ -182,22 +193,30 @@ def factorise_reduced(room: NewtonRoom, shift: float) -> bool:
 
 
 @kernel
-def newton_step(program: ProgramRoom, room: NewtonRoom) -> bool:
-    """Write the step onto the limiting faces, ``onto``, and along them to the top, ``along``.
-
-    False: there is no top, and ``along`` is a direction in which the value grows, if any.
-    """
-    n = room.n_rows
+def write_onto(room: NewtonRoom) -> None:
+    """Write the shortest step onto the limiting faces."""
     for k in range(6):
         room.onto[k] = 0.0
-        room.along[k] = 0.0
-    for i in range(n):
+    for i in range(room.n_rows):
         part = room.bounds[i]
         for j in range(i):
             part -= room.triangle[i, j] * room.right_side[j]
         room.right_side[i] = part / room.triangle[i, i]
         for k in range(6):
             room.onto[k] += room.right_side[i] * room.basis[i, k]
+
+
+@kernel
+def newton_step(program: ProgramRoom, room: NewtonRoom) -> bool:
+    """Write the step onto the limiting faces, ``onto``, and along them to the top, ``along``.
+
+    False: there is no top, and ``along`` is a direction in which the value grows, if any.
+    """
+    n = room.n_rows
+    complete_basis(room)
+    write_onto(room)
+    for k in range(6):
+        room.along[k] = 0.0
     for i in range(n, 6):
         slope = 0.0
         for k in range(6):
@@ -234,18 +253,23 @@ def newton_step(program: ProgramRoom, room: NewtonRoom) -> bool:
 @kernel
 def join_steps(
     rows: FloatArray, bounds: FloatArray, n_pairs: int, is_top: bool, longest_step: float, room: NewtonRoom
-) -> None:
-    """Write the step that goes along the faces to the top, or as far as the other rows (and ``longest_step``) allow."""
+) -> int:
+    """Write the step that goes along the faces to the top, or as far as the other rows (and ``longest_step``) allow.
+
+    Returns the row that ends it before the first half of the way to the top, -1: none.
+    """
     share = 1.0 if is_top else longest_step / max(size_of_step(room.along), 1e-12 * longest_step)
+    whole, blocks = share, -1
     for pair in range(n_pairs):
         left, speed = bounds[pair], 0.0
         for k in range(6):
             left -= rows[pair, k] * room.onto[k]
             speed += rows[pair, k] * room.along[k]
-        if speed > 1e-12 * longest_step and left > 0.0 and left < share * speed and not is_taken(room, pair):
-            share = left / speed
+        if speed > 1e-12 * longest_step and max(left, 0.0) < share * speed and not is_taken(room, pair):
+            share, blocks = max(left, 0.0) / speed, pair
     for k in range(6):
         room.step[k] = room.onto[k] + share * room.along[k]
+    return blocks if share < 0.5 * whole else -1
 
 
 @kernel
