@@ -35,6 +35,7 @@ def play_document(play: Play, unit: LengthUnit) -> dict[str, Any]:
             "verdict": cage.verdict,
             "reason": cage.reason,
             "free_directions": list(cage.free_directions),
+            "leaves_at": _pose(cage.leaves_at, unit),
             "path": None if cage.path is None else [_step(step, unit) for step in cage.path],
         },
         "timing_s": {"analysis": play.analysis_s, "certificate": play.certificate_s},

@@ -13,21 +13,27 @@ import numpy as np
 
 from cagepose.kernels.geometry import Geometry, place_object
 from cagepose.kernels.jit import entry_kernel, kernel
-from cagepose.kernels.linear_program import OPTIMAL, extents, solve_program
-from cagepose.kernels.play import PITCH, SHIFT, YAW, Goal, promised, write_slope
+from cagepose.kernels.linear_program import FAILED, OPTIMAL, UNBOUNDED, solve_program
+from cagepose.kernels.play import PITCH, SHIFT, YAW, Goal, write_slope
+from cagepose.kernels.play_remainder import gap_left_out, spread, turning_left_out
 from cagepose.kernels.play_rows import PlayRoom, choose_faces, write_trust_region
+from cagepose.kernels.program_bound import dual_bound
 from cagepose.kernels.record import FloatArray, IntArray, Rows, empty_record
-from cagepose.kernels.vector import Vector, cross, dot, minus, norm, row, scaled, vector_from
+from cagepose.kernels.vector import Vector, cross, norm, row, scaled, vector_from
 
-CAGED, FREE, RAN_OFF, TOO_LARGE = range(4)
+CAGED, FREE, RAN_OFF, TOO_LARGE, UNSOLVED = range(5)
+KEPT, OFF_EDGE, THROUGH = range(3)
+"""What becomes of a row: its point may run off the face sideways, or come out behind the box."""
 ROUNDS = 60
 """Each moves the rows out once; some five are usual, and what has not closed by then grows without end."""
 SPARE = 1.02
 """Rows are moved out by this much more than they must be, so that the next round closes."""
+MOST_LEFT_OVER = 0.01
+"""Of an objective: a program whose multipliers miss it by more has no proof."""
 LARGEST_TURN = 1.0
 """Radians. The bounds hold up to pi, but are of no use beyond this."""
 ROUNDING = 1e-12
-"""Lengths of the scene. Added to each bound: a thousand times the rounding of a program."""
+"""Lengths of the scene, and radians. Added to each bound: a thousand times the rounding of one gap."""
 
 
 class Certificate:
@@ -36,16 +42,20 @@ class Certificate:
     Attributes
     ----------
     outcome
-        CAGED, FREE (it is unbounded), RAN_OFF (it is, without the rows of points that may run off their faces), or
-        TOO_LARGE: what linearising leaves out grows with the polytope without end.
+        CAGED, FREE (it is unbounded), RAN_OFF (it is, without the rows of points that may leave their faces),
+        TOO_LARGE: what linearising leaves out grows with the polytope without end, or UNSOLVED: a program failed.
     worst
-        The row that grew most; where the outcome is RAN_OFF, the one with the smallest gap of those given up.
+        The row that grew most; where the outcome is RAN_OFF, the one with the smallest gap of those given up; -1: none.
     n_rounds
         How often the rows were moved out.
     least, greatest
         Extents of the polytope, travel in lengths of the scene, turn in radians.
     travel, turn
         The largest magnitudes of each component.
+    reach
+        The largest of all magnitudes; infinite before it is known.
+    slack
+        Lengths of the scene: how deep a point may be without being inside.
     """
 
     outcome: int
@@ -55,6 +65,8 @@ class Certificate:
     greatest: Annotated[FloatArray, 6]
     travel: Annotated[FloatArray, 3]
     turn: Annotated[FloatArray, 3]
+    reach: float
+    slack: float
 
 
 class CertificateRoom(NamedTuple):
@@ -64,90 +76,127 @@ class CertificateRoom(NamedTuple):
     ----------
     gaps, moved_out
         Bounds of the rows at the start, and how far they are moved out, (n_points * n_boxes,), lengths of the scene.
-    is_kept
-        Whether a row counts.
+    fates
+        KEPT, or why a row no longer counts.
+    lost_at
+        The twist of the polytope at which such a row's point is farthest off its face, (n_points * n_boxes, 6); NaN:
+        none is known.
     certificate
         The result.
     """
 
     gaps: FloatArray
     moved_out: FloatArray
-    is_kept: IntArray
+    fates: IntArray
+    lost_at: FloatArray
     certificate: Certificate
 
 
 def empty_certificate_room(n_pairs: int) -> CertificateRoom:
     """Return room for a scene (plain Python)."""
-    return CertificateRoom(np.zeros(n_pairs), np.zeros(n_pairs), np.zeros(n_pairs, np.int64), empty_record(Certificate))
-
-
-@kernel
-def spread(a: Vector, size: Vector) -> float:
-    """Return the greatest a . w where |w_k| <= size_k."""
-    return abs(a[0]) * size[0] + abs(a[1]) * size[1] + abs(a[2]) * size[2]
-
-
-@kernel
-def turning_left_out(a: Vector, arm: Vector, turn: Vector) -> tuple[float, float]:
-    """Bound a . (exp(w) d - d - w x d) from above, and its magnitude, where |w_k| <= turn_k (7.8)."""
-    along = dot(a, arm)
-    across = minus(arm, scaled(a, along))
-    size = norm(turn)
-    mixed = 0.5 * spread(a, turn) * spread(across, turn)
-    square = 0.5 * size * size * abs(along)
-    cubic = size * size * size * norm(arm) / 6.0
-    return mixed + cubic + (square if along < 0.0 else 0.0), mixed + cubic + square
-
-
-@kernel
-def gap_left_out(normal: Vector, arm: Vector, travel: Vector, turn: Vector) -> tuple[float, float]:
-    """Bound what linearising leaves out of the part of d - t along a normal that turns with the object (7.8)."""
-    above, size = turning_left_out(normal, arm, turn)
-    n = (abs(normal[0]), abs(normal[1]), abs(normal[2]))
-    coupled = (
-        n[0] * (turn[1] * travel[2] + turn[2] * travel[1])
-        + n[1] * (turn[2] * travel[0] + turn[0] * travel[2])
-        + n[2] * (turn[0] * travel[1] + turn[1] * travel[0])
+    return CertificateRoom(
+        np.zeros(n_pairs),
+        np.zeros(n_pairs),
+        np.zeros(n_pairs, np.int64),
+        np.zeros((n_pairs, 6)),
+        empty_record(Certificate),
     )
-    coupled += 0.5 * dot(turn, turn) * norm(travel)
-    return above + coupled, size + coupled
 
 
 @kernel
-def reaches(room: PlayRoom, axis: Vector, moment: Vector, sign: float) -> float:
-    """Return the greatest sign * (axis . t + moment . w) over the polytope; inf: none."""
-    objective = room.program.objective
-    for k in range(3):
-        objective[k] = sign * axis[k]
-        objective[3 + k] = sign * moment[k]
+def bound_program(room: PlayRoom, certificate: Certificate) -> float:
+    """Bound ``room.program.objective`` over the polytope from above (7.12); inf: there is no bound."""
     room.program.basis[0] = -1
     if solve_program(room.rows, room.bounds, room.program) != OPTIMAL:
         return math.inf
-    return promised(room.program)
+    bound, left_over = dual_bound(room.rows, room.bounds, room.program)
+    return bound + (left_over * certificate.reach if left_over > 0.0 else 0.0)
 
 
 @kernel
-def stays_over_face(geometry: Geometry, pair: int, length_m: float, room: PlayRoom, certificate: Certificate) -> bool:
-    """Whether the point stays over its face, and cannot come out behind the opposite one, in the whole polytope (7.9).
+def bound_extents(room: PlayRoom, certificate: Certificate) -> int:
+    """Bound each unknown over the polytope (7.12); OPTIMAL, UNBOUNDED, or how a program failed."""
+    objective = room.program.objective
+    largest, most_left_over = 0.0, 0.0
+    for side in range(12):
+        k, sign = side % 6, (1.0 if side < 6 else -1.0)
+        for other in range(6):
+            objective[other] = sign if other == k else 0.0
+        room.program.basis[0] = -1
+        outcome = solve_program(room.rows, room.bounds, room.program)
+        if outcome != OPTIMAL:
+            return outcome
+        bound, left_over = dual_bound(room.rows, room.bounds, room.program)
+        largest, most_left_over = max(largest, bound), max(most_left_over, left_over)
+        if side < 6:
+            certificate.greatest[k] = bound
+        else:
+            certificate.least[k] = -bound
+    if most_left_over > MOST_LEFT_OVER:
+        return FAILED
+    certificate.reach = largest / (1.0 - most_left_over)
+    spare = most_left_over * certificate.reach
+    for k in range(6):
+        certificate.greatest[k] += spare
+        certificate.least[k] -= spare
+    for k in range(3):
+        certificate.travel[k] = max(-certificate.least[k], certificate.greatest[k])
+        certificate.turn[k] = max(-certificate.least[3 + k], certificate.greatest[3 + k])
+    return OPTIMAL
+
+
+@kernel
+def is_within(
+    room: PlayRoom,
+    certificate: Certificate,
+    axis: Vector,
+    moment: Vector,
+    here: float,
+    left: float,
+    lost_at: FloatArray,
+) -> bool:
+    """Whether |here - (axis . t + moment . w)| stays below ``left`` in the whole polytope; if not, write where.
 
     Asked of the extents first, then of the polytope itself.
     """
+    travel, turn = vector_from(certificate.travel), vector_from(certificate.turn)
+    if abs(here) + spread(axis, travel) + spread(moment, turn) < left:
+        return True
+    objective = room.program.objective
+    for side in range(2):
+        sign = 2.0 * side - 1.0
+        for k in range(3):
+            objective[k] = sign * axis[k]
+            objective[3 + k] = sign * moment[k]
+        if bound_program(room, certificate) - sign * here >= left:
+            for k in range(6):
+                lost_at[k] = room.program.x_near[k]
+            return False
+    return True
+
+
+@kernel
+def fate_of(geometry: Geometry, pair: int, length_m: float, room: PlayRoom, work: CertificateRoom) -> int:
+    """Return KEPT if the point stays over its face and above the opposite one in the whole polytope (7.9)."""
+    certificate = work.certificate
+    travel, turn = vector_from(certificate.travel), vector_from(certificate.turn)
     point, box, face = pair // geometry.n_own_boxes, pair % geometry.n_own_boxes, room.faces[pair]
-    travel, turn, arm = vector_from(certificate.travel), vector_from(certificate.turn), row(room.arms, pair)
+    arm = row(room.arms, pair)
+    _, left_out = gap_left_out(row(room.rows, pair), arm, travel, turn)
+    if work.moved_out[pair] + left_out + certificate.slack >= 2.0 * geometry.half_sizes[box, face % 3] / length_m:
+        for k in range(6):
+            work.lost_at[pair, k] = math.nan
+        return THROUGH
     for step in range(1, 3):
         k = (face + step) % 3
         columns = room.placement.box_rotations[box]
         axis = (columns[0, k], columns[1, k], columns[2, k])
-        moment = cross(arm, axis)
         here = room.placement.points_box[box, point, k] / length_m
         _, left_out = gap_left_out(axis, arm, travel, turn)
-        left = geometry.half_sizes[box, k] / length_m - left_out - ROUNDING
-        if abs(here) + spread(axis, travel) + spread(moment, turn) < left:
-            continue
-        # The point moves by -(axis . t + moment . w) as seen from the box.
-        if here + reaches(room, axis, moment, -1.0) >= left or reaches(room, axis, moment, 1.0) - here >= left:
-            return False
-    return True
+        left = geometry.half_sizes[box, k] / length_m - left_out - certificate.slack
+        if not is_within(room, certificate, axis, cross(arm, axis), here, left, work.lost_at[pair]):
+            return OFF_EDGE
+    return KEPT
 
 
 @kernel
@@ -158,21 +207,17 @@ def move_out(geometry: Geometry, length_m: float, room: PlayRoom, work: Certific
     closed = True
     most = 0.0
     for pair in range(len(work.gaps)):
-        if work.is_kept[pair] == 0:
+        if work.fates[pair] != KEPT:
             continue
-        above, size = gap_left_out(row(room.rows, pair), row(room.arms, pair), travel, turn)
-        face = room.faces[pair]
-        thickness = 2.0 * geometry.half_sizes[pair % geometry.n_own_boxes, face % 3] / length_m
-        if work.moved_out[pair] + size + ROUNDING >= thickness or not stays_over_face(
-            geometry, pair, length_m, room, certificate
-        ):
-            work.is_kept[pair] = 0
+        work.fates[pair] = fate_of(geometry, pair, length_m, room, work)
+        if work.fates[pair] != KEPT:
             closed = False
             continue
-        if above + ROUNDING >= work.moved_out[pair]:
+        above, _ = gap_left_out(row(room.rows, pair), row(room.arms, pair), travel, turn)
+        if above + certificate.slack >= work.moved_out[pair]:
             if above - work.moved_out[pair] > most:
                 most, certificate.worst = above - work.moved_out[pair], pair
-            work.moved_out[pair] = SPARE * above + 2.0 * ROUNDING
+            work.moved_out[pair] = SPARE * above + 2.0 * certificate.slack
             closed = False
     return closed
 
@@ -180,7 +225,7 @@ def move_out(geometry: Geometry, length_m: float, room: PlayRoom, work: Certific
 @kernel
 def write_bounds(room: PlayRoom, work: CertificateRoom) -> None:
     for pair in range(len(work.gaps)):
-        room.bounds[pair] = work.gaps[pair] + work.moved_out[pair] if work.is_kept[pair] == 1 else math.inf
+        room.bounds[pair] = work.gaps[pair] + work.moved_out[pair] if work.fates[pair] == KEPT else math.inf
 
 
 @kernel
@@ -188,7 +233,7 @@ def tightest_given_up(work: CertificateRoom) -> int:
     """Return the row with the smallest gap of those that no longer count; -1: all do."""
     tightest = -1
     for pair in range(len(work.gaps)):
-        if work.is_kept[pair] == 0 and (tightest < 0 or work.gaps[pair] < work.gaps[tightest]):
+        if work.fates[pair] != KEPT and (tightest < 0 or work.gaps[pair] < work.gaps[tightest]):
             tightest = pair
     return tightest
 
@@ -197,26 +242,19 @@ def tightest_given_up(work: CertificateRoom) -> int:
 def close_polytope(geometry: Geometry, length_m: float, room: PlayRoom, work: CertificateRoom) -> int:
     """Move the rows out until what linearising leaves out is less (7.7)."""
     certificate = work.certificate
-    n_dropped = 0
     for n_rounds in range(ROUNDS):
         certificate.n_rounds = n_rounds + 1
         write_bounds(room, work)
-        if extents(room.rows, room.bounds, room.program, certificate.least, certificate.greatest) != OPTIMAL:
-            return TOO_LARGE
-        for k in range(3):
-            certificate.travel[k] = max(-certificate.least[k], certificate.greatest[k])
-            certificate.turn[k] = max(-certificate.least[3 + k], certificate.greatest[3 + k])
-        size = norm(vector_from(certificate.travel)) + norm(vector_from(certificate.turn))
-        if size == math.inf:
+        outcome = bound_extents(room, certificate)
+        if outcome == UNBOUNDED:
             certificate.worst = tightest_given_up(work)
-            return FREE if n_dropped == 0 else RAN_OFF
+            return FREE if certificate.worst < 0 else RAN_OFF
+        if outcome != OPTIMAL:
+            return UNSOLVED
         if norm(vector_from(certificate.turn)) > LARGEST_TURN:
             return TOO_LARGE
         if move_out(geometry, length_m, room, work):
             return CAGED
-        n_dropped = 0
-        for pair in range(len(work.is_kept)):
-            n_dropped += 1 - work.is_kept[pair]
     return TOO_LARGE
 
 
@@ -235,10 +273,21 @@ def angle_bound(goal: Goal, certificate: Certificate) -> float:
     return math.atan2(sine, cosine)
 
 
+@kernel
+def shift_bound(goal: Goal, length_m: float, room: PlayRoom, certificate: Certificate) -> float:
+    """Bound how far a point goes in a direction, its sign applied, metres: by a program, and (7.8) for the rest."""
+    factor = write_slope(goal, (1.0, 0.0, 0.0, 0.0), length_m, room)
+    arm = scaled(vector_from(goal.start), 1.0 / length_m)
+    direction = scaled(vector_from(goal.direction), goal.sign)
+    above, _ = turning_left_out(direction, arm, vector_from(certificate.turn))
+    return length_m * (factor * bound_program(room, certificate) + above + ROUNDING)
+
+
 @entry_kernel
 def certify(
     geometry: Geometry,
     length_m: float,
+    touch_m: float,
     goals: Rows[Goal],
     bounds: FloatArray,
     room: PlayRoom,
@@ -250,6 +299,9 @@ def certify(
     ----------
     geometry, length_m, goals
         As in `cagepose.kernels.play.find_play`.
+    touch_m
+        A point that is no deeper than this only touches: the proof holds for poses that are so deep, too. It is far
+        more than the rounding of the scene.
     bounds
         Where caged: the greatest value that each goal could have, its sign applied, (n_goals,), radians or metres.
     room, work
@@ -261,22 +313,15 @@ def certify(
     for pair in range(len(work.gaps)):
         work.gaps[pair] = max(room.bounds[pair], 0.0)
         work.moved_out[pair] = 0.0
-        work.is_kept[pair] = 1
+        work.fates[pair] = KEPT
     certificate = work.certificate
     certificate.worst = -1
+    certificate.reach = math.inf
+    certificate.slack = touch_m / length_m + ROUNDING
     certificate.outcome = close_polytope(geometry, length_m, room, work)
-    if certificate.outcome != CAGED:
-        return
-    for i in range(len(goals)):
-        goal = goals[i]
-        if goal.kind != SHIFT:
-            bounds[i] = angle_bound(goal, certificate)
-            continue
-        factor = write_slope(goal, (1.0, 0.0, 0.0, 0.0), length_m, room)
-        room.program.basis[0] = -1
-        bounds[i] = math.inf
-        if solve_program(room.rows, room.bounds, room.program) == OPTIMAL:
-            arm = scaled(vector_from(goal.start), 1.0 / length_m)
-            direction = scaled(vector_from(goal.direction), goal.sign)
-            above, _ = turning_left_out(direction, arm, vector_from(certificate.turn))
-            bounds[i] = length_m * (factor * promised(room.program) + above + ROUNDING)
+    if certificate.outcome == CAGED:
+        for i in range(len(goals)):
+            if goals[i].kind == SHIFT:
+                bounds[i] = shift_bound(goals[i], length_m, room, certificate)
+            else:
+                bounds[i] = angle_bound(goals[i], certificate)

@@ -11,7 +11,7 @@ import numpy as np
 
 from cagepose.kernels.escape import N_RANDOM, Station, grow_tree
 from cagepose.kernels.geometry import empty_placement
-from cagepose.kernels.play_certificate import CAGED, FREE, RAN_OFF, Certificate
+from cagepose.kernels.play_certificate import CAGED, FREE, OFF_EDGE, RAN_OFF, UNSOLVED, CertificateRoom
 from cagepose.kernels.record import Rows, empty_rows
 from cagepose.kernels.tolerances import kernel_tolerances
 from cagepose.nouns.checks import as_vector
@@ -49,6 +49,9 @@ class CageVerdict:
         Freedoms that the linearised gaps leave without end.
     path
         The way out: each motion is free of collision, the last one meets nothing ahead; None: none found.
+    leaves_at
+        "not certified" because a point leaves its face: the object's pose in the world, as linearised, at which the
+        point is farthest off; None: any other verdict or reason.
     n_tried
         Motions that the search tried.
     """
@@ -57,40 +60,61 @@ class CageVerdict:
     reason: str
     free_directions: tuple[str, ...]
     path: tuple[PathStep, ...] | None
+    leaves_at: Pose | None
     n_tried: int
 
 
 def judge_cage(
     scene: Scene,
     frame: PlayFrame,
-    certificate: Certificate,
+    work: CertificateRoom,
     free_directions: tuple[str, ...],
     search_s: float,
     progress: Callable[[float], None] | None,
 ) -> CageVerdict:
     """Return the verdict; a search for a way out follows where there is no proof."""
-    if certificate.outcome == CAGED:
-        return CageVerdict("caged", "every pose on the way out puts a point inside the object", (), None, 0)
+    if work.certificate.outcome == CAGED:
+        return CageVerdict("caged", "every pose on the way out puts a point inside the object", (), None, None, 0)
     stations, n_stations, is_out, n_tried = search_way_out(scene, frame, search_s, progress)
     if is_out:
         path = _path(frame, stations, n_stations - 1)
-        return CageVerdict("escapes", f"a way out of {len(path)} motions was found", free_directions, path, n_tried)
-    return CageVerdict(
-        "not certified", _reason(scene, frame, certificate, free_directions), free_directions, None, n_tried
-    )
+        reason = f"a way out of {len(path)} motions was found"
+        return CageVerdict("escapes", reason, free_directions, path, None, n_tried)
+    reason, leaves_at = _reason(scene, frame, work, free_directions)
+    searched = "no way out was found" if n_tried else "no way out was looked for"
+    return CageVerdict("not certified", f"{reason}; {searched}", free_directions, None, leaves_at, n_tried)
 
 
-def _reason(scene: Scene, frame: PlayFrame, certificate: Certificate, free_directions: tuple[str, ...]) -> str:
+def _reason(
+    scene: Scene, frame: PlayFrame, work: CertificateRoom, free_directions: tuple[str, ...]
+) -> tuple[str, Pose | None]:
+    """Return why there is no proof, and the pose at which a point leaves its face."""
+    certificate = work.certificate
     if certificate.outcome == FREE:
-        return f"nothing limits {' '.join(free_directions)}; no way out was found"
-    point = scene.cage.names[certificate.worst // frame.geometry.n_own_boxes]
-    box = scene.object.boxes[certificate.worst % frame.geometry.n_own_boxes].name
+        return f"nothing limits {' '.join(free_directions)}", None
+    if certificate.outcome == UNSOLVED:
+        return "the gaps depend on each other up to rounding, and a linear program has no sure answer", None
+    turn_deg = np.degrees(np.linalg.norm(certificate.turn))
+    if certificate.worst < 0:
+        return f"the object turns by up to {turn_deg:.3g} deg, and the proof takes less than a radian", None
+    pair = int(certificate.worst)
+    point = scene.cage.names[pair // frame.geometry.n_own_boxes]
+    box = scene.object.boxes[pair % frame.geometry.n_own_boxes].name
     if certificate.outcome == RAN_OFF:
-        return f"{point} may run off its face of {box}, and without it the object is not held; no way out was found"
+        way = "may run off its face of" if work.fates[pair] == OFF_EDGE else "may come out behind its face of"
+        reason = f"{point} {way} {box}, and without it the object is not held"
+        twist = work.lost_at[pair]
+        if not np.isfinite(twist).all():
+            return reason, None
+        motion = frame.motion(twist)
+        yaw, pitch, roll = np.degrees(motion.euler_zyx).tolist()
+        return (
+            f"{reason}; it is farthest off, to first order, after roll {roll:.4g}, pitch {pitch:.4g}, yaw {yaw:.4g} deg"
+        ), frame.outward(*motion.as_tuples())
     return (
         f"the play is too large for the proof: what linearising the gap of {point} to {box} leaves out grows faster"
-        " than the room it is given; no way out was found"
-    )
+        f" than the room it is given (turns up to {turn_deg:.3g} deg)"
+    ), None
 
 
 def search_way_out(

@@ -158,7 +158,7 @@ def play(
     analysed = perf_counter()
     work = empty_certificate_room(len(room.faces))
     bounds = np.full(len(goals), np.inf)
-    certify(frame.geometry, frame.length_m, goals, bounds, room, work)
+    certify(frame.geometry, frame.length_m, scene.tolerances.touch * scene.size_m, goals, bounds, room, work)
     certified = perf_counter()
     writer = _Writer(scene, frame, goals, extremes, bounds, work)
     freedoms = {name: PlayRange(*writer.ends(place)) for place, name in enumerate(FREEDOMS)}
@@ -166,7 +166,7 @@ def play(
         scene,
         freedoms,
         tuple(PointPlay(*pair, *writer.ends(len(FREEDOMS) + place)) for place, pair in enumerate(pairs)),
-        judge_cage(scene, frame, work.certificate, _free_names(freedoms), search_s, progress),
+        judge_cage(scene, frame, work, _free_names(freedoms), search_s, progress),
         analysed - started,
         certified - analysed,
     )

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from cagepose.kernels.pose import Quaternion
 from cagepose.kernels.vector import Vector
+from cagepose.nouns.checks import FloatArray
 from cagepose.nouns.pose import Pose
 from cagepose.nouns.scene import Scene
 
@@ -39,6 +42,13 @@ class PlayFrame:
     def outward(self, position: Vector, quaternion: Quaternion) -> Pose:
         """Return the object's pose in the world after a motion in this frame."""
         return self._pose_world_frame @ Pose(position, quaternion) @ self.pose_frame_object
+
+    def motion(self, twist: FloatArray) -> Pose:
+        """Return the motion after a twist (t / length_m, w), (6,), as the theory writes it: R = exp(w)."""
+        spin = np.asarray(twist[3:], dtype=np.float64)
+        angle = float(np.linalg.norm(spin))
+        part = math.sin(0.5 * angle) / angle if angle > 0.0 else 0.5
+        return Pose(self.length_m * twist[:3], np.array([math.cos(0.5 * angle), *(part * spin)]))
 
     def to_world(self, vector: Vector) -> np.ndarray:
         """Turn a vector of this frame into the world's axes."""
