@@ -13,10 +13,8 @@ from typing import Annotated
 from cagepose.kernels.geometry import Geometry, place_object
 from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.linear_program import OPTIMAL, UNBOUNDED, ProgramRoom, come_near, solve_program
+from cagepose.kernels.play_goal import SHIFT, Goal, value_at, write_curvature, write_slope
 from cagepose.kernels.play_newton import (
-    add_gap,
-    add_product,
-    add_turning,
     find_prices,
     join_steps,
     newton_step,
@@ -36,12 +34,10 @@ from cagepose.kernels.play_rows import (
     write_rows,
     write_trust_region,
 )
-from cagepose.kernels.pose import Quaternion, euler_zyx_from_quaternion, quaternion_about, quaternion_product, rotated
+from cagepose.kernels.pose import Quaternion, euler_zyx_from_quaternion, quaternion_about, quaternion_product
 from cagepose.kernels.record import FloatArray, IntArray, Rows
-from cagepose.kernels.vector import Vector, cross, norm, row, scaled, vector_from
+from cagepose.kernels.vector import Vector, norm, scaled
 
-YAW, PITCH, ROLL, SHIFT = range(4)
-"""What is asked for: an angle (in the order of `euler_zyx_from_quaternion`), or how far a point goes in a direction."""
 REACHED, OPEN, NOT_FOUND = range(3)
 FIRST_RADIUS = 0.3
 """Radians, and lengths of the scene: the linear rows say little beyond."""
@@ -59,23 +55,6 @@ FARTHEST = 20.0
 """Lengths of the scene. Whoever gets so far is out."""
 RESTORING = 3
 """Newton steps at the end that bring the limiting points onto their faces."""
-
-
-class Goal:
-    """What is to be as great as can be; a record.
-
-    Attributes
-    ----------
-    kind, sign
-        YAW, PITCH, ROLL or SHIFT; +1 or -1: its least value is asked for.
-    start, direction
-        For SHIFT: the point of the object at the start, in the frame of the motion, and a unit vector.
-    """
-
-    kind: int
-    sign: float
-    start: Annotated[FloatArray, 3]
-    direction: Annotated[FloatArray, 3]
 
 
 class Extreme:
@@ -110,49 +89,6 @@ class Extreme:
     faces: Annotated[IntArray, 6]
     n_limits: int
     n_programs: int
-
-
-@kernel
-def value_at(goal: Goal, position: Vector, quaternion: Quaternion) -> float:
-    """Return the goal's value, its sign applied; radians or metres."""
-    if goal.kind == SHIFT:
-        turned = rotated(quaternion, vector_from(goal.start))
-        shift = 0.0
-        for k in range(3):
-            shift += goal.direction[k] * (turned[k] - goal.start[k] + position[k])
-        return goal.sign * shift
-    angle: float = goal.sign * euler_zyx_from_quaternion(quaternion)[goal.kind]
-    return angle
-
-
-@kernel
-def write_slope(goal: Goal, quaternion: Quaternion, length_m: float, room: PlayRoom) -> float:
-    """Write the objective: the rate of the value (in radians or lengths of the scene) with the twist (7.4), its largest
-    coefficient 1; return the factor taken out.
-    """
-    objective = room.program.objective
-    if goal.kind == SHIFT:
-        moment = cross(rotated(quaternion, vector_from(goal.start)), vector_from(goal.direction))
-        for k in range(3):
-            objective[k] = goal.sign * goal.direction[k]
-            objective[3 + k] = goal.sign * moment[k] / length_m
-    else:
-        yaw, pitch, _ = euler_zyx_from_quaternion(quaternion)
-        cos_yaw, sin_yaw = math.cos(yaw), math.sin(yaw)
-        slope = (cos_yaw * math.tan(pitch), sin_yaw * math.tan(pitch), 1.0)
-        if goal.kind == PITCH:
-            slope = (-sin_yaw, cos_yaw, 0.0)
-        elif goal.kind == ROLL:
-            slope = (cos_yaw / math.cos(pitch), sin_yaw / math.cos(pitch), 0.0)
-        for k in range(3):
-            objective[k] = 0.0
-            objective[3 + k] = goal.sign * slope[k]
-    largest = 0.0
-    for k in range(6):
-        largest = max(largest, abs(objective[k]))
-    for k in range(6):
-        objective[k] /= largest
-    return largest
 
 
 @kernel
@@ -255,35 +191,6 @@ def note_extreme(
         extreme.quaternion[k] = quaternion[k]
     factor = write_slope(goal, quaternion, length_m, room)
     note_limits(room, factor if goal.kind == SHIFT else factor / length_m, extreme)
-
-
-@kernel
-def write_curvature(goal: Goal, quaternion: Quaternion, length_m: float, factor: float, room: PlayRoom) -> None:
-    """Write the second derivatives of the value, with the limiting gaps at their prices (7.6)."""
-    newton = room.newton
-    for i in range(6):
-        for k in range(6):
-            newton.curvature[i, k] = 0.0
-    for i in range(newton.n_rows):
-        pair = newton.pairs[i]
-        add_gap(newton.curvature, row(room.rows, pair), row(room.arms, pair), newton.prices[i])
-    scale = goal.sign / factor
-    if goal.kind == SHIFT:
-        arm = scaled(rotated(quaternion, vector_from(goal.start)), 1.0 / length_m)
-        add_turning(newton.curvature, vector_from(goal.direction), arm, scale)
-        return
-    yaw, pitch, _ = euler_zyx_from_quaternion(quaternion)
-    tangent, cosine = math.tan(pitch), math.cos(pitch)
-    across, along = (-math.sin(yaw), math.cos(yaw), 0.0), (math.cos(yaw), math.sin(yaw), 0.0)
-    yaw_rate = (along[0] * tangent, along[1] * tangent, 1.0)
-    if goal.kind == YAW:
-        add_product(newton.curvature, across, along, scale / cosine**2)
-        add_product(newton.curvature, across, yaw_rate, scale * tangent)
-    elif goal.kind == PITCH:
-        add_product(newton.curvature, along, yaw_rate, -scale)
-    else:
-        add_product(newton.curvature, across, yaw_rate, scale / cosine)
-        add_product(newton.curvature, along, across, scale * tangent / cosine)
 
 
 @kernel

@@ -14,7 +14,7 @@ import numpy as np
 from cagepose.kernels.geometry import Geometry, place_object
 from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.linear_program import FAILED, OPTIMAL, UNBOUNDED, solve_program
-from cagepose.kernels.play import PITCH, SHIFT, YAW, Goal, write_slope
+from cagepose.kernels.play_goal import PITCH, SHIFT, YAW, Goal, write_slope
 from cagepose.kernels.play_remainder import gap_left_out, spread, turning_left_out
 from cagepose.kernels.play_rows import PlayRoom, choose_faces, write_trust_region
 from cagepose.kernels.program_bound import dual_bound
@@ -275,11 +275,13 @@ def angle_bound(goal: Goal, certificate: Certificate) -> float:
 
 @kernel
 def shift_bound(goal: Goal, length_m: float, room: PlayRoom, certificate: Certificate) -> float:
-    """Bound how far a point goes in a direction, its sign applied, metres: by a program, and (7.8) for the rest."""
+    """Bound how far points go, its sign applied, metres: by a program, and by (7.8) for what it leaves out."""
     factor = write_slope(goal, (1.0, 0.0, 0.0, 0.0), length_m, room)
-    arm = scaled(vector_from(goal.start), 1.0 / length_m)
-    direction = scaled(vector_from(goal.direction), goal.sign)
-    above, _ = turning_left_out(direction, arm, vector_from(certificate.turn))
+    above = 0.0
+    for i in range(2):
+        direction = scaled(row(goal.directions, i), goal.sign)
+        arm = scaled(row(goal.starts, i), 1.0 / length_m)
+        above += turning_left_out(direction, arm, vector_from(certificate.turn))[0]
     return length_m * (factor * bound_program(room, certificate) + above + ROUNDING)
 
 

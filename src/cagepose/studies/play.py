@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cagepose.kernels.jit import is_compiled
-from cagepose.kernels.play import OPEN, PITCH, REACHED, ROLL, SHIFT, YAW, Extreme, Goal, find_play
+from cagepose.kernels.play import OPEN, REACHED, Extreme, find_play
 from cagepose.kernels.play_certificate import CAGED, CertificateRoom, certify, empty_certificate_room
+from cagepose.kernels.play_goal import PITCH, ROLL, SHIFT, YAW, Goal
 from cagepose.kernels.play_rows import empty_play_room
 from cagepose.kernels.record import Rows, empty_rows
 from cagepose.nouns.checks import FloatArray, finite_array, unit_vector
@@ -191,7 +192,7 @@ def _goals(frame: PlayFrame, pairs: Sequence[tuple[FloatArray, FloatArray]]) -> 
             goal.kind = _ANGLES[FREEDOMS[index]]
             continue
         goal.kind = SHIFT
-        goal.start[:], goal.direction[:] = shifts[index if index < 3 else index - 3]
+        goal.starts[0], goal.directions[0] = shifts[index if index < 3 else index - 3]
     return goals
 
 
