@@ -38,7 +38,7 @@ def play_command(
     set_values: SetOption = (),
     json: Annotated[bool, Switch, Parameter(help="Print one JSON document instead of the tables.")] = False,
 ) -> int:
-    """Print the range of each freedom and of the points, what limits it, and whether the object is caged."""
+    """Print the range of each freedom and point, what limits it, whether the object is caged, where loads leave it."""
     from cagepose.errors import SceneFileError
     from cagepose.files.scene_file import read_scene_file
     from cagepose.files.units import to_metres
@@ -63,6 +63,7 @@ def play_command(
 
     from cagepose.cli.first_run import announce_kernels
     from cagepose.studies.play import play, play_is_compiled
+    from cagepose.studies.play_rest import play_rests
 
     announce_kernels(play_is_compiled())
     found = play(
@@ -71,16 +72,17 @@ def play_command(
         along,
         progress=_show_search if sys.stderr.isatty() else None,
     )
+    rests = play_rests(scene_file.scene)
     if json:
         from json import dumps
 
         from cagepose.cli.play_document import play_document
 
-        sys.stdout.write(dumps(play_document(found, scene_file.length_unit), indent=1, allow_nan=False) + "\n")
+        sys.stdout.write(dumps(play_document(found, rests, scene_file.length_unit), indent=1, allow_nan=False) + "\n")
         return 0
     from cagepose.cli.play_report import print_play
 
-    print_play(found, scene_file.length_unit)
+    print_play(found, rests, scene_file.length_unit)
     return 0
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 from cagepose.files.document import FORMAT_VERSION
@@ -11,11 +12,12 @@ from cagepose.nouns.checks import FloatArray
 from cagepose.nouns.pose import Pose
 from cagepose.studies.cage_verdict import PathStep
 from cagepose.studies.play import Play, PlayEnd, PlayRange, PointPlay
+from cagepose.studies.play_rest import PlayRest, PressedPoint
 
 LENGTHS = ("x", "y", "z")
 
 
-def play_document(play: Play, unit: LengthUnit) -> dict[str, Any]:
+def play_document(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> dict[str, Any]:
     """Return the document: only dict, list, str, int, finite float, bool and None."""
     cage = play.cage
     return {
@@ -38,20 +40,23 @@ def play_document(play: Play, unit: LengthUnit) -> dict[str, Any]:
             "leaves_at": _pose(cage.leaves_at, unit),
             "path": None if cage.path is None else [_step(step, unit) for step in cage.path],
         },
+        "rests": [_rest(rest, unit) for rest in rests],
         "timing_s": {"analysis": play.analysis_s, "certificate": play.certificate_s},
     }
 
 
 def _ends(ends: PlayRange | PointPlay, is_length: bool, unit: LengthUnit) -> dict[str, Any]:
-    def shown(value: float | None) -> float | None:
-        if value is None:
-            return None
-        return (float(from_metres(value, unit)) if is_length else math.degrees(value)) + 0.0
-
-    certified = [shown(ends.low.certified), shown(ends.high.certified)]
+    linear, exact, certified = (
+        [_shown(end, is_length, unit) for end in pair]
+        for pair in (
+            (ends.low.linear, ends.high.linear),
+            (ends.low.exact, ends.high.exact),
+            (ends.low.certified, ends.high.certified),
+        )
+    )
     return {
-        "linear": [shown(ends.low.linear), shown(ends.high.linear)],
-        "exact": [shown(ends.low.exact), shown(ends.high.exact)],
+        "linear": linear,
+        "exact": exact,
         "certified": None if None in certified else certified,
         "poses": [_pose(ends.low.pose_world_object, unit), _pose(ends.high.pose_world_object, unit)],
         "limits": [_limits(ends.low, is_length, unit), _limits(ends.high, is_length, unit)],
@@ -79,6 +84,30 @@ def _pose(pose: Pose | None, unit: LengthUnit) -> dict[str, Any] | None:
         "euler_zyx_deg": [math.degrees(angle) + 0.0 for angle in pose.euler_zyx],
         "quat_wxyz": _numbers(pose.quaternion_wxyz),
     }
+
+
+def _rest(rest: PlayRest, unit: LengthUnit) -> dict[str, Any]:
+    return {
+        "phase": rest.phase,
+        "linear_pose": _pose(rest.linear_pose_world_object, unit),
+        "exact_pose": _pose(rest.pose_world_object, unit),
+        "forces": _forces(rest.forces),
+        "exact_forces": _forces(rest.exact_forces),
+        "undetermined": {
+            freedom.name: [_shown(end, freedom.name in LENGTHS, unit) for end in (freedom.low, freedom.high)]
+            for freedom in rest.undetermined
+        },
+    }
+
+
+def _forces(forces: tuple[PressedPoint, ...]) -> list[dict[str, Any]]:
+    return [{"point": force.point, "box": force.box, "force_normal": force.force_n} for force in forces]
+
+
+def _shown(value: float | None, is_length: bool, unit: LengthUnit) -> float | None:
+    if value is None:
+        return None
+    return (float(from_metres(value, unit)) if is_length else math.degrees(value)) + 0.0
 
 
 def _step(step: PathStep, unit: LengthUnit) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
@@ -12,12 +13,14 @@ from cagepose.cli.console import print_all
 from cagepose.cli.play_document import LENGTHS
 from cagepose.cli.report import short
 from cagepose.files.units import LengthUnit, from_metres
+from cagepose.nouns.checks import FloatArray
 from cagepose.studies.play import Play, PlayEnd
+from cagepose.studies.play_rest import PlayRest
 
 STYLES = {"caged": "bold green", "not certified": "bold yellow", "escapes": "bold red"}
 
 
-def print_play(play: Play, unit: LengthUnit) -> None:
+def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
     """Print to standard output, lengths in ``unit``, angles in degrees."""
     table = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
     for heading in ("", "unit", "linear", "exact", "certified within"):
@@ -46,8 +49,31 @@ def print_play(play: Play, unit: LengthUnit) -> None:
     times = f"analysis {play.analysis_s * 1e3:.3g} ms, certificate {play.certificate_s * 1e3:.3g} ms"
     print_all(Text(f"{play.scene.name}: play from the start pose, in the cage's frame"), "", table, "", why, "")
     print_all(verdict, Text(times))
+    if cage.leaves_at is not None:
+        print_all(Text(f"it leaves its face with the object's origin at ({_triple(cage.leaves_at.position_m, unit)})"))
+    for rest in rests:
+        print_all(_rest(rest, unit))
     if cage.free_directions:
         print_all(Text(f"free directions: {' '.join(cage.free_directions)}"))
+
+
+def _rest(rest: PlayRest, unit: LengthUnit) -> Text:
+    """One line: where the load leaves the object, by which points, and what it leaves open."""
+    line = Text(f"{rest.phase} presses it ")
+    pose = rest.pose_world_object or rest.linear_pose_world_object
+    if pose is None:
+        return line.append("out: nothing stops the load")
+    angles = ", ".join(short(math.degrees(angle), 4, 1e-9) for angle in pose.euler_zyx)
+    forces = ", ".join(f"{force.point} {force.force_n:.4g}" for force in rest.exact_forces or rest.forces)
+    line.append(f"to ({_triple(pose.position_m, unit)}), yaw, pitch, roll ({angles}) deg, without friction;")
+    line.append(f" forces{' [N]' if rest.in_newtons else ''}: {forces}")
+    if rest.undetermined:
+        line.append(f"; free along {' '.join(freedom.name for freedom in rest.undetermined)}")
+    return line
+
+
+def _triple(lengths_m: FloatArray, unit: LengthUnit) -> str:
+    return ", ".join(short(value, 6, 1e-12) for value in from_metres(lengths_m, unit).tolist())
 
 
 def _point_name(place: int, play: Play, unit: LengthUnit) -> str:

@@ -36,7 +36,9 @@ class NewtonRoom:
     curvature
         Second derivatives of the value with the gaps at their prices (7.6).
     reduced, factor, right_side
-        The system along what is left free, and its Cholesky factor.
+        The system along what is left free, its lower half, and its Cholesky factor.
+    bent
+        A row of the basis times the curvature.
     onto, along, step
         The step onto the limiting faces, along them, and both.
     """
@@ -51,6 +53,7 @@ class NewtonRoom:
     reduced: Annotated[FloatArray, 6, 6]
     factor: Annotated[FloatArray, 6, 6]
     right_side: Annotated[FloatArray, 6]
+    bent: Annotated[FloatArray, 6]
     onto: Annotated[FloatArray, 6]
     along: Annotated[FloatArray, 6]
     step: Annotated[FloatArray, 6]
@@ -162,14 +165,17 @@ def add_gap(curvature: FloatArray, normal: Vector, arm: Vector, price: float) ->
 
 @kernel
 def reduce_curvature(room: NewtonRoom) -> float:
-    """Write minus the curvature along what is left free; return its largest entry."""
+    """Write minus the curvature along what is left free, its lower half; return its largest entry."""
     largest = 0.0
     for i in range(room.n_rows, 6):
-        for other in range(room.n_rows, 6):
-            total = 0.0
+        for j in range(6):
+            room.bent[j] = 0.0
             for k in range(6):
-                for j in range(6):
-                    total -= room.basis[i, k] * room.curvature[k, j] * room.basis[other, j]
+                room.bent[j] += room.basis[i, k] * room.curvature[k, j]
+        for other in range(room.n_rows, i + 1):
+            total = 0.0
+            for j in range(6):
+                total -= room.bent[j] * room.basis[other, j]
             room.reduced[i, other] = total
             largest = max(largest, abs(total))
     return largest

@@ -9,7 +9,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cagepose.kernels.jit import is_compiled
+from cagepose.kernels.jit import is_compiled, is_loaded
 from cagepose.kernels.play import OPEN, REACHED, Extreme, find_play
 from cagepose.kernels.play_certificate import CAGED, CertificateRoom, certify, empty_certificate_room
 from cagepose.kernels.play_goal import PITCH, ROLL, SHIFT, YAW, Goal
@@ -19,9 +19,8 @@ from cagepose.nouns.checks import FloatArray, finite_array, unit_vector
 from cagepose.nouns.pose import Pose
 from cagepose.nouns.scene import Scene
 from cagepose.studies.cage_verdict import CageVerdict, judge_cage
-from cagepose.studies.play_frame import PlayFrame
+from cagepose.studies.play_frame import FREEDOMS, PlayFrame
 
-FREEDOMS = ("x", "y", "z", "roll", "pitch", "yaw")
 _ANGLES = {"roll": ROLL, "pitch": PITCH, "yaw": YAW}
 SEARCH_S = 2.0
 """Seconds that the search for a way out may take, if the object is not proven to be caged."""
@@ -154,12 +153,16 @@ def play(
     goals = _goals(frame, pairs)
     extremes = empty_rows(Extreme, len(goals))
     room = empty_play_room(frame.geometry)
+    work = empty_certificate_room(len(room.faces))
+    bounds = np.full(len(goals), np.inf)
+    touch_m = scene.tolerances.touch * scene.size_m
+    if not (is_loaded(find_play) and is_loaded(certify)):  # so that the times below are those of the analysis alone
+        find_play(frame.geometry, frame.length_m, empty_rows(Goal, 0), empty_rows(Extreme, 0), room)
+        certify(frame.geometry, frame.length_m, touch_m, empty_rows(Goal, 0), bounds, room, work)
     started = perf_counter()
     find_play(frame.geometry, frame.length_m, goals, extremes, room)
     analysed = perf_counter()
-    work = empty_certificate_room(len(room.faces))
-    bounds = np.full(len(goals), np.inf)
-    certify(frame.geometry, frame.length_m, scene.tolerances.touch * scene.size_m, goals, bounds, room, work)
+    certify(frame.geometry, frame.length_m, touch_m, goals, bounds, room, work)
     certified = perf_counter()
     writer = _Writer(scene, frame, goals, extremes, bounds, work)
     freedoms = {name: PlayRange(*writer.ends(place)) for place, name in enumerate(FREEDOMS)}

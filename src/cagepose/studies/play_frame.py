@@ -12,6 +12,9 @@ from cagepose.nouns.checks import FloatArray
 from cagepose.nouns.pose import Pose
 from cagepose.nouns.scene import Scene
 
+FREEDOMS = ("x", "y", "z", "roll", "pitch", "yaw")
+"""Displacement of the object's origin and ZYX angles, both from the start, in the cage's axes."""
+
 
 class PlayFrame:
     """A scene as the kernels of play take it.
@@ -53,6 +56,11 @@ class PlayFrame:
     def to_world(self, vector: Vector) -> np.ndarray:
         """Turn a vector of this frame into the world's axes."""
         turned: np.ndarray = self._pose_world_frame.rotation @ np.array(vector)
+        return turned
+
+    def from_world(self, vectors: FloatArray) -> FloatArray:
+        """Turn vectors of the world, (n, 3), into this frame's axes."""
+        turned: FloatArray = vectors @ self._pose_world_frame.rotation
         return turned
 
     def point_to_world(self, point: Vector) -> np.ndarray:
