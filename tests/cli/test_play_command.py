@@ -70,3 +70,23 @@ def test_bad_flags_end_with_2(command: Command, flags: list[str], message: str) 
     assert answer.code == 2
     assert answer.err.startswith(message)
     assert answer.out == ""
+
+
+@pytest.mark.parametrize("kind", ["play", "extremes"])
+def test_the_command_draws_the_play_of_a_scene_and_of_a_saved_run(command: Command, tmp_path: Path, kind: str) -> None:
+    saved, picture = tmp_path / "run.json", tmp_path / "play.svg"
+    assert command("run", RAIL, "--out", str(saved)).code == 0
+    for source in (RAIL, str(saved)):
+        answer = command("plot", source, "--kind", kind, "--out", str(picture))
+        assert answer.code == 0
+        assert "caged" in answer.out
+        assert picture.read_text().startswith("<?xml")
+
+
+def test_points_without_play_and_points_that_are_none_are_refused(command: Command, tmp_path: Path) -> None:
+    answer = command("plot", RAIL, "--at=1,2", "--out", str(tmp_path / "a.png"))
+    assert answer.code == 2
+    assert answer.err.splitlines() == [
+        "--at: says whose play is drawn; give --kind play with it",
+        "--at 1,2: is not three numbers; write them as x,y,z without blanks",
+    ]

@@ -3,28 +3,18 @@
 from __future__ import annotations
 
 import sys
-from math import isfinite
 from typing import Annotated
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import SceneArgument, SetOption, Switch
+from cagepose.cli.options import AtOption, SceneArgument, SetOption, Switch
 
 
 def play_command(
     scene: SceneArgument,
     /,
     *,
-    at: Annotated[
-        tuple[str, ...],
-        Parameter(
-            help="A point of the object, x,y,z in its frame and the scene's unit, such as --at=-600,20,-60.7; may be"
-            " given several times.",
-            negative=(),
-            show_default=False,
-            allow_leading_hyphen=True,
-        ),
-    ] = (),
+    at: AtOption = (),
     direction: Annotated[
         tuple[str, ...],
         Parameter(
@@ -39,13 +29,14 @@ def play_command(
     json: Annotated[bool, Switch, Parameter(help="Print one JSON document instead of the tables.")] = False,
 ) -> int:
     """Print the range of each freedom and point, what limits it, whether the object is caged, where loads leave it."""
+    from cagepose.cli.triples import read_triple
     from cagepose.errors import SceneFileError
     from cagepose.files.scene_file import read_scene_file
     from cagepose.files.units import to_metres
 
     problems: list[str] = []
-    points = [_triple("--at", text, problems) for text in at]
-    along = [_triple("--direction", text, problems) for text in direction]
+    points = [read_triple("--at", text, problems) for text in at]
+    along = [read_triple("--direction", text, problems) for text in direction]
     problems += [
         f"--direction {text}: has no direction; give a vector of any other length"
         for text, found in zip(direction, along, strict=True)
@@ -72,6 +63,8 @@ def play_command(
         along,
         progress=_show_search if sys.stderr.isatty() else None,
     )
+    if found.cage.n_tried and sys.stderr.isatty():
+        sys.stderr.write("\n")
     rests = play_rests(scene_file.scene)
     if json:
         from json import dumps
@@ -86,21 +79,7 @@ def play_command(
     return 0
 
 
-def _triple(flag: str, text: str, problems: list[str]) -> tuple[float, ...]:
-    """Return the three numbers of a flag; what is wrong with them goes to ``problems``."""
-    from cagepose.errors import printable
-
-    try:
-        numbers = tuple(float(part) for part in text.split(","))
-    except ValueError:
-        numbers = ()
-    if len(numbers) != 3 or not all(isfinite(number) for number in numbers):
-        problems.append(printable(f"{flag} {text}: is not three numbers; write them as x,y,z without blanks"))
-        return (1.0, 0.0, 0.0)
-    return numbers
-
-
 def _show_search(share: float) -> None:
     """Tell on the terminal how much of the search's time has passed."""
-    sys.stderr.write(f"\rsearching for a way out: {share:4.0%}" + ("\n" if share >= 1.0 else ""))
+    sys.stderr.write(f"\rsearching for a way out: {share:4.0%}")
     sys.stderr.flush()
