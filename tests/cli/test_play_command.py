@@ -34,7 +34,7 @@ def test_the_document_of_the_rail(command: Command) -> None:
     assert document["cage"]["path"] is None
     (first, *_) = document["freedoms"]["z"]["limits"][1]
     assert first["gap"] == pytest.approx(0.5)
-    assert 0 < first["gain"] <= 1
+    assert 0 < first["closing"] <= 1
 
 
 def test_a_scene_that_is_no_cage_gives_the_path_out_and_ends_with_0(command: Command, sample: str) -> None:
@@ -53,6 +53,28 @@ def test_the_tables_name_what_limits_each_end(command: Command) -> None:
     assert "cage: caged" in out
     assert "greatest x" in out
     assert "C13 on rack" in out
+
+
+def test_closing_and_opening_each_gap_of_the_rails_pitch_moves_it_as_the_document_says(command: Command) -> None:
+    """Each roller is moved by 0.1 um: four limit the pitch, so closing any one tells, opening one alone does not."""
+    pitch = json.loads(command("play", RAIL, "--json").out)["freedoms"]["pitch"]
+    limits = pitch["limits"][1]
+    assert {limit["point"] for limit in limits} == {"C2", "C4", "C5", "C7"}
+    for limit in limits:
+        index = int(limit["point"].removeprefix("C")) - 1
+        height = -1.0 if index % 2 == 0 else 1.0
+        for by, worth in ((-1e-4, limit["closing"]), (1e-4, limit["opening"])):
+            moved = command("play", RAIL, f"--set=cage.points[{index}][2]={height * (1 + by)!r}", "--json")
+            end = json.loads(moved.out)["freedoms"]["pitch"]["exact"][1]
+            assert (end - pitch["exact"][1]) / by == pytest.approx(worth, abs=1e-3)
+
+
+def test_the_rests_under_the_loads_are_in_the_document_and_the_report(command: Command) -> None:
+    rests = json.loads(command("play", RAIL, "--json").out)["rests"]
+    assert [rest["phase"] for rest in rests] == ["weight", "push"]
+    assert list(rests[0]["undetermined"]) == ["y", "yaw"]
+    assert rests[1]["exact_pose"]["euler_zyx_deg"] == pytest.approx([-0.3322, -0.2131, 0.0012], abs=5e-5)
+    assert "push presses it to" in command("play", RAIL).out
 
 
 @pytest.mark.parametrize(

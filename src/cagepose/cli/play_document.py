@@ -64,16 +64,24 @@ def _ends(ends: PlayRange | PointPlay, is_length: bool, unit: LengthUnit) -> dic
 
 
 def _limits(end: PlayEnd, is_length: bool, unit: LengthUnit) -> list[dict[str, Any]]:
-    """Gains are lengths per length, or degrees per length."""
+    """What each unit of gap is worth when it is closed and when it is opened."""
     return [
         {
             "point": clearance.point,
             "box": clearance.box,
             "gap": float(from_metres(clearance.gap_m, unit)),
-            "gain": clearance.gain if is_length else math.degrees(clearance.gain) / float(from_metres(1.0, unit)),
+            "closing": _gain(clearance.closing, is_length, unit),
+            "opening": _gain(clearance.opening, is_length, unit),
         }
         for clearance in end.clearances
     ]
+
+
+def _gain(gain: float, is_length: bool, unit: LengthUnit) -> float | None:
+    """Lengths per length, or degrees per length; None: it is without end (the gap cannot be closed)."""
+    if not math.isfinite(gain):
+        return None
+    return gain if is_length else math.degrees(gain) / float(from_metres(1.0, unit))
 
 
 def _pose(pose: Pose | None, unit: LengthUnit) -> dict[str, Any] | None:

@@ -17,6 +17,8 @@ from cagepose.nouns.checks import FloatArray
 from cagepose.studies.play import Play, PlayEnd
 from cagepose.studies.play_rest import PlayRest
 
+MOST_CLEARANCES = 4
+"""Of those that limit an end, so many are printed; the document has all."""
 STYLES = {"caged": "bold green", "not certified": "bold yellow", "escapes": "bold red"}
 
 
@@ -26,7 +28,7 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
     for heading in ("", "unit", "linear", "exact", "certified within"):
         table.add_column(heading, overflow="fold")
     why = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
-    for heading in ("end", "limited by", "change for each " + unit + " of gap"):
+    for heading in ("end", "limited by", f"less per {unit} closed", f"more per {unit} opened"):
         why.add_column(heading, overflow="fold")
     rows = [(name, name in LENGTHS, ends.low, ends.high) for name, ends in play.freedoms.items()]
     rows += [(_point_name(place, play, unit), True, point.low, point.high) for place, point in enumerate(play.points)]
@@ -41,7 +43,7 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
         table.add_row(*(Text(cell) for cell in (name, unit_name, *ranges, bound if is_certified else "-")))
         for sign, end in (("least", low), ("greatest", high)):
             if end.clearances:
-                why.add_row(Text(f"{sign} {name}"), Text(_names(end)), Text(_gains(end, is_length, unit)))
+                why.add_row(Text(f"{sign} {name}"), *(Text(cell) for cell in _limits(end, is_length, unit)))
     cage = play.cage
     verdict = Text("cage: ")
     verdict.append(cage.verdict, style=STYLES[cage.verdict])
@@ -90,10 +92,12 @@ def _value(value: float | None, is_length: bool, unit: LengthUnit) -> str:
     return short(shown, 6, 1e-12)
 
 
-def _names(end: PlayEnd) -> str:
-    return ", ".join(f"{clearance.point} on {clearance.box}" for clearance in end.clearances)
-
-
-def _gains(end: PlayEnd, is_length: bool, unit: LengthUnit) -> str:
+def _limits(end: PlayEnd, is_length: bool, unit: LengthUnit) -> tuple[str, str, str]:
+    """Return the points that limit an end, and what closing and opening their gaps is worth."""
     factor = 1.0 if is_length else math.degrees(1.0) / float(from_metres(1.0, unit))
-    return ", ".join(f"{clearance.gain * factor:.4g}" for clearance in end.clearances)
+    shown = end.clearances[:MOST_CLEARANCES]
+    names = ", ".join(f"{clearance.point} on {clearance.box}" for clearance in shown)
+    closing = ", ".join(f"{clearance.closing * factor:.4g}" for clearance in shown)
+    opening = ", ".join(short(clearance.opening * factor, 4, 1e-6) for clearance in shown)
+    more = len(end.clearances) - len(shown)
+    return (f"{names}, {more} more" if more else names), closing, opening

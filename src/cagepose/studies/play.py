@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from time import perf_counter
 
 import numpy as np
@@ -20,30 +21,11 @@ from cagepose.nouns.pose import Pose
 from cagepose.nouns.scene import Scene
 from cagepose.studies.cage_verdict import CageVerdict, judge_cage
 from cagepose.studies.play_frame import FREEDOMS, PlayFrame
+from cagepose.studies.play_limits import Clearance, limiting_clearances
 
 _ANGLES = {"roll": ROLL, "pitch": PITCH, "yaw": YAW}
 SEARCH_S = 2.0
 """Seconds that the search for a way out may take, if the object is not proven to be caged."""
-
-
-@dataclass(frozen=True, eq=False)
-class Clearance:
-    """A gap that limits an end of the play.
-
-    Attributes
-    ----------
-    point, box
-        Names.
-    gap_m
-        At the start, metres.
-    gain
-        How much the end moves for each metre that the gap grows: radians or metres (7.11).
-    """
-
-    point: str
-    box: str
-    gap_m: float
-    gain: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +44,6 @@ class PlayEnd:
         Whether the exact end is known to lie nowhere.
     pose_world_object
         Reaches the exact end; None: there is none.
-    clearances
-        The gaps that limit it, the one with the greatest gain first.
     """
 
     linear: float | None
@@ -71,7 +51,12 @@ class PlayEnd:
     certified: float | None
     is_open: bool
     pose_world_object: Pose | None
-    clearances: tuple[Clearance, ...]
+    _find_clearances: Callable[[], tuple[Clearance, ...]] = field(repr=False)
+
+    @cached_property
+    def clearances(self) -> tuple[Clearance, ...]:
+        """The gaps that limit the exact end, the one first that is best to close; found when first asked for."""
+        return self._find_clearances()
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,30 +218,15 @@ class _Writer:
         extreme = self.extremes[index]
         is_reached = extreme.outcome == REACHED
         caged = self.work.certificate.outcome == CAGED
-        pose = None
-        if is_reached:
-            w, x, y, z = extreme.quaternion.tolist()
-            pose = self.frame.outward(tuple(extreme.position.tolist()), (w, x, y, z))
+        motion = Pose(extreme.position, extreme.quaternion) if is_reached else None
         return PlayEnd(
             linear=float(extreme.linear) if extreme.linear_outcome == REACHED else None,
             exact=float(extreme.value) if is_reached else None,
             certified=float(self.goals[index].sign * self.bounds[index]) if caged else None,
             is_open=bool(extreme.outcome == OPEN),
-            pose_world_object=pose,
-            clearances=self._clearances(extreme) if is_reached else (),
+            pose_world_object=None if motion is None else self.frame.outward(*motion.as_tuples()),
+            _find_clearances=partial(self._clearances, index, motion),
         )
 
-    def _clearances(self, extreme: Extreme) -> tuple[Clearance, ...]:
-        n_boxes = self.frame.geometry.n_own_boxes
-        found = [
-            Clearance(
-                self.scene.cage.names[pair // n_boxes],
-                str(self.scene.object.boxes[pair % n_boxes].name),
-                float(self.work.gaps[pair] * self.frame.length_m),
-                float(price),
-            )
-            for pair, price in zip(
-                extreme.limits[: extreme.n_limits].tolist(), extreme.prices[: extreme.n_limits].tolist(), strict=True
-            )
-        ]
-        return tuple(sorted(found, key=lambda clearance: -clearance.gain))
+    def _clearances(self, index: int, motion: Pose | None) -> tuple[Clearance, ...]:
+        return () if motion is None else limiting_clearances(self.scene, self.frame, self.goals[index], motion)
