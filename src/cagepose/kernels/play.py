@@ -71,22 +71,18 @@ class Extreme:
     n_limits, limits, prices
         Which points with which boxes limit it, as ``point * n_boxes + box``, and how much the value gains for each
         metre that such a gap grows.
-    faces
-        The face at each of them, as in `PlayRoom`.
     n_programs
         How many were solved.
     """
 
     linear_outcome: int
     linear: float
-
     outcome: int
     value: float
     position: Annotated[FloatArray, 3]
     quaternion: Annotated[FloatArray, 4]
     prices: Annotated[FloatArray, 6]
     limits: Annotated[IntArray, 6]
-    faces: Annotated[IntArray, 6]
     n_limits: int
     n_programs: int
 
@@ -133,7 +129,6 @@ def note_limits(room: PlayRoom, factor: float, extreme: Extreme) -> None:
         pair = room.newton.pairs[i]
         if room.newton.prices[i] > HARDLY:
             extreme.limits[extreme.n_limits] = pair
-            extreme.faces[extreme.n_limits] = room.faces[pair]
             extreme.prices[extreme.n_limits] = factor * room.newton.prices[i]
             extreme.n_limits += 1
 
