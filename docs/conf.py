@@ -11,7 +11,10 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.writers.html5 import HTML5Translator
 
+from cagepose import load_scene, play
+from cagepose.faces.play_figure import play_figure
 from cagepose.faces.report import write_report
+from cagepose.faces.style import figure_bytes
 from cagepose.studies.reproduction import METHODS, reproduce
 
 project = "cagepose"
@@ -72,9 +75,19 @@ def _reproduce(app: Sphinx) -> None:
     write_report(Path(app.srcdir) / "generated", reproduction, lambda _: None)
 
 
+def _draw_play(app: Sphinx) -> None:
+    """Draw the play of the two scenes on the page about it."""
+    folder = Path(app.srcdir) / "generated"
+    folder.mkdir(exist_ok=True)
+    for name, point_m in (("rail-pitch", (-0.6, 0.02, -0.060747)), ("gripper", (0.04, 0.0, 0.0))):
+        found = play(load_scene(Path(app.srcdir).parent / "scenes" / f"{name}.yaml"))
+        (folder / f"play-{name}.svg").write_bytes(figure_bytes(play_figure(found, [point_m]), ".svg"))
+
+
 def setup(app: Sphinx) -> None:
     """Register the equations' writer, the repair of signatures and the report of the paper's cases."""
     app.connect("builder-inited", _reproduce)
+    app.connect("builder-inited", _draw_play)
     app.connect("autodoc-process-signature", _plain_aliases)
     app.add_html_math_renderer("mathml", (_inline_math, None), (_display_math, None))
 

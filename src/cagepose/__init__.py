@@ -46,6 +46,8 @@ if TYPE_CHECKING:
     from cagepose.studies.comparison import Parting as Parting
     from cagepose.studies.comparison import Variant as Variant
     from cagepose.studies.comparison import compare as compare
+    from cagepose.studies.play import Play as Play
+    from cagepose.studies.play import play as play
 
     __version__: str
 
@@ -69,6 +71,7 @@ _HOMES = {
     "cagepose.runs.run": ("Contact", "Event", "Frame", "Motion", "PhaseRun", "Run"),
     "cagepose.runs.solve": ("run",),
     "cagepose.studies.comparison": ("Comparison", "Parting", "Variant", "compare"),
+    "cagepose.studies.play": ("Play", "play"),
     "cagepose.files.run_file": ("load_run", "save_run"),
     "cagepose.files.scene_file": ("load_scene",),
 }
@@ -91,6 +94,7 @@ __all__ = [
     "Object",
     "Parting",
     "PhaseRun",
+    "Play",
     "Pose",
     "Problem",
     "Proof",
@@ -105,6 +109,7 @@ __all__ = [
     "compare",
     "load_run",
     "load_scene",
+    "play",
     "run",
     "save_run",
     "with_critical_friction",

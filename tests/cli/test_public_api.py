@@ -26,13 +26,14 @@ def test_all_names_every_public_class_and_function_once() -> None:
             "Object",
             "Parting",
             "PhaseRun",
+            "Play",
             "Pose",
             "Problem",
             "Proof",
             "Run",
         ),
         *("RunFileError", "Scene", "SceneError", "SceneFileError", "Tolerances", "Variant", "__version__"),
-        *("compare", "load_run", "load_scene", "run", "save_run", "with_critical_friction"),
+        *("compare", "load_run", "load_scene", "play", "run", "save_run", "with_critical_friction"),
     }
 
 

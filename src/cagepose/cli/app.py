@@ -29,6 +29,10 @@ COMMANDS = {
         "cagepose.cli.compare_command:compare_command",
         "Run a scene by both methods: final poses, verdicts, where they part.",
     ),
+    "play": (
+        "cagepose.cli.play_command:play_command",
+        "How far the object can move in its cage, and whether it can get out.",
+    ),
     "check": ("cagepose.cli.check_command:check_command", "Check a scene file without running it."),
     "plot": ("cagepose.cli.plot_command:plot_command", "Draw a scene's run, or a saved run, into a picture file."),
     "reproduce": (

@@ -14,9 +14,15 @@ EVERY_RUN = (
 
 def announce_compilation(methods: Iterable[str]) -> None:
     """Write a line to standard error if the first run by one of ``methods`` will compile."""
-    from cagepose.kernels.jit import CACHE_FOLDER
     from cagepose.runs.solve import kernels_are_compiled
 
-    if not all(kernels_are_compiled(method) for method in methods):
+    announce_kernels(all(kernels_are_compiled(method) for method in methods))
+
+
+def announce_kernels(are_compiled: bool) -> None:
+    """Write that line unless the kernels that are needed are compiled."""
+    from cagepose.kernels.jit import CACHE_FOLDER
+
+    if not are_compiled:
         sys.stderr.write(EVERY_RUN if CACHE_FOLDER is None else FIRST_RUN)
         sys.stderr.flush()

@@ -16,4 +16,14 @@ SetOption = Annotated[
         help="Change one value: key.path=value, such as object.boxes[0].size[2]=12. May be given again.",
     ),
 ]
+AtOption = Annotated[
+    tuple[str, ...],
+    Parameter(
+        help="A point of the object, x,y,z in its frame and the scene's unit, such as --at=-600,20,-60.7; may be given"
+        " several times.",
+        negative=(),
+        show_default=False,
+        allow_leading_hyphen=True,
+    ),
+]
 Switch = Parameter(negative="", show_default=False)

@@ -60,7 +60,8 @@ def event_figure(run: Run, length_unit: LengthUnit = "mm") -> Figure:
     n_panels = len(shots) + len(weights)
     rows = math.ceil(n_panels / COLUMNS)
     with styled():
-        drawing = SceneDrawing(run, length_unit)
+        poses = [run.phases[0].start_pose, *(event.pose_world_object for phase in run.phases for event in phase.events)]
+        drawing = SceneDrawing(run.scene, poses, length_unit)
         grid = _Grid(rows, FLAT_PANEL_IN if drawing.is_flat else PANEL_IN)
         height = grid.height_in
         figure = Figure(figsize=(PAGE_WIDTH_IN, height))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from matplotlib.backend_bases import RendererBase
@@ -16,7 +16,8 @@ from cagepose.faces.style import BLACK, BLUE, GREY, ORANGE, PURPLE, SKY, VERMILL
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.nouns.checks import FloatArray
 from cagepose.nouns.pose import Pose
-from cagepose.runs.run import Event, Motion, Run
+from cagepose.nouns.scene import Scene
+from cagepose.runs.run import Event, Motion
 from cagepose.studies.support import load_direction_world, load_point_object
 
 SLIMMEST = 0.45
@@ -41,13 +42,12 @@ _EDGES = ((0, 1), (0, 2), (0, 4), (1, 3), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5)
 
 
 class SceneDrawing:
-    """Draws moments of one run into panels that all show the same part of the world."""
+    """Draws a scene at some poses of the object into panels that all show the same part of the world."""
 
-    def __init__(self, run: Run, length_unit: LengthUnit) -> None:
-        self.run = run
+    def __init__(self, scene: Scene, poses: Iterable[Pose], length_unit: LengthUnit) -> None:
+        self.scene = scene
         self.unit: LengthUnit = length_unit
-        self.points = self._shown(run.scene.cage.points_world())
-        poses = [run.phases[0].start_pose, *(event.pose_world_object for phase in run.phases for event in phase.events)]
+        self.points = self._shown(scene.cage.points_world())
         corners = [self._shown(pose.transform(self._corners_object())) for pose in poses]
         everything = np.concatenate([self.points, *corners])
         self.low, self.high = everything.min(axis=0), everything.max(axis=0)
@@ -73,6 +73,16 @@ class SceneDrawing:
             self._draw_motion(panel, event.motion, before)
         self._draw_points(panel, () if event is None else event.contacts, () if event is None else event.hit)
         self._draw_load(panel, phase_index, pose)
+        self._frame(panel, title)
+
+    def draw_pose(self, panel: Axes3D, pose: Pose, touching: tuple[str, ...], title: str) -> None:
+        """Draw the object at ``pose``, dotted where it starts, and the points that touch."""
+        self._draw_object(panel, pose)
+        self._draw_outline(panel, self.scene.object.pose_world_object)
+        self._draw_points(panel, touching, ())
+        self._frame(panel, title)
+
+    def _frame(self, panel: Axes3D, title: str) -> None:
         panel.view_init(**VIEW_FROM)
         panel.set_box_aspect(tuple(self.aspect.tolist()), zoom=ZOOM_FLAT if self.is_flat else ZOOM)
         for axis, low, extent in zip("xyz", self.low.tolist(), self.extents.tolist(), strict=True):
@@ -89,7 +99,7 @@ class SceneDrawing:
 
     def _corners_object(self) -> FloatArray:
         """All boxes' corners, (8 n, 3)."""
-        return np.concatenate([box.corners_object() for box in self.run.scene.object.boxes])
+        return np.concatenate([box.corners_object() for box in self.scene.object.boxes])
 
     def _draw_object(self, panel: Axes3D, pose: Pose) -> None:
         boxes = self._shown(pose.transform(self._corners_object())).reshape(-1, 8, 3)
@@ -97,7 +107,7 @@ class SceneDrawing:
         panel.add_collection3d(
             Poly3DCollection(faces, facecolors=SKY, edgecolors=BLUE, linewidths=0.5, alpha=0.22, zorder=1)
         )
-        center = self._shown(pose.transform(self.run.scene.object.center_of_gravity_m))
+        center = self._shown(pose.transform(self.scene.object.center_of_gravity_m))
         panel.plot(*center[:, None], marker="D", color=BLUE, markersize=4.0, linestyle="none", zorder=5)
 
     def _draw_outline(self, panel: Axes3D, pose: Pose) -> None:
@@ -111,11 +121,11 @@ class SceneDrawing:
             line = self._across(self._shown(motion.through_world), motion.axis_world)
             panel.plot(*line.T, color=PURPLE, linestyle="-.", linewidth=1.6, zorder=6)
         elif motion.direction_world is not None:
-            start = self._shown(before.transform(self.run.scene.object.center_of_gravity_m))
+            start = self._shown(before.transform(self.scene.object.center_of_gravity_m))
             panel.add_artist(_Arrow(start, start + self._length(0.25, motion.direction_world), PURPLE))
 
     def _draw_points(self, panel: Axes3D, contacts: tuple[str, ...], hit: tuple[str, ...]) -> None:
-        names = self.run.scene.cage.names
+        names = self.scene.cage.names
         labels: list[tuple[FloatArray, list[str], bool]] = []
         chosen: dict[str, list[FloatArray]] = {look: [] for look in POINT_LOOKS}
         for name, point in zip(names, self.points, strict=True):
@@ -141,8 +151,8 @@ class SceneDrawing:
         labels.append((point, [name], touches))
 
     def _draw_load(self, panel: Axes3D, phase_index: int, pose: Pose) -> None:
-        load = self.run.scene.loads[phase_index]
-        tip = self._shown(pose.transform(load_point_object(self.run, load)))
+        load = self.scene.loads[phase_index]
+        tip = self._shown(pose.transform(load_point_object(self.scene, load)))
         tail = tip - self._length(0.3, load_direction_world(load))
         panel.add_artist(_Arrow(tail, tip, BLACK))
         panel.text(*tail, f" {load.name}", fontsize=7.0, color=BLACK, zorder=9)

@@ -8,6 +8,7 @@ import numpy as np
 
 from cagepose.nouns.checks import FloatArray, unit_vector
 from cagepose.nouns.load import Load
+from cagepose.nouns.scene import Scene
 from cagepose.runs.run import Run
 
 
@@ -48,7 +49,7 @@ def load_view(run: Run, phase_index: int) -> LoadView:
     up = unit_vector(vertical - (vertical @ direction) * direction, "up")
     right = np.cross(direction, up) + 0.0  # no negative zeros
     axes = np.stack([right, up], axis=1)
-    load_point = phase.pose.transform(load_point_object(run, load)) @ axes
+    load_point = phase.pose.transform(load_point_object(run.scene, load)) @ axes
     names = {contact.point for contact in phase.contacts}
     touching = [index for index, name in enumerate(run.scene.cage.names) if name in names]
     polygon = convex_hull(run.scene.cage.points_world()[touching] @ axes)
@@ -63,9 +64,9 @@ def load_direction_world(load: Load) -> FloatArray:
     return unit_vector(load.gravity_world, "gravity")
 
 
-def load_point_object(run: Run, load: Load) -> FloatArray:
+def load_point_object(scene: Scene, load: Load) -> FloatArray:
     """Return where it acts, in the object's frame, (3,), metres."""
-    return run.scene.object.center_of_gravity_m if load.force is None else load.force.at_object_m
+    return scene.object.center_of_gravity_m if load.force is None else load.force.at_object_m
 
 
 def convex_hull(points: FloatArray) -> FloatArray:

@@ -1,0 +1,85 @@
+"""``cagepose play``: how far the object can move in its cage, and whether it can get out."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from cagepose.cli.options import AtOption, SceneArgument, SetOption, Switch
+
+
+def play_command(
+    scene: SceneArgument,
+    /,
+    *,
+    at: AtOption = (),
+    direction: Annotated[
+        tuple[str, ...],
+        Parameter(
+            help="A direction x,y,z in the cage's frame to ask the points about; may be given several times. Left out:"
+            " x, y and z.",
+            negative=(),
+            show_default=False,
+            allow_leading_hyphen=True,
+        ),
+    ] = (),
+    set_values: SetOption = (),
+    json: Annotated[bool, Switch, Parameter(help="Print one JSON document instead of the tables.")] = False,
+) -> int:
+    """Print the range of each freedom and point, what limits it, whether the object is caged, where loads leave it."""
+    from cagepose.cli.triples import read_triple
+    from cagepose.errors import SceneFileError
+    from cagepose.files.scene_file import read_scene_file
+    from cagepose.files.units import to_metres
+
+    problems: list[str] = []
+    points = [read_triple("--at", text, problems) for text in at]
+    along = [read_triple("--direction", text, problems) for text in direction]
+    problems += [
+        f"--direction {text}: has no direction; give a vector of any other length"
+        for text, found in zip(direction, along, strict=True)
+        if found == (0.0, 0.0, 0.0)
+    ]
+    if direction and not at:
+        problems.append("--direction: says where points go, and there are none; give one with --at")
+    try:
+        scene_file = read_scene_file(scene, set_values)
+    except SceneFileError as error:
+        problems.append(str(error))
+    if problems:
+        sys.stderr.write("\n".join(problems) + "\n")
+        return 2
+
+    from cagepose.cli.first_run import announce_kernels
+    from cagepose.studies.play import play, play_is_compiled
+    from cagepose.studies.play_rest import play_rests
+
+    announce_kernels(play_is_compiled())
+    found = play(
+        scene_file.scene,
+        [to_metres(point, scene_file.length_unit) for point in points],
+        along,
+        progress=_show_search if sys.stderr.isatty() else None,
+    )
+    if found.cage.n_tried and sys.stderr.isatty():
+        sys.stderr.write("\n")
+    rests = play_rests(scene_file.scene)
+    if json:
+        from json import dumps
+
+        from cagepose.cli.play_document import play_document
+
+        sys.stdout.write(dumps(play_document(found, rests, scene_file.length_unit), indent=1, allow_nan=False) + "\n")
+        return 0
+    from cagepose.cli.play_report import print_play
+
+    print_play(found, rests, scene_file.length_unit)
+    return 0
+
+
+def _show_search(share: float) -> None:
+    """Tell on the terminal how much of the search's time has passed."""
+    sys.stderr.write(f"\rsearching for a way out: {share:4.0%}")
+    sys.stderr.flush()

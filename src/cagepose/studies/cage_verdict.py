@@ -1,0 +1,163 @@
+"""Whether the object can leave its cage: a proof that it cannot, a way out, or neither and why."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Literal
+
+import numpy as np
+
+from cagepose.kernels.escape import N_RANDOM, Station, grow_tree
+from cagepose.kernels.geometry import empty_placement
+from cagepose.kernels.play_certificate import CAGED, FREE, OFF_EDGE, RAN_OFF, UNSOLVED, CertificateRoom
+from cagepose.kernels.record import Rows, empty_rows
+from cagepose.kernels.tolerances import kernel_tolerances
+from cagepose.nouns.checks import as_vector
+from cagepose.nouns.pose import Pose
+from cagepose.nouns.scene import Scene
+from cagepose.runs.run import Motion
+from cagepose.studies.play_frame import PlayFrame
+
+Caged = Literal["caged", "not certified", "escapes"]
+MOST_STATIONS = 100_000
+BATCH = 500
+"""Motions that are tried between two looks at the clock: some milliseconds."""
+SEED = 20250101
+
+
+@dataclass(frozen=True, eq=False)
+class PathStep:
+    """A motion on the way out, and the pose at its end."""
+
+    motion: Motion
+    pose_world_object: Pose
+
+
+@dataclass(frozen=True, eq=False)
+class CageVerdict:
+    """Whether the object can get out.
+
+    Attributes
+    ----------
+    verdict
+        "caged" is a proof, "escapes" too: by the path. "not certified" says that neither was found.
+    reason
+        In words.
+    free_directions
+        Freedoms that the linearised gaps leave without end.
+    path
+        The way out: each motion is free of collision, the last one meets nothing ahead; None: none found.
+    leaves_at
+        "not certified" because a point leaves its face: the object's pose in the world, as linearised, at which the
+        point is farthest off; None: any other verdict or reason.
+    n_tried
+        Motions that the search tried.
+    """
+
+    verdict: Caged
+    reason: str
+    free_directions: tuple[str, ...]
+    path: tuple[PathStep, ...] | None
+    leaves_at: Pose | None
+    n_tried: int
+
+
+def judge_cage(
+    scene: Scene,
+    frame: PlayFrame,
+    work: CertificateRoom,
+    free_directions: tuple[str, ...],
+    search_s: float,
+    progress: Callable[[float], None] | None,
+) -> CageVerdict:
+    """Return the verdict; a search for a way out follows where there is no proof."""
+    if work.certificate.outcome == CAGED:
+        return CageVerdict("caged", "every pose on the way out puts a point inside the object", (), None, None, 0)
+    stations, n_stations, is_out, n_tried = search_way_out(scene, frame, search_s, progress)
+    if is_out:
+        path = _path(frame, stations, n_stations - 1)
+        reason = f"a way out of {len(path)} motions was found"
+        return CageVerdict("escapes", reason, free_directions, path, None, n_tried)
+    reason, leaves_at = _reason(scene, frame, work, free_directions)
+    searched = "no way out was found" if n_tried else "no way out was looked for"
+    return CageVerdict("not certified", f"{reason}; {searched}", free_directions, None, leaves_at, n_tried)
+
+
+def _reason(
+    scene: Scene, frame: PlayFrame, work: CertificateRoom, free_directions: tuple[str, ...]
+) -> tuple[str, Pose | None]:
+    """Return why there is no proof, and the pose at which a point leaves its face."""
+    certificate = work.certificate
+    if certificate.outcome == FREE:
+        return f"nothing limits {' '.join(free_directions)}", None
+    if certificate.outcome == UNSOLVED:
+        return "the gaps depend on each other up to rounding, and a linear program has no sure answer", None
+    turn_deg = np.degrees(np.linalg.norm(certificate.turn))
+    if certificate.worst < 0:
+        return f"the object turns by up to {turn_deg:.3g} deg, and the proof takes less than a radian", None
+    pair = int(certificate.worst)
+    point = scene.cage.names[pair // frame.geometry.n_own_boxes]
+    box = scene.object.boxes[pair % frame.geometry.n_own_boxes].name
+    if certificate.outcome == RAN_OFF:
+        way = "may run off its face of" if work.fates[pair] == OFF_EDGE else "may come out behind its face of"
+        reason = f"{point} {way} {box}, and without it the object is not held"
+        twist = work.lost_at[pair]
+        if not np.isfinite(twist).all():
+            return reason, None
+        motion = frame.motion(twist)
+        yaw, pitch, roll = np.degrees(motion.euler_zyx).tolist()
+        return (
+            f"{reason}; it is farthest off, to first order, after roll {roll:.4g}, pitch {pitch:.4g}, yaw {yaw:.4g} deg"
+        ), frame.outward(*motion.as_tuples())
+    return (
+        f"the play is too large for the proof: what linearising the gap of {point} to {box} leaves out grows faster"
+        f" than the room it is given (turns up to {turn_deg:.3g} deg)"
+    ), None
+
+
+def search_way_out(
+    scene: Scene, frame: PlayFrame, search_s: float, progress: Callable[[float], None] | None = None
+) -> tuple[Rows[Station], int, bool, int]:
+    """Grow a tree of free motions until one leads out or time is up.
+
+    Returns the stations, how many there are, whether the last one is out, and how many motions were tried.
+    """
+    stations = empty_rows(Station, MOST_STATIONS)
+    stations[0].parent = -1
+    stations[0].quaternion[0] = 1.0
+    n_stations, n_tried, is_out = 1, 0, False
+    placement = empty_placement(frame.geometry)
+    tolerances = kernel_tolerances(scene.size_m, scene.tolerances.touch)
+    random = np.random.default_rng(SEED)
+    started = perf_counter()
+    while not is_out and n_stations + BATCH <= MOST_STATIONS:
+        share = (perf_counter() - started) / search_s if search_s > 0.0 else 1.0
+        if progress is not None:
+            progress(min(share, 1.0))
+        if share >= 1.0:
+            break
+        dice = random.random((BATCH, N_RANDOM))
+        n_stations, is_out = grow_tree(
+            frame.geometry, frame.length_m, dice, stations, n_stations, placement, tolerances
+        )
+        n_tried += BATCH
+    return stations, n_stations, is_out, n_tried
+
+
+def _path(frame: PlayFrame, stations: Rows[Station], last: int) -> tuple[PathStep, ...]:
+    steps = []
+    while stations[last].parent >= 0:
+        station = stations[last]
+        w, x, y, z = station.quaternion.tolist()
+        pose = frame.outward(as_vector(station.position), (w, x, y, z))
+        along = frame.to_world(as_vector(station.along))
+        if station.angle > 0.0:
+            through = frame.point_to_world(as_vector(station.through))
+            motion = Motion("turn", None, along, through, 0.0, float(station.angle))
+        else:
+            motion = Motion("travel", along, None, None, float(station.distance), 0.0)
+        steps.append(PathStep(motion, pose))
+        last = int(station.parent)
+    return tuple(reversed(steps))

@@ -1,0 +1,114 @@
+"""``cagepose play``: its document, its tables, what it refuses."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from rails import exact_tilt_deg
+
+Command = Callable[..., Any]
+RAIL = str(Path(__file__).resolve().parents[2] / "scenes" / "rail-pitch.yaml")
+
+
+def test_the_document_of_the_rail(command: Command) -> None:
+    answer = command("play", RAIL, "--at=-600,20,-60.747", "--direction=0,1,0", "--json")
+    assert answer.code == 0
+    document = json.loads(answer.out)
+    assert list(document["freedoms"]) == ["x", "y", "z", "roll", "pitch", "yaw"]
+    pitch = document["freedoms"]["pitch"]
+    assert pitch["linear"] == pytest.approx([-math.degrees(0.5 / 91.5), math.degrees(0.5 / 91.5)], rel=1e-9)
+    assert pitch["exact"] == pytest.approx([-exact_tilt_deg(1, 183), exact_tilt_deg(1, 183)], rel=1e-9)
+    assert pitch["certified"][0] < pitch["exact"][0] < pitch["exact"][1] < pitch["certified"][1]
+    assert document["freedoms"]["z"]["linear"] == pytest.approx([-0.5, 0.5], rel=1e-9)
+    (point,) = document["points"]
+    assert (point["at"], point["direction"]) == ([-600, 20, -60.747], [0, 1, 0])
+    assert point["linear"][1] == pytest.approx(600 * 0.53 / 91.5 + 60.747 * 0.5 / 31.55, rel=1e-9)
+    assert document["cage"]["verdict"] == "caged"
+    assert document["cage"]["free_directions"] == []
+    assert document["cage"]["path"] is None
+    (first, *_) = document["freedoms"]["z"]["limits"][1]
+    assert first["gap"] == pytest.approx(0.5)
+    assert 0 < first["closing"] <= 1
+
+
+def test_a_scene_that_is_no_cage_gives_the_path_out_and_ends_with_0(command: Command, sample: str) -> None:
+    answer = command("play", sample, "--json")
+    assert answer.code == 0
+    document = json.loads(answer.out)
+    assert document["cage"]["verdict"] == "escapes"
+    assert document["cage"]["path"][-1]["motion"] == "travel"
+    assert document["freedoms"]["x"]["certified"] is None
+    assert document["freedoms"]["z"]["linear"][1] is None  # nothing is above the block
+
+
+def test_the_tables_name_what_limits_each_end(command: Command) -> None:
+    out = command("play", RAIL).out
+    assert "-0.313084 to 0.313084" in out
+    assert "cage: caged" in out
+    assert "greatest x" in out
+    assert "C13 on rack" in out
+
+
+def test_closing_and_opening_each_gap_of_the_rails_pitch_moves_it_as_the_document_says(command: Command) -> None:
+    """Each roller is moved by 0.1 um: four limit the pitch, so closing any one tells, opening one alone does not."""
+    pitch = json.loads(command("play", RAIL, "--json").out)["freedoms"]["pitch"]
+    limits = pitch["limits"][1]
+    assert {limit["point"] for limit in limits} == {"C2", "C4", "C5", "C7"}
+    for limit in limits:
+        index = int(limit["point"].removeprefix("C")) - 1
+        height = -1.0 if index % 2 == 0 else 1.0
+        for by, worth in ((-1e-4, limit["closing"]), (1e-4, limit["opening"])):
+            moved = command("play", RAIL, f"--set=cage.points[{index}][2]={height * (1 + by)!r}", "--json")
+            end = json.loads(moved.out)["freedoms"]["pitch"]["exact"][1]
+            assert (end - pitch["exact"][1]) / by == pytest.approx(worth, abs=1e-3)
+
+
+def test_the_rests_under_the_loads_are_in_the_document_and_the_report(command: Command) -> None:
+    rests = json.loads(command("play", RAIL, "--json").out)["rests"]
+    assert [rest["phase"] for rest in rests] == ["weight", "push"]
+    assert list(rests[0]["undetermined"]) == ["y", "yaw"]
+    assert rests[1]["exact_pose"]["euler_zyx_deg"] == pytest.approx([-0.3322, -0.2131, 0.0012], abs=5e-5)
+    assert "push presses it to" in command("play", RAIL).out
+
+
+@pytest.mark.parametrize(
+    ("flags", "message"),
+    [
+        (["--at=1,2"], "--at 1,2: is not three numbers"),
+        (["--at=a,b,c"], "--at a,b,c: is not three numbers"),
+        (["--at=1,2,nan"], "--at 1,2,nan: is not three numbers"),
+        (["--at=1,2,3", "--direction=0,0,0"], "--direction 0,0,0: has no direction"),
+        (["--direction=0,0,1"], "--direction: says where points go, and there are none"),
+    ],
+)
+def test_bad_flags_end_with_2(command: Command, flags: list[str], message: str) -> None:
+    answer = command("play", RAIL, *flags)
+    assert answer.code == 2
+    assert answer.err.startswith(message)
+    assert answer.out == ""
+
+
+@pytest.mark.parametrize("kind", ["play", "extremes"])
+def test_the_command_draws_the_play_of_a_scene_and_of_a_saved_run(command: Command, tmp_path: Path, kind: str) -> None:
+    saved, picture = tmp_path / "run.json", tmp_path / "play.svg"
+    assert command("run", RAIL, "--out", str(saved)).code == 0
+    for source in (RAIL, str(saved)):
+        answer = command("plot", source, "--kind", kind, "--out", str(picture))
+        assert answer.code == 0
+        assert "caged" in answer.out
+        assert picture.read_text().startswith("<?xml")
+
+
+def test_points_without_play_and_points_that_are_none_are_refused(command: Command, tmp_path: Path) -> None:
+    answer = command("plot", RAIL, "--at=1,2", "--out", str(tmp_path / "a.png"))
+    assert answer.code == 2
+    assert answer.err.splitlines() == [
+        "--at: says whose play is drawn; give --kind play with it",
+        "--at 1,2: is not three numbers; write them as x,y,z without blanks",
+    ]

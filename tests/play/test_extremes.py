@@ -1,0 +1,173 @@
+"""Linear and exact extremes against independent solvers, and what limits them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import linprog, minimize
+
+from caged_scenes import caged_scene
+from cagepose import Cage, Pose, Scene, play
+from cagepose.kernels.geometry import place_object
+from cagepose.kernels.linear_program import OPTIMAL, UNBOUNDED, solve_program
+from cagepose.kernels.play_rows import choose_faces, empty_play_room
+from cagepose.studies.play import FREEDOMS
+from cagepose.studies.play_frame import PlayFrame
+from jit import callable_kernel, cases
+
+HIGHS = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
+
+
+def gaps(scene: Scene, pose: Pose) -> np.ndarray:
+    """Gap of each point to each box: (2.4), by another route than the kernels'."""
+    found = []
+    points = scene.cage.points_world()
+    for box in scene.object.boxes:
+        q = box.pose_object_box.inverse_transform(pose.inverse_transform(points))
+        found.append((np.abs(q) - box.size_m / 2).max(axis=1))
+    return np.concatenate(found)
+
+
+def relative(scene: Scene, pose: Pose) -> tuple[np.ndarray, tuple[float, float, float]]:
+    """Displacement of the object's origin in the cage's axes, and (yaw, pitch, roll), both from the start."""
+    cage, start = scene.cage.pose_world_cage, scene.object.pose_world_object
+    shift = cage.rotation.T @ (pose.position_m - start.position_m)
+    turned = cage.inverse() @ pose @ start.inverse() @ cage
+    return shift, turned.euler_zyx
+
+
+def value_of(scene: Scene, pose: Pose, name: str) -> float:
+    shift, (yaw, pitch, roll) = relative(scene, pose)
+    return dict(zip(FREEDOMS, (*shift, roll, pitch, yaw), strict=True))[name]
+
+
+def test_all_twelve_programs_of_random_caged_scenes_agree_with_highs():
+    rng = np.random.default_rng(5)
+    choose, place = callable_kernel(choose_faces), place_object
+    n_bounded = 0
+    origin, level = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)
+    for _ in range(cases(250)):
+        frame = PlayFrame(caged_scene(rng))
+        room = empty_play_room(frame.geometry)
+        place(frame.geometry, origin, level, room.placement)
+        choose(frame.geometry, origin, frame.length_m, room)
+        n = len(room.faces)
+        room.bounds[n:] = np.inf
+        for objective in np.vstack([np.eye(6), -np.eye(6)]):
+            room.program.objective[:] = objective
+            room.program.basis[0] = -1
+            outcome = solve_program(room.rows, room.bounds, room.program)
+            known = linprog(
+                -objective,
+                A_ub=room.rows[:n],
+                b_ub=room.bounds[:n],
+                bounds=(None, None),
+                method="highs-ds",
+                options=HIGHS,
+            )
+            assert outcome == (OPTIMAL if known.status == 0 else UNBOUNDED)
+            n_bounded += outcome == OPTIMAL
+            if outcome == UNBOUNDED:
+                continue
+            assert float(objective @ room.program.x_near) == pytest.approx(-known.fun, abs=1e-9)
+    assert n_bounded >= 11 * cases(250)
+
+
+def test_every_extreme_is_a_pose_outside_that_has_the_value():
+    rng = np.random.default_rng(6)
+    for _ in range(cases(100)):
+        scene = caged_scene(rng)
+        found = play(scene, search_s=0.0)
+        for name, ends in found.freedoms.items():
+            for end in (ends.low, ends.high):
+                assert end.exact is not None
+                assert end.pose_world_object is not None
+                assert value_of(scene, end.pose_world_object, name) == pytest.approx(end.exact, abs=1e-12)
+                assert gaps(scene, end.pose_world_object).min() >= -1e-12
+                if len(scene.object.boxes) == 1:
+                    touching = [scene.cage.names.index(clearance.point) for clearance in end.clearances]
+                    assert touching
+                    assert np.abs(gaps(scene, end.pose_world_object)[touching]).max() < 1e-10
+
+
+def nudged(pose: Pose, x: np.ndarray) -> Pose:
+    """Shift by x[:3] times 20 mm and turn by the rotation vector x[3:] about the object's origin."""
+    angle = float(np.linalg.norm(x[3:]))
+    half = np.sin(angle / 2) / angle if angle > 0 else 0.5
+    turn = Pose(quaternion_wxyz=[math.cos(angle / 2), *(half * x[3:])])
+    turned = turn @ Pose(quaternion_wxyz=pose.quaternion_wxyz)
+    return Pose(pose.position_m + 0.02 * x[:3], turned.quaternion_wxyz)
+
+
+def gaps_to_faces(scene: Scene, pose: Pose, at: Pose) -> np.ndarray:
+    """Gap of each point to that face of each box that it is farthest beyond at the pose ``at``."""
+    found = []
+    points = scene.cage.points_world()
+    for box in scene.object.boxes:
+        there = box.pose_object_box.inverse_transform(at.inverse_transform(points))
+        axes = (np.abs(there) - box.size_m / 2).argmax(axis=1)
+        q = box.pose_object_box.inverse_transform(pose.inverse_transform(points))
+        rows = np.arange(len(points))
+        found.append(np.sign(there[rows, axes]) * q[rows, axes] - box.size_m[axes] / 2)
+    return np.concatenate(found)
+
+
+def best_near(scene: Scene, pose: Pose, name: str) -> float | None:
+    """The greatest value that SLSQP finds from a pose; None: it ends inside the object."""
+    answer = minimize(
+        lambda x: -value_of(scene, nudged(pose, x), name) * 1e3,
+        np.zeros(6),
+        constraints={"type": "ineq", "fun": lambda x: gaps_to_faces(scene, nudged(pose, x), pose) * 1e3},
+        method="SLSQP",
+        options={"ftol": 1e-14, "maxiter": 200},
+    )
+    is_outside = gaps_to_faces(scene, nudged(pose, answer.x), pose).min() > -1e-11
+    return -answer.fun * 1e-3 if is_outside else None
+
+
+def test_no_extreme_can_be_bettered_nearby():
+    rng = np.random.default_rng(7)
+    n_compared = 0
+    for _ in range(cases(40)):
+        scene = caged_scene(rng)
+        name = FREEDOMS[rng.integers(6)]
+        end = play(scene, search_s=0.0).freedoms[name].high
+        assert end.exact is not None
+        assert end.pose_world_object is not None
+        best = best_near(scene, end.pose_world_object, name)
+        if best is not None:
+            assert best <= end.exact + 1e-9
+            n_compared += 1
+    assert n_compared >= cases(40) // 2
+
+
+def with_gap_wider(scene: Scene, point: str, by_m: float) -> Scene:
+    """Move a cage point away from the face of the first box that it is farthest beyond."""
+    index, start = scene.cage.names.index(point), scene.object.pose_world_object
+    world = scene.cage.points_world().copy()
+    q = start.inverse_transform(world[index])
+    axis = int(np.argmax(np.abs(q) - scene.object.boxes[0].size_m / 2))
+    world[index] += by_m * math.copysign(1.0, q[axis]) * start.rotation[:, axis]
+    pose = scene.cage.pose_world_cage
+    return Scene(scene.object, Cage(pose.inverse_transform(world), pose=pose), scene.loads)
+
+
+def test_closing_and_opening_each_gap_moves_the_extreme_as_said():
+    """One-sided differences over 20 nm: the two differ where several points limit an extreme."""
+    rng = np.random.default_rng(8)
+    deviations = []
+    for _ in range(cases(20)):
+        scene = caged_scene(rng)
+        if len(scene.object.boxes) > 1:
+            continue
+        before = play(scene, search_s=0.0)
+        for name in ("x", "pitch"):
+            end = before.freedoms[name].high
+            for clearance in end.clearances[:3]:
+                for by, worth in ((-2e-8, clearance.closing), (2e-8, clearance.opening)):
+                    after = play(with_gap_wider(scene, clearance.point, by), search_s=0.0).freedoms[name].high
+                    deviations.append(abs((after.exact - end.exact) / by - worth) / clearance.closing)
+    assert len(deviations) >= 20
+    assert max(deviations) < 3e-3
