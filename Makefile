@@ -66,10 +66,10 @@ docs: $(READY)  ## build the documentation into build/docs
 lock:  ## renew requirements.lock from pyproject.toml
 	@$(PYTHON) -m venv build/lock
 	@build/lock/bin/python -m pip install -qq uv==$(UV_VERSION)
-	@build/lock/bin/uv pip compile pyproject.toml --group dev --group docs --output-file requirements.lock --upgrade \
+	@build/lock/bin/uv pip compile pyproject.toml --extra plot --group dev --group docs --output-file requirements.lock --upgrade \
 	    --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-annotate --no-emit-index-url \
 	    --no-config --custom-compile-command "make lock" --quiet
 
 clean:  ## remove .venv and all that was built
-	@rm -rf $(VENV) build dist .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis
+	@rm -rf $(VENV) build dist docs/generated .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis
 	@find src tests docs bench -name __pycache__ -type d -prune -exec rm -rf {} +

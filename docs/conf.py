@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import re
 from importlib.metadata import version as installed_version
+from pathlib import Path
 
 import latex2mathml.converter
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.writers.html5 import HTML5Translator
+
+from cagepose.faces.report import write_report
+from cagepose.studies.reproduction import METHODS, reproduce
 
 project = "cagepose"
 author = "the cagepose developers"
@@ -16,6 +20,7 @@ copyright = author
 release = version = installed_version("cagepose")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc"]
+exclude_patterns = ["generated"]  # included by the page about the paper
 highlight_language = "python"
 
 html_theme = "furo"
@@ -61,11 +66,18 @@ def _plain_aliases(*event: object) -> tuple[str, str] | None:
     return tuple(re.sub(r"TypeAliasForwardRef\('(\w+)'\)", r"\1", part or "") for part in (signature, returns))
 
 
+def _reproduce(app: Sphinx) -> None:
+    """Run the paper's cases, so that the page about them shows what this very source finds."""
+    reproduction = reproduce(METHODS, lambda _: None)
+    write_report(Path(app.srcdir) / "generated", reproduction, lambda _: None)
+
+
 def setup(app: Sphinx) -> None:
-    """Register the equations' writer and the repair of signatures."""
+    """Register the equations' writer, the repair of signatures and the report of the paper's cases."""
+    app.connect("builder-inited", _reproduce)
     app.connect("autodoc-process-signature", _plain_aliases)
     app.add_html_math_renderer("mathml", (_inline_math, None), (_display_math, None))
 
 
 html_static_path = ["_static"]
-html_css_files = ["equations.css"]
+html_css_files = ["equations.css", "tables.css"]

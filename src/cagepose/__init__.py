@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from cagepose.errors import CageposeError as CageposeError
+    from cagepose.errors import MissingExtraError as MissingExtraError
     from cagepose.errors import Problem as Problem
     from cagepose.errors import RunFileError as RunFileError
     from cagepose.errors import SceneError as SceneError
@@ -49,7 +50,14 @@ if TYPE_CHECKING:
     __version__: str
 
 _HOMES = {
-    "cagepose.errors": ("CageposeError", "Problem", "RunFileError", "SceneError", "SceneFileError"),
+    "cagepose.errors": (
+        "CageposeError",
+        "MissingExtraError",
+        "Problem",
+        "RunFileError",
+        "SceneError",
+        "SceneFileError",
+    ),
     "cagepose.nouns.cage": ("Cage",),
     "cagepose.nouns.load": ("Force", "Load"),
     "cagepose.nouns.parts": ("Box", "Object"),
@@ -78,6 +86,7 @@ __all__ = [
     "Frame",
     "FreeMotion",
     "Load",
+    "MissingExtraError",
     "Motion",
     "Object",
     "Parting",

@@ -3,7 +3,8 @@
     CageposeError
     ├── SceneError           a scene that cannot be right: every problem found, each with its place
     │   └── SceneFileError   the same, found in a scene file: each place has its line and column
-    └── RunFileError         a saved run that cannot be read
+    ├── RunFileError         a saved run that cannot be read
+    └── MissingExtraError    a part of cagepose that is not installed
 
 Anything else that escapes is a bug of ours.
 """
@@ -82,6 +83,10 @@ class SceneFileError(SceneError):
 
 class RunFileError(CageposeError, ValueError):
     """A saved run that cannot be read: not one of ours, of an unknown version, or damaged."""
+
+
+class MissingExtraError(CageposeError, ImportError):
+    """Something needs a package that comes with an extra of cagepose; the message says with which one."""
 
 
 def key_path(path: tuple[Key, ...]) -> str:

@@ -18,7 +18,19 @@ def test_all_names_every_public_class_and_function_once() -> None:
     assert sorted(set(cagepose.__all__)) == sorted(cagepose.__all__)
     assert set(cagepose.__all__) == {
         *("Adjustable", "Box", "Cage", "CageposeError", "Comparison", "Contact", "Event", "Force", "Frame"),
-        *("FreeMotion", "Load", "Motion", "Object", "Parting", "PhaseRun", "Pose", "Problem", "Proof", "Run"),
+        *(
+            "FreeMotion",
+            "Load",
+            "MissingExtraError",
+            "Motion",
+            "Object",
+            "Parting",
+            "PhaseRun",
+            "Pose",
+            "Problem",
+            "Proof",
+            "Run",
+        ),
         *("RunFileError", "Scene", "SceneError", "SceneFileError", "Tolerances", "Variant", "__version__"),
         *("compare", "load_run", "load_scene", "run", "save_run", "with_critical_friction"),
     }

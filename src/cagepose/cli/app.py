@@ -30,6 +30,11 @@ COMMANDS = {
         "Run a scene by both methods: final poses, verdicts, where they part.",
     ),
     "check": ("cagepose.cli.check_command:check_command", "Check a scene file without running it."),
+    "plot": ("cagepose.cli.plot_command:plot_command", "Draw a scene's run, or a saved run, into a picture file."),
+    "reproduce": (
+        "cagepose.cli.reproduce_command:reproduce_command",
+        "Run the paper's cases and write a report of its numbers beside ours.",
+    ),
     "schema": ("cagepose.cli.schema_command:schema_command", "Print the JSON Schema of scene files, for editors."),
     "init": ("cagepose.cli.init_command:init_command", "Write a commented scene to start from."),
 }

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import math
-import sys
 
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
-from cagepose.cli.report import report_console, short, verdict_style
+from cagepose.cli.console import print_all
+from cagepose.cli.report import short, verdict_style
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.studies.comparison import Comparison, Variant
 
 
 def print_comparison(comparison: Comparison, unit: LengthUnit) -> None:
     """Print to standard output, lengths in ``unit``."""
-    console = report_console()
     table = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
     for heading in ("variant", "verdict", "proof", f"centre of gravity ({unit})", "yaw, pitch, roll (deg)", "events"):
         table.add_column(heading, overflow="fold")
@@ -30,11 +29,8 @@ def print_comparison(comparison: Comparison, unit: LengthUnit) -> None:
     together = n_others - len(comparison.partings)
     if together:
         blocks.append(f"{together} of {n_others} {'goes' if together == 1 else 'go'} the way of stepwise to its end")
-    with console.capture() as captured:
-        console.print(Text(comparison.variants[0].run.scene.name), "", table, "", sep="\n")
-        console.print(Text("\n\n".join(blocks)))
-    text = captured.get()
-    sys.stdout.write(text if console.is_terminal else "".join(f"{line.rstrip()}\n" for line in text.splitlines()))
+    name = comparison.variants[0].run.scene.name
+    print_all(Text(name), "", table, "", Text("\n\n".join(blocks)))
 
 
 def _partings(comparison: Comparison) -> dict[tuple[str, str], list[str]]:

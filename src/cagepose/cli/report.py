@@ -3,48 +3,24 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Iterable, Sequence
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from cagepose.cli.console import print_all
 from cagepose.errors import printable
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.nouns.checks import FloatArray
 from cagepose.runs.run import AT_REST, FAILURES, Event, Motion, PhaseRun, Run
 
-PIPED_WIDTH = 100_000
-"""Columns when nobody looks at a screen: nothing wraps, nothing is cut; tables still take only what they need."""
-
 
 def print_report(run: Run, unit: LengthUnit, notes: Sequence[str] = ()) -> None:
     """Print ``run`` to standard output, lengths in ``unit``; ``notes`` stand below the warnings."""
-    console = report_console()
     writer = _Writer(run, unit)
-    with console.capture() as captured:
-        console.print(writer.title(), "", writer.events(), "", writer.summary(), sep="\n")
-        for warning in run.warnings:
-            console.print(Text(f"warning: {printable(warning)}", style="yellow"))
-        for note in notes:
-            console.print(Text(note))
-    text = captured.get()
-    sys.stdout.write(text if console.is_terminal else "".join(f"{line.rstrip()}\n" for line in text.splitlines()))
-
-
-def report_console() -> Console:
-    """Return a console that prints exactly what it is given, in colour where somebody looks."""
-    on_screen = sys.stdout.isatty()
-    return Console(
-        file=sys.stdout,
-        width=None if on_screen else PIPED_WIDTH,
-        force_terminal=on_screen,
-        highlight=False,
-        markup=False,
-        emoji=False,
-    )
+    warnings = [Text(f"warning: {printable(warning)}", style="yellow") for warning in run.warnings]
+    print_all(writer.title(), "", writer.events(), "", writer.summary(), *warnings, *(Text(note) for note in notes))
 
 
 class _Writer:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -12,7 +13,8 @@ from pydantic import ValidationError
 from cagepose.errors import RunFileError, SceneError, key_path, printable
 from cagepose.files.document import FORMAT_VERSION, run_document
 from cagepose.files.run_record import run_from_record, run_record
-from cagepose.files.units import LengthUnit
+from cagepose.files.units import LENGTH_UNITS, LengthUnit
+from cagepose.files.write import check_can_write, write_whole
 from cagepose.runs.run import Run
 
 
@@ -26,17 +28,7 @@ def save_run(run: Run, path: str | os.PathLike[str], length_unit: LengthUnit = "
     """
     check_can_save(path)
     content = {**run_document(run, length_unit), "exact": run_record(run)}
-    target = Path(path).resolve()  # a link stays a link; what it points to is replaced
-    partial = target.with_name(f".{target.name}.{os.getpid()}.part")
-    try:
-        with partial.open("w", encoding="utf-8") as stream:
-            json.dump(content, stream, indent=1, allow_nan=False)
-            stream.write("\n")
-            stream.flush()
-            os.fsync(stream.fileno())
-        partial.replace(target)
-    finally:
-        partial.unlink(missing_ok=True)
+    write_whole(path, (json.dumps(content, indent=1, allow_nan=False) + "\n").encode())
 
 
 def check_can_save(path: str | os.PathLike[str]) -> None:
@@ -45,29 +37,32 @@ def check_can_save(path: str | os.PathLike[str]) -> None:
     Raises
     ------
     OSError
-        It cannot: no such folder, a folder or device of that name, no permission, or a file with other content stands
-        there.
+        It cannot, see `check_can_write`.
     """
-    if "\0" in os.fspath(path):
-        raise OSError("is not a file name; remove the unprintable character")
-    target = Path(path).resolve()
-    if target.is_dir():
-        raise IsADirectoryError("is a directory; name a file in it")
-    if target.exists() and not target.is_file():
-        raise OSError("is not a regular file; name another")
-    if target.exists() and not _holds_nothing_else(target):
-        raise FileExistsError("holds something else than a saved run; name another file, or remove it first")
-    if not target.parent.is_dir():
-        raise FileNotFoundError("its folder does not exist; make the folder first")
-    if not os.access(target.parent, os.W_OK | os.X_OK):
-        raise PermissionError("its folder cannot be written; name another")
+    check_can_write(path, lambda target: _is_blank(target) or looks_like_run(target), "a saved run")
 
 
-def _holds_nothing_else(target: Path) -> bool:
-    """Whether a file is empty or starts as a saved run does, so that nobody's work is lost when it is replaced."""
+def looks_like_run(path: str | os.PathLike[str]) -> bool:
+    """Whether a file that can be read starts as a saved run does; a scene file never does."""
+    try:
+        with Path(path).open("rb") as stream:
+            head = stream.read(100)
+    except (OSError, ValueError):
+        return False
+    return head.lstrip().startswith(b"{") and b'"version"' in head
+
+
+def _is_blank(target: Path) -> bool:
     with target.open("rb") as stream:
-        head = stream.read(100)
-    return not head.strip() or (head.lstrip().startswith(b"{") and b'"version"' in head)
+        return not stream.read(100).strip()
+
+
+@dataclass(frozen=True)
+class RunFile:
+    """A saved run, and the unit that its file shows lengths in."""
+
+    run: Run
+    length_unit: LengthUnit
 
 
 def load_run(path: str | os.PathLike[str]) -> Run:
@@ -77,6 +72,17 @@ def load_run(path: str | os.PathLike[str]) -> Run:
     ------
     RunFileError
         Not readable, not a saved run, of an unknown version, or damaged.
+    """
+    return read_run_file(path).run
+
+
+def read_run_file(path: str | os.PathLike[str]) -> RunFile:
+    """As `load_run`, and keep the file's length unit.
+
+    Raises
+    ------
+    RunFileError
+        As `load_run`.
     """
     source = os.fspath(path)
 
@@ -94,8 +100,11 @@ def load_run(path: str | os.PathLike[str]) -> Run:
         )
     if "exact" not in content:
         refuse("is what --json prints, without the exact numbers; save the run with --out FILE instead")
+    unit = content["units"].get("length") if isinstance(content.get("units"), dict) else None
+    if unit not in LENGTH_UNITS:
+        refuse(f"is damaged: units.length is {unit!r}; run the scene again")
     try:
-        return run_from_record(content["exact"])
+        return RunFile(run_from_record(content["exact"]), unit)
     except ValidationError as error:
         first = error.errors()[0]
         place = key_path(("exact", *first["loc"]))

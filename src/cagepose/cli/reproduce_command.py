@@ -1,0 +1,73 @@
+"""``cagepose reproduce``: the paper's cases, run anew."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from cagepose.cli.first_run import announce_compilation
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from cagepose.studies.reproduction import Progress, Reproduction
+
+
+def reproduce_command(
+    *, out: Annotated[str, Parameter(help="Folder for the report; made if it is not there.")] = "reproduction"
+) -> int:
+    """Run the paper's cases, write a report with pictures, and print its numbers beside ours."""
+    from cagepose.errors import printable
+    from cagepose.faces.extra import require_matplotlib
+
+    require_matplotlib()
+    from cagepose.faces.report import check_report_folder, write_report
+    from cagepose.studies.reproduction import METHODS, reproduce
+
+    try:
+        check_report_folder(out, METHODS)
+        announce_compilation(METHODS)
+        progress = _teller()
+        reproduction = reproduce(METHODS, progress)
+        written = write_report(out, reproduction, progress)
+    except OSError as error:
+        sys.stderr.write(printable(f"--out {out}: {error.strerror or error}") + "\n")
+        return 2
+    from cagepose.cli.console import print_all
+
+    print_all(_table(reproduction))
+    sys.stdout.write(printable(f"wrote {written[0]}, {written[1]} and {len(written) - 2} picture files") + "\n")
+    return 0
+
+
+def _teller() -> Progress:
+    """Return what tells on standard error what begins, and how many seconds after now."""
+    began = time.perf_counter()
+
+    def tell(step: str) -> None:
+        sys.stderr.write(f"[{time.perf_counter() - began:4.1f} s] {step}\n")
+        sys.stderr.flush()
+
+    return tell
+
+
+def _table(reproduction: Reproduction) -> Table:
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+    from rich.text import Text
+
+    from cagepose.faces.comparison_table import cells, headings
+
+    styles = {"agrees": "green", "differs": "red", "not derivable": "yellow", "measured": "blue"}
+    table = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
+    for heading in headings(reproduction.methods):
+        table.add_column(heading, overflow="fold")
+    for row in reproduction.rows:
+        *numbers, explanation = cells(row)
+        last = Text(explanation)
+        last.stylize(styles[row.status], 0, len(row.status) + 1)
+        table.add_row(*(Text(number) for number in numbers), last)
+    return table

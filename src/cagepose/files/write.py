@@ -1,0 +1,71 @@
+"""Files that we write: whole or not at all, and never over somebody else's work."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+MADE_BY = "made by cagepose"
+"""Stands in every picture and report that we write, so that the next one may replace it."""
+MAX_OWN_BYTES = 64 * 1024 * 1024
+"""No picture or report of ours is larger; what is, is not searched for the mark."""
+
+
+def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
+    """Write a file, whole or not at all.
+
+    Raises
+    ------
+    OSError
+        It cannot be written.
+    """
+    target = Path(path).resolve()  # a link stays a link; what it points to is replaced
+    partial = target.with_name(f".{target.name}.{os.getpid()}.part")
+    try:
+        with partial.open("wb") as stream:
+            stream.write(content)
+            stream.flush()
+            os.fsync(stream.fileno())
+        partial.replace(target)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def check_can_write(path: str | os.PathLike[str], may_replace: Callable[[Path], bool], what: str) -> None:
+    """Find out before long work whether `write_whole` can write to ``path``.
+
+    Parameters
+    ----------
+    path
+        The file.
+    may_replace
+        Says of a file that stands there whether it is one of ours.
+    what
+        What such a file is, for the message: "a saved run".
+
+    Raises
+    ------
+    OSError
+        It cannot: no such folder, a folder or device of that name, no permission, or a file with other content stands
+        there.
+    """
+    if "\0" in os.fspath(path):
+        raise OSError("is not a file name; remove the unprintable character")
+    target = Path(path).resolve()
+    if target.is_dir():
+        raise IsADirectoryError("is a directory; name a file in it")
+    if target.exists() and not target.is_file():
+        raise OSError("is not a regular file; name another")
+    if target.exists() and not may_replace(target):
+        raise FileExistsError(f"holds something else than {what}; name another file, or remove it first")
+    if not target.parent.is_dir():
+        raise FileNotFoundError("its folder does not exist; make the folder first")
+    if not os.access(target.parent, os.W_OK | os.X_OK):
+        raise PermissionError("its folder cannot be written; name another")
+
+
+def is_made_by_us(target: Path) -> bool:
+    """Whether a file is empty or bears our mark."""
+    size = target.stat().st_size
+    return size == 0 or (size <= MAX_OWN_BYTES and MADE_BY.encode() in target.read_bytes())

@@ -1,0 +1,104 @@
+"""A phase's end seen along its load: the polygon of the contacts, and where the load's line passes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cagepose.nouns.checks import FloatArray, unit_vector
+from cagepose.nouns.load import Load
+from cagepose.runs.run import Run
+
+
+@dataclass(frozen=True, eq=False)
+class LoadView:
+    """What someone sees who looks along the load, in metres.
+
+    Attributes
+    ----------
+    right_world, up_world
+        Unit vectors of the picture's axes, (3,). Under gravity along -z these are x and y: a view from above.
+    load_point
+        Where the load's line passes, (2,).
+    polygon
+        Corners of the convex hull of the contacts, counter-clockwise, (n, 2).
+    margin_m
+        Distance of the load's line from the hull's outline: above zero inside, below zero outside. A hull without area
+        has no inside.
+    """
+
+    right_world: FloatArray
+    up_world: FloatArray
+    load_point: FloatArray
+    polygon: FloatArray
+    margin_m: float
+
+    def project(self, points_world: FloatArray) -> FloatArray:
+        """Return points of the world, (n, 3), in the picture, (n, 2)."""
+        return points_world @ np.stack([self.right_world, self.up_world], axis=1)
+
+
+def load_view(run: Run, phase_index: int) -> LoadView:
+    """Look along the load of a phase at the pose where the phase ended."""
+    load, phase = run.scene.loads[phase_index], run.phases[phase_index]
+    direction = load_direction_world(load)
+    # The picture's vertical is y for a vertical load, else z: the world as people draw it.
+    vertical = np.array([0.0, 1.0, 0.0]) if abs(direction[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
+    up = unit_vector(vertical - (vertical @ direction) * direction, "up")
+    right = np.cross(direction, up) + 0.0  # no negative zeros
+    axes = np.stack([right, up], axis=1)
+    load_point = phase.pose.transform(load_point_object(run, load)) @ axes
+    names = {contact.point for contact in phase.contacts}
+    touching = [index for index, name in enumerate(run.scene.cage.names) if name in names]
+    polygon = convex_hull(run.scene.cage.points_world()[touching] @ axes)
+    return LoadView(right, up, load_point, polygon, _margin(polygon, load_point))
+
+
+def load_direction_world(load: Load) -> FloatArray:
+    """Return the direction that counts: the force's, else that of gravity, (3,)."""
+    if load.force is not None:
+        return load.force.direction_world
+    assert load.gravity_world is not None
+    return unit_vector(load.gravity_world, "gravity")
+
+
+def load_point_object(run: Run, load: Load) -> FloatArray:
+    """Return where it acts, in the object's frame, (3,), metres."""
+    return run.scene.object.center_of_gravity_m if load.force is None else load.force.at_object_m
+
+
+def convex_hull(points: FloatArray) -> FloatArray:
+    """Return the corners of the convex hull of points in a plane, (n, 2), counter-clockwise (Andrew's algorithm).
+
+    >>> convex_hull(np.array([[0.0, 0.0], [2.0, 0.0], [1.0, 0.5], [1.0, 2.0]])).tolist()
+    [[0.0, 0.0], [2.0, 0.0], [1.0, 2.0]]
+    """
+    ordered = sorted({(x, y) for x, y in points.tolist()})
+    if len(ordered) < 3:
+        return np.array(ordered).reshape(-1, 2)
+    chains = []
+    for sequence in (ordered, ordered[::-1]):
+        chain: list[tuple[float, float]] = []
+        for point in sequence:
+            while len(chain) >= 2 and _turns_left(chain[-2], chain[-1], point) <= 0.0:
+                chain.pop()
+            chain.append(point)
+        chains += chain[:-1]
+    return np.array(chains)
+
+
+def _turns_left(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _margin(polygon: FloatArray, point: FloatArray) -> float:
+    if len(polygon) == 0:
+        return -np.inf
+    ends = np.roll(polygon, -1, axis=0)
+    along, to_point = ends - polygon, point - polygon
+    squares = np.maximum((along**2).sum(axis=1), np.finfo(np.float64).tiny)
+    fractions = np.clip((along * to_point).sum(axis=1) / squares, 0.0, 1.0)
+    distance = float(np.linalg.norm(to_point - fractions[:, None] * along, axis=1).min())
+    crossing = along[:, 0] * to_point[:, 1] - along[:, 1] * to_point[:, 0]
+    return distance if len(polygon) > 2 and (crossing > 0.0).all() else -distance

@@ -1,0 +1,80 @@
+"""``cagepose reproduce``: table, progress, report and refusals."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cagepose import run
+from cagepose.faces.report import report_files
+from cagepose.studies.reproduction import METHODS
+from cagepose.studies.sample import sample_scene
+
+Command = Callable[..., Any]
+
+
+def test_the_whole_command_writes_a_report_prints_the_table_and_takes_under_30_s(
+    command: Command, in_folder: Path
+) -> None:
+    for method in METHODS:
+        run(sample_scene(), method=method)  # so that compiling, if need be, is not counted
+    began_s = time.process_time()  # of this process, whatever else the machine does
+    answer = command("reproduce", "--out", "report")
+    assert time.process_time() - began_s < 30.0
+    assert answer.code == 0
+    assert sorted(path.name for path in (in_folder / "report").iterdir()) == sorted(report_files(METHODS))
+    rows = [re.split(r"\s{2,}", line) for line in answer.out.splitlines()]
+    assert rows[0] == [
+        "section", "quantity", "paper", "stepwise", "quasistatic", "closed form", "difference", "explanation",
+    ]  # fmt: skip
+    assert [row[:7] for row in rows if row[:2] == ["IV.B", "pitch after the weight"]] == [
+        ["IV.B", "pitch after the weight", "0.392 deg", *3 * ["0.413084 deg"], "+0.021084 deg"]
+    ]
+    assert len(rows) == 32
+    assert answer.out.endswith("wrote report/report.html, report/report.md and 28 picture files\n")
+    steps = [line for line in answer.err.splitlines() if line.startswith("[")]
+    assert len(steps) == 22
+    seconds = [float(step[1:].split()[0]) for step in steps]
+    assert seconds == sorted(seconds)
+
+
+@pytest.mark.parametrize(
+    ("out", "reason"),
+    [
+        ("file", "is not a folder; name one, or a new one"),
+        ("none/new", "cannot be made, as the folder that it would lie in does not exist; make that first"),
+        (
+            ".",
+            "report.md holds something else than a file of an earlier report; name another file, or remove it first",
+        ),
+    ],
+)
+def test_a_folder_that_cannot_be_is_refused_before_the_runs(
+    command: Command, in_folder: Path, monkeypatch: pytest.MonkeyPatch, out: str, reason: str
+) -> None:
+    def never(*_: object) -> None:
+        raise AssertionError("nothing may run before the folder is checked")
+
+    (in_folder / "file").write_text("mine", encoding="utf-8")
+    (in_folder / "report.md").write_text("mine", encoding="utf-8")
+    monkeypatch.setattr("cagepose.studies.reproduction.reproduce", never)
+    assert command("reproduce", "--out", out) == (2, "", f"--out {out}: {reason}\n")
+    assert (in_folder / "report.md").read_text(encoding="utf-8") == "mine"
+    assert len(list(in_folder.iterdir())) == 2
+
+
+def test_a_disk_that_fills_up_is_told(command: Command, in_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full_disk(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("cagepose.studies.reproduction.reproduce", lambda *_: None)
+    monkeypatch.setattr("cagepose.faces.report.write_report", full_disk)
+    answer = command("reproduce")
+    assert answer.code == 2
+    assert answer.err.endswith("--out reproduction: No space left on device\n")
+    assert list(in_folder.iterdir()) == []
