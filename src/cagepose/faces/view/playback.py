@@ -1,0 +1,229 @@
+"""A run as something to play: shots from the start to the end, and a row of words for each event."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cagepose.faces.view.surface import nearest_on_object
+from cagepose.files.units import LengthUnit
+from cagepose.nouns.checks import FloatArray
+from cagepose.nouns.pose import Pose
+from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
+from cagepose.runs.weights import weigh
+
+SHOTS_PER_MOTION = 24
+"""One second of film for each motion."""
+ESCAPE = 0.6
+"""How much of a travel without end is shown, in sizes of the scene; of a turn, in radians."""
+LEAST_ARROW = 0.01
+"""A load or force below this fraction of the greatest of its phase is not drawn; its arrow would be a dot."""
+
+
+@dataclass(frozen=True, eq=False)
+class Touch:
+    """One contact in one shot.
+
+    Attributes
+    ----------
+    point_index
+        Which cage point.
+    box
+        Name of the box that it touches.
+    normal_world
+        Outward unit normal of the face, (3,).
+    force_world
+        Force on the object, (3,), newtons or parts of the load; None: not known, as during a motion.
+    """
+
+    point_index: int
+    box: str
+    normal_world: FloatArray
+    force_world: FloatArray | None
+
+
+@dataclass(frozen=True, eq=False)
+class Shot:
+    """One moment of a run.
+
+    Attributes
+    ----------
+    row
+        Index of the event that is going on; -1 at the start.
+    phase
+        Index of the phase.
+    pose_world_object
+        Where the object is.
+    touches
+        What touches it there.
+    """
+
+    row: int
+    phase: int
+    pose_world_object: Pose
+    touches: tuple[Touch, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """One event, for the list beside the picture.
+
+    Attributes
+    ----------
+    phase
+        Index of the phase.
+    event
+        What happened.
+    verdict
+        How the phase ended, if this was its last event.
+    first_shot, last_shot
+        Where in the playback; the shot before ``first_shot`` is the one where the event began.
+    """
+
+    phase: int
+    event: Event
+    verdict: str | None
+    first_shot: int
+    last_shot: int
+
+
+@dataclass(frozen=True, eq=False)
+class LoadArrow:
+    """A weight or a push.
+
+    Attributes
+    ----------
+    name
+        "weight" or the phase's name.
+    at_object_m
+        Where it acts, in the object's frame, (3,), metres.
+    force_world
+        In newtons or parts of the load, (3,).
+    """
+
+    name: str
+    at_object_m: FloatArray
+    force_world: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Playback:
+    """All that a viewer shows of a run.
+
+    Attributes
+    ----------
+    run, length_unit
+        What is shown, and the unit of lengths on screen.
+    points_world
+        The cage, (n, 3), metres.
+    shots, rows
+        The film and its list of events.
+    loads
+        For each phase that was run, what pushes.
+    """
+
+    run: Run
+    length_unit: LengthUnit
+    points_world: FloatArray
+    shots: tuple[Shot, ...]
+    rows: tuple[Row, ...]
+    loads: tuple[tuple[LoadArrow, ...], ...]
+
+
+def playback(run: Run, length_unit: LengthUnit = "mm", shots_per_motion: int = SHOTS_PER_MOTION) -> Playback:
+    """Turn a run into shots and rows; each motion gets ``shots_per_motion`` of them, each finding one."""
+    camera = _Camera(run, shots_per_motion)
+    for phase_index, phase in enumerate(run.phases):
+        camera.shoot(phase_index, phase)
+    loads = tuple(_load_arrows(run, index) for index in range(len(run.phases)))
+    return Playback(run, length_unit, camera.points_world, tuple(camera.shots), tuple(camera.rows), loads)
+
+
+class _Camera:
+    def __init__(self, run: Run, shots_per_motion: int) -> None:
+        self.run = run
+        self.shots_per_motion = shots_per_motion
+        self.points_world = run.scene.cage.points_world()
+        self.names = run.scene.cage.names
+        self.index = {name: index for index, name in enumerate(self.names)}
+        self.shots: list[Shot] = [Shot(-1, 0, run.phases[0].start_pose, ())]
+        self.rows: list[Row] = []
+
+    def shoot(self, phase_index: int, phase: PhaseRun) -> None:
+        pose, before = phase.start_pose, frozenset[str]()
+        for event in phase.events:
+            last = event is phase.events[-1]
+            first_shot, row = len(self.shots), len(self.rows)
+            escape = _escape(phase, self.run.scene.size_m) if last else None
+            end = event.pose_world_object if escape is None else escape.pose_at(pose, 1.0)
+            is_held = last and escape is None
+            touches = self._touches(end, event.contacts)
+            kept = tuple(touch for touch in touches if self.names[touch.point_index] in before)
+            for way in self._way(pose, event, escape):
+                self.shots.append(Shot(row, phase_index, way, _turned(kept, end, way)))
+            self.shots.append(Shot(row, phase_index, end, self._held(phase.contacts) if is_held else touches))
+            verdict = phase.verdict if last else None
+            self.rows.append(Row(phase_index, event, verdict, first_shot, len(self.shots) - 1))
+            pose, before = event.pose_world_object, frozenset(event.contacts)
+
+    def _way(self, start: Pose, event: Event, escape: Motion | None) -> list[Pose]:
+        fractions = [step / self.shots_per_motion for step in range(1, self.shots_per_motion)]
+        if escape is not None:
+            return [escape.pose_at(start, fraction) for fraction in fractions]
+        if event.motion is None:
+            return []
+        return [self.run.pose_on_the_way(start, event, fraction) for fraction in fractions]
+
+    def _touches(self, pose: Pose, names: tuple[str, ...]) -> tuple[Touch, ...]:
+        indices = [self.index[name] for name in names]
+        held = self.run.scene.object
+        nearest = nearest_on_object(held, pose, self.points_world[indices])
+        return tuple(
+            Touch(index, str(held.boxes[box].name), normal, None)
+            for index, box, normal in zip(indices, nearest.boxes.tolist(), nearest.normals_world, strict=True)
+        )
+
+    def _held(self, contacts: tuple[Contact, ...]) -> tuple[Touch, ...]:
+        return tuple(
+            Touch(self.index[contact.point], contact.box, contact.normal_world, _force(contact)) for contact in contacts
+        )
+
+
+def _escape(phase: PhaseRun, size_m: float) -> Motion | None:
+    """Return as much as is shown of the motion by which an object gets away at the end of a phase."""
+    motion = phase.events[-1].motion
+    if phase.verdict != "escapes" or (motion is not None and math.isfinite(motion.distance_m)):
+        return None
+    if motion is not None:
+        return replace(motion, distance_m=ESCAPE * size_m)
+    onset = phase.proof.motion
+    if onset is None:
+        return None
+    way_m, angle = (ESCAPE * size_m, 0.0) if onset.kind == "travel" else (ESCAPE * onset.pitch_m, ESCAPE)
+    return Motion(onset.kind, onset.direction_world, onset.axis_world, onset.through_world, way_m, angle)
+
+
+def _turned(touches: tuple[Touch, ...], end: Pose, way: Pose) -> tuple[Touch, ...]:
+    """Return contacts at the end of a motion as they are on the way there, where their normals turn with the object."""
+    turn = way.rotation @ end.rotation.T
+    return tuple(replace(touch, normal_world=turn @ touch.normal_world) for touch in touches)
+
+
+def _force(contact: Contact) -> FloatArray | None:
+    if contact.force_normal_n is None:
+        return None
+    sideways = np.zeros(3) if contact.force_tangential_n is None else contact.force_tangential_n
+    force: FloatArray = sideways - contact.force_normal_n * contact.normal_world
+    return force
+
+
+def _load_arrows(run: Run, phase: int) -> tuple[LoadArrow, ...]:
+    load = run.scene.loads[phase]
+    weighed = weigh(run.scene, load)
+    arrows = [LoadArrow("weight", run.scene.object.center_of_gravity_m, weighed.gravity)]
+    if load.force is not None:
+        arrows.append(LoadArrow(load.name, load.force.at_object_m, weighed.force))
+    greatest = max(float(np.linalg.norm(arrow.force_world)) for arrow in arrows)
+    return tuple(arrow for arrow in arrows if float(np.linalg.norm(arrow.force_world)) > LEAST_ARROW * greatest)
