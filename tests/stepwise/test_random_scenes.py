@@ -20,6 +20,7 @@ from balance import imbalance
 from cagepose import PhaseRun, Run, Scene
 from cagepose.kernels.contacts import deepest_boxes
 from cagepose.kernels.metric import Body
+from cagepose.kernels.record import empty_record
 from jit import cases
 from random_scenes import random_scenes
 from stepwise_run import run
@@ -65,7 +66,11 @@ def assert_forces_are_those_of_a_balance(scene: Scene, phase: PhaseRun) -> None:
 
 
 def ball(scene: Scene) -> Body:
-    return Body(np.eye(3), np.full(3, scene.size_m), scene.size_m)
+    body = empty_record(Body)
+    body.axes_object[:] = np.eye(3)
+    body.radii[:] = scene.size_m
+    body.reach_m = scene.size_m
+    return body
 
 
 def test_random_scenes_end_by_name_and_nobody_is_ever_inside(capsys, monkeypatch):
