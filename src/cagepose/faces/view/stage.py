@@ -38,6 +38,8 @@ class Stage:
         The origin of drawing coordinates, (3,), metres.
     size_m
         Their unit.
+    feet_world
+        The place of the object at the start that is nearest to each cage point, (n, 3), metres.
     radius
         A sphere about the origin that holds the cage and the object at the start and the end, in drawing units.
     """
@@ -48,7 +50,7 @@ class Stage:
         self.size_m = scene.size_m
         self.center_object_m = scene.object.center_of_gravity_m
         self.reference = shown.shots[0].pose_world_object
-        self._nearest = nearest_on_object(scene.object, self.reference, shown.points_world)
+        self.feet_world = nearest_on_object(scene.object, self.reference, shown.points_world).feet_world
         corners = np.concatenate([box.corners_object() for box in scene.object.boxes])
         ends = (self.reference, shown.shots[-1].pose_world_object)
         everything = np.concatenate([shown.points_world, *(pose.transform(corners) for pose in ends)])
@@ -72,7 +74,7 @@ class Stage:
 
     def points(self, exaggeration: float) -> FloatArray:
         """Return where the cage points are shown, (n, 3), metres in the world."""
-        gaps = self.shown.points_world - self._nearest.feet_world
+        gaps = self.shown.points_world - self.feet_world
         lengths = np.linalg.norm(gaps, axis=1, keepdims=True)
         most = MOST_ADDED * self.size_m / np.maximum(lengths, np.finfo(np.float64).tiny)
         moved: FloatArray = self.shown.points_world + np.minimum(exaggeration - 1.0, most) * gaps

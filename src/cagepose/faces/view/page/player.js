@@ -1,0 +1,174 @@
+// The page: what time it is, how much motions are exaggerated, and everything that shows or changes that.
+
+const $ = (id) => document.getElementById(id);
+const data = JSON.parse($("data").textContent);
+const SHOTS_A_SECOND = 24, PAUSE_S = 0.35;
+
+const stage = new Stage(data);
+const end = stage.shots.length - 1;
+const player = { time: end, playing: false, exaggeration: data.exaggeration, drawn: 0, drawnTime: null, drawMs: null };
+let drawing = null, waiting = false, resting = 0, lastTick = null;
+
+const plot = new Plot(data, $("plot"), (time) => { pause(); seek(time); });
+try {
+  drawing = new Drawing(stage, $("scene"), $("labels"), refresh);
+} catch (error) {
+  $("trouble").textContent = error.message;
+  $("trouble").hidden = false;
+}
+
+function refresh() {
+  if (waiting) return;
+  waiting = true;
+  requestAnimationFrame(() => { waiting = false; show(); });
+}
+
+function seek(time) {
+  player.time = Math.max(0, Math.min(end, time));
+  refresh();
+}
+
+function pause() {
+  player.playing = false;
+  lastTick = null;
+  refresh();
+}
+
+function play() {
+  if (player.time >= end) player.time = 0;
+  player.playing = true;
+  requestAnimationFrame(tick);
+}
+
+// Film time goes on with the clock, and rests a moment where an event ends.
+function tick(now) {
+  if (!player.playing) return;
+  const passed = lastTick === null ? 0 : Math.min(0.1, (now - lastTick) / 1000);
+  lastTick = now;
+  if (resting > 0) resting -= passed;
+  else {
+    const before = player.time;
+    const stop = data.rows.map((row) => row.last).find((last) => last > before && last <= before + SHOTS_A_SECOND * passed);
+    player.time = Math.min(end, stop ?? before + SHOTS_A_SECOND * passed);
+    if (stop !== undefined) resting = PAUSE_S;
+    refresh();
+  }
+  if (player.time >= end) pause();
+  else requestAnimationFrame(tick);
+}
+
+function step(direction) {
+  pause();
+  const ends = [0, ...data.rows.map((row) => row.last)];
+  const target = direction > 0 ? ends.find((last) => last > player.time) : ends.findLast((last) => last < player.time);
+  seek(target ?? (direction > 0 ? end : 0));
+}
+
+function element(tag, text, className) {
+  const made = document.createElement(tag);
+  made.textContent = text;
+  if (className) made.className = className;
+  return made;
+}
+
+function fillOnce() {
+  $("name").textContent = data.name;
+  $("verdict").textContent = data.verdict;
+  $("verdict").className = data.verdictKind;
+  $("method").textContent = `${data.method}, ${data.solve}`;
+  data.rows.forEach((row, index) => {
+    const line = element("tr", "", index > 0 && data.rows[index - 1].phase !== row.phase ? "phase" : "");
+    const motion = element("td", row.verdict ? [row.motion, row.verdict].filter(Boolean).join(", ") : row.motion);
+    if (row.verdict) motion.className = row.verdictKind;
+    line.append(element("td", String(index + 1)), element("td", data.phases[row.phase].name), element("td", row.rule), motion,
+      element("td", row.amount), namesCell(row.hit), namesCell(row.contacts));
+    line.addEventListener("click", () => { pause(); seek(row.last); });
+    $("events").tBodies[0].append(line);
+  });
+  $("forceunit").textContent = data.forceUnit;
+  data.notes.forEach((note) => $("notes").append(element("p", note)));
+  $("time").max = end;
+  $("exaggeration").max = data.exaggerations.length - 1;
+  $("exaggeration").value = data.exaggerations.indexOf(data.exaggeration);
+  if (drawing) $("names").checked = drawing.allNames;
+}
+
+// Names in a cell: those of a crowd can be read when the mouse rests on it.
+function namesCell(names) {
+  const cell = element("td", names.length > 16 ? `${names.slice(0, 12).join(" ")} and ${names.length - 12} more` : names.join(" "));
+  cell.title = names.join(" ");
+  return cell;
+}
+
+const digits = (value) => +value.toPrecision(6);
+
+function show() {
+  const start = performance.now();
+  const { time, exaggeration: k } = player;
+  const shot = stage.shot(time);
+  const after = data.shots[Math.ceil(time)], before = data.shots[Math.floor(time)];
+  const mixed = (key) => after[key].map((value, i) => digits(before[key][i] + (time - Math.floor(time)) * (value - before[key][i])));
+  if (drawing) drawing.draw(time, k);
+  plot.draw(time);
+  $("time").value = time;
+  $("play").textContent = player.playing ? "\u275A\u275A" : "\u25B6";
+  $("times").textContent = `\u00D7${k}`;
+  $("badge").textContent = k === 1 ? "true scale" : `motions and gaps exaggerated \u00D7${k}`;
+  $("badge").className = k === 1 ? "" : "exaggerated";
+  [...$("events").tBodies[0].rows].forEach((line, index) => {
+    if (index === shot.row && !line.classList.contains("now")) line.scrollIntoView({ block: "nearest" });
+    line.classList.toggle("now", index === shot.row);
+  });
+  $("pose").replaceChildren(
+    element("dt", "origin"), element("dd", `${mixed("origin").join(", ")} ${data.unit}`),
+    element("dt", "yaw, pitch, roll"), element("dd", `${mixed("angles").join(", ")} deg`),
+    element("dt", "phase"), element("dd", data.phases[shot.phase].name));
+  $("forces").tBodies[0].replaceChildren(...forceRows(shot));
+  player.drawn += 1;
+  player.drawnTime = time;
+  player.drawMs = performance.now() - start;
+}
+
+function forceRows(shot) {
+  if (!shot.touches.some((touch) => touch.force)) return [element("tr", shot.touches.length ? "known where a phase ends" : "nothing touches")];
+  const loaded = shot.touches.filter((touch) => norm(touch.force) > 1e-9 * data.greatestForce);
+  const idle = shot.touches.length - loaded.length;
+  const lines = loaded.map((touch) => {
+    const size = norm(touch.force);
+    const line = element("tr", "");
+    const bar = element("span", "", "bar");
+    bar.style.width = `${100 * size / data.greatestForce}%`;
+    const cell = element("td", "");
+    cell.style.width = "50%";
+    cell.append(bar);
+    line.append(element("td", `${data.names[touch.point]} on ${touch.box}`), element("td", size.toPrecision(4)), cell);
+    return line;
+  });
+  return idle ? [...lines, element("tr", `${idle} more touch without a force`)] : lines;
+}
+
+const toggle = () => (player.playing ? pause() : play());
+$("play").addEventListener("click", toggle);
+$("first").addEventListener("click", () => { pause(); seek(0); });
+$("last").addEventListener("click", () => { pause(); seek(end); });
+$("back").addEventListener("click", () => step(-1));
+$("next").addEventListener("click", () => step(1));
+$("time").addEventListener("input", () => { pause(); seek(Number($("time").value)); });
+$("exaggeration").addEventListener("input", () => { player.exaggeration = data.exaggerations[$("exaggeration").value]; refresh(); });
+$("names").addEventListener("change", () => { drawing.allNames = $("names").checked; refresh(); });
+document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => drawing?.camera.home(button.dataset.view)));
+document.addEventListener("keydown", (event) => {
+  if (event.target.matches("input, button")) return;
+  const act = { " ": toggle, ArrowLeft: () => step(-1), ArrowRight: () => step(1), Home: () => seek(0), End: () => seek(end) }[event.key];
+  if (act) { event.preventDefault(); act(); }
+});
+window.addEventListener("resize", refresh);
+
+// What is on screen, for other scripts and for tests.
+window.cagepose = {
+  state: () => ({ ...player, row: stage.shot(player.time).row, shownPose: stage.shownPose(stage.truePose(player.time), player.exaggeration),
+    points: data.names.map((_, index) => stage.point(index, player.exaggeration)) }),
+};
+
+fillOnce();
+refresh();
