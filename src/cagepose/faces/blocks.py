@@ -83,6 +83,4 @@ Block = Heading | Paragraph | Bullets | Table | Picture
 
 def picture(stem: str, figure: Figure, caption: str, alternative: str) -> Picture:
     """Write a figure in both forms."""
-    png = figure_bytes(figure, ".png")
-    figure.set_layout_engine("none")  # it is laid out by now; once more would take 0.2 s
-    return Picture(stem, caption, alternative, png, figure_bytes(figure, ".svg"))
+    return Picture(stem, caption, alternative, figure_bytes(figure, ".png"), figure_bytes(figure, ".svg"))
