@@ -15,6 +15,7 @@ from cagepose.faces.view.page import page
 from cagepose.faces.view.playback import playback
 from cagepose.faces.view.stage import EXAGGERATIONS, Stage
 from cagepose.files.write import MADE_BY
+from driving import set_range, state, wait_until
 
 SCENES = Path(__file__).resolve().parents[3] / "scenes"
 
@@ -38,23 +39,6 @@ def opened(watched, tmp_path) -> Callable:
         return watched.page
 
     return open_page
-
-
-def state(page):
-    return page.evaluate("cagepose.state()")
-
-
-def wait_until(page, condition: str) -> None:
-    """Ask again and again from outside: the page itself must not evaluate text."""
-    for _ in range(400):
-        if page.evaluate(condition):
-            return
-        page.wait_for_timeout(50)
-    pytest.fail(f"never became true: {condition}")
-
-
-def set_range(page, name: str, value: float) -> None:
-    page.evaluate(f"(v) => {{ {name}.value = v; {name}.dispatchEvent(new Event('input')); }}", value)
 
 
 def test_the_page_opens_at_the_end_with_the_verdict_and_the_forces(opened, rail):

@@ -45,6 +45,7 @@ class _Writer:
             "unit": self.shown.length_unit,
             "unitsPerDrawing": float(from_metres(stage.size_m, self.shown.length_unit)),
             "radius": stage.radius,
+            "shotsPerMotion": self.shown.shots_per_motion,
             "mostAdded": MOST_ADDED,
             "exaggeration": stage.proposed,
             "exaggerations": list(EXAGGERATIONS),

@@ -120,6 +120,8 @@ class Playback:
         The cage, (n, 3), metres.
     shots, rows
         The film and its list of events.
+    shots_per_motion
+        How many shots each motion has.
     loads
         For each phase that was run, what pushes.
     """
@@ -129,6 +131,7 @@ class Playback:
     points_world: FloatArray
     shots: tuple[Shot, ...]
     rows: tuple[Row, ...]
+    shots_per_motion: int
     loads: tuple[tuple[LoadArrow, ...], ...]
 
 
@@ -138,7 +141,9 @@ def playback(run: Run, length_unit: LengthUnit = "mm", shots_per_motion: int = S
     for phase_index, phase in enumerate(run.phases):
         camera.shoot(phase_index, phase)
     loads = tuple(_load_arrows(run, index) for index in range(len(run.phases)))
-    return Playback(run, length_unit, camera.points_world, tuple(camera.shots), tuple(camera.rows), loads)
+    return Playback(
+        run, length_unit, camera.points_world, tuple(camera.shots), tuple(camera.rows), shots_per_motion, loads
+    )
 
 
 class _Camera:

@@ -34,23 +34,21 @@ def nearest_on_object(held: Object, pose: Pose, points_world: FloatArray) -> Nea
 
     Of a point inside, the place is on the nearest face of the box in which it lies deepest.
     """
-    n_points = len(points_world)
-    gaps = np.full(n_points, np.inf)
-    nearest = Nearest(np.zeros((n_points, 3)), np.zeros((n_points, 3)), np.zeros(n_points, dtype=np.int64))
-    for index, box in enumerate(held.boxes):
-        pose_world_box = pose @ box.pose_object_box
-        points, half = pose_world_box.inverse_transform(points_world), box.size_m / 2.0
-        beyond = np.abs(points) - half
-        axes, rows = beyond.argmax(axis=1), np.arange(n_points)
-        outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=1)
-        gap = np.where(outside > 0.0, outside, beyond[rows, axes])
-        sides = np.where(points[rows, axes] < 0.0, -1.0, 1.0)
-        feet, normals = np.clip(points, -half, half), np.zeros((n_points, 3))
-        feet[rows, axes] = sides * half[axes]
-        normals[rows, axes] = sides
-        closer = gap < gaps
-        gaps[closer] = gap[closer]
-        nearest.feet_world[closer] = pose_world_box.transform(feet)[closer]
-        nearest.normals_world[closer] = (normals @ pose_world_box.rotation.T)[closer]
-        nearest.boxes[closer] = index
-    return nearest
+    turns = np.array([box.pose_object_box.rotation for box in held.boxes])
+    middles = np.array([box.pose_object_box.position_m for box in held.boxes])
+    halves = np.array([box.size_m for box in held.boxes])[:, None, :] / 2.0
+    points = (
+        pose.inverse_transform(points_world) - middles[:, None, :]
+    ) @ turns  # (n_boxes, n, 3), in each box's frame
+    beyond = np.abs(points) - halves
+    outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=2)
+    gaps = np.where(outside > 0.0, outside, beyond.max(axis=2))
+    boxes, each = gaps.argmin(axis=0), np.arange(len(points_world))
+    axes = beyond[boxes, each].argmax(axis=1)
+    sides = np.where(points[boxes, each, axes] < 0.0, -1.0, 1.0)
+    feet, normals = np.clip(points, -halves, halves)[boxes, each], np.zeros((len(points_world), 3))
+    feet[each, axes] = sides * halves[boxes, 0, axes]
+    normals[each, axes] = sides
+    feet_object = np.einsum("nij,nj->ni", turns[boxes], feet) + middles[boxes]
+    normals_object = np.einsum("nij,nj->ni", turns[boxes], normals)
+    return Nearest(pose.transform(feet_object), normals_object @ pose.rotation.T, boxes)

@@ -1,15 +1,15 @@
 // The page: what time it is, how much motions are exaggerated, and everything that shows or changes that.
 
 const $ = (id) => document.getElementById(id);
-const data = JSON.parse($("data").textContent);
-const SHOTS_A_SECOND = 24, PAUSE_S = 0.35;
+const MOTION_S = 1, PAUSE_S = 0.35;
 
-const stage = new Stage(data);
-const end = stage.shots.length - 1;
-const player = { time: end, playing: false, exaggeration: data.exaggeration, drawn: 0, drawnTime: null, drawMs: null };
+let data = JSON.parse($("data").textContent);
+let stage = new Stage(data);
+let end = stage.shots.length - 1;
+const player = { time: end, playing: false, exaggeration: data.exaggeration, drawn: 0, drawnTime: null, answers: 0, drawnAnswers: 0, drawMs: null };
 let drawing = null, waiting = false, resting = 0, lastTick = null;
 
-const plot = new Plot(data, $("plot"), (time) => { pause(); seek(time); });
+const plot = new Plot($("plot"), (time) => { pause(); seek(time); });
 try {
   drawing = new Drawing(stage, $("scene"), $("labels"), refresh);
 } catch (error) {
@@ -48,8 +48,8 @@ function tick(now) {
   if (resting > 0) resting -= passed;
   else {
     const before = player.time;
-    const stop = data.rows.map((row) => row.last).find((last) => last > before && last <= before + SHOTS_A_SECOND * passed);
-    player.time = Math.min(end, stop ?? before + SHOTS_A_SECOND * passed);
+    const stop = data.rows.map((row) => row.last).find((last) => last > before && last <= before + passed * data.shotsPerMotion / MOTION_S);
+    player.time = Math.min(end, stop ?? before + passed * data.shotsPerMotion / MOTION_S);
     if (stop !== undefined) resting = PAUSE_S;
     refresh();
   }
@@ -71,11 +71,25 @@ function element(tag, text, className) {
   return made;
 }
 
-function fillOnce() {
+// Shows another run of the same scene, at its end.
+function replaceRun(answer) {
+  data = answer;
+  stage = new Stage(data);
+  end = stage.shots.length - 1;
+  if (drawing) drawing.stage = stage;
+  player.answers += 1;
+  fill();
+  pause();
+  seek(end);
+}
+
+function fill() {
+  plot.fit(data);
   $("name").textContent = data.name;
   $("verdict").textContent = data.verdict;
   $("verdict").className = data.verdictKind;
   $("method").textContent = `${data.method}, ${data.solve}`;
+  $("events").tBodies[0].replaceChildren();
   data.rows.forEach((row, index) => {
     const line = element("tr", "", index > 0 && data.rows[index - 1].phase !== row.phase ? "phase" : "");
     const motion = element("td", row.verdict ? [row.motion, row.verdict].filter(Boolean).join(", ") : row.motion);
@@ -86,11 +100,8 @@ function fillOnce() {
     $("events").tBodies[0].append(line);
   });
   $("forceunit").textContent = data.forceUnit;
-  data.notes.forEach((note) => $("notes").append(element("p", note)));
+  $("notes").replaceChildren(...data.notes.map((note) => element("p", note)));
   $("time").max = end;
-  $("exaggeration").max = data.exaggerations.length - 1;
-  $("exaggeration").value = data.exaggerations.indexOf(data.exaggeration);
-  if (drawing) $("names").checked = drawing.allNames;
 }
 
 // Names in a cell: those of a crowd can be read when the mouse rests on it.
@@ -126,6 +137,7 @@ function show() {
   $("forces").tBodies[0].replaceChildren(...forceRows(shot));
   player.drawn += 1;
   player.drawnTime = time;
+  player.drawnAnswers = player.answers;
   player.drawMs = performance.now() - start;
 }
 
@@ -170,5 +182,9 @@ window.cagepose = {
     points: data.names.map((_, index) => stage.point(index, player.exaggeration)) }),
 };
 
-fillOnce();
+fill();
+$("exaggeration").max = data.exaggerations.length - 1;
+$("exaggeration").value = data.exaggerations.indexOf(data.exaggeration);
+if (drawing) $("names").checked = drawing.allNames;
+if (data.controls) new Panel(data.controls, data.fileName, replaceRun);
 refresh();

@@ -3,12 +3,15 @@
 const CURVES = [["yaw", "#0072b2", []], ["pitch", "#d55e00", [6, 3]], ["roll", "#009e73", [2, 2]]];
 
 class Plot {
-  constructor(data, canvas, seek) {
-    this.data = data;
+  constructor(canvas, seek) {
     this.canvas = canvas;
     const move = (event) => seek(this.timeAt(event.offsetX));
     canvas.addEventListener("pointerdown", move);
     canvas.addEventListener("pointermove", (event) => event.buttons && move(event));
+  }
+
+  fit(data) {
+    this.data = data;
     const angles = data.shots.flatMap((shot) => shot.angles);
     const [low, high] = [Math.min(...angles), Math.max(...angles)];
     const room = Math.max(0.08 * (high - low), 1e-6);
