@@ -8,6 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from PIL import Image
+
+from cagepose.faces import extra
 
 Command = Callable[..., Any]
 
@@ -35,8 +38,8 @@ def test_a_saved_run_gives_the_same_page_as_its_scene_but_for_the_time_it_took(c
 @pytest.mark.parametrize(
     ("export", "reason"),
     [
-        ("run.gltf", ".gltf is nothing that a run can be exported to; use one of: .html"),
-        ("run", "has no suffix that names its kind; use one of: .html"),
+        ("run.gltf", ".gltf is nothing that a run can be exported to; use one of: .html, .png, .gif"),
+        ("run", "has no suffix that names its kind; use one of: .html, .png, .gif"),
         ("no/run.html", "its folder does not exist; make the folder first"),
     ],
 )
@@ -44,6 +47,23 @@ def test_an_export_that_cannot_be_is_refused_before_the_run(
     command: Command, sample: str, export: str, reason: str
 ) -> None:
     assert command("view", sample, "--export", export) == (2, "", f"--export {export}: {reason}\n")
+
+
+def test_a_picture_and_a_film_are_written_and_may_be_written_again(command: Command, sample: str) -> None:
+    for name in ("run.png", "run.gif", "run.png", "run.gif"):
+        assert command("view", sample, "--export", name, "--method", "stepwise").code == 0
+    with Image.open("run.gif") as film:
+        assert (film.n_frames, film.size) == (32, (900, 600))
+
+
+def test_without_pillow_the_extra_is_named_before_the_run(
+    command: Command, sample: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(extra, "find_spec", lambda name: None if name == "PIL" else object())
+    answer = command("view", sample, "--export", "run.png")
+    assert (answer.code, answer.out) == (2, "")
+    assert "pip install 'cagepose[view]'" in answer.err
+    assert command("view", sample, "--export", "run.html").code == 0
 
 
 def test_our_own_page_is_replaced_and_nobody_elses(command: Command, sample: str) -> None:

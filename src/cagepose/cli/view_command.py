@@ -23,7 +23,10 @@ def view_command(
     *,
     export: Annotated[
         str | None,
-        Parameter(help="Write a page (.html) that plays in any browser, with no network, instead of serving one."),
+        Parameter(
+            help="Write a file instead: .html, a page that plays in any browser with no network; .gif, a film; .png, a"
+            " picture of the end."
+        ),
     ] = None,
     method: MethodOption = None,
     set_values: SetOption = (),
@@ -34,11 +37,14 @@ def view_command(
 ) -> int:
     """Show the object in its cage, the timeline, the events and the forces; a scene is run first."""
     from cagepose.errors import printable
-    from cagepose.faces.view.export_files import check_can_export
+    from cagepose.faces.extra import require_pillow
+    from cagepose.faces.view.export_files import check_can_export, export_suffix
 
     def check_out() -> None:
         if export is not None:
             check_can_export(export)
+            if export_suffix(export) != ".html":
+                require_pillow()
 
     if not 0 < port < 2**16:
         sys.stderr.write(f"--port {port}: is no port; give a number from 1 to 65535\n")
@@ -49,7 +55,6 @@ def view_command(
         return 2
     run_file = run_of(source, method)
 
-    from cagepose.faces.view.page import page
     from cagepose.faces.view.playback import playback
     from cagepose.files.run_file import RunFile
     from cagepose.files.write import write_whole
@@ -59,12 +64,23 @@ def view_command(
         what_if = None if isinstance(source, RunFile) else _what_if(run_or_scene, set_values, method)
         return _serve(shown, what_if, host, port)
     try:
-        write_whole(export, page(shown).encode())
+        write_whole(export, _content(shown, export_suffix(export)))
     except OSError as error:
         sys.stderr.write(printable(f"{option}: {error.strerror or error}") + "\n")
         return 2
     sys.stdout.write(printable(f"wrote {export}: {run.scene.name}, {run.verdict} ({run.method})") + "\n")
     return 0
+
+
+def _content(shown: Playback, suffix: str) -> bytes:
+    """Return a file of the kind ``suffix``."""
+    if suffix == ".html":
+        from cagepose.faces.view.page import page
+
+        return page(shown).encode()
+    from cagepose.faces.view.film import gif_bytes, png_bytes
+
+    return png_bytes(shown) if suffix == ".png" else gif_bytes(shown.run, shown.length_unit)
 
 
 def _what_if(scene: str, set_values: tuple[str, ...], method: str | None) -> WhatIf:

@@ -6,7 +6,7 @@ from pathlib import PurePath
 
 from cagepose.files.write import check_can_write, is_made_by_us
 
-EXPORT_SUFFIXES = (".html",)
+EXPORT_SUFFIXES = (".html", ".png", ".gif")
 
 
 def export_suffix(name: str) -> str:
@@ -35,4 +35,4 @@ def check_can_export(name: str) -> None:
         The file cannot be written, see `check_can_write`; or holds something that cagepose has not made.
     """
     export_suffix(name)
-    check_can_write(name, is_made_by_us, "a page that cagepose made")
+    check_can_write(name, is_made_by_us, "a page or picture that cagepose made")

@@ -1,0 +1,220 @@
+"""One shot of a playback as a picture: the same things in the same colours as on the page."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from cagepose.faces.view.page_data import verdict_kind
+from cagepose.faces.view.playback import Shot
+from cagepose.faces.view.raster import Color, Raster
+from cagepose.faces.view.stage import Stage
+from cagepose.files.units import from_metres
+from cagepose.files.words import LengthWords
+from cagepose.nouns.checks import FloatArray
+from cagepose.nouns.pose import Pose
+
+WIDTH, HEIGHT, FINER = 900, 600, 2
+"""Pixels, and how many times as many are drawn before they are put together."""
+AZIMUTH, ELEVATION = math.radians(-56.0), math.radians(24.0)
+BLUE, SKY, GREY, DARK = (0.0, 0.447, 0.698), (0.337, 0.706, 0.914), (0.6, 0.6, 0.6), (0.45, 0.45, 0.45)
+ORANGE, VERMILLION, PURPLE, BLACK = (0.902, 0.624, 0.0), (0.835, 0.369, 0.0), (0.8, 0.475, 0.655), (0.05, 0.05, 0.05)
+BALL, ROD, LONGEST_ARROW, NORMAL = 0.01, 0.0045, 0.22, 0.07
+"""In sizes of the scene, as on the page."""
+SEE_THROUGH = 0.3
+FEW_NAMES = 14
+INK = {"rest": "#00664a", "failure": "#a33b00", "elsewhere": "#a33b00"}
+_EDGES = ((0, 1), (0, 2), (0, 4), (1, 3), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 6), (5, 7), (6, 7))
+_FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+
+
+class _Label(NamedTuple):
+    place: FloatArray
+    text: str
+    color: str
+
+
+class PictureMaker:
+    """Draws shots of one playback, all from the same place."""
+
+    def __init__(self, stage: Stage, exaggeration: int) -> None:
+        self.stage = stage
+        self.shown = stage.shown
+        self.exaggeration = exaggeration
+        boxes = self.shown.run.scene.object.boxes
+        self.corners_object = np.concatenate([box.corners_object() for box in boxes])
+        self.points = stage.place(stage.points(exaggeration))
+        sin_a, cos_a, sin_e, cos_e = math.sin(AZIMUTH), math.cos(AZIMUTH), math.sin(ELEVATION), math.cos(ELEVATION)
+        back = np.array([cos_a * cos_e, sin_a * cos_e, sin_e])
+        right = np.array([-sin_a, cos_a, 0.0])
+        self.axes = np.stack([right, np.cross(back, right), back])
+        self._fit()
+        forces = [touch.force_world for shot in self.shown.shots for touch in shot.touches]
+        greatest = max((float(np.linalg.norm(force)) for force in forces if force is not None), default=0.0)
+        self.arrow_per_force = LONGEST_ARROW / (greatest or 1.0)
+        self.small, self.large = (ImageFont.load_default(size) for size in (13.0, 17.0))
+
+    def picture(self, shot: Shot) -> Image.Image:
+        """Return one shot as a picture."""
+        self.raster = Raster(WIDTH * FINER, HEIGHT * FINER)
+        self.labels: list[_Label] = []
+        pose = self.stage.pose(shot.pose_world_object, self.exaggeration)
+        self._draw_points(shot)
+        self._draw_touches(shot, pose)
+        self._draw_loads(shot, pose)
+        self._draw_motion(shot, pose)
+        self._draw_object(pose)
+        image = self.raster.shrunk(FINER)
+        self._write(image, shot)
+        return image
+
+    def _fit(self) -> None:
+        """Choose scale and middle so that the start, the end, the cage and the last load fit."""
+        ends = [self._shown(shot) for shot in (self.shown.shots[0], self.shown.shots[-1])]
+        places = [self.stage.place(pose.transform(self.corners_object)) for pose in ends]
+        for arrow in self.shown.loads[-1]:
+            tip = self.stage.place(ends[1].transform(arrow.at_object_m))
+            places.append((tip - LONGEST_ARROW * arrow.force_world / np.linalg.norm(arrow.force_world))[None])
+        seen = np.concatenate([*places, self.points]) @ self.axes.T
+        low, high = seen.min(axis=0), seen.max(axis=0)
+        self.middle = (low + high) / 2.0
+        half = np.maximum((high - low) / 2.0, 0.05)
+        self.pixels = 0.42 * FINER * min(WIDTH / half[0], HEIGHT / half[1])
+
+    def _shown(self, shot: Shot) -> Pose:
+        return self.stage.pose(shot.pose_world_object, self.exaggeration)
+
+    def _pixels(self, places: FloatArray) -> FloatArray:
+        """Turn drawing coordinates into those of the raster."""
+        seen = (places @ self.axes.T - self.middle) * self.pixels * np.array([1.0, -1.0, 1.0])
+        pixels: FloatArray = seen + np.array([WIDTH, HEIGHT, 0.0]) * FINER / 2.0
+        return pixels
+
+    def _rod(self, start: FloatArray, end: FloatArray, radius: float, color: Color) -> None:
+        first, last = self._pixels(np.stack([start, end]))
+        self.raster.rod(first, last, max(radius * self.pixels, 0.5 * FINER), color)
+
+    def _arrow(self, tail: FloatArray, tip: FloatArray, radius: float, color: Color) -> None:
+        length = float(np.linalg.norm(tip - tail))
+        if length < 0.01:
+            return
+        neck = tip - min(5.0 * radius / length, 0.6) * (tip - tail)
+        self._rod(tail, neck, radius, color)
+        first, last = self._pixels(np.stack([neck, tip]))
+        self.raster.rod(first, last, 2.6 * radius * self.pixels, color, 0.0)
+
+    def _ball(self, place: FloatArray, radius: float, color: Color) -> None:
+        self.raster.ball(self._pixels(place), radius * self.pixels, color)
+
+    def _draw_points(self, shot: Shot) -> None:
+        touching = {touch.point_index for touch in shot.touches}
+        row = self.shown.rows[shot.row] if shot.row >= 0 else None
+        is_end = row is not None and self.shown.shots[row.last_shot] is shot
+        for index, name in enumerate(self.shown.run.scene.cage.names):
+            if is_end and row is not None and name in row.event.hit:
+                color, radius = VERMILLION, BALL
+            else:
+                color, radius = (ORANGE, BALL) if index in touching else (DARK, 0.7 * BALL)
+            self._ball(self.points[index], radius, color)
+            if color != DARK or len(self.points) <= FEW_NAMES:
+                self.labels.append(_Label(self.points[index], name, "#777777" if color == DARK else "#000000"))
+
+    def _draw_touches(self, shot: Shot, pose: Pose) -> None:
+        for touch in shot.touches:
+            place = self.points[touch.point_index]
+            normal = self.stage.normal(touch.normal_world, shot.pose_world_object, pose)
+            self._rod(place, place + NORMAL * normal, 0.3 * ROD, (0.3, 0.3, 0.3))
+            if touch.force_world is not None:
+                force = self.stage.normal(touch.force_world, shot.pose_world_object, pose) * self.arrow_per_force
+                self._arrow(place - force, place, ROD, VERMILLION)
+
+    def _draw_loads(self, shot: Shot, pose: Pose) -> None:
+        for arrow in self.shown.loads[shot.phase]:
+            tip = self.stage.place(pose.transform(arrow.at_object_m))
+            tail = tip - LONGEST_ARROW * arrow.force_world / np.linalg.norm(arrow.force_world)
+            self._arrow(tail, tip, 1.3 * ROD, BLACK)
+            self.labels.append(_Label(tail, arrow.name, "#000000"))
+
+    def _draw_motion(self, shot: Shot, pose: Pose) -> None:
+        row = self.shown.rows[shot.row] if shot.row >= 0 else None
+        if row is None or row.event.motion is None:
+            return
+        motion = row.event.motion
+        before = self.shown.shots[row.first_shot - 1]
+        carried = self._shown(before)
+        along = motion.direction_world if motion.axis_world is None else motion.axis_world
+        assert along is not None
+        direction = self.stage.normal(along, before.pose_world_object, carried)
+        if motion.through_world is None:
+            center = self.stage.place(pose.transform(self.stage.center_object_m))
+            self._arrow(center, center + 0.25 * direction, 0.8 * ROD, PURPLE)
+            return
+        through = carried.transform(before.pose_world_object.inverse_transform(motion.through_world))
+        middle = self.stage.place(through)
+        middle = middle - (middle @ direction) * direction
+        half = math.sqrt(max(0.04, self.stage.radius**2 - float(middle @ middle)))
+        self._rod(middle - half * direction, middle + half * direction, 0.5 * ROD, PURPLE)
+
+    def _draw_object(self, pose: Pose) -> None:
+        for where, color in ((self.stage.reference, GREY), (pose, BLUE)):
+            starts, ends = (self._corners(where)[:, which].reshape(-1, 3) for which in np.array(_EDGES).T)
+            self.raster.lines(starts, ends, color)
+        center = self.stage.place(pose.transform(self.stage.center_object_m))
+        self._ball(center, BALL, BLUE)
+        faces = [corners[list(face)] for corners in self._corners(pose) for face in _FACES]
+        for face in sorted(faces, key=lambda corners: float(corners[:, 2].mean())):
+            normal = np.cross(face[1] - face[0], face[3] - face[0])
+            lit = 0.62 + 0.38 * abs(normal[2]) / float(np.linalg.norm(normal))
+            self.raster.face(face, (lit * SKY[0], lit * SKY[1], lit * SKY[2]), SEE_THROUGH)
+
+    def _corners(self, pose: Pose) -> FloatArray:
+        """All boxes' corners on the raster, (n_boxes, 8, 3)."""
+        return self._pixels(self.stage.place(pose.transform(self.corners_object))).reshape(-1, 8, 3)
+
+    def _write(self, image: Image.Image, shot: Shot) -> None:
+        pen = ImageDraw.Draw(image)
+        taken: list[tuple[float, float]] = []
+        for label in self.labels:
+            x, y = (self._pixels(label.place)[:2] / FINER).tolist()
+            if any(abs(x - a) < 26.0 and abs(y - b) < 13.0 for a, b in taken):
+                continue
+            taken.append((x, y))
+            self._text(pen, (x + 6.0, y - 16.0), label.text, label.color)
+        run = self.shown.run
+        pen.text((14.0, 10.0), run.scene.name, "#1a1a1a", self.large)
+        across = 24.0 + pen.textlength(run.scene.name, self.large)
+        pen.text((across, 10.0), run.verdict, INK[verdict_kind(run.verdict)], self.large)
+        pen.text((14.0, 34.0), self._happening(shot), "#5c5c5c", self.small)
+        self._write_scale(pen)
+
+    def _happening(self, shot: Shot) -> str:
+        if shot.row < 0:
+            return "start"
+        row = self.shown.rows[shot.row]
+        words = LengthWords(self.shown.length_unit, self.shown.run.scene.size_m)
+        motion = row.event.motion
+        what = row.verdict or "-" if motion is None else f"{motion.kind} {words.amount(motion)}"
+        return f"{self.shown.run.phases[row.phase].name}, event {shot.row + 1}: {row.event.rule}, {what}"
+
+    def _write_scale(self, pen: ImageDraw.ImageDraw) -> None:
+        if self.exaggeration == 1:
+            pen.text((14.0, HEIGHT - 26.0), "true scale", "#5c5c5c", self.small)
+        else:
+            text = f"motions and gaps exaggerated x{self.exaggeration}"
+            width = pen.textlength(text, self.small)
+            pen.rectangle((10.0, HEIGHT - 32.0, 22.0 + width, HEIGHT - 8.0), fill="#e69f00")
+            pen.text((16.0, HEIGHT - 28.0), text, "#000000", self.small)
+        units = float(from_metres(self.stage.size_m, self.shown.length_unit))  # of one drawing unit
+        rough = 100.0 * FINER / self.pixels * units
+        power = 10.0 ** math.floor(math.log10(rough))
+        length = next(step * power for step in (5.0, 2.0, 1.0) if step * power <= rough)
+        right, below = WIDTH - 20.0, HEIGHT - 16.0
+        left = right - length / units * self.pixels / FINER
+        pen.line((left, below, right, below), fill="#333333", width=2)
+        self._text(pen, (left, below - 20.0), f"{length:.6g} {self.shown.length_unit}", "#333333")
+
+    def _text(self, pen: ImageDraw.ImageDraw, place: tuple[float, float], text: str, color: str) -> None:
+        pen.text(place, text, color, self.small, stroke_width=2, stroke_fill="#f6f7f9")
