@@ -8,6 +8,8 @@ from cagepose.kernels.jit import kernel
 from cagepose.kernels.record import FloatArray
 
 SWEEPS = 30
+NEGLIGIBLE = 1e-20
+"""In diagonal entries: a rotation would turn by less than any rounding."""
 
 
 @kernel
@@ -20,9 +22,10 @@ def symmetric_eigen(matrix: FloatArray, vectors: FloatArray, n: int) -> None:
         off = 0.0
         for p in range(n):
             for q in range(p + 1, n):
+                if abs(matrix[p, q]) <= NEGLIGIBLE * (abs(matrix[p, p]) + abs(matrix[q, q])):
+                    continue
                 off += abs(matrix[p, q])
-                if matrix[p, q] != 0.0:
-                    rotate(matrix, vectors, n, p, q)
+                rotate(matrix, vectors, n, p, q)
         if off == 0.0:
             break
 
