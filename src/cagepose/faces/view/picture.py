@@ -66,6 +66,7 @@ class PictureMaker:
         self._draw_touches(shot, pose)
         self._draw_loads(shot, pose)
         self._draw_motion(shot, pose)
+        self._draw_way(shot)
         self._draw_object(pose)
         image = self.raster.shrunk(FINER)
         self._write(image, shot)
@@ -158,6 +159,14 @@ class PictureMaker:
         half = math.sqrt(max(0.04, self.stage.radius**2 - float(middle @ middle)))
         self._rod(middle - half * direction, middle + half * direction, 0.5 * ROD, PURPLE)
 
+    def _draw_way(self, shot: Shot) -> None:
+        """Draw the way of the centre of gravity up to a shot."""
+        until = self.shown.shots.index(shot) + 1
+        poses = [self._shown(before) for before in self.shown.shots[:until]]
+        places = [self.stage.place(pose.transform(self.stage.center_object_m)) for pose in poses]
+        way = self._pixels(np.stack(places))
+        self.raster.lines(way[:-1], way[1:], BLUE)
+
     def _draw_object(self, pose: Pose) -> None:
         for where, color in ((self.stage.reference, GREY), (pose, BLUE)):
             starts, ends = (self._corners(where)[:, which].reshape(-1, 3) for which in np.array(_EDGES).T)
@@ -177,7 +186,7 @@ class PictureMaker:
     def _write(self, image: Image.Image, shot: Shot) -> None:
         pen = ImageDraw.Draw(image)
         taken: list[tuple[float, float]] = []
-        for label in self.labels:
+        for label in sorted(self.labels, key=lambda label: label.color != "#000000"):  # of names that collide, contacts
             x, y = (self._pixels(label.place)[:2] / FINER).tolist()
             if any(abs(x - a) < 26.0 and abs(y - b) < 13.0 for a, b in taken):
                 continue

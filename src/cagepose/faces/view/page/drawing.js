@@ -126,6 +126,7 @@ class Drawing {
     pen.font = `${12 * scale}px system-ui, sans-serif`;
     pen.clearRect(0, 0, this.overlay.width, this.overlay.height);
     const taken = [];
+    labels.sort((one, other) => (one[2] !== "#000") - (other[2] !== "#000")); // of names that collide, contacts
     for (const [place, text, color] of labels) {
       const [x, y] = this.camera.project(place);
       if (taken.some(([a, b]) => Math.abs(a - x) < 30 * scale && Math.abs(b - y) < 13 * scale)) continue;
