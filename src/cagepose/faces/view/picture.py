@@ -51,10 +51,10 @@ class PictureMaker:
         back = np.array([cos_a * cos_e, sin_a * cos_e, sin_e])
         right = np.array([-sin_a, cos_a, 0.0])
         self.axes = np.stack([right, np.cross(back, right), back])
-        self._fit()
         forces = [touch.force_world for shot in self.shown.shots for touch in shot.touches]
         greatest = max((float(np.linalg.norm(force)) for force in forces if force is not None), default=0.0)
         self.arrow_per_force = LONGEST_ARROW / (greatest or 1.0)
+        self._fit()
         self.small, self.large = (ImageFont.load_default(size) for size in (13.0, 17.0))
 
     def picture(self, shot: Shot) -> Image.Image:
@@ -73,12 +73,17 @@ class PictureMaker:
         return image
 
     def _fit(self) -> None:
-        """Choose scale and middle so that the start, the end, the cage and the last load fit."""
+        """Choose scale and middle so that the start, the end, the cage and the last load and forces fit."""
         ends = [self._shown(shot) for shot in (self.shown.shots[0], self.shown.shots[-1])]
         places = [self.stage.place(pose.transform(self.corners_object)) for pose in ends]
         for arrow in self.shown.loads[-1]:
             tip = self.stage.place(ends[1].transform(arrow.at_object_m))
             places.append((tip - LONGEST_ARROW * arrow.force_world / np.linalg.norm(arrow.force_world))[None])
+        last = self.shown.shots[-1]
+        for touch in last.touches:
+            if touch.force_world is not None:
+                force = self.stage.normal(touch.force_world, last.pose_world_object, ends[1])
+                places.append((self.points[touch.point_index] - self.arrow_per_force * force)[None])
         seen = np.concatenate([*places, self.points]) @ self.axes.T
         low, high = seen.min(axis=0), seen.max(axis=0)
         self.middle = (low + high) / 2.0

@@ -40,7 +40,7 @@ class Drawing {
     this.write(labels, scale);
   }
 
-  // All that a view is fitted to: corners at the start and the end, cage points, and the loads at the end.
+  // All that a view is fitted to: corners at the start and the end, cage points, loads and forces at the end.
   content() {
     const { stage, exaggeration: k } = this;
     const ends = [stage.shots[0], stage.shots.at(-1)].map((shot) => stage.shownPose(shot.pose, k));
@@ -48,7 +48,9 @@ class Drawing {
     const corners = ends.flatMap((pose) => stage.data.boxes.flatMap((box) => signs.map((sign) =>
       carried(composed(pose, { p: box.position, q: box.quaternion }), sign.map((value, axis) => value * box.size[axis])))));
     const tails = stage.data.phases.at(-1).loads.map((load) => sub(carried(ends[1], load.at), times(LONGEST_ARROW, load.direction)));
-    return [...corners, ...tails, ...stage.data.names.map((_, index) => stage.point(index, k))];
+    const pressing = stage.shots.at(-1).touches.filter((touch) => touch.force).map((touch) =>
+      sub(stage.point(touch.point, k), times(LONGEST_ARROW / stage.data.greatestForce, rotated(ends[1].q, touch.force))));
+    return [...corners, ...tails, ...pressing, ...stage.data.names.map((_, index) => stage.point(index, k))];
   }
 
   boxes(pose, name, color) {
