@@ -47,6 +47,11 @@ def without_solved(document):
     return {**document, "phases": phases}, solved
 
 
+@pytest.fixture(autouse=True)
+def short_search_as_plain_python():
+    """Not here: a golden run is whole."""
+
+
 SLOW = ("rail", "ladder")
 """With friction, their proofs take a minute as plain Python."""
 
