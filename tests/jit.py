@@ -24,4 +24,4 @@ def callable_kernel(kernel: Callable[..., Any]) -> Callable[..., Any]:
 
 def cases(n_compiled: int) -> int:
     """How many random cases to run: interpreted kernels are about a hundred times slower."""
-    return max(10, n_compiled // 100) if JIT_IS_OFF else n_compiled
+    return max(10, n_compiled // 20) if JIT_IS_OFF else n_compiled
