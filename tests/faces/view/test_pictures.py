@@ -11,7 +11,7 @@ from PIL import Image
 
 from cagepose import load_scene, run
 from cagepose.faces.view.film import END_MS, SHOTS_PER_MOTION, gif_bytes, png_bytes
-from cagepose.faces.view.picture import HEIGHT, WIDTH, PictureMaker
+from cagepose.faces.view.picture import SIZE, PictureMaker
 from cagepose.faces.view.playback import playback
 from cagepose.faces.view.raster import BACKGROUND, Raster
 from cagepose.faces.view.stage import Stage
@@ -21,7 +21,7 @@ SCENES = Path(__file__).resolve().parents[3] / "scenes"
 
 
 def pixel(raster: Raster, x: int, y: int) -> list[float]:
-    return raster.colors[y, x].tolist()
+    return (raster.colors[y, x] / 255.0).tolist()
 
 
 def test_what_is_nearer_covers_what_is_farther_in_whatever_order_it_is_drawn():
@@ -34,7 +34,7 @@ def test_what_is_nearer_covers_what_is_farther_in_whatever_order_it_is_drawn():
         red, green, blue = pixel(raster, 20, 20)
         assert red > 0.9
         assert (green, blue) == (0.0, 0.0)
-        assert pixel(raster, 2, 2) == pytest.approx(BACKGROUND)
+        assert pixel(raster, 2, 2) == pytest.approx(BACKGROUND, abs=1.0 / 255.0)
 
 
 def test_a_face_tints_what_is_behind_it_and_not_what_is_before():
@@ -43,7 +43,7 @@ def test_a_face_tints_what_is_behind_it_and_not_what_is_before():
     raster.ball(np.array([30.0, 20.0, 10.0]), 4.0, (0.0, 0.0, 0.0))
     square = np.array([[0.0, 10.0, 0.0], [39.0, 10.0, 0.0], [39.0, 30.0, 0.0], [0.0, 30.0, 0.0]])
     raster.face(square, (1.0, 1.0, 1.0), 0.25)
-    assert pixel(raster, 10, 20) == pytest.approx([0.25] * 3)
+    assert pixel(raster, 10, 20) == pytest.approx([0.25] * 3, abs=0.5 / 255.0)
     assert pixel(raster, 30, 20) == [0.0] * 3
 
 
@@ -69,7 +69,7 @@ def test_contacts_are_drawn_where_they_are_and_everything_fits():
     maker = PictureMaker(Stage(shown), 1)
     picture = maker.picture(shown.shots[-1])
     places = maker._pixels(maker.points) / 2.0
-    assert ((places[:, :2] > 0.0) & (places[:, :2] < [WIDTH, HEIGHT])).all()
+    assert ((places[:, :2] > 0.0) & (places[:, :2] < SIZE)).all()
     touching = {touch.point_index for touch in shown.shots[-1].touches}
     assert [is_warm(picture, place) for place in places] == [index in touching for index in range(len(places))]
     assert not any(is_warm(maker.picture(shown.shots[0]), place) for place in places)
@@ -81,7 +81,7 @@ def test_a_picture_of_any_scene_is_ours_and_the_same_each_time():
         content = png_bytes(shown)
         assert MADE_BY.encode() in content
         with Image.open(io.BytesIO(content)) as picture:
-            assert picture.size == (WIDTH, HEIGHT)
+            assert picture.size == SIZE
     assert png_bytes(shown) == content
 
 

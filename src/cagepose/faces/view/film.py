@@ -15,6 +15,8 @@ from cagepose.files.write import MADE_BY
 from cagepose.runs.run import Run
 
 SHOTS_PER_MOTION = 10
+FILM_SIZE = (720, 480)
+"""Pixels: at the size of a picture, the rail's 83 shots are 830 kB instead of 600 kB and take a quarter longer."""
 N_FOR_PALETTE = 8
 SHOT_MS, PAUSE_MS, END_MS = 80, 600, 2500
 """How long a shot stands, the last of an event, and the last of all."""
@@ -34,7 +36,7 @@ def gif_bytes(run: Run, length_unit: LengthUnit) -> bytes:
     """Return a whole run as a film that starts again when it is over."""
     shown = playback(run, length_unit, SHOTS_PER_MOTION)
     stage = Stage(shown)
-    maker = PictureMaker(stage, stage.proposed)
+    maker = PictureMaker(stage, stage.proposed, FILM_SIZE)
     pictures = [maker.picture(shot) for shot in shown.shots]
     palette = _palette(pictures)
     flat = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]

@@ -17,12 +17,14 @@ from cagepose.files.words import LengthWords
 from cagepose.nouns.checks import FloatArray
 from cagepose.nouns.pose import Pose
 
-WIDTH, HEIGHT, FINER = 900, 600, 2
-"""Pixels, and how many times as many are drawn before they are put together."""
+SIZE = (900, 600)
+"""Pixels across and down."""
+FINER = 2
+"""How many times as many are drawn before they are put together."""
 AZIMUTH, ELEVATION = math.radians(-56.0), math.radians(24.0)
 BLUE, SKY, GREY, DARK = (0.0, 0.447, 0.698), (0.337, 0.706, 0.914), (0.6, 0.6, 0.6), (0.45, 0.45, 0.45)
 ORANGE, VERMILLION, PURPLE, BLACK = (0.902, 0.624, 0.0), (0.835, 0.369, 0.0), (0.8, 0.475, 0.655), (0.05, 0.05, 0.05)
-BALL, ROD, LONGEST_ARROW, NORMAL = 0.01, 0.0045, 0.22, 0.07
+BALL, FREE_BALL, ROD, LONGEST_ARROW, NORMAL = 0.01, 0.007, 0.0045, 0.22, 0.07
 """In sizes of the scene, as on the page."""
 SEE_THROUGH = 0.3
 FEW_NAMES = 14
@@ -40,8 +42,9 @@ class _Label(NamedTuple):
 class PictureMaker:
     """Draws shots of one playback, all from the same place."""
 
-    def __init__(self, stage: Stage, exaggeration: int) -> None:
+    def __init__(self, stage: Stage, exaggeration: int, size: tuple[int, int] = SIZE) -> None:
         self.stage = stage
+        self.width, self.height = size
         self.shown = stage.shown
         self.exaggeration = exaggeration
         boxes = self.shown.run.scene.object.boxes
@@ -55,11 +58,17 @@ class PictureMaker:
         greatest = max((float(np.linalg.norm(force)) for force in forces if force is not None), default=0.0)
         self.arrow_per_force = LONGEST_ARROW / (greatest or 1.0)
         self._fit()
+        center = stage.center_object_m
+        self.way = self._pixels(
+            stage.place(np.stack([self._shown(shot).transform(center) for shot in self.shown.shots]))
+        )
+        self.raster = Raster(self.width * FINER, self.height * FINER)
+        self._draw_standing()
         self.small, self.large = (ImageFont.load_default(size) for size in (13.0, 17.0))
 
     def picture(self, shot: Shot) -> Image.Image:
         """Return one shot as a picture."""
-        self.raster = Raster(WIDTH * FINER, HEIGHT * FINER)
+        self.raster.begin()
         self.labels: list[_Label] = []
         pose = self.stage.pose(shot.pose_world_object, self.exaggeration)
         self._draw_points(shot)
@@ -88,7 +97,7 @@ class PictureMaker:
         low, high = seen.min(axis=0), seen.max(axis=0)
         self.middle = (low + high) / 2.0
         half = np.maximum((high - low) / 2.0, 0.05)
-        self.pixels = 0.42 * FINER * min(WIDTH / half[0], HEIGHT / half[1])
+        self.pixels = 0.42 * FINER * min(self.width / half[0], self.height / half[1])
 
     def _shown(self, shot: Shot) -> Pose:
         return self.stage.pose(shot.pose_world_object, self.exaggeration)
@@ -96,7 +105,7 @@ class PictureMaker:
     def _pixels(self, places: FloatArray) -> FloatArray:
         """Turn drawing coordinates into those of the raster."""
         seen = (places @ self.axes.T - self.middle) * self.pixels * np.array([1.0, -1.0, 1.0])
-        pixels: FloatArray = seen + np.array([WIDTH, HEIGHT, 0.0]) * FINER / 2.0
+        pixels: FloatArray = seen + np.array([self.width, self.height, 0.0]) * FINER / 2.0
         return pixels
 
     def _rod(self, start: FloatArray, end: FloatArray, radius: float, color: Color) -> None:
@@ -115,16 +124,24 @@ class PictureMaker:
     def _ball(self, place: FloatArray, radius: float, color: Color) -> None:
         self.raster.ball(self._pixels(place), radius * self.pixels, color)
 
+    def _draw_standing(self) -> None:
+        """Draw what all shots have: where the object started, and the cage; a point that touches covers itself."""
+        self._draw_edges(self.stage.reference, GREY)
+        for point in self.points:
+            self._ball(point, FREE_BALL, DARK)
+        self.raster.keep()
+
     def _draw_points(self, shot: Shot) -> None:
         touching = {touch.point_index for touch in shot.touches}
         row = self.shown.rows[shot.row] if shot.row >= 0 else None
         is_end = row is not None and self.shown.shots[row.last_shot] is shot
         for index, name in enumerate(self.shown.run.scene.cage.names):
             if is_end and row is not None and name in row.event.hit:
-                color, radius = VERMILLION, BALL
+                color = VERMILLION
             else:
-                color, radius = (ORANGE, BALL) if index in touching else (DARK, 0.7 * BALL)
-            self._ball(self.points[index], radius, color)
+                color = ORANGE if index in touching else DARK
+            if color != DARK:
+                self._ball(self.points[index], BALL, color)
             if color != DARK or len(self.points) <= FEW_NAMES:
                 self.labels.append(_Label(self.points[index], name, "#777777" if color == DARK else "#000000"))
 
@@ -166,23 +183,20 @@ class PictureMaker:
 
     def _draw_way(self, shot: Shot) -> None:
         """Draw the way of the centre of gravity up to a shot."""
-        until = self.shown.shots.index(shot) + 1
-        poses = [self._shown(before) for before in self.shown.shots[:until]]
-        places = [self.stage.place(pose.transform(self.stage.center_object_m)) for pose in poses]
-        way = self._pixels(np.stack(places))
+        way = self.way[: self.shown.shots.index(shot) + 1]
         self.raster.lines(way[:-1], way[1:], BLUE)
 
     def _draw_object(self, pose: Pose) -> None:
-        for where, color in ((self.stage.reference, GREY), (pose, BLUE)):
-            starts, ends = (self._corners(where)[:, which].reshape(-1, 3) for which in np.array(_EDGES).T)
-            self.raster.lines(starts, ends, color)
+        self._draw_edges(pose, BLUE)
         center = self.stage.place(pose.transform(self.stage.center_object_m))
         self._ball(center, BALL, BLUE)
         faces = [corners[list(face)] for corners in self._corners(pose) for face in _FACES]
         for face in sorted(faces, key=lambda corners: float(corners[:, 2].mean())):
-            normal = np.cross(face[1] - face[0], face[3] - face[0])
-            lit = 0.62 + 0.38 * abs(normal[2]) / float(np.linalg.norm(normal))
-            self.raster.face(face, (lit * SKY[0], lit * SKY[1], lit * SKY[2]), SEE_THROUGH)
+            self.raster.face(face, SKY, SEE_THROUGH)
+
+    def _draw_edges(self, pose: Pose, color: Color) -> None:
+        starts, ends = (self._corners(pose)[:, which].reshape(-1, 3) for which in np.array(_EDGES).T)
+        self.raster.lines(starts, ends, color)
 
     def _corners(self, pose: Pose) -> FloatArray:
         """All boxes' corners on the raster, (n_boxes, 8, 3)."""
@@ -215,17 +229,17 @@ class PictureMaker:
 
     def _write_scale(self, pen: ImageDraw.ImageDraw) -> None:
         if self.exaggeration == 1:
-            pen.text((14.0, HEIGHT - 26.0), "true scale", "#5c5c5c", self.small)
+            pen.text((14.0, self.height - 26.0), "true scale", "#5c5c5c", self.small)
         else:
             text = f"motions and gaps exaggerated x{self.exaggeration}"
             width = pen.textlength(text, self.small)
-            pen.rectangle((10.0, HEIGHT - 32.0, 22.0 + width, HEIGHT - 8.0), fill="#e69f00")
-            pen.text((16.0, HEIGHT - 28.0), text, "#000000", self.small)
+            pen.rectangle((10.0, self.height - 32.0, 22.0 + width, self.height - 8.0), fill="#e69f00")
+            pen.text((16.0, self.height - 28.0), text, "#000000", self.small)
         units = float(from_metres(self.stage.size_m, self.shown.length_unit))  # of one drawing unit
         rough = 100.0 * FINER / self.pixels * units
         power = 10.0 ** math.floor(math.log10(rough))
         length = next(step * power for step in (5.0, 2.0, 1.0) if step * power <= rough)
-        right, below = WIDTH - 20.0, HEIGHT - 16.0
+        right, below = self.width - 20.0, self.height - 16.0
         left = right - length / units * self.pixels / FINER
         pen.line((left, below, right, below), fill="#333333", width=2)
         self._text(pen, (left, below - 20.0), f"{length:.6g} {self.shown.length_unit}", "#333333")
