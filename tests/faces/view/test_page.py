@@ -121,6 +121,17 @@ def test_scrubbing_shows_the_pose_and_the_points_of_that_shot(opened, rail, shot
     assert np.array(shown["points"]) == pytest.approx(stage.place(stage.points(float(exaggeration))), abs=1e-12)
 
 
+def test_a_shot_looks_the_same_when_one_comes_back_to_it(opened, rail):
+    """No picture leaves anything behind for the next one, such as how near its things were."""
+    page = opened(rail)
+    seen = []
+    for shot in (len(rail.shots) - 1, 0, len(rail.shots) - 1):
+        set_range(page, "time", shot)
+        wait_until(page, f"cagepose.state().drawnTime === {shot}")
+        seen.append(page.evaluate("scene.toDataURL()"))
+    assert seen[0] == seen[2] != seen[1]
+
+
 def test_exaggeration_is_marked_on_the_screen(opened, rail):
     page = opened(rail)
     assert state(page)["exaggeration"] == Stage(rail).proposed > 1

@@ -45,10 +45,10 @@ class Painter {
   begin(view, toViewer) {
     const gl = this.gl;
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
+    gl.disable(gl.BLEND);
+    gl.depthMask(true); // before the clearing, which leaves depths alone as long as they are masked
     gl.clearColor(0.965, 0.969, 0.976, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    gl.disable(gl.BLEND);
-    gl.depthMask(true);
     gl.uniformMatrix4fv(this.at.view, false, view);
     gl.uniform3fv(this.at.light, toViewer);
   }
