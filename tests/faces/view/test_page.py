@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -140,13 +139,25 @@ def test_exaggeration_is_marked_on_the_screen(opened, rail):
     wait_until(page, "badge.innerText === 'true scale'")
 
 
-def test_a_run_that_fails_tells_where(opened):
-    film = playback(run(load_scene(SCENES / "ladder.yaml"), "stepwise"))
-    failed = replace(film.run, phases=(replace(film.run.phases[0], verdict="cycling"),))
-    page = opened(playback(failed))
+@pytest.mark.parametrize(
+    ("scene", "verdict", "told"),
+    [
+        ("pendulum", "spins", "weight: spins after event 2: a full turn meets nothing"),
+        ("wedge", "cycling", "weight: cycling after event 10: its pose is that of event 8, so it would repeat"),
+    ],
+)
+def test_a_run_that_fails_tells_where_and_opens_there(opened, scene, verdict, told):
+    film = playback(run(load_scene(SCENES / f"{scene}.yaml"), "stepwise"))
+    page = opened(film)
+    assert page.locator("#verdict").inner_text() == verdict
     assert page.locator("#verdict").get_attribute("class") == "failure"
-    assert "cycling" in page.locator("#events tr td.failure").inner_text()
-    assert f"cycling after event {len(film.rows)}" in page.locator("#notes").inner_text()
+    lines = page.locator("#events tbody tr")
+    assert [line for line in range(lines.count()) if lines.nth(line).locator("td.failure").count()] == [
+        len(film.rows) - 1
+    ]
+    assert lines.last.get_attribute("class").split()[-1] == "now"
+    assert lines.last.locator("td.failure").inner_text() == f"turn, {verdict}"
+    assert told in page.locator("#notes").inner_text()
 
 
 def test_names_that_are_markup_stay_text(opened):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,9 +10,11 @@ import numpy as np
 import pytest
 
 from cagepose import Box, Cage, Load, Object, Pose, Scene, load_scene, run
+from cagepose.faces.view.page_data import notes
 from cagepose.faces.view.playback import ESCAPE, playback
 from cagepose.faces.view.stage import Stage
 from cagepose.faces.view.surface import nearest_on_object
+from random_scenes import random_scenes
 
 SCENES = Path(__file__).resolve().parents[3] / "scenes"
 
@@ -124,3 +127,11 @@ def test_the_exaggeration_proposed_shows_small_motions_and_leaves_large_ones_alo
     assert Stage(playback(rail)).proposed >= 5
     assert Stage(playback(run(load_scene(SCENES / "sample.yaml")))).proposed == 1
     assert Stage(playback(run(load_scene(SCENES / "ladder.yaml")))).proposed == 1  # it rests where it starts
+
+
+def test_a_run_without_progress_tells_after_which_event():
+    stalled = run(next(itertools.islice(random_scenes(152, seed=7), 151, None)))
+    assert stalled.verdict == "stalled"
+    film = playback(stalled)
+    assert [row.verdict for row in film.rows] == [None] * (len(film.rows) - 1) + ["stalled"]
+    assert f"stalled after event {len(film.rows)}: no progress" in "\n".join(notes(film))

@@ -15,6 +15,7 @@ from cagepose.nouns.checks import FloatArray
 from cagepose.nouns.pose import Pose
 from cagepose.runs.run import AT_REST, FAILURES
 from cagepose.runs.weights import weigh
+from cagepose.studies.comparison import ENDS, same_pose
 
 
 def page_data(shown: Playback) -> dict[str, Any]:
@@ -156,9 +157,22 @@ def notes(shown: Playback) -> list[str]:
         if phase.verdict in AT_REST:
             ends.append(f"{phase.name}: {phase.verdict} ({proof.stability or 'moves'}): {proof.reason}")
         else:
-            place = f" after event {len(shown.rows)}" if phase.verdict in FAILURES else ""
-            ends.append(f"{phase.name}: {phase.verdict}{place}")
+            where = f" after event {len(shown.rows)}: {_failing(shown)}" if phase.verdict in FAILURES else ""
+            ends.append(f"{phase.name}: {phase.verdict}{where}")
     return [*ends, *(f"Warning: {warning}" for warning in run.warnings)]
+
+
+def _failing(shown: Playback) -> str:
+    """Return why the last phase found no end; of a pose that came back, which event had it before."""
+    *before, last = (row for row in shown.rows if row.phase == len(shown.run.phases) - 1)
+    same = [number for number, row in enumerate(shown.rows, 1) if row in before and _ends_alike(shown, row, last)]
+    if shown.run.verdict == "cycling" and same:
+        return f"its pose is that of event {same[-1]}, so it would repeat itself for ever"
+    return ENDS[shown.run.verdict]
+
+
+def _ends_alike(shown: Playback, one: Row, other: Row) -> bool:
+    return one.event.contacts == other.event.contacts and same_pose(shown.run.scene, one.event, other.event)
 
 
 def _numbers(values: FloatArray) -> list[float]:
