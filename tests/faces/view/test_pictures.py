@@ -70,7 +70,7 @@ def test_contacts_are_drawn_where_they_are_and_everything_fits():
     picture = maker.picture(shown.shots[-1])
     places = maker._pixels(maker.points) / 2.0
     assert ((places[:, :2] > 0.0) & (places[:, :2] < SIZE)).all()
-    touching = {touch.point_index for touch in shown.shots[-1].touches}
+    touching = set(shown.shots[-1].touches.points.tolist())
     assert [is_warm(picture, place) for place in places] == [index in touching for index in range(len(places))]
     assert not any(is_warm(maker.picture(shown.shots[0]), place) for place in places)
 

@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.faces.view.playback import LoadArrow, Playback, Row, Shot, Touch
+from cagepose.faces.view.playback import LoadArrow, Playback, Row, Shot, Touches
 from cagepose.faces.view.stage import EXAGGERATIONS, MOST_ADDED, Stage
 from cagepose.files.units import from_metres
 from cagepose.files.words import LengthWords
 from cagepose.nouns.checks import FloatArray
-from cagepose.nouns.pose import Pose
 from cagepose.runs.run import AT_REST, FAILURES
 from cagepose.runs.weights import weigh
 from cagepose.studies.comparison import ENDS, same_pose
@@ -33,6 +32,8 @@ class _Writer:
         self.run = shown.run
         self.stage = Stage(shown)
         self.words = LengthWords(shown.length_unit, shown.run.scene.size_m)
+        self.touches = list(dict.fromkeys(shot.touches for shot in shown.shots))
+        self.which = {touches: index for index, touches in enumerate(self.touches)}
 
     def document(self) -> dict[str, Any]:
         run, stage = self.run, self.stage
@@ -70,6 +71,7 @@ class _Writer:
                 for phase, arrows in zip(run.phases, self.shown.loads, strict=True)
             ],
             "rows": [self._row(row) for row in self.shown.rows],
+            "touches": [self._touch(touches) for touches in self.touches],
             "shots": [self._shot(shot) for shot in self.shown.shots],
             "notes": notes(self.shown),
         }
@@ -83,16 +85,16 @@ class _Writer:
             "quaternion": _numbers(pose.quaternion_wxyz),
             "origin": _numbers(from_metres(pose.position_m, self.shown.length_unit)),
             "angles": [math.degrees(angle) for angle in pose.euler_zyx],
-            "touches": [self._touch(touch, pose) for touch in shot.touches],
+            "touches": self.which[shot.touches],
         }
 
-    def _touch(self, touch: Touch, pose: Pose) -> dict[str, Any]:
-        force = touch.force_world
+    def _touch(self, touches: Touches) -> dict[str, Any]:
+        forces = touches.forces_object
         return {
-            "point": touch.point_index,
-            "box": touch.box,
-            "normal": _numbers(touch.normal_world @ pose.rotation),
-            "force": None if force is None else _numbers(force @ pose.rotation),
+            "points": touches.points.tolist(),
+            "boxes": list(touches.boxes),
+            "normals": (touches.normals_object + 0.0).tolist(),
+            "forces": None if forces is None else (forces + 0.0).tolist(),
         }
 
     def _row(self, row: Row) -> dict[str, Any]:
@@ -133,8 +135,7 @@ class _Writer:
         }
 
     def _greatest_force(self) -> float:
-        forces = [touch.force_world for shot in self.shown.shots for touch in shot.touches]
-        return max((float(np.linalg.norm(force)) for force in forces if force is not None), default=0.0) or 1.0
+        return self.shown.greatest_force or 1.0
 
     def _force_unit(self) -> str:
         loads = self.run.scene.loads[: len(self.run.phases)]

@@ -54,9 +54,7 @@ class PictureMaker:
         back = np.array([cos_a * cos_e, sin_a * cos_e, sin_e])
         right = np.array([-sin_a, cos_a, 0.0])
         self.axes = np.stack([right, np.cross(back, right), back])
-        forces = [touch.force_world for shot in self.shown.shots for touch in shot.touches]
-        greatest = max((float(np.linalg.norm(force)) for force in forces if force is not None), default=0.0)
-        self.arrow_per_force = LONGEST_ARROW / (greatest or 1.0)
+        self.arrow_per_force = LONGEST_ARROW / (self.shown.greatest_force or 1.0)
         self._fit()
         center = stage.center_object_m
         self.way = self._pixels(
@@ -88,11 +86,9 @@ class PictureMaker:
         for arrow in self.shown.loads[-1]:
             tip = self.stage.place(ends[1].transform(arrow.at_object_m))
             places.append((tip - LONGEST_ARROW * arrow.force_world / np.linalg.norm(arrow.force_world))[None])
-        last = self.shown.shots[-1]
-        for touch in last.touches:
-            if touch.force_world is not None:
-                force = self.stage.normal(touch.force_world, last.pose_world_object, ends[1])
-                places.append((self.points[touch.point_index] - self.arrow_per_force * force)[None])
+        last = self.shown.shots[-1].touches
+        if last.forces_object is not None:
+            places.append(self.points[last.points] - self.arrow_per_force * last.forces_object @ ends[1].rotation.T)
         seen = np.concatenate([*places, self.points]) @ self.axes.T
         low, high = seen.min(axis=0), seen.max(axis=0)
         self.middle = (low + high) / 2.0
@@ -132,7 +128,7 @@ class PictureMaker:
         self.raster.keep()
 
     def _draw_points(self, shot: Shot) -> None:
-        touching = {touch.point_index for touch in shot.touches}
+        touching = set(shot.touches.points.tolist())
         row = self.shown.rows[shot.row] if shot.row >= 0 else None
         is_end = row is not None and self.shown.shots[row.last_shot] is shot
         for index, name in enumerate(self.shown.run.scene.cage.names):
@@ -146,13 +142,12 @@ class PictureMaker:
                 self.labels.append(_Label(self.points[index], name, "#777777" if color == DARK else "#000000"))
 
     def _draw_touches(self, shot: Shot, pose: Pose) -> None:
-        for touch in shot.touches:
-            place = self.points[touch.point_index]
-            normal = self.stage.normal(touch.normal_world, shot.pose_world_object, pose)
+        places, forces = self.points[shot.touches.points], shot.touches.forces_object
+        for place, normal in zip(places, shot.touches.normals_object @ pose.rotation.T, strict=True):
             self._rod(place, place + NORMAL * normal, 0.3 * ROD, (0.3, 0.3, 0.3))
-            if touch.force_world is not None:
-                force = self.stage.normal(touch.force_world, shot.pose_world_object, pose) * self.arrow_per_force
-                self._arrow(place - force, place, ROD, VERMILLION)
+        if forces is not None:
+            for place, arrow in zip(places, self.arrow_per_force * forces @ pose.rotation.T, strict=True):
+                self._arrow(place - arrow, place, ROD, VERMILLION)
 
     def _draw_loads(self, shot: Shot, pose: Pose) -> None:
         for arrow in self.shown.loads[shot.phase]:

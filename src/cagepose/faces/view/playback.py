@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cagepose.faces.view.surface import nearest_on_object
 from cagepose.files.units import LengthUnit
@@ -23,25 +26,31 @@ LEAST_ARROW = 0.01
 
 
 @dataclass(frozen=True, eq=False)
-class Touch:
-    """One contact in one shot.
+class Touches:
+    """What touches, in the object's frame: so it stays as it is while the object moves.
 
     Attributes
     ----------
-    point_index
-        Which cage point.
-    box
-        Name of the box that it touches.
-    normal_world
-        Outward unit normal of the face, (3,).
-    force_world
-        Force on the object, (3,), newtons or parts of the load; None: not known, as during a motion.
+    points
+        Indices of n cage points, (n,).
+    boxes
+        Names of the boxes that they touch.
+    normals_object
+        Outward unit normals of the faces, (n, 3).
+    forces_object
+        Forces on the object, (n, 3), newtons or parts of the load; None: not known, as during a motion.
     """
 
-    point_index: int
-    box: str
-    normal_world: FloatArray
-    force_world: FloatArray | None
+    points: NDArray[np.int64]
+    boxes: tuple[str, ...]
+    normals_object: FloatArray
+    forces_object: FloatArray | None
+
+    def chosen(self, which: Sequence[bool]) -> Touches:
+        """Return those of which ``which`` says so, without forces."""
+        boxes = tuple(itertools.compress(self.boxes, which))
+        mask = np.array(which, dtype=bool)
+        return Touches(self.points[mask], boxes, self.normals_object[mask], None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,13 +66,13 @@ class Shot:
     pose_world_object
         Where the object is.
     touches
-        What touches it there.
+        What touches it there; one and the same for all shots on the way of a motion.
     """
 
     row: int
     phase: int
     pose_world_object: Pose
-    touches: tuple[Touch, ...]
+    touches: Touches
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +143,12 @@ class Playback:
     shots_per_motion: int
     loads: tuple[tuple[LoadArrow, ...], ...]
 
+    @property
+    def greatest_force(self) -> float:
+        """Of all contact forces in all shots, newtons or parts of the load; 0 where none is known."""
+        known = [shot.touches.forces_object for shot in self.shots if shot.touches.forces_object is not None]
+        return max((float(np.linalg.norm(forces, axis=1).max()) for forces in known), default=0.0)
+
 
 def playback(run: Run, length_unit: LengthUnit = "mm", shots_per_motion: int = SHOTS_PER_MOTION) -> Playback:
     """Turn a run into shots and rows; each motion gets ``shots_per_motion`` of them, each finding one."""
@@ -153,7 +168,8 @@ class _Camera:
         self.points_world = run.scene.cage.points_world()
         self.names = run.scene.cage.names
         self.index = {name: index for index, name in enumerate(self.names)}
-        self.shots: list[Shot] = [Shot(-1, 0, run.phases[0].start_pose, ())]
+        start = run.phases[0].start_pose
+        self.shots: list[Shot] = [Shot(-1, 0, start, self._touches(start, ()))]
         self.rows: list[Row] = []
 
     def shoot(self, phase_index: int, phase: PhaseRun) -> None:
@@ -165,10 +181,10 @@ class _Camera:
             end = event.pose_world_object if escape is None else escape.pose_at(pose, 1.0)
             is_held = last and escape is None
             touches = self._touches(end, event.contacts)
-            kept = tuple(touch for touch in touches if self.names[touch.point_index] in before)
+            kept = touches.chosen([name in before for name in event.contacts])
             for way in self._way(pose, event, escape):
-                self.shots.append(Shot(row, phase_index, way, _turned(kept, end, way)))
-            self.shots.append(Shot(row, phase_index, end, self._held(phase.contacts) if is_held else touches))
+                self.shots.append(Shot(row, phase_index, way, kept))
+            self.shots.append(Shot(row, phase_index, end, self._held(end, phase.contacts) if is_held else touches))
             verdict = phase.verdict if last else None
             self.rows.append(Row(phase_index, event, verdict, first_shot, len(self.shots) - 1))
             pose, before = event.pose_world_object, frozenset(event.contacts)
@@ -181,19 +197,26 @@ class _Camera:
             return []
         return [self.run.pose_on_the_way(start, event, fraction) for fraction in fractions]
 
-    def _touches(self, pose: Pose, names: tuple[str, ...]) -> tuple[Touch, ...]:
-        indices = [self.index[name] for name in names]
+    def _touches(self, pose: Pose, names: tuple[str, ...]) -> Touches:
+        points = self._indices(names)
         held = self.run.scene.object
-        nearest = nearest_on_object(held, pose, self.points_world[indices])
-        return tuple(
-            Touch(index, str(held.boxes[box].name), normal, None)
-            for index, box, normal in zip(indices, nearest.boxes.tolist(), nearest.normals_world, strict=True)
+        nearest = nearest_on_object(held, pose, self.points_world[points])
+        boxes = tuple(str(held.boxes[box].name) for box in nearest.boxes.tolist())
+        return Touches(points, boxes, nearest.normals_world @ pose.rotation, None)
+
+    def _held(self, pose: Pose, contacts: tuple[Contact, ...]) -> Touches:
+        if not contacts:
+            return self._touches(pose, ())
+        forces = [_force(contact) for contact in contacts]
+        return Touches(
+            self._indices(tuple(contact.point for contact in contacts)),
+            tuple(contact.box for contact in contacts),
+            np.array([contact.normal_world for contact in contacts]) @ pose.rotation,
+            None if any(force is None for force in forces) else np.array(forces) @ pose.rotation,
         )
 
-    def _held(self, contacts: tuple[Contact, ...]) -> tuple[Touch, ...]:
-        return tuple(
-            Touch(self.index[contact.point], contact.box, contact.normal_world, _force(contact)) for contact in contacts
-        )
+    def _indices(self, names: tuple[str, ...]) -> NDArray[np.int64]:
+        return np.array([self.index[name] for name in names], dtype=np.int64)
 
 
 def _escape(phase: PhaseRun, size_m: float) -> Motion | None:
@@ -208,12 +231,6 @@ def _escape(phase: PhaseRun, size_m: float) -> Motion | None:
         return None
     way_m, angle = (ESCAPE * size_m, 0.0) if onset.kind == "travel" else (ESCAPE * onset.pitch_m, ESCAPE)
     return Motion(onset.kind, onset.direction_world, onset.axis_world, onset.through_world, way_m, angle)
-
-
-def _turned(touches: tuple[Touch, ...], end: Pose, way: Pose) -> tuple[Touch, ...]:
-    """Return contacts at the end of a motion as they are on the way there, where their normals turn with the object."""
-    turn = way.rotation @ end.rotation.T
-    return tuple(replace(touch, normal_world=turn @ touch.normal_world) for touch in touches)
 
 
 def _force(contact: Contact) -> FloatArray | None:

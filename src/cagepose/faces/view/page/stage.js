@@ -3,7 +3,9 @@
 class Stage {
   constructor(data) {
     this.data = data;
-    this.shots = data.shots.map((s) => ({ row: s.row, phase: s.phase, pose: { p: s.position, q: s.quaternion }, touches: s.touches }));
+    const touches = data.touches.map(({ points, boxes, normals, forces }) =>
+      points.map((point, i) => ({ point, box: boxes[i], normal: normals[i], force: forces && forces[i] })));
+    this.shots = data.shots.map((s) => ({ row: s.row, phase: s.phase, pose: { p: s.position, q: s.quaternion }, touches: touches[s.touches] }));
   }
 
   // The true pose at a time that may lie between two shots.
