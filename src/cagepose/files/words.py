@@ -21,14 +21,14 @@ class LengthWords:
         """Return lengths in metres as ``1, 2.5, 0``, in the unit."""
         return ", ".join(short(float(from_metres(length, self.unit)), 6, self.noise) for length in lengths_m)
 
-    def amount(self, motion: Motion) -> str:
+    def amount(self, motion: Motion, digits: int = 6) -> str:
         """Return how far a motion goes."""
-        angle = f"{short(math.degrees(motion.angle_rad), 6, 1e-10)} deg"
+        angle = f"{short(math.degrees(motion.angle_rad), digits, 1e-10)} deg"
         if motion.kind == "turn":
             return angle
         if not math.isfinite(motion.distance_m):
             return "without end"
-        distance = f"{self.lengths([motion.distance_m])} {self.unit}"
+        distance = f"{short(float(from_metres(motion.distance_m, self.unit)), digits, self.noise)} {self.unit}"
         return distance if motion.kind == "travel" else f"{distance}, {angle}"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -129,6 +130,30 @@ def test_a_shot_looks_the_same_when_one_comes_back_to_it(opened, rail):
         wait_until(page, f"cagepose.state().drawnTime === {shot}")
         seen.append(page.evaluate("scene.toDataURL()"))
     assert seen[0] == seen[2] != seen[1]
+
+
+def test_all_contacts_of_the_rail_are_named_and_no_name_covers_another(opened, rail):
+    page = opened(rail)
+    written = state(page)["written"]
+    assert {contact.point for contact in rail.run.contacts} < {name["text"] for name in written}
+    for one, other in itertools.combinations(written, 2):
+        apart = np.abs(np.subtract(one["corner"], other["corner"]))
+        left, upper = (
+            sorted((one, other), key=lambda name: name["corner"][0])[0],
+            min(one, other, key=lambda name: name["corner"][1]),
+        )
+        assert apart[0] >= left["size"][0] or apart[1] >= upper["size"][1]
+
+
+def test_everything_stays_in_view_at_every_exaggeration(opened, rail):
+    page = opened(rail)
+    width, height = page.evaluate("[labels.width, labels.height]")
+    for exaggeration in (1, 20, 200):
+        set_range(page, "exaggeration", EXAGGERATIONS.index(exaggeration))
+        wait_until(page, f"cagepose.state().drawnExaggeration === {exaggeration}")
+        places = np.array(page.evaluate("cagepose.state().places"))
+        assert (places > 0.0).all()
+        assert (places < [width, height]).all()
 
 
 def test_exaggeration_is_marked_on_the_screen(opened, rail):

@@ -11,7 +11,7 @@ from cagepose.faces.view.page_data import page_data
 from cagepose.faces.view.playback import Playback
 from cagepose.faces.view.what_if import WhatIf
 
-SCRIPTS = ("geometry", "stage", "painter", "camera", "drawing", "plot", "panel", "player")
+SCRIPTS = ("geometry", "stage", "painter", "camera", "labels", "drawing", "plot", "panel", "player")
 """In this order."""
 
 

@@ -16,6 +16,9 @@ from cagepose.runs.run import AT_REST, FAILURES
 from cagepose.runs.weights import weigh
 from cagepose.studies.comparison import ENDS, same_pose
 
+AMOUNT_DIGITS = 4
+"""A list beside a picture is for reading; saved runs have all digits."""
+
 
 def page_data(shown: Playback) -> dict[str, Any]:
     """Return the data of a page: only dict, list, str, int, finite float, bool and None.
@@ -103,7 +106,7 @@ class _Writer:
             "phase": row.phase,
             "rule": row.event.rule,
             "motion": "" if motion is None else motion.kind,
-            "amount": "" if motion is None else self.words.amount(motion),
+            "amount": "" if motion is None else self.words.amount(motion, AMOUNT_DIGITS),
             "hit": list(row.event.hit),
             "contacts": list(row.event.contacts),
             "verdict": row.verdict,

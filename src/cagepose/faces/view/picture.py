@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from cagepose.faces.view.labels import laid_out
 from cagepose.faces.view.page_data import verdict_kind
 from cagepose.faces.view.playback import Shot
 from cagepose.faces.view.raster import Color, Raster
@@ -28,6 +29,7 @@ BALL, FREE_BALL, ROD, LONGEST_ARROW, NORMAL = 0.01, 0.007, 0.0045, 0.22, 0.07
 """In sizes of the scene, as on the page."""
 SEE_THROUGH = 0.3
 FEW_NAMES = 14
+TEXT_HEIGHT = 13.0
 INK = {"rest": "#00664a", "failure": "#a33b00", "elsewhere": "#a33b00"}
 _EDGES = ((0, 1), (0, 2), (0, 4), (1, 3), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 6), (5, 7), (6, 7))
 _FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
@@ -62,7 +64,7 @@ class PictureMaker:
         )
         self.raster = Raster(self.width * FINER, self.height * FINER)
         self._draw_standing()
-        self.small, self.large = (ImageFont.load_default(size) for size in (13.0, 17.0))
+        self.small, self.large = (ImageFont.load_default(size) for size in (TEXT_HEIGHT, 17.0))
 
     def picture(self, shot: Shot) -> Image.Image:
         """Return one shot as a picture."""
@@ -80,15 +82,15 @@ class PictureMaker:
         return image
 
     def _fit(self) -> None:
-        """Choose scale and middle so that the start, the end, the cage and the last load and forces fit."""
-        ends = [self._shown(shot) for shot in (self.shown.shots[0], self.shown.shots[-1])]
+        """Choose scale and middle so that the start, the ends of events, the cage, the loads and the last forces fit."""
+        ends = [self._shown(self.shown.shots[shot]) for shot in (0, *(row.last_shot for row in self.shown.rows))]
         places = [self.stage.place(pose.transform(self.corners_object)) for pose in ends]
-        for arrow in self.shown.loads[-1]:
-            tip = self.stage.place(ends[1].transform(arrow.at_object_m))
+        for arrow in (arrow for loads in self.shown.loads for arrow in loads):
+            tip = self.stage.place(ends[-1].transform(arrow.at_object_m))
             places.append((tip - LONGEST_ARROW * arrow.force_world / np.linalg.norm(arrow.force_world))[None])
         last = self.shown.shots[-1].touches
         if last.forces_object is not None:
-            places.append(self.points[last.points] - self.arrow_per_force * last.forces_object @ ends[1].rotation.T)
+            places.append(self.points[last.points] - self.arrow_per_force * last.forces_object @ ends[-1].rotation.T)
         seen = np.concatenate([*places, self.points]) @ self.axes.T
         low, high = seen.min(axis=0), seen.max(axis=0)
         self.middle = (low + high) / 2.0
@@ -199,13 +201,12 @@ class PictureMaker:
 
     def _write(self, image: Image.Image, shot: Shot) -> None:
         pen = ImageDraw.Draw(image)
-        taken: list[tuple[float, float]] = []
-        for label in sorted(self.labels, key=lambda label: label.color != "#000000"):  # of names that collide, contacts
-            x, y = (self._pixels(label.place)[:2] / FINER).tolist()
-            if any(abs(x - a) < 26.0 and abs(y - b) < 13.0 for a, b in taken):
-                continue
-            taken.append((x, y))
-            self._text(pen, (x + 6.0, y - 16.0), label.text, label.color)
+        labels = sorted(self.labels, key=lambda label: label.color != "#000000")  # of names that collide, contacts
+        places = [(x, y) for x, y, _ in (self._pixels(label.place) / FINER for label in labels)]
+        sizes = [(pen.textlength(label.text, self.small), TEXT_HEIGHT) for label in labels]
+        for label, corner in zip(labels, laid_out(places, sizes), strict=True):
+            if corner is not None:
+                self._text(pen, corner, label.text, label.color)
         run = self.shown.run
         pen.text((14.0, 10.0), run.scene.name, "#1a1a1a", self.large)
         across = 24.0 + pen.textlength(run.scene.name, self.large)
@@ -240,4 +241,4 @@ class PictureMaker:
         self._text(pen, (left, below - 20.0), f"{length:.6g} {self.shown.length_unit}", "#333333")
 
     def _text(self, pen: ImageDraw.ImageDraw, place: tuple[float, float], text: str, color: str) -> None:
-        pen.text(place, text, color, self.small, stroke_width=2, stroke_fill="#f6f7f9")
+        pen.text(place, text, color, self.small, anchor="la", stroke_width=2, stroke_fill="#f6f7f9")

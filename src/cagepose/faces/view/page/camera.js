@@ -34,6 +34,11 @@ class Camera {
   home(name) {
     [this.azimuth, this.elevation] = VIEWS[name];
     this.zoom = 1;
+    this.fit();
+  }
+
+  // Brings everything into view, from the same side and at the same zoom.
+  fit() {
     const axes = this.axes();
     const seen = this.content().map((place) => axes.map((axis) => dot(axis, place)));
     const [low, high] = [Math.min, Math.max].map((pick) => axes.map((_, i) => pick(...seen.map((place) => place[i]))));

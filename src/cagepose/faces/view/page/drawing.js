@@ -18,15 +18,14 @@ class Drawing {
     this.allNames = stage.data.names.length <= 14;
   }
 
-  draw(time, k) {
+  draw(time) {
     const scale = window.devicePixelRatio;
     for (const canvas of [this.canvas, this.overlay]) {
       const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((pixels) => Math.max(1, Math.round(pixels * scale)));
       if (canvas.width !== width) canvas.width = width; // setting it anew, even to the same, costs a frame
       if (canvas.height !== height) canvas.height = height;
     }
-    this.exaggeration = k;
-    const { stage, painter } = this;
+    const { stage, painter, exaggeration: k } = this;
     const shot = stage.shot(time);
     const pose = stage.shownPose(stage.truePose(time), k);
     const labels = [];
@@ -40,16 +39,23 @@ class Drawing {
     this.write(labels, scale);
   }
 
-  // All that a view is fitted to: corners at the start and the end, cage points, loads and forces at the end.
+  // Shows motions so many times as large, all in view.
+  exaggerate(k) {
+    this.exaggeration = k;
+    this.camera.fit();
+  }
+
+  // All that a view is fitted to: corners at the start and each event's end, cage points, loads, forces at the end.
   content() {
     const { stage, exaggeration: k } = this;
-    const ends = [stage.shots[0], stage.shots.at(-1)].map((shot) => stage.shownPose(shot.pose, k));
+    const ends = [0, ...stage.data.rows.map((row) => row.last)].map((shot) => stage.shownPose(stage.shots[shot].pose, k));
+    const end = ends.at(-1);
     const signs = [-0.5, 0.5].flatMap((x) => [-0.5, 0.5].flatMap((y) => [-0.5, 0.5].map((z) => [x, y, z])));
     const corners = ends.flatMap((pose) => stage.data.boxes.flatMap((box) => signs.map((sign) =>
       carried(composed(pose, { p: box.position, q: box.quaternion }), sign.map((value, axis) => value * box.size[axis])))));
-    const tails = stage.data.phases.at(-1).loads.map((load) => sub(carried(ends[1], load.at), times(LONGEST_ARROW, load.direction)));
+    const tails = stage.data.phases.flatMap((phase) => phase.loads).map((load) => sub(carried(end, load.at), times(LONGEST_ARROW, load.direction)));
     const pressing = stage.shots.at(-1).touches.filter((touch) => touch.force).map((touch) =>
-      sub(stage.point(touch.point, k), times(LONGEST_ARROW / stage.data.greatestForce, rotated(ends[1].q, touch.force))));
+      sub(stage.point(touch.point, k), times(LONGEST_ARROW / stage.data.greatestForce, rotated(end.q, touch.force))));
     return [...corners, ...tails, ...pressing, ...stage.data.names.map((_, index) => stage.point(index, k))];
   }
 
@@ -125,16 +131,17 @@ class Drawing {
 
   write(labels, scale) {
     const pen = this.overlay.getContext("2d");
-    pen.font = `${12 * scale}px system-ui, sans-serif`;
+    const height = 12 * scale;
+    pen.font = `${height}px system-ui, sans-serif`;
     pen.clearRect(0, 0, this.overlay.width, this.overlay.height);
-    const taken = [];
     labels.sort((one, other) => (one[2] !== "#000") - (other[2] !== "#000")); // of names that collide, contacts
-    for (const [place, text, color] of labels) {
-      const [x, y] = this.camera.project(place);
-      if (taken.some(([a, b]) => Math.abs(a - x) < 30 * scale && Math.abs(b - y) < 13 * scale)) continue;
-      taken.push([x, y]);
-      this.text(pen, text, x + 7 * scale, y - 5 * scale, color, scale);
-    }
+    const corners = laidOut(labels.map(([place, text]) => ({ place: this.camera.project(place), size: [pen.measureText(text).width, height] })), scale);
+    this.written = [];
+    labels.forEach(([, text, color], which) => {
+      if (!corners[which]) return;
+      this.text(pen, text, corners[which][0], corners[which][1] + 0.85 * height, color, scale);
+      this.written.push({ text, corner: corners[which], size: [pen.measureText(text).width, height] });
+    });
     this.drawAxes(pen, scale);
     this.drawScale(pen, scale);
   }

@@ -6,7 +6,7 @@ const MOTION_S = 1, PAUSE_S = 0.35;
 let data = JSON.parse($("data").textContent);
 let stage = new Stage(data);
 let end = stage.shots.length - 1;
-const player = { time: end, playing: false, exaggeration: data.exaggeration, drawn: 0, drawnTime: null, answers: 0, drawnAnswers: 0, drawMs: null };
+const player = { time: end, playing: false, exaggeration: data.exaggeration, drawn: 0, drawnTime: null, drawnExaggeration: null, answers: 0, drawnAnswers: 0, drawMs: null };
 let drawing = null, waiting = false, resting = 0, lastTick = null;
 
 const plot = new Plot($("plot"), (time) => { pause(); seek(time); });
@@ -88,7 +88,7 @@ function fill() {
   $("name").textContent = data.name;
   $("verdict").textContent = data.verdict;
   $("verdict").className = data.verdictKind;
-  $("method").textContent = `${data.method}, ${data.solve}`;
+  $("method").textContent = `${data.method}, solved in ${data.solve}`;
   $("events").tBodies[0].replaceChildren();
   data.rows.forEach((row, index) => {
     const line = element("tr", "", index > 0 && data.rows[index - 1].phase !== row.phase ? "phase" : "");
@@ -111,15 +111,22 @@ function namesCell(names) {
   return cell;
 }
 
-const digits = (value) => +value.toPrecision(6);
+// Scrolls the list of events, and nothing around it, to a line.
+function reveal(line) {
+  const list = line.closest(".events");
+  const [first, last] = [line.offsetTop - line.offsetHeight, line.offsetTop + line.offsetHeight - list.clientHeight];
+  list.scrollTop = Math.max(last, Math.min(first, list.scrollTop));
+}
+
+const digits = (value, noise) => (Math.abs(value) < noise ? 0 : +value.toPrecision(6));
 
 function show() {
   const start = performance.now();
   const { time, exaggeration: k } = player;
   const shot = stage.shot(time);
   const after = data.shots[Math.ceil(time)], before = data.shots[Math.floor(time)];
-  const mixed = (key) => after[key].map((value, i) => digits(before[key][i] + (time - Math.floor(time)) * (value - before[key][i])));
-  if (drawing) drawing.draw(time, k);
+  const mixed = (key, noise) => after[key].map((value, i) => digits(before[key][i] + (time - Math.floor(time)) * (value - before[key][i]), noise)).join(", ");
+  if (drawing) drawing.draw(time);
   plot.draw(time);
   $("time").value = time;
   $("play").textContent = player.playing ? "\u275A\u275A" : "\u25B6";
@@ -127,16 +134,17 @@ function show() {
   $("badge").textContent = k === 1 ? "true scale" : `motions and gaps exaggerated \u00D7${k}`;
   $("badge").className = k === 1 ? "" : "exaggerated";
   [...$("events").tBodies[0].rows].forEach((line, index) => {
-    if (index === shot.row && !line.classList.contains("now")) line.scrollIntoView({ block: "nearest" });
+    if (index === shot.row && !line.classList.contains("now")) reveal(line);
     line.classList.toggle("now", index === shot.row);
   });
   $("pose").replaceChildren(
-    element("dt", "origin"), element("dd", `${mixed("origin").join(", ")} ${data.unit}`),
-    element("dt", "yaw, pitch, roll"), element("dd", `${mixed("angles").join(", ")} deg`),
+    element("dt", "origin"), element("dd", `${mixed("origin", 1e-12 * data.unitsPerDrawing)} ${data.unit}`),
+    element("dt", "yaw, pitch, roll"), element("dd", `${mixed("angles", 1e-10)} deg`),
     element("dt", "phase"), element("dd", data.phases[shot.phase].name));
   $("forces").tBodies[0].replaceChildren(...forceRows(shot));
   player.drawn += 1;
   player.drawnTime = time;
+  player.drawnExaggeration = k;
   player.drawnAnswers = player.answers;
   player.drawMs = performance.now() - start;
 }
@@ -166,7 +174,11 @@ $("last").addEventListener("click", () => { pause(); seek(end); });
 $("back").addEventListener("click", () => step(-1));
 $("next").addEventListener("click", () => step(1));
 $("time").addEventListener("input", () => { pause(); seek(Number($("time").value)); });
-$("exaggeration").addEventListener("input", () => { player.exaggeration = data.exaggerations[$("exaggeration").value]; refresh(); });
+$("exaggeration").addEventListener("input", () => {
+  player.exaggeration = data.exaggerations[$("exaggeration").value];
+  drawing?.exaggerate(player.exaggeration);
+  refresh();
+});
 $("names").addEventListener("change", () => { drawing.allNames = $("names").checked; refresh(); });
 document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => drawing?.camera.home(button.dataset.view)));
 document.addEventListener("keydown", (event) => {
@@ -178,7 +190,9 @@ window.addEventListener("resize", refresh);
 
 // What is on screen, for other scripts and for tests.
 window.cagepose = {
-  state: () => ({ ...player, row: stage.shot(player.time).row, shownPose: stage.shownPose(stage.truePose(player.time), player.exaggeration),
+  state: () => ({ ...player, row: stage.shot(player.time).row, written: drawing?.written,
+    places: drawing?.content().map((place) => drawing.camera.project(place)),
+    shownPose: stage.shownPose(stage.truePose(player.time), player.exaggeration),
     points: data.names.map((_, index) => stage.point(index, player.exaggeration)) }),
 };
 
