@@ -82,7 +82,7 @@ class PictureMaker:
         return image
 
     def _fit(self) -> None:
-        """Choose scale and middle so that the start, the ends of events, the cage, the loads and the last forces fit."""
+        """Choose scale and middle so that the ends of all events, the cage, the loads and the last forces fit."""
         ends = [self._shown(self.shown.shots[shot]) for shot in (0, *(row.last_shot for row in self.shown.rows))]
         places = [self.stage.place(pose.transform(self.corners_object)) for pose in ends]
         for arrow in (arrow for loads in self.shown.loads for arrow in loads):
