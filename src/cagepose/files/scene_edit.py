@@ -9,6 +9,21 @@ from ruamel.yaml import YAML
 
 from cagepose.files.key_path import parse_key_path, set_value
 from cagepose.files.scene_file import SceneText
+from cagepose.files.yaml_source import parse_yaml
+
+
+def edited(scene_text: SceneText, set_values: Sequence[str]) -> SceneText:
+    """Return the file as if ``set_values`` stood in it.
+
+    Raises
+    ------
+    SceneFileError
+        As `edited_text`.
+    """
+    if not set_values:
+        return scene_text
+    text = edited_text(scene_text, set_values)
+    return SceneText(text, parse_yaml(text, scene_text.yaml.source), scene_text.folder)
 
 
 def edited_text(scene_text: SceneText, set_values: Sequence[str]) -> str:

@@ -4,65 +4,28 @@ from __future__ import annotations
 
 import http.client
 import json
-import os
-import signal
-import socket
-import subprocess
-import sys
-import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from urllib.request import urlopen
 
 import numpy as np
 import pytest
 
 from cagepose import load_scene, run
-from cagepose.faces.view.page import page as page_text
-from cagepose.faces.view.playback import playback
-from cagepose.faces.view.server import ViewServer, open_server
+from cagepose.faces.view.server import ViewServer
 from cagepose.faces.view.what_if import WhatIf
 from cagepose.files.scene_edit import edited_text
 from cagepose.files.scene_file import parse_scene, read_scene_text
-from driving import state, wait_until
+from driving import opened, served, shown_angles, slide, state, wait_until
 
 SCENES = Path(__file__).resolve().parents[3] / "scenes"
 RAIL = SCENES / "rail-pitch.yaml"
-HOST, PORT = "127.0.0.1", 18737
-
-
-def served(what_if: WhatIf | None) -> ViewServer:
-    film = playback(run(load_scene(RAIL)))
-    server = open_server(page_text(film, what_if), what_if, HOST, PORT)
-    threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02}, daemon=True).start()
-    return server
 
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[ViewServer]:
-    server = served(WhatIf(read_scene_text(RAIL)))
-    yield server
-    server.shutdown()
-    server.server_close()
-
-
-def opened(watched, server):
-    watched.page.goto(server.address)
-    wait_until(watched.page, "cagepose.state().drawn > 0")
-    return watched.page
-
-
-def slide(page, label: str, value: float) -> None:
-    """Move a slider by its number box, and wait for the answer or the complaint."""
-    before = state(page)["answers"]
-    page.get_by_label(label, exact=True).last.fill(str(value))
-    wait_until(page, f"cagepose.state().drawnAnswers > {before} || problems.innerText !== ''")
-
-
-def shown_angles(page) -> list[float]:
-    text = page.locator("#pose dd").nth(1).inner_text()
-    return [float(word) for word in text.removesuffix(" deg").split(", ")]
+    with served(RAIL) as server:
+        yield server
 
 
 def expected_angles(*set_values: str) -> list[float]:
@@ -70,7 +33,7 @@ def expected_angles(*set_values: str) -> list[float]:
 
 
 def post(server: ViewServer, path: str, body: bytes, **headers: str) -> tuple[int, bytes]:
-    connection = http.client.HTTPConnection(HOST, server.server_port, timeout=30)
+    connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=30)
     connection.request("POST", path, body, {"Content-Type": "application/json", **headers})
     response = connection.getresponse()
     answer = response.status, response.read()
@@ -144,12 +107,10 @@ def test_another_method_is_run_when_chosen(watched, server):
 
 
 def test_a_saved_run_is_shown_without_controls(watched):
-    server = served(None)
-    page = opened(watched, server)
-    assert not page.locator("#panel").is_visible()
-    assert post(server, "/run", b"{}")[0] == 404
-    server.shutdown()
-    server.server_close()
+    with served(RAIL, can_change=False) as server:
+        page = opened(watched, server)
+        assert not page.locator("#panel").is_visible()
+        assert post(server, "/run", b"{}")[0] == 404
 
 
 def test_the_server_answers_nobody_who_comes_by_another_name_or_without_json(server):
@@ -177,16 +138,15 @@ def test_bad_values_are_refused_with_the_reason(server, values, told):
 
 
 def test_from_slider_to_new_pose_takes_less_than_50_ms_on_the_server():
+    """In processor time, which does not hang on what else the machine does."""
     what_if = WhatIf(read_scene_text(RAIL))
     what_if.answer({})
     times = []
     for step in range(15):
-        start = time.perf_counter()
+        start = time.process_time()
         json.dumps(what_if.answer({"cage.pose.euler_zyx_deg": [0.0, 0.1 + 0.01 * step, 0.0]}))
-        times.append(time.perf_counter() - start)
-    assert (
-        sorted(times)[3] < 0.050
-    )  # 28 ms where this was written, of which 1 ms is the solver's; others share the cores
+        times.append(time.process_time() - start)
+    assert np.median(times) < 0.050
 
 
 def test_a_saved_scene_keeps_its_comments_and_changes_nothing_else():
@@ -198,22 +158,3 @@ def test_a_saved_scene_keeps_its_comments_and_changes_nothing_else():
         "  coefficient: 0.3",
     ]
     assert parse_scene(edited).friction_coefficient == 0.3
-
-
-def test_a_taken_port_gives_the_next_one_and_ctrl_c_ends_cleanly():
-    with socket.create_server((HOST, 0)) as taken:
-        port = taken.getsockname()[1]
-        command = [sys.executable, "-m", "cagepose", "view", str(SCENES / "sample.yaml"), "--port", str(port)]
-        start = time.perf_counter()
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=os.environ)
-        try:
-            said = process.stdout.readline()
-            address = process.stdout.readline().split("look at ")[1].split()[0]
-            assert said.startswith(f"port {port} is taken; using ")
-            with urlopen(address, timeout=10) as answer:
-                assert b'id="scene"' in answer.read()
-            print(f"from command to page: {time.perf_counter() - start:.1f} s")
-        finally:
-            process.send_signal(signal.SIGINT)
-            out, err = process.communicate(timeout=20)
-    assert (process.returncode, out, err) == (0, "\nended\n", "")

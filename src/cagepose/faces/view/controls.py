@@ -13,6 +13,7 @@ from cagepose.files.key_path import parse_key_path, resolved, value_at
 from cagepose.files.scene_file import SceneFile, SceneText
 from cagepose.files.units import from_metres
 from cagepose.runs.solve import METHODS, chosen_method
+from cagepose.runs.stepwise import NO_SLIP_ANGLE_DEFAULT_RAD
 
 PLAYS = 2.0
 """The cage can be moved by this many times the play: the median gap at the start."""
@@ -64,16 +65,21 @@ class Control:
         return asdict(self)
 
 
-def controls(scene_text: SceneText, scene_file: SceneFile, method: str | None = None) -> list[Control]:
-    """Return the controls of a scene: what it names as adjustable, its cage, its loads, friction and method."""
-    return _Maker(scene_text.yaml.data, scene_file, method).controls()
+def controls(scene_text: SceneText) -> list[Control]:
+    """Return the controls of a scene: what it names as adjustable, its cage, its loads, friction and method.
+
+    Raises
+    ------
+    SceneFileError
+        The scene cannot be used, see `load_scene`.
+    """
+    return _Maker(scene_text.yaml.data, scene_text.scene_file()).controls()
 
 
 class _Maker:
-    def __init__(self, data: object, scene_file: SceneFile, method: str | None) -> None:
+    def __init__(self, data: object, scene_file: SceneFile) -> None:
         self.data = data
         self.scene = scene_file.scene
-        self.method = method
         self.unit = scene_file.length_unit
         self.size = float(from_metres(self.scene.size_m, self.unit))
         points, held = self.scene.cage.points_world(), self.scene.object
@@ -97,15 +103,12 @@ class _Maker:
         angles = value_at(self.data, ("cage", "pose", "euler_zyx_deg"))
         angles = angles or [math.degrees(angle) for angle in pose.euler_zyx]
         place = value_at(self.data, ("cage", "pose", "position")) or [0.0, 0.0, 0.0]
-        made = []
-        if value_at(self.data, ("cage", "pose", "quat_wxyz")) is None:  # beside a quaternion, angles are refused
-            key = "cage.pose.euler_zyx_deg"
-            most = _rounded_up(math.degrees(TURNS_PER_PLAY * PLAYS * self.play / self.size))
-            made += self._vector("cage", ("yaw", "pitch", "roll"), "deg", key, angles, min(most, MOST_TURN_DEG))
-        made += self._vector(
-            "cage", ("x", "y", "z"), self.unit, "cage.pose.position", place, _rounded_up(PLAYS * self.play)
-        )
-        return made
+        most = min(_rounded_up(math.degrees(TURNS_PER_PLAY * PLAYS * self.play / self.size)), MOST_TURN_DEG)
+        reach = _rounded_up(PLAYS * self.play)
+        return [
+            *self._vector("cage", ("yaw", "pitch", "roll"), "deg", "cage.pose.euler_zyx_deg", angles, most),
+            *self._vector("cage", ("x", "y", "z"), self.unit, "cage.pose.position", place, reach),
+        ]
 
     def _loads(self) -> list[Control]:
         made = []
@@ -129,9 +132,10 @@ class _Maker:
         return made
 
     def _options(self) -> list[Control]:
-        friction = self.scene.friction_coefficient or 0.0
+        chosen, friction = chosen_method(self.scene), self.scene.friction_coefficient
+        if friction is None:
+            friction = round(math.tan(NO_SLIP_ANGLE_DEFAULT_RAD), 6) if chosen == "stepwise" else 0.0
         most = max(MOST_FRICTION, 2.0 * friction)
-        chosen = chosen_method(self.scene, self.method)
         return [
             self._slider("contacts", "friction", "", "friction", None, friction, 0.0, most),
             Control("contacts", "method", "", "method", None, chosen, choices=METHODS),

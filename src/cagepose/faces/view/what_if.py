@@ -6,16 +6,21 @@ import json
 from pathlib import PurePath
 from typing import Any
 
+import numpy as np
+
 from cagepose.errors import CageposeError, SceneFileError
 from cagepose.faces.view.controls import Control, controls
 from cagepose.faces.view.page_data import page_data
 from cagepose.faces.view.playback import playback
-from cagepose.files.scene_edit import edited_text
+from cagepose.files.key_path import value_at
+from cagepose.files.scene_edit import edited, edited_text
 from cagepose.files.scene_file import SceneText
 from cagepose.runs.solve import run
 
 SHOTS_PER_MOTION = 4
 """Fewer than in an exported page, whose maker need not wait for them; the page fills in what is between."""
+DECIMALS = 10
+"""Of degrees: an orientation that was a quaternion changes by far less than the touch tolerance, and reads well."""
 
 
 class WhatIf:
@@ -30,17 +35,16 @@ class WhatIf:
     """
 
     def __init__(self, scene_text: SceneText, set_values: tuple[str, ...] = (), method: str | None = None) -> None:
-        """``set_values`` and ``method`` change the file before anybody else does.
+        """``set_values`` and ``method`` change the file before anybody else does; a cage's quaternion becomes angles.
 
         Raises
         ------
         SceneFileError
             The scene cannot be used, see `load_scene`.
         """
-        self._text = scene_text
-        self._set_values = set_values if method is None else (*set_values, f"method={method}")
-        start = scene_text.scene_file(self._set_values)
-        self.controls: list[Control] = controls(scene_text, start, method)
+        changes = set_values if method is None else (*set_values, f"method={method}")
+        self._text = _with_angles(edited(scene_text, changes))
+        self.controls: list[Control] = controls(self._text)
         self.file_name = f"{PurePath(scene_text.yaml.source).stem}-changed.yaml"
 
     def answer(self, values: object) -> dict[str, Any]:
@@ -76,7 +80,7 @@ class WhatIf:
         if not isinstance(values, dict):
             raise ValueError("the values are no mapping")
         keys = {control.key for control in self.controls}
-        settings = list(self._set_values)
+        settings = []
         for key, value in values.items():
             if key not in keys:
                 raise ValueError(f"{key} cannot be changed here")
@@ -85,6 +89,17 @@ class WhatIf:
             given = {"coefficient": value} if key == "friction" else value
             settings.append(f"{key}={json.dumps(given)}")
         return tuple(settings)
+
+
+def _with_angles(scene_text: SceneText) -> SceneText:
+    """Write the cage's orientation as angles, for which there are sliders."""
+    pose = value_at(scene_text.yaml.data, ("cage", "pose"))
+    if value_at(pose, ("quat_wxyz",)) is None:
+        return scene_text
+    angles = np.degrees(scene_text.scene_file().scene.cage.pose_world_cage.euler_zyx)
+    kept = {key: value for key, value in pose.items() if key != "quat_wxyz"}
+    anew = {**kept, "euler_zyx_deg": np.round(angles, DECIMALS).tolist()}
+    return edited(scene_text, [f"cage.pose={json.dumps(anew)}"])
 
 
 def _is_plain(value: object) -> bool:
