@@ -145,6 +145,14 @@ def test_all_contacts_of_the_rail_are_named_and_no_name_covers_another(opened, r
         assert apart[0] >= left["size"][0] or apart[1] >= upper["size"][1]
 
 
+def test_of_a_crowd_of_contacts_those_that_press_are_named(opened, crowded):
+    film = playback(run(crowded), shots_per_motion=4)
+    page = opened(film)
+    pressing = {contact.point for contact in film.run.contacts if contact.force_normal_n > 1e-9}
+    assert len(pressing) < 15 < len(film.run.contacts)
+    assert {name["text"] for name in state(page)["written"]} <= {*pressing, "weight"}
+
+
 def test_everything_stays_in_view_at_every_exaggeration(opened, rail):
     page = opened(rail)
     width, height = page.evaluate("[labels.width, labels.height]")

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image
 
-from cagepose.faces.view.labels import laid_out
-from cagepose.faces.view.page_data import verdict_kind
+from cagepose.faces.view.caption import LOUD_INK, QUIET_INK, Caption, Label
 from cagepose.faces.view.playback import Shot
 from cagepose.faces.view.raster import Color, Raster
 from cagepose.faces.view.stage import Stage
 from cagepose.files.units import from_metres
-from cagepose.files.words import LengthWords
 from cagepose.nouns.checks import FloatArray
 from cagepose.nouns.pose import Pose
 
@@ -29,16 +26,11 @@ BALL, FREE_BALL, ROD, LONGEST_ARROW, NORMAL = 0.01, 0.007, 0.0045, 0.22, 0.07
 """In sizes of the scene, as on the page."""
 SEE_THROUGH = 0.3
 FEW_NAMES = 14
-TEXT_HEIGHT = 13.0
-INK = {"rest": "#00664a", "failure": "#a33b00", "elsewhere": "#a33b00"}
+"""Of more contacts than these, only those are named that press or were just reached."""
+LEAST_FORCE = 1e-9
+"""In parts of the greatest one; what is less is rounding."""
 _EDGES = ((0, 1), (0, 2), (0, 4), (1, 3), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 6), (5, 7), (6, 7))
 _FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
-
-
-class _Label(NamedTuple):
-    place: FloatArray
-    text: str
-    color: str
 
 
 class PictureMaker:
@@ -64,12 +56,13 @@ class PictureMaker:
         )
         self.raster = Raster(self.width * FINER, self.height * FINER)
         self._draw_standing()
-        self.small, self.large = (ImageFont.load_default(size) for size in (TEXT_HEIGHT, 17.0))
+        units_per_pixel = float(from_metres(stage.size_m, self.shown.length_unit)) * FINER / self.pixels
+        self.caption = Caption(self.shown, exaggeration, size, units_per_pixel)
 
     def picture(self, shot: Shot) -> Image.Image:
         """Return one shot as a picture."""
         self.raster.begin()
-        self.labels: list[_Label] = []
+        self.labels: list[Label] = []
         pose = self.stage.pose(shot.pose_world_object, self.exaggeration)
         self._draw_points(shot)
         self._draw_touches(shot, pose)
@@ -78,7 +71,7 @@ class PictureMaker:
         self._draw_way(shot)
         self._draw_object(pose)
         image = self.raster.shrunk(FINER)
-        self._write(image, shot)
+        self.caption.write(image, shot, self.labels)
         return image
 
     def _fit(self) -> None:
@@ -122,6 +115,10 @@ class PictureMaker:
     def _ball(self, place: FloatArray, radius: float, color: Color) -> None:
         self.raster.ball(self._pixels(place), radius * self.pixels, color)
 
+    def _name(self, place: FloatArray, text: str, *, is_loud: bool) -> None:
+        x, y = (self._pixels(place)[:2] / FINER).tolist()
+        self.labels.append(Label((x, y), text, LOUD_INK if is_loud else QUIET_INK))
+
     def _draw_standing(self) -> None:
         """Draw what all shots have: where the object started, and the cage; a point that touches covers itself."""
         self._draw_edges(self.stage.reference, GREY)
@@ -133,6 +130,7 @@ class PictureMaker:
         touching = set(shot.touches.points.tolist())
         row = self.shown.rows[shot.row] if shot.row >= 0 else None
         is_end = row is not None and self.shown.shots[row.last_shot] is shot
+        pressing = self._pressing(shot)
         for index, name in enumerate(self.shown.run.scene.cage.names):
             if is_end and row is not None and name in row.event.hit:
                 color = VERMILLION
@@ -140,8 +138,16 @@ class PictureMaker:
                 color = ORANGE if index in touching else DARK
             if color != DARK:
                 self._ball(self.points[index], BALL, color)
-            if color != DARK or len(self.points) <= FEW_NAMES:
-                self.labels.append(_Label(self.points[index], name, "#777777" if color == DARK else "#000000"))
+            counts = color == VERMILLION or (color == ORANGE and (len(touching) <= FEW_NAMES or index in pressing))
+            if counts or len(self.points) <= FEW_NAMES:
+                self._name(self.points[index], name, is_loud=color != DARK)
+
+    def _pressing(self, shot: Shot) -> set[int]:
+        """Return the points that bear some of the load in a shot."""
+        if shot.touches.forces_object is None:
+            return set()
+        forces = np.linalg.norm(shot.touches.forces_object, axis=1)
+        return set(shot.touches.points[forces > LEAST_FORCE * self.shown.greatest_force].tolist())
 
     def _draw_touches(self, shot: Shot, pose: Pose) -> None:
         places, forces = self.points[shot.touches.points], shot.touches.forces_object
@@ -156,7 +162,7 @@ class PictureMaker:
             tip = self.stage.place(pose.transform(arrow.at_object_m))
             tail = tip - LONGEST_ARROW * arrow.force_world / np.linalg.norm(arrow.force_world)
             self._arrow(tail, tip, 1.3 * ROD, BLACK)
-            self.labels.append(_Label(tail, arrow.name, "#000000"))
+            self._name(tail, arrow.name, is_loud=True)
 
     def _draw_motion(self, shot: Shot, pose: Pose) -> None:
         row = self.shown.rows[shot.row] if shot.row >= 0 else None
@@ -198,47 +204,3 @@ class PictureMaker:
     def _corners(self, pose: Pose) -> FloatArray:
         """All boxes' corners on the raster, (n_boxes, 8, 3)."""
         return self._pixels(self.stage.place(pose.transform(self.corners_object))).reshape(-1, 8, 3)
-
-    def _write(self, image: Image.Image, shot: Shot) -> None:
-        pen = ImageDraw.Draw(image)
-        labels = sorted(self.labels, key=lambda label: label.color != "#000000")  # of names that collide, contacts
-        places = [(x, y) for x, y, _ in (self._pixels(label.place) / FINER for label in labels)]
-        sizes = [(pen.textlength(label.text, self.small), TEXT_HEIGHT) for label in labels]
-        for label, corner in zip(labels, laid_out(places, sizes), strict=True):
-            if corner is not None:
-                self._text(pen, corner, label.text, label.color)
-        run = self.shown.run
-        pen.text((14.0, 10.0), run.scene.name, "#1a1a1a", self.large)
-        across = 24.0 + pen.textlength(run.scene.name, self.large)
-        pen.text((across, 10.0), run.verdict, INK[verdict_kind(run.verdict)], self.large)
-        pen.text((14.0, 34.0), self._happening(shot), "#5c5c5c", self.small)
-        self._write_scale(pen)
-
-    def _happening(self, shot: Shot) -> str:
-        if shot.row < 0:
-            return "start"
-        row = self.shown.rows[shot.row]
-        words = LengthWords(self.shown.length_unit, self.shown.run.scene.size_m)
-        motion = row.event.motion
-        what = row.verdict or "-" if motion is None else f"{motion.kind} {words.amount(motion)}"
-        return f"{self.shown.run.phases[row.phase].name}, event {shot.row + 1}: {row.event.rule}, {what}"
-
-    def _write_scale(self, pen: ImageDraw.ImageDraw) -> None:
-        if self.exaggeration == 1:
-            pen.text((14.0, self.height - 26.0), "true scale", "#5c5c5c", self.small)
-        else:
-            text = f"motions and gaps exaggerated x{self.exaggeration}"
-            width = pen.textlength(text, self.small)
-            pen.rectangle((10.0, self.height - 32.0, 22.0 + width, self.height - 8.0), fill="#e69f00")
-            pen.text((16.0, self.height - 28.0), text, "#000000", self.small)
-        units = float(from_metres(self.stage.size_m, self.shown.length_unit))  # of one drawing unit
-        rough = 100.0 * FINER / self.pixels * units
-        power = 10.0 ** math.floor(math.log10(rough))
-        length = next(step * power for step in (5.0, 2.0, 1.0) if step * power <= rough)
-        right, below = self.width - 20.0, self.height - 16.0
-        left = right - length / units * self.pixels / FINER
-        pen.line((left, below, right, below), fill="#333333", width=2)
-        self._text(pen, (left, below - 20.0), f"{length:.6g} {self.shown.length_unit}", "#333333")
-
-    def _text(self, pen: ImageDraw.ImageDraw, place: tuple[float, float], text: str, color: str) -> None:
-        pen.text(place, text, color, self.small, anchor="la", stroke_width=2, stroke_fill="#f6f7f9")

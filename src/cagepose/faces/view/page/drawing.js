@@ -6,6 +6,8 @@ const COLORS = {
   load: [0.05, 0.05, 0.05, 1], axis: [0.8, 0.475, 0.655, 1], trace: [0, 0.447, 0.698, 1], center: [0, 0.447, 0.698, 1],
 };
 const BALL = 0.01, ROD = 0.0045, LONGEST_ARROW = 0.22, NORMAL = 0.07;
+const FEW_NAMES = 14; // of more contacts than these, only those are named that press or were just reached
+const LEAST_FORCE = 1e-9; // parts of the greatest; what is less is rounding
 
 class Drawing {
   constructor(stage, canvas, overlay, changed) {
@@ -15,7 +17,7 @@ class Drawing {
     this.painter = new Painter(canvas);
     this.exaggeration = stage.data.exaggeration;
     this.camera = new Camera(canvas, stage.data.radius, () => this.content(), changed);
-    this.allNames = stage.data.names.length <= 14;
+    this.allNames = stage.data.names.length <= FEW_NAMES;
   }
 
   draw(time) {
@@ -80,11 +82,13 @@ class Drawing {
     const touching = new Set(shot.touches.map((touch) => touch.point));
     const row = this.stage.data.rows[shot.row];
     const isEnd = row && this.stage.shots[row.last] === shot;
+    const pressing = new Set(shot.touches.filter((touch) => touch.force && norm(touch.force) > LEAST_FORCE * this.stage.data.greatestForce).map((touch) => touch.point));
     this.stage.data.names.forEach((name, index) => {
       const place = this.stage.point(index, k);
       const look = isEnd && row.hit.includes(name) ? "reached" : touching.has(index) ? "touching" : "free";
       this.ball(place, look === "free" ? 0.7 * BALL : BALL, COLORS[look]);
-      if (look !== "free" || this.allNames) labels.push([place, name, look === "free" ? "#777" : "#000"]);
+      const counts = look === "reached" || (look === "touching" && (touching.size <= FEW_NAMES || pressing.has(index)));
+      if (counts || this.allNames) labels.push([place, name, look === "free" ? "#777" : "#000"]);
     });
   }
 

@@ -106,7 +106,7 @@ function fill() {
 
 // Names in a cell: those of a crowd can be read when the mouse rests on it.
 function namesCell(names) {
-  const cell = element("td", names.length > 16 ? `${names.slice(0, 12).join(" ")} and ${names.length - 12} more` : names.join(" "));
+  const cell = element("td", names.length > 9 ? `${names.slice(0, 6).join(" ")} and ${names.length - 6} more` : names.join(" "));
   cell.title = names.join(" ");
   return cell;
 }
@@ -149,9 +149,14 @@ function show() {
   player.drawMs = performance.now() - start;
 }
 
+function whyNoForces(shot) {
+  if (!shot.touches.length) return "nothing touches";
+  return data.rows[shot.row]?.verdictKind === "failure" && player.time === end ? "not known, since no rest was found" : "known where a phase ends";
+}
+
 function forceRows(shot) {
-  if (!shot.touches.some((touch) => touch.force)) return [element("tr", shot.touches.length ? "known where a phase ends" : "nothing touches")];
-  const loaded = shot.touches.filter((touch) => norm(touch.force) > 1e-9 * data.greatestForce);
+  if (!shot.touches.some((touch) => touch.force)) return [element("tr", whyNoForces(shot))];
+  const loaded = shot.touches.filter((touch) => norm(touch.force) > LEAST_FORCE * data.greatestForce);
   const idle = shot.touches.length - loaded.length;
   const lines = loaded.map((touch) => {
     const size = norm(touch.force);
