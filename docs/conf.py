@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from importlib.metadata import version as installed_version
 from pathlib import Path
@@ -9,12 +10,17 @@ from pathlib import Path
 import latex2mathml.converter
 from docutils import nodes
 from sphinx.application import Sphinx
+from sphinx.config import Config
 from sphinx.writers.html5 import HTML5Translator
 
-from cagepose import load_scene, play
+from cagepose import load_scene, play, run
 from cagepose.faces.play_figure import play_figure
 from cagepose.faces.report import write_report
 from cagepose.faces.style import figure_bytes
+from cagepose.faces.view.film import png_bytes
+from cagepose.faces.view.page import page
+from cagepose.faces.view.playback import playback
+from cagepose.files.scene_file import read_scene_file
 from cagepose.studies.reproduction import METHODS, reproduce
 
 project = "cagepose"
@@ -84,13 +90,41 @@ def _draw_play(app: Sphinx) -> None:
         (folder / f"play-{name}.svg").write_bytes(figure_bytes(play_figure(found, [point_m]), ".svg"))
 
 
+def _comment(scene_file: Path) -> str:
+    """Return the first paragraph of the comment that a scene file begins with."""
+    lines = scene_file.read_text(encoding="utf-8").splitlines()
+    paragraph = itertools.takewhile(lambda line: line.startswith("# "), lines)
+    return " ".join(line.removeprefix("# ") for line in paragraph)
+
+
+def _gallery(app: Sphinx, _config: Config) -> None:
+    """Run every scene and write its picture, its page and a few words."""
+    generated = Path(app.srcdir) / "generated"
+    for folder in ("pictures", "playable/play"):
+        (generated / folder).mkdir(parents=True, exist_ok=True)
+    words = []
+    for scene_file in sorted((Path(app.srcdir).parent / "scenes").glob("*.yaml")):
+        source = read_scene_file(scene_file)
+        answer = run(source.scene)
+        shown = playback(answer, source.length_unit)
+        name = scene_file.stem
+        (generated / "pictures" / f"{name}.png").write_bytes(png_bytes(shown))
+        (generated / "playable/play" / f"{name}.html").write_text(page(shown), encoding="utf-8")
+        link = f'<a href="play/{name}.html">Play it</a> ({answer.verdict}, {answer.method})'
+        picture = f"![The end of the run of {name}](pictures/{name}.png)"
+        words += [f"## {source.scene.name}", _comment(scene_file), picture, link]
+    (generated / "gallery.md").write_text("\n\n".join(words) + "\n", encoding="utf-8")
+
+
 def setup(app: Sphinx) -> None:
-    """Register the equations' writer, the repair of signatures and the report of the paper's cases."""
+    """Register the equations' writer, the repair of signatures, and what draws the gallery, play and the report."""
+    app.connect("config-inited", _gallery, priority=100)  # before Sphinx looks for the pages in `html_extra_path`
     app.connect("builder-inited", _reproduce)
     app.connect("builder-inited", _draw_play)
     app.connect("autodoc-process-signature", _plain_aliases)
     app.add_html_math_renderer("mathml", (_inline_math, None), (_display_math, None))
 
 
+html_extra_path = ["generated/playable"]
 html_static_path = ["_static"]
 html_css_files = ["equations.css", "tables.css"]

@@ -35,6 +35,10 @@ COMMANDS = {
     ),
     "check": ("cagepose.cli.check_command:check_command", "Check a scene file without running it."),
     "plot": ("cagepose.cli.plot_command:plot_command", "Draw a scene's run, or a saved run, into a picture file."),
+    "view": (
+        "cagepose.cli.view_command:view_command",
+        "See a run in three dimensions: live, or as a page that plays offline.",
+    ),
     "reproduce": (
         "cagepose.cli.reproduce_command:reproduce_command",
         "Run the paper's cases and write a report of its numbers beside ours.",

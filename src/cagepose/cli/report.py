@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
@@ -11,9 +11,9 @@ from rich.text import Text
 
 from cagepose.cli.console import print_all
 from cagepose.errors import printable
-from cagepose.files.units import LengthUnit, from_metres
-from cagepose.nouns.checks import FloatArray
-from cagepose.runs.run import AT_REST, FAILURES, Event, Motion, PhaseRun, Run
+from cagepose.files.units import LengthUnit
+from cagepose.files.words import LengthWords, components, line_of, short
+from cagepose.runs.run import AT_REST, FAILURES, Event, PhaseRun, Run
 
 
 def print_report(run: Run, unit: LengthUnit, notes: Sequence[str] = ()) -> None:
@@ -26,8 +26,7 @@ def print_report(run: Run, unit: LengthUnit, notes: Sequence[str] = ()) -> None:
 class _Writer:
     def __init__(self, run: Run, unit: LengthUnit) -> None:
         self.run = run
-        self.unit: LengthUnit = unit
-        self.noise = 1e-12 * float(from_metres(run.scene.size_m, unit))  # lengths below are rounding, shown as 0
+        self.words = LengthWords(unit, run.scene.size_m)
 
     def title(self) -> Text:
         solve_ms = self.run.solve_s * 1000.0
@@ -54,7 +53,7 @@ class _Writer:
             motion = Text(verdict or "-", style=verdict_style(verdict) if verdict else "")
             along = amount = ""
         else:
-            motion, along, amount = Text(event.motion.kind), _line(event.motion), self._amount(event.motion)
+            motion, along, amount = Text(event.motion.kind), line_of(event.motion), self.words.amount(event.motion)
         cells = (along, amount, " ".join(event.hit), " ".join(event.contacts))
         return [Text(str(number)), Text(phase), Text(event.rule), motion, *(Text(cell) for cell in cells)]
 
@@ -63,9 +62,9 @@ class _Writer:
         table = Table.grid(padding=(0, 2))
         angles = ", ".join(short(math.degrees(angle), 6, 1e-10) for angle in run.pose.euler_zyx)
         for name, value in (
-            ("position", f"({self._lengths(run.pose.position_m)}) {self.unit}"),
+            ("position", f"({self.words.lengths(run.pose.position_m)}) {self.words.unit}"),
             ("yaw, pitch, roll", f"({angles}) deg"),
-            ("centre of gravity", f"({self._lengths(run.center_of_gravity_world)}) {self.unit}"),
+            ("centre of gravity", f"({self.words.lengths(run.center_of_gravity_world)}) {self.words.unit}"),
             ("contacts", ", ".join(_contact_texts(run)) or "none"),
             ("forces", _forces(run)),
             ("verdict", _verdicts(run)),
@@ -78,44 +77,24 @@ class _Writer:
             table.add_row(Text(name), Text(value, overflow="fold"))
         return table
 
-    def _amount(self, motion: Motion) -> str:
-        angle = f"{short(math.degrees(motion.angle_rad), 6, 1e-10)} deg"
-        if motion.kind == "turn":
-            return angle
-        if not math.isfinite(motion.distance_m):
-            return "without end"
-        distance = f"{self._lengths([motion.distance_m])} {self.unit}"
-        return distance if motion.kind == "travel" else f"{distance}, {angle}"
-
     def _onset(self) -> str:
         """How the object begins to move where nothing stops it, or could begin to where it only may rest."""
         motion = self.run.phases[-1].proof.motion
         if motion is None or self.run.failed:
             return ""
         if motion.direction_world is not None:
-            return f"travel along ({_components(motion.direction_world)})"
+            return f"travel along ({components(motion.direction_world)})"
         assert motion.axis_world is not None
         assert motion.through_world is not None
-        line = f"({_components(motion.axis_world)}) through ({self._lengths(motion.through_world)}) {self.unit}"
-        pitch = f", {self._lengths([motion.pitch_m])} {self.unit} along it per radian" if motion.kind == "screw" else ""
+        line = (
+            f"({components(motion.axis_world)}) through ({self.words.lengths(motion.through_world)}) {self.words.unit}"
+        )
+        pitch = (
+            f", {self.words.lengths([motion.pitch_m])} {self.words.unit} along it per radian"
+            if motion.kind == "screw"
+            else ""
+        )
         return f"{motion.kind} about {line}{pitch}"
-
-    def _lengths(self, lengths_m: Iterable[float]) -> str:
-        return ", ".join(short(float(from_metres(length, self.unit)), 6, self.noise) for length in lengths_m)
-
-
-def _line(motion: Motion) -> str:
-    along = motion.direction_world if motion.axis_world is None else motion.axis_world
-    return "" if along is None else f"({_components(along)})"
-
-
-def _components(direction: FloatArray) -> str:
-    return ", ".join(short(value, 4, 5e-5) for value in direction.tolist())
-
-
-def short(value: float, digits: int, noise: float) -> str:
-    """Return a number as people read it; below ``noise`` it is zero."""
-    return "0" if abs(value) < noise else f"{value:.{digits}g}"
 
 
 def _contact_texts(run: Run) -> list[str]:

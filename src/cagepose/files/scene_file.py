@@ -50,9 +50,20 @@ def read_scene_file(path: str | os.PathLike[str], set_values: Sequence[str] = ()
     SceneFileError
         As `load_scene`.
     """
+    return read_scene_text(path).scene_file(set_values)
+
+
+def read_scene_text(path: str | os.PathLike[str]) -> SceneText:
+    """Read a scene file once, to make scenes from it with many different values.
+
+    Raises
+    ------
+    SceneFileError
+        The file cannot be read, or is not YAML.
+    """
     source = os.fspath(path)
     text = read_text(Path(source), source)
-    return _parse(text, source, Path(source).parent, set_values)
+    return SceneText(text, parse_yaml(text, source), Path(source).parent)
 
 
 def parse_scene(text: str, name: str = "scene.yaml", set_values: Sequence[str] = ()) -> Scene:
@@ -63,26 +74,49 @@ def parse_scene(text: str, name: str = "scene.yaml", set_values: Sequence[str] =
     SceneFileError
         As `load_scene`.
     """
-    return _parse(text, name, Path(name).parent, set_values).scene
+    return SceneText(text, parse_yaml(text, name), Path(name).parent).scene_file(set_values).scene
 
 
-def _parse(text: str, source: str, folder: Path, set_values: Sequence[str]) -> SceneFile:
-    yaml = parse_yaml(text, source)
-    data = deepcopy(yaml.data) if set_values else yaml.data
-    settings = _apply_settings(data, set_values)
-    attempt = _Attempt(data, folder)
-    if attempt.scene_file is not None and not yaml.problems:
-        return attempt.scene_file
-    unset = _Attempt(yaml.data, folder) if settings else attempt
-    unclear = [problem.path for problem in yaml.problems]
-    places = _Places(yaml, attempt, unset, settings)
-    problems: list[FileProblem] = [*yaml.problems, *attempt.table_problems]
-    for finding in attempt.findings:
-        path = finding.problem.path
-        if not any(path[: len(place)] == place for place in unclear):  # else it only echoes the tag or alias there
-            problems.append(places.place(finding))
-    problems.sort(key=_reading_order)
-    raise SceneFileError(problems)
+@dataclass(frozen=True)
+class SceneText:
+    """The text of a scene file, read but not checked.
+
+    Attributes
+    ----------
+    text, yaml
+        As it stands in the file, and as plain data.
+    folder
+        Where points files are.
+    """
+
+    text: str
+    yaml: YamlSource
+    folder: Path
+
+    def scene_file(self, set_values: Sequence[str] = ()) -> SceneFile:
+        """Return the scene with some values changed; see `load_scene`.
+
+        Raises
+        ------
+        SceneFileError
+            As `load_scene`.
+        """
+        yaml = self.yaml
+        data = deepcopy(yaml.data) if set_values else yaml.data
+        settings = _apply_settings(data, set_values)
+        attempt = _Attempt(data, self.folder)
+        if attempt.scene_file is not None and not yaml.problems:
+            return attempt.scene_file
+        unset = _Attempt(yaml.data, self.folder) if settings else attempt
+        unclear = [problem.path for problem in yaml.problems]
+        places = _Places(yaml, attempt, unset, settings)
+        problems: list[FileProblem] = [*yaml.problems, *attempt.table_problems]
+        for finding in attempt.findings:
+            path = finding.problem.path
+            if not any(path[: len(place)] == place for place in unclear):  # else it only echoes the tag or alias there
+                problems.append(places.place(finding))
+        problems.sort(key=_reading_order)
+        raise SceneFileError(problems)
 
 
 def _reading_order(problem: FileProblem) -> tuple[int, int]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from cagepose.kernels.geometry import Geometry
@@ -12,8 +14,19 @@ from cagepose.nouns.seams import PlacedBox, Seams, close_seams
 
 
 def object_seams(held: Object, touch_m: float) -> Seams:
-    """Close the seams between boxes that meet flush within ``touch_m``."""
-    return close_seams(_placed(held), touch_m)
+    """Close the seams between boxes that meet flush within ``touch_m``.
+
+    Those of the last few objects are remembered: what moves from scene to scene of a study or a viewer is the cage, and
+    fifty boxes take longer to compare with each other than the scene to run.
+    """
+    numbers = [np.concatenate([box.half_size, box.position, box.rotation.ravel()]) for box in _placed(held)]
+    return _seams_of(np.array(numbers).tobytes(), touch_m)
+
+
+@lru_cache(maxsize=8)
+def _seams_of(boxes: bytes, touch_m: float) -> Seams:
+    rows = np.frombuffer(boxes).reshape(-1, 15)
+    return close_seams([PlacedBox(row[:3], row[3:6], row[6:].reshape(3, 3)) for row in rows], touch_m)
 
 
 def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox]) -> Geometry:

@@ -252,13 +252,20 @@ class Run:
                     n_frames = 1 if event.motion.kind == "travel" else per_turn
                     for step in range(1, n_frames):
                         fraction = step / n_frames
-                        yield Frame(phase_index, event_index, fraction, self._on_the_way(pose, event, fraction))
+                        yield Frame(phase_index, event_index, fraction, self.pose_on_the_way(pose, event, fraction))
                     yield Frame(phase_index, event_index, 1.0, event.pose_world_object)
                 pose = event.pose_world_object
 
-    def _on_the_way(self, start: Pose, event: Event, fraction: float) -> Pose:
-        """Return where the object is after ``fraction`` of an event, along its path if it has one."""
-        assert event.motion is not None
+    def pose_on_the_way(self, start: Pose, event: Event, fraction: float) -> Pose:
+        """Return where the object is after ``fraction`` (0 to below 1) of an event that began at ``start``.
+
+        Raises
+        ------
+        ValueError
+            The event is no motion, or a travel without end.
+        """
+        if event.motion is None:
+            raise ValueError(f"the event {event.rule!r} is no motion, so there is no way to be on")
         if not event.path:
             return event.motion.pose_at(start, fraction)
         from cagepose.runs.screw_between import motion_between  # which needs `Motion` from here

@@ -1,0 +1,113 @@
+"""``cagepose view``: a run in three dimensions, live in a browser or as one page that plays without a network."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from cagepose.cli.options import SetOption
+from cagepose.cli.run_source import MethodOption, RunOrSceneArgument, read_run_or_scene, run_of
+
+if TYPE_CHECKING:
+    from cagepose.faces.view.playback import Playback
+    from cagepose.faces.view.what_if import WhatIf
+
+PORT_USUAL = 8737
+
+
+def view_command(
+    run_or_scene: RunOrSceneArgument,
+    /,
+    *,
+    export: Annotated[
+        str | None,
+        Parameter(
+            help="Write a file instead: .html, a page that plays in any browser with no network; .gif, a film; .png, a"
+            " picture of the end."
+        ),
+    ] = None,
+    method: MethodOption = None,
+    set_values: SetOption = (),
+    host: Annotated[
+        str, Parameter(help="Address to serve on; another than this machine's own lets others in the network look.")
+    ] = "127.0.0.1",
+    port: Annotated[int, Parameter(help="Port to serve on; if it is taken, the next free one.")] = PORT_USUAL,
+) -> int:
+    """Show the object in its cage, the timeline, the events and the forces; a scene is run first."""
+    from cagepose.errors import printable
+    from cagepose.faces.extra import require_pillow
+    from cagepose.faces.view.export_files import check_can_export, export_suffix
+
+    def check_out() -> None:
+        if export is not None:
+            check_can_export(export)
+            if export_suffix(export) != ".html":
+                require_pillow()
+
+    if not 0 < port < 2**16:
+        sys.stderr.write(f"--port {port}: is no port; give a number from 1 to 65535\n")
+        return 2
+    option = f"--export {export}"
+    source = read_run_or_scene(run_or_scene, set_values, method, check_out, option)
+    if source is None:
+        return 2
+    run_file = run_of(source, method)
+
+    from cagepose.faces.view.playback import playback
+    from cagepose.files.run_file import RunFile
+    from cagepose.files.write import write_whole
+
+    run, shown = run_file.run, playback(run_file.run, run_file.length_unit)
+    if export is None:
+        what_if = None if isinstance(source, RunFile) else _what_if(run_or_scene, set_values, method)
+        return _serve(shown, what_if, host, port)
+    try:
+        write_whole(export, _content(shown, export_suffix(export)))
+    except OSError as error:
+        sys.stderr.write(printable(f"{option}: {error.strerror or error}") + "\n")
+        return 2
+    sys.stdout.write(printable(f"wrote {export}: {run.scene.name}, {run.verdict} ({run.method})") + "\n")
+    return 0
+
+
+def _content(shown: Playback, suffix: str) -> bytes:
+    """Return a file of the kind ``suffix``."""
+    if suffix == ".html":
+        from cagepose.faces.view.page import page
+
+        return page(shown).encode()
+    from cagepose.faces.view.film import gif_bytes, png_bytes
+
+    return png_bytes(shown) if suffix == ".png" else gif_bytes(shown.run, shown.length_unit)
+
+
+def _what_if(scene: str, set_values: tuple[str, ...], method: str | None) -> WhatIf:
+    from cagepose.faces.view.what_if import WhatIf
+    from cagepose.files.scene_file import read_scene_text
+
+    return WhatIf(read_scene_text(scene), set_values, method)
+
+
+def _serve(shown: Playback, what_if: WhatIf | None, host: str, port: int) -> int:
+    """Serve the page until somebody presses Ctrl-C."""
+    from cagepose.errors import printable
+    from cagepose.faces.view.page import page
+    from cagepose.faces.view.server import open_server
+
+    try:
+        server = open_server(page(shown, what_if), what_if, host, port)
+    except OSError as error:
+        sys.stderr.write(printable(f"--host {host} --port {port}: {error.strerror or error}") + "\n")
+        return 2
+    with server:
+        if server.server_port != port:
+            sys.stdout.write(f"port {port} is taken; using {server.server_port}\n")
+        sys.stdout.write(printable(f"{shown.run.scene.name}: look at {server.address} (Ctrl-C ends it)") + "\n")
+        sys.stdout.flush()
+        try:
+            server.serve_forever()
+        except KeyboardInterrupt:
+            sys.stdout.write("\nended\n")
+    return 0

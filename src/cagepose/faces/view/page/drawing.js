@@ -1,0 +1,189 @@
+// Draws the stage at one time: the object, the cage, what touches and presses, what pushes, what it turns about.
+
+const COLORS = {
+  box: [0.337, 0.706, 0.914, 0.3], edge: [0, 0.447, 0.698, 1], ghost: [0.6, 0.6, 0.6, 1], free: [0.45, 0.45, 0.45, 1],
+  touching: [0.902, 0.624, 0, 1], reached: [0.835, 0.369, 0, 1], force: [0.835, 0.369, 0, 1], normal: [0.3, 0.3, 0.3, 1],
+  load: [0.05, 0.05, 0.05, 1], axis: [0.8, 0.475, 0.655, 1], trace: [0, 0.447, 0.698, 1], center: [0, 0.447, 0.698, 1],
+};
+const BALL = 0.01, ROD = 0.0045, LONGEST_ARROW = 0.22, NORMAL = 0.07;
+const FEW_NAMES = 14; // of more contacts than these, only those are named that press or were just reached
+const LEAST_FORCE = 1e-9; // parts of the greatest; what is less is rounding
+
+class Drawing {
+  constructor(stage, canvas, overlay, changed) {
+    this.stage = stage;
+    this.canvas = canvas;
+    this.overlay = overlay;
+    this.painter = new Painter(canvas);
+    this.exaggeration = stage.data.exaggeration;
+    this.camera = new Camera(canvas, stage.data.radius, () => this.content(), changed);
+    this.allNames = stage.data.names.length <= FEW_NAMES;
+  }
+
+  draw(time) {
+    const scale = window.devicePixelRatio;
+    for (const canvas of [this.canvas, this.overlay]) {
+      const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((pixels) => Math.max(1, Math.round(pixels * scale)));
+      if (canvas.width !== width) canvas.width = width; // setting it anew, even to the same, costs a frame
+      if (canvas.height !== height) canvas.height = height;
+    }
+    const { stage, painter, exaggeration: k } = this;
+    const shot = stage.shot(time);
+    const pose = stage.shownPose(stage.truePose(time), k);
+    const labels = [];
+    painter.begin(this.camera.matrix(), this.camera.axes()[2]);
+    this.drawPoints(shot, k, labels);
+    this.drawTouches(shot, pose, k);
+    this.drawLoads(shot, pose, labels);
+    this.drawMotion(shot, pose, k);
+    this.drawTrace(time, k);
+    this.drawObject(pose);
+    this.write(labels, scale);
+  }
+
+  // Shows motions so many times as large, all in view.
+  exaggerate(k) {
+    this.exaggeration = k;
+    this.camera.fit();
+  }
+
+  // All that a view is fitted to: corners at the start and each event's end, cage points, loads, forces at the end.
+  content() {
+    const { stage, exaggeration: k } = this;
+    const ends = [0, ...stage.data.rows.map((row) => row.last)].map((shot) => stage.shownPose(stage.shots[shot].pose, k));
+    const end = ends.at(-1);
+    const signs = [-0.5, 0.5].flatMap((x) => [-0.5, 0.5].flatMap((y) => [-0.5, 0.5].map((z) => [x, y, z])));
+    const corners = ends.flatMap((pose) => stage.data.boxes.flatMap((box) => signs.map((sign) =>
+      carried(composed(pose, { p: box.position, q: box.quaternion }), sign.map((value, axis) => value * box.size[axis])))));
+    const tails = stage.data.phases.flatMap((phase) => phase.loads).map((load) => sub(carried(end, load.at), times(LONGEST_ARROW, load.direction)));
+    const pressing = stage.shots.at(-1).touches.filter((touch) => touch.force).map((touch) =>
+      sub(stage.point(touch.point, k), times(LONGEST_ARROW / stage.data.greatestForce, rotated(end.q, touch.force))));
+    return [...corners, ...tails, ...pressing, ...stage.data.names.map((_, index) => stage.point(index, k))];
+  }
+
+  boxes(pose, name, color) {
+    for (const box of this.stage.data.boxes) this.painter.draw(name, placed(composed(pose, { p: box.position, q: box.quaternion }), box.size), color);
+  }
+
+  drawObject(pose) {
+    const start = this.stage.shots[0].pose;
+    this.boxes(start, "edges", COLORS.ghost);
+    this.boxes(pose, "edges", COLORS.edge);
+    this.ball(carried(pose, this.stage.data.center), BALL, COLORS.center);
+    this.painter.seeThrough();
+    this.boxes(pose, "box", COLORS.box);
+  }
+
+  ball(place, radius, color) {
+    this.painter.draw("ball", placed({ p: place, q: [1, 0, 0, 0] }, [radius, radius, radius]), color);
+  }
+
+  drawPoints(shot, k, labels) {
+    const touching = new Set(shot.touches.map((touch) => touch.point));
+    const row = this.stage.data.rows[shot.row];
+    const isEnd = row && this.stage.shots[row.last] === shot;
+    const pressing = new Set(shot.touches.filter((touch) => touch.force && norm(touch.force) > LEAST_FORCE * this.stage.data.greatestForce).map((touch) => touch.point));
+    this.stage.data.names.forEach((name, index) => {
+      const place = this.stage.point(index, k);
+      const look = isEnd && row.hit.includes(name) ? "reached" : touching.has(index) ? "touching" : "free";
+      this.ball(place, look === "free" ? 0.7 * BALL : BALL, COLORS[look]);
+      const counts = look === "reached" || (look === "touching" && (touching.size <= FEW_NAMES || pressing.has(index)));
+      if (counts || this.allNames) labels.push([place, name, look === "free" ? "#777" : "#000"]);
+    });
+  }
+
+  drawTouches(shot, pose, k) {
+    for (const touch of shot.touches) {
+      const place = this.stage.point(touch.point, k);
+      const normal = rotated(pose.q, touch.normal);
+      this.painter.draw("rod", along(place, normal, NORMAL, 0.3 * ROD), COLORS.normal);
+      if (!touch.force) continue;
+      const force = times(LONGEST_ARROW / this.stage.data.greatestForce, rotated(pose.q, touch.force));
+      if (norm(force) > 0.01) this.painter.arrow(sub(place, force), place, ROD, COLORS.force);
+    }
+  }
+
+  drawLoads(shot, pose, labels) {
+    for (const load of this.stage.data.phases[shot.phase].loads) {
+      const tip = carried(pose, load.at);
+      const tail = sub(tip, times(LONGEST_ARROW, load.direction));
+      this.painter.arrow(tail, tip, 1.3 * ROD, COLORS.load);
+      labels.push([tail, load.name, "#000"]);
+    }
+  }
+
+  drawMotion(shot, pose, k) {
+    const axis = this.stage.axis(shot.row, k);
+    if (!axis) return;
+    const { through, direction } = axis;
+    if (!axis.turns) {
+      const center = carried(pose, this.stage.data.center);
+      this.painter.arrow(center, add(center, times(0.25, direction)), 0.8 * ROD, COLORS.axis);
+      return;
+    }
+    const middle = add(through, times(-dot(through, direction), direction));
+    const half = Math.sqrt(Math.max(0.04, this.stage.data.radius ** 2 - dot(middle, middle)));
+    this.painter.draw("rod", along(add(middle, times(-half, direction)), direction, 2 * half, 0.5 * ROD), COLORS.axis);
+    this.painter.arrow(add(middle, times(half, direction)), add(middle, times(half + 0.1, direction)), 0.6 * ROD, COLORS.axis);
+  }
+
+  drawTrace(time, k) {
+    const { stage } = this;
+    const way = stage.shots.slice(0, Math.floor(time) + 1).map((shot) => shot.pose).concat([stage.truePose(time)]);
+    this.painter.polyline(way.map((pose) => carried(stage.shownPose(pose, k), stage.data.center)), COLORS.trace);
+  }
+
+  write(labels, scale) {
+    const pen = this.overlay.getContext("2d");
+    const height = 12 * scale;
+    pen.font = `${height}px system-ui, sans-serif`;
+    pen.clearRect(0, 0, this.overlay.width, this.overlay.height);
+    labels.sort((one, other) => (one[2] !== "#000") - (other[2] !== "#000")); // of names that collide, contacts
+    const corners = laidOut(labels.map(([place, text]) => ({ place: this.camera.project(place), size: [pen.measureText(text).width, height] })), scale);
+    this.written = [];
+    labels.forEach(([, text, color], which) => {
+      if (!corners[which]) return;
+      this.text(pen, text, corners[which][0], corners[which][1] + 0.85 * height, color, scale);
+      this.written.push({ text, corner: corners[which], size: [pen.measureText(text).width, height] });
+    });
+    this.drawAxes(pen, scale);
+    this.drawScale(pen, scale);
+  }
+
+  text(pen, text, x, y, color, scale) {
+    pen.lineWidth = 3 * scale;
+    pen.strokeStyle = "#f6f7f9";
+    pen.strokeText(text, x, y);
+    pen.fillStyle = color;
+    pen.fillText(text, x, y);
+  }
+
+  drawAxes(pen, scale) {
+    const [right, up] = this.camera.axes();
+    const corner = [50 * scale, this.overlay.height - 50 * scale];
+    [["x", "#d55e00"], ["y", "#009e73"], ["z", "#0072b2"]].forEach(([name, color], axis) => {
+      const tip = [corner[0] + 30 * scale * right[axis], corner[1] - 30 * scale * up[axis]];
+      pen.strokeStyle = color;
+      pen.lineWidth = 2 * scale;
+      pen.beginPath();
+      pen.moveTo(...corner);
+      pen.lineTo(...tip);
+      pen.stroke();
+      this.text(pen, name, tip[0] + 3 * scale, tip[1] - 2 * scale, color, scale);
+    });
+  }
+
+  // Lengths of the object are true at every exaggeration; only its motion and the gaps are not.
+  drawScale(pen, scale) {
+    const { unitsPerDrawing, unit } = this.stage.data;
+    const rough = 100 * scale / this.camera.perUnit() * unitsPerDrawing;
+    const power = 10 ** Math.floor(Math.log10(rough));
+    const length = power * [5, 2, 1].find((step) => step * power <= rough);
+    const pixels = length / unitsPerDrawing * this.camera.perUnit();
+    const [x, y] = [this.overlay.width - 20 * scale - pixels, this.overlay.height - 20 * scale];
+    pen.strokeStyle = "#333";
+    pen.lineWidth = 2 * scale;
+    pen.strokeRect(x, y, pixels, 0);
+    this.text(pen, `${+length.toPrecision(2)} ${unit}`, x, y - 6 * scale, "#333", scale);
+  }
+}

@@ -1,0 +1,122 @@
+// The controls of a live page: what they say is sent to the server, and what it answers is shown.
+
+class Panel {
+  // `answered(data)` shows a new run.
+  constructor(controls, fileName, answered) {
+    this.controls = controls;
+    this.fileName = fileName;
+    this.answered = answered;
+    this.values = controls.map((control) => control.value);
+    this.asking = this.stale = false;
+    this.inputs = [];
+    this.build();
+    $("undo").addEventListener("click", () => this.undo());
+    $("save").addEventListener("click", () => this.save());
+    $("panel").hidden = false;
+  }
+
+  build() {
+    let group = null;
+    this.controls.forEach((control, which) => {
+      if (!group || group.dataset.name !== control.group) {
+        group = element("fieldset", "");
+        group.dataset.name = control.group;
+        group.append(element("legend", control.group));
+        $("controls").append(group);
+      }
+      const row = element("label", "");
+      row.append(element("span", control.label));
+      this.inputs.push(control.choices.length ? this.choice(control, which, row) : this.slider(control, which, row));
+      group.append(row);
+    });
+  }
+
+  choice(control, which, row) {
+    const select = element("select", "");
+    control.choices.forEach((word) => select.append(element("option", word)));
+    select.value = control.value;
+    select.addEventListener("input", () => this.change(which, select.value));
+    row.append(select);
+    return [select];
+  }
+
+  slider(control, which, row) {
+    const [range, number] = ["range", "number"].map((type) => Object.assign(document.createElement("input"), {
+      type, min: control.low, max: control.high, step: type === "number" ? "any" : control.step, value: control.value }));
+    if (range.valueAsNumber !== control.value) range.step = "any"; // the file's own value lies between two steps
+    range.value = control.value;
+    number.removeAttribute("min");
+    number.removeAttribute("max");
+    [range, number].forEach((input) => input.setAttribute("aria-label", `${control.group}: ${control.label}`));
+    range.addEventListener("input", () => { number.value = +range.valueAsNumber.toPrecision(6); this.change(which, +number.value); });
+    number.addEventListener("input", () => { range.value = number.value; this.change(which, number.value === "" ? null : +number.value); });
+    row.append(range, number, element("small", control.unit));
+    return [range, number];
+  }
+
+  change(which, value) {
+    this.values[which] = value;
+    this.ask();
+  }
+
+  undo() {
+    this.controls.forEach((control, which) => {
+      this.values[which] = control.value;
+      this.inputs[which].forEach((input) => { input.value = control.value; });
+    });
+    this.ask();
+  }
+
+  // Only what differs from the file; of a vector all components.
+  changed() {
+    const keys = new Set(this.controls.filter((control, which) => this.values[which] !== control.value).map((control) => control.key));
+    const values = {};
+    this.controls.forEach((control, which) => {
+      if (!keys.has(control.key)) return;
+      if (control.index === null) values[control.key] = this.values[which];
+      else (values[control.key] ??= [])[control.index] = this.values[which];
+    });
+    return values;
+  }
+
+  send(path) {
+    return fetch(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(this.changed()) });
+  }
+
+  // One question at a time; what moved meanwhile is asked next.
+  async ask() {
+    this.stale = true;
+    if (this.asking) return;
+    this.asking = true;
+    try {
+      while (this.stale) {
+        this.stale = false;
+        const response = await this.send("run");
+        const answer = await response.json();
+        if (response.ok) this.answered(answer);
+        this.complain(response.ok ? [] : answer.problems);
+      }
+    } catch {
+      this.complain(["The viewer's server does not answer; start cagepose view again. What is shown is the last answer."]);
+    }
+    this.asking = false;
+  }
+
+  async save() {
+    try {
+      const response = await this.send("scene");
+      if (!response.ok) return this.complain((await response.json()).problems);
+      const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(await response.blob()), download: this.fileName });
+      link.click();
+      URL.revokeObjectURL(link.href);
+    } catch {
+      this.complain(["The viewer's server does not answer; start cagepose view again."]);
+    }
+  }
+
+  complain(problems) {
+    const told = problems.length > 3 ? [...problems.slice(0, 2), `and ${problems.length - 2} more`] : problems;
+    $("problems").replaceChildren(...told.map((problem) => element("p", problem)));
+    if (problems.length) $("problems").append(element("p", "Shown is the last scene that could be run."));
+  }
+}

@@ -1,0 +1,48 @@
+"""Numbers and motions as people read them: in tables, beside pictures, in lists."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from cagepose.files.units import LengthUnit, from_metres
+from cagepose.nouns.checks import FloatArray
+from cagepose.runs.run import Motion
+
+
+class LengthWords:
+    """Writes the lengths of one scene; what is rounding beside its size is 0."""
+
+    def __init__(self, unit: LengthUnit, size_m: float) -> None:
+        self.unit: LengthUnit = unit
+        self.noise = 1e-12 * float(from_metres(size_m, unit))
+
+    def lengths(self, lengths_m: Iterable[float]) -> str:
+        """Return lengths in metres as ``1, 2.5, 0``, in the unit."""
+        return ", ".join(short(float(from_metres(length, self.unit)), 6, self.noise) for length in lengths_m)
+
+    def amount(self, motion: Motion, digits: int = 6) -> str:
+        """Return how far a motion goes."""
+        angle = f"{short(math.degrees(motion.angle_rad), digits, 1e-10)} deg"
+        if motion.kind == "turn":
+            return angle
+        if not math.isfinite(motion.distance_m):
+            return "without end"
+        distance = f"{short(float(from_metres(motion.distance_m, self.unit)), digits, self.noise)} {self.unit}"
+        return distance if motion.kind == "travel" else f"{distance}, {angle}"
+
+
+def line_of(motion: Motion) -> str:
+    """Return the direction that a motion goes along or turns about."""
+    along = motion.direction_world if motion.axis_world is None else motion.axis_world
+    return "" if along is None else f"({components(along)})"
+
+
+def components(direction: FloatArray) -> str:
+    """Return a unit vector to four digits."""
+    return ", ".join(short(value, 4, 5e-5) for value in direction.tolist())
+
+
+def short(value: float, digits: int, noise: float) -> str:
+    """Return a number as people read it; below ``noise`` it is zero."""
+    return "0" if abs(value) < noise else f"{value:.{digits}g}"

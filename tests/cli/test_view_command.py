@@ -1,0 +1,76 @@
+"""``cagepose view``: from a scene or a saved run to a page."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from PIL import Image
+
+from cagepose.faces import extra
+
+Command = Callable[..., Any]
+
+
+def page_data(name: str) -> Any:
+    return json.loads(Path(name).read_text(encoding="utf-8").split('id="data">')[1].split("</script>")[0])
+
+
+def test_a_scene_becomes_a_page(command: Command, sample: str) -> None:
+    answer = command("view", sample, "--export", "page.html", "--method", "stepwise")
+    assert (answer.code, answer.out) == (0, "wrote page.html: sample, stable (stepwise)\n")
+    assert page_data("page.html")["verdict"] == "stable"
+
+
+def test_a_saved_run_gives_the_same_page_as_its_scene_but_for_the_time_it_took(command: Command, sample: str) -> None:
+    inches = ("--set", "units.length=in", "--set", "tolerances.touch=1e-8")
+    command("run", sample, "--out", "run.json", *inches)
+    assert command("view", sample, "--export", "scene.html", *inches).code == 0
+    assert command("view", "run.json", "--export", "run.html").code == 0
+    one, other = page_data("scene.html"), page_data("run.html")
+    assert one.pop("solve") and other.pop("solve")  # noqa: PT018 (both are there, and differ)
+    assert one == other
+
+
+@pytest.mark.parametrize(
+    ("export", "reason"),
+    [
+        ("run.gltf", ".gltf is nothing that a run can be exported to; use one of: .html, .png, .gif"),
+        ("run", "has no suffix that names its kind; use one of: .html, .png, .gif"),
+        ("no/run.html", "its folder does not exist; make the folder first"),
+    ],
+)
+def test_an_export_that_cannot_be_is_refused_before_the_run(
+    command: Command, sample: str, export: str, reason: str
+) -> None:
+    assert command("view", sample, "--export", export) == (2, "", f"--export {export}: {reason}\n")
+
+
+def test_a_picture_and_a_film_are_written_and_may_be_written_again(command: Command, sample: str) -> None:
+    for name in ("run.png", "run.gif", "run.png", "run.gif"):
+        assert command("view", sample, "--export", name, "--method", "stepwise").code == 0
+    with Image.open("run.gif") as film:
+        assert (film.n_frames, film.size) == (32, (900, 600))
+
+
+def test_without_pillow_the_extra_is_named_before_the_run(
+    command: Command, sample: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(extra, "find_spec", lambda name: None if name == "PIL" else object())
+    answer = command("view", sample, "--export", "run.png")
+    assert (answer.code, answer.out) == (2, "")
+    assert "pip install 'cagepose[view]'" in answer.err
+    assert command("view", sample, "--export", "run.html").code == 0
+
+
+def test_our_own_page_is_replaced_and_nobody_elses(command: Command, sample: str) -> None:
+    assert command("view", sample, "--export", "page.html").code == 0
+    assert command("view", sample, "--export", "page.html").code == 0
+    Path("diary.html").write_text("dear diary", encoding="utf-8")
+    answer = command("view", sample, "--export", "diary.html")
+    assert answer.code == 2
+    assert "holds something else than" in answer.err
+    assert Path("diary.html").read_text(encoding="utf-8") == "dear diary"

@@ -1,0 +1,72 @@
+"""Serve a scene to a browser, ask a page of the viewer what it shows, and move its sliders."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page
+
+from cagepose import run
+from cagepose.faces.view.page import page as page_text
+from cagepose.faces.view.playback import playback
+from cagepose.faces.view.server import ViewServer, open_server
+from cagepose.faces.view.what_if import WhatIf
+from cagepose.files.scene_file import read_scene_text
+
+PORT = 18737
+
+
+@contextmanager
+def served(scene_path: Path, *, can_change: bool = True) -> Iterator[ViewServer]:
+    """A server in this process, with or without controls."""
+    text = read_scene_text(scene_path)
+    scene_file = text.scene_file()
+    what_if = WhatIf(text) if can_change else None
+    film = playback(run(scene_file.scene), scene_file.length_unit)
+    with open_server(page_text(film, what_if), what_if, "127.0.0.1", PORT) as server:
+        threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02}, daemon=True).start()
+        yield server
+        server.shutdown()
+
+
+def opened(watched: Any, server: ViewServer) -> Page:
+    """The server's page, once it has drawn."""
+    page: Page = watched.page
+    page.goto(server.address)
+    wait_until(page, "cagepose.state().drawn > 0")
+    return page
+
+
+def slide(page: Page, label: str, value: float) -> None:
+    """Move a slider by its number box, and wait for the answer or the complaint."""
+    before = state(page)["answers"]
+    page.get_by_label(label, exact=True).last.fill(str(value))
+    wait_until(page, f"cagepose.state().drawnAnswers > {before} || problems.innerText !== ''")
+
+
+def shown_angles(page: Page) -> list[float]:
+    """Yaw, pitch and roll beside the picture, degrees."""
+    text = page.locator("#pose dd").nth(1).inner_text()
+    return [float(word) for word in text.removesuffix(" deg").split(", ")]
+
+
+def state(page: Page) -> Any:
+    return page.evaluate("cagepose.state()")
+
+
+def wait_until(page: Page, condition: str) -> None:
+    """Ask again and again from outside: the page itself must not evaluate text."""
+    for _ in range(400):
+        if page.evaluate(condition):
+            return
+        page.wait_for_timeout(50)
+    pytest.fail(f"never became true: {condition}")
+
+
+def set_range(page: Page, name: str, value: float) -> None:
+    page.evaluate(f"(v) => {{ {name}.value = v; {name}.dispatchEvent(new Event('input')); }}", value)

@@ -1,0 +1,55 @@
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from cagepose import Box, Cage, Load, Object, Pose, Scene
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """Chromium without a window, drawing WebGL in software."""
+    program = shutil.which("chromium") or shutil.which("chromium-browser")
+    if program is None:
+        message = "no browser to test with; on Debian: apt install chromium"
+        pytest.fail(message) if os.environ.get("CI") else pytest.skip(message)
+    flags = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=program, args=flags)
+        yield chromium
+        chromium.close()
+
+
+class Watched:
+    """A page, and what it complained of and asked for."""
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+        self.complaints: list[str] = []
+        self.requests: list[str] = []
+        page.on("console", lambda message: self.complaints.append(message.text) if message.type == "error" else None)
+        page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        page.on("request", lambda request: self.requests.append(request.url))
+
+
+@pytest.fixture
+def watched(browser: Browser) -> Iterator[Watched]:
+    """A new page of the browser; complaints of the page fail the test."""
+    context = browser.new_context(viewport={"width": 1280, "height": 800}, accept_downloads=True)
+    watched = Watched(context.new_page())
+    yield watched
+    context.close()
+    assert watched.complaints == []
+
+
+@pytest.fixture(scope="session")
+def crowded() -> Scene:
+    """Fifty boxes in a row, held from below and from the sides by two hundred points."""
+    boxes = [Box((0.009, 0.03 + 0.0004 * i, 0.02), Pose((0.01 * i - 0.245, 0.0, 0.0))) for i in range(50)]
+    below = [(0.005 * i - 0.2475, 0.01 * (-1) ** i, -0.0105) for i in range(100)]
+    beside = [(0.005 * i - 0.2475, 0.03 * (-1) ** i, 0.0) for i in range(100)]
+    return Scene(Object(boxes), Cage(below + beside), [Load("weight", gravity=(0.0, 0.2, -1.0))], name="crowded")
