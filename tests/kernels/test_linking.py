@@ -8,7 +8,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from tests.jit import JIT_IS_OFF
+
+from jit import JIT_IS_OFF
 
 pytestmark = pytest.mark.skipif(JIT_IS_OFF, reason="nothing is compiled")
 

@@ -15,6 +15,10 @@ from cagepose.kernels.metric import WRENCH
 from cagepose.kernels.record import empty_record, empty_rows
 from jit import callable_kernel, cases
 
+_nnls = callable_kernel(nonnegative_least_squares)
+_residual = callable_kernel(cone_residual)
+_onset = callable_kernel(coulomb_onset)
+
 N_PROBLEMS = 10_000
 N_ONSETS = 2_000
 
@@ -60,7 +64,7 @@ def solved(columns, b, passive):
     system = empty_system(n_columns)
     system.columns[:, :n_rows] = columns
     system.right_side[:n_rows] = b
-    left = nonnegative_least_squares(system, n_columns, passive)
+    left = _nnls(system, n_columns, passive)
     x = np.zeros(n_columns)
     x[passive.labels[: passive.used]] = passive.x[: passive.used]
     return left, x
@@ -124,7 +128,7 @@ def test_the_frictionless_onset_obeys_the_optimality_conditions():
         room = empty_record(ConeRoom)
         rows, forces = contacts_with(columns)
         clear(room, b, WRENCH, np.linalg.norm(b))
-        left = cone_residual(rows, n, 0.0, b, False, room)
+        left = _residual(rows, n, 0.0, b, False, room)
         write(room, 0.0, rows, n)
         normals = columns[:, 0]
         y = b - normals.T @ forces[:, 0]
@@ -173,7 +177,7 @@ def test_the_onset_with_friction_obeys_coulombs_law(capsys):
         cone, y = empty_record(ConeRoom), np.zeros(6)
         rows, forces = contacts_with(columns)
         clear(cone, b, WRENCH, np.linalg.norm(b))
-        left = cone_residual(rows, n, friction, b, False, cone)
+        left = _residual(rows, n, friction, b, False, cone)
         write(cone, friction, rows, n)
         scale = np.linalg.norm(b) + forces[:, 0] @ np.linalg.norm(columns[:, 0], axis=1)
         if left <= HELD * scale:
@@ -182,7 +186,7 @@ def test_the_onset_with_friction_obeys_coulombs_law(capsys):
             assert (np.linalg.norm(forces[:, 1:], axis=1) <= friction * forces[:, 0] * (1.0 + 1e-12)).all()
             continue
         n_moves += 1
-        if not coulomb_onset(rows, n, friction, b, cone, y, empty_record(NewtonRoom)):
+        if not _onset(rows, n, friction, b, cone, y, empty_record(NewtonRoom)):
             n_unsolved += 1
             continue
         worst = max(worst, coulomb_violation(columns, friction, b, forces))
