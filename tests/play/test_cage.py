@@ -124,6 +124,20 @@ def test_without_its_webs_the_rail_is_not_certified_and_the_side_rollers_are_nam
     assert abs(roller[2]) > 0.45 * MM
 
 
+@pytest.mark.parametrize(("thickness_mm", "verdict"), [(2.0, "caged"), (0.02, "not certified")])
+def test_a_plate_must_be_thicker_than_what_linearising_leaves_out(thickness_mm, verdict):
+    """A plate of 60 mm with 0.5 mm above, below and beside it: where it is thin, a point may come out behind it."""
+    half = thickness_mm / 2
+    points = [(x, y, side * (half + 0.5)) for x in (-25, 25) for y in (-25, 25) for side in (-1, 1)]
+    points += [(side * 30.5, y, 0) for side in (-1, 1) for y in (-20, 20)]
+    points += [(x, side * 30.5, 0) for side in (-1, 1) for x in (-20, 20)]
+    plate = Object([Box(np.array([60, 60, thickness_mm]) * MM, name="plate")])
+    found = play(Scene(plate, Cage(np.array(points) * MM), LOADS), search_s=0.0)
+    assert found.cage.verdict == verdict, found.cage.reason
+    if verdict != "caged":
+        assert "may come out behind its face of plate" in found.cage.reason
+
+
 def test_a_cage_that_is_too_wide_for_any_proof_says_how_far_the_object_turns():
     """A cube 20 mm wide with 8 points 6 mm from each face: sixty degrees and more at the first look."""
     points = [side * 16 * np.eye(3)[axis] + offset for axis in range(3) for side in (-1, 1) for offset in corners(axis)]
