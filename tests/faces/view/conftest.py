@@ -1,13 +1,15 @@
 from __future__ import annotations
 
+import json
 import os
 import shutil
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from cagepose import Box, Cage, Load, Object, Pose, Scene
+from cagepose import Scene, load_scene
 
 
 @pytest.fixture(scope="session")
@@ -47,9 +49,25 @@ def watched(browser: Browser) -> Iterator[Watched]:
 
 
 @pytest.fixture(scope="session")
-def crowded() -> Scene:
+def crowded_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Fifty boxes in a row, held from below and from the sides by two hundred points."""
-    boxes = [Box((0.009, 0.03 + 0.0004 * i, 0.02), Pose((0.01 * i - 0.245, 0.0, 0.0))) for i in range(50)]
-    below = [(0.005 * i - 0.2475, 0.01 * (-1) ** i, -0.0105) for i in range(100)]
-    beside = [(0.005 * i - 0.2475, 0.03 * (-1) ** i, 0.0) for i in range(100)]
-    return Scene(Object(boxes), Cage(below + beside), [Load("weight", gravity=(0.0, 0.2, -1.0))], name="crowded")
+    boxes = [
+        {"size": [9.0, round(30.0 + 0.4 * i, 1), 20.0], "position": [10.0 * i - 245.0, 0.0, 0.0]} for i in range(50)
+    ]
+    below = [[5.0 * i - 247.5, 10.0 * (-1) ** i, -10.5] for i in range(100)]
+    beside = [[5.0 * i - 247.5, 30.0 * (-1) ** i, 0.0] for i in range(100)]
+    scene = {
+        "name": "crowded",
+        "object": {"boxes": boxes},
+        "cage": {"points": below + beside},
+        "loads": [{"name": "weight", "gravity": [0.0, 0.2, -1.0]}],
+    }
+    file = tmp_path_factory.mktemp("crowded") / "crowded.yaml"
+    file.write_text(json.dumps(scene), encoding="utf-8")
+    return file
+
+
+@pytest.fixture(scope="session")
+def crowded(crowded_file: Path) -> Scene:
+    """The scene of `crowded_file`."""
+    return load_scene(crowded_file)

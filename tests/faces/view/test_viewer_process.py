@@ -96,13 +96,6 @@ def test_a_closed_tab_leaves_the_viewer_running_and_ctrl_c_ends_it_cleanly(watch
         again.close()
 
 
-def test_the_same_port_can_be_used_again_at_once():
-    port = free_port()
-    for _ in range(2):
-        with open_server("", None, HOST, port) as server:
-            assert server.server_port == port
-
-
 def test_where_no_port_is_free_the_ports_tried_are_named(monkeypatch):
     monkeypatch.setattr("cagepose.faces.view.server.PORTS_TRIED", 1)
     with socket.create_server((HOST, 0)) as taken:
