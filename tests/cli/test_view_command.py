@@ -53,7 +53,7 @@ def test_a_picture_and_a_film_are_written_and_may_be_written_again(command: Comm
     for name in ("run.png", "run.gif", "run.png", "run.gif"):
         assert command("view", sample, "--export", name, "--method", "stepwise").code == 0
     with Image.open("run.gif") as film:
-        assert (film.n_frames, film.size) == (32, (900, 600))
+        assert (film.n_frames, film.size) == (32, (720, 480))
 
 
 def test_without_pillow_the_extra_is_named_before_the_run(
