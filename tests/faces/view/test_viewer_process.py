@@ -40,7 +40,9 @@ class Viewer(NamedTuple):
 @contextmanager
 def viewer(*options: str) -> Iterator[Viewer]:
     command = [sys.executable, "-m", "cagepose", "view", str(RAIL), *options]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    # Where the tests run in the background, a shell makes them ignore Ctrl-C, and their children too.
+    heeding = {"preexec_fn": lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)}
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **heeding)
     try:
         said = [process.stdout.readline()]
         if "look at" not in said[-1]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import errno
 import json
+import os
 import sys
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -27,7 +28,9 @@ class ViewServer(ThreadingHTTPServer):
     """Serves one page, and answers what its controls ask if there is a scene file to change."""
 
     daemon_threads = True
-    allow_reuse_address = False  # else a port that somebody else listens on may seem free
+    # Else the port of a viewer that has just ended is taken for a minute, and a page that is still open asks in vain.
+    # On Windows, a port that somebody else listens on would then seem free.
+    allow_reuse_address = os.name != "nt"
 
     def __init__(self, page: str, what_if: WhatIf | None, host: str, port: int) -> None:
         self.page = page.encode()
