@@ -16,6 +16,9 @@ from cagepose.kernels.play_rows import choose_faces, empty_play_room
 from cagepose.studies.play import FREEDOMS
 from cagepose.studies.play_frame import PlayFrame
 from jit import callable_kernel, cases
+from rails import rail_scene
+
+MM = 1e-3
 
 HIGHS = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
 
@@ -171,3 +174,11 @@ def test_closing_and_opening_each_gap_moves_the_extreme_as_said():
                     deviations.append(abs((after.exact - end.exact) / by - worth) / clearance.closing)
     assert len(deviations) >= 20
     assert max(deviations) < 3e-3
+
+
+def test_points_and_directions_may_be_rows_of_an_array():
+    """Arrays have no truth value: an empty sequence must be told by its length."""
+    scene = rail_scene()
+    (one,) = play(scene, np.array([[-600, 20, -60.747]]) * MM, np.array([[0.0, 1.0, 0.0]])).points
+    *_, other, _ = play(scene, [(-0.6, 0.02, -0.060747)]).points  # x, y, z
+    assert one.high.exact == pytest.approx(other.high.exact, rel=1e-12)

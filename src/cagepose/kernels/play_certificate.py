@@ -183,7 +183,8 @@ def fate_of(geometry: Geometry, pair: int, length_m: float, room: PlayRoom, work
     point, box, face = pair // geometry.n_own_boxes, pair % geometry.n_own_boxes, room.faces[pair]
     arm = row(room.arms, pair)
     _, left_out = gap_left_out(row(room.rows, pair), arm, travel, turn)
-    if work.moved_out[pair] + left_out + certificate.slack >= 2.0 * geometry.half_sizes[box, face % 3] / length_m:
+    deepest = work.moved_out[pair] + left_out + certificate.slack  # a point that starts inside is within the slack
+    if deepest + certificate.slack >= 2.0 * geometry.half_sizes[box, face % 3] / length_m:
         for k in range(6):
             work.lost_at[pair, k] = math.nan
         return THROUGH

@@ -77,7 +77,7 @@ def empty_play_room(geometry: Geometry) -> PlayRoom:
 @kernel
 def gap_beyond(geometry: Geometry, placement: Placement, point: int, box: int, face: int) -> float:
     """Return how far the point is beyond the plane of a face, metres."""
-    axis = face % 3
+    axis = face if face < 3 else face - 3
     along = placement.points_box[box, point, axis]
     gap: float = (along if face < 3 else -along) - geometry.half_sizes[box, axis]
     return gap
@@ -149,7 +149,7 @@ def choose_faces(geometry: Geometry, position: Vector, length_m: float, room: Pl
         for face in range(6):
             if gap_beyond(geometry, room.placement, point, box, face) > 0.0:
                 room.faces[pair] = face
-                write_row(geometry, position, length_m, pair, room)
+                write_row(geometry, position, length_m, point, box, room)
                 left = room_left(pair, room)
                 if left > most:
                     most, best = left, face
@@ -159,12 +159,13 @@ def choose_faces(geometry: Geometry, position: Vector, length_m: float, room: Pl
 
 
 @kernel
-def write_row(geometry: Geometry, position: Vector, length_m: float, pair: int, room: PlayRoom) -> None:
+def write_row(geometry: Geometry, position: Vector, length_m: float, point: int, box: int, room: PlayRoom) -> None:
     """Write the row (n, (c - t) x n / L) and the bound gap / L of one point and box (7.1)."""
-    point, box, face = pair // geometry.n_own_boxes, pair % geometry.n_own_boxes, room.faces[pair]
+    pair = point * geometry.n_own_boxes + box
+    face = room.faces[pair]
     sign = 1.0 if face < 3 else -1.0
+    axis = face if face < 3 else face - 3
     columns = room.placement.box_rotations[box]
-    axis = face % 3
     normal = (sign * columns[0, axis], sign * columns[1, axis], sign * columns[2, axis])
     c = row(geometry.points_world, point)
     arm = ((c[0] - position[0]) / length_m, (c[1] - position[1]) / length_m, (c[2] - position[2]) / length_m)
@@ -180,9 +181,11 @@ def write_row(geometry: Geometry, position: Vector, length_m: float, pair: int, 
 def write_rows(geometry: Geometry, position: Vector, length_m: float, room: PlayRoom) -> float:
     """Write the rows of all points and boxes; return the least bound."""
     least = math.inf
-    for pair in range(len(room.faces)):
-        write_row(geometry, position, length_m, pair, room)
-        least = min(least, room.bounds[pair])
+    for point in range(len(geometry.points_world)):
+        for box in range(geometry.n_own_boxes):
+            pair = point * geometry.n_own_boxes + box
+            write_row(geometry, position, length_m, point, box, room)
+            least = min(least, room.bounds[pair])
     return least
 
 
@@ -220,6 +223,7 @@ def least_gap(geometry: Geometry, room: PlayRoom) -> float:
     """Return the least gap over all points and boxes, each beyond its face, metres."""
     n_boxes = geometry.n_own_boxes
     least = math.inf
-    for pair in range(len(room.faces)):
-        least = min(least, gap_beyond(geometry, room.placement, pair // n_boxes, pair % n_boxes, room.faces[pair]))
+    for point in range(len(geometry.points_world)):
+        for box in range(n_boxes):
+            least = min(least, gap_beyond(geometry, room.placement, point, box, room.faces[point * n_boxes + box]))
     return least

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -35,7 +36,7 @@ class PlayEnd:
     Attributes
     ----------
     linear
-        Over the polytope (7.1); None: without end.
+        Over the polytope (7.1); None: without end, or not found.
     exact
         Locally optimal (7.5); None: without end, or not found.
     certified
@@ -132,7 +133,7 @@ def play(
         A point or direction that is not three finite numbers, or a direction of length zero.
     """
     points = [finite_array(point, (3,), "at") for point in at]
-    along = [unit_vector(direction, "direction") for direction in (directions or np.eye(3))]
+    along = [unit_vector(direction, "direction") for direction in (directions if len(directions) else np.eye(3))]
     frame = PlayFrame(scene)
     pairs = [(point, direction) for point in points for direction in along]
     goals = _goals(frame, pairs)
@@ -155,7 +156,7 @@ def play(
         scene,
         freedoms,
         tuple(PointPlay(*pair, *writer.ends(len(FREEDOMS) + place)) for place, pair in enumerate(pairs)),
-        judge_cage(scene, frame, work, _free_names(freedoms), search_s, progress),
+        judge_cage(scene, frame, work, _free_names(extremes), search_s, progress),
         analysed - started,
         certified - analysed,
     )
@@ -184,11 +185,11 @@ def _goals(frame: PlayFrame, pairs: Sequence[tuple[FloatArray, FloatArray]]) -> 
     return goals
 
 
-def _free_names(freedoms: dict[str, PlayRange]) -> tuple[str, ...]:
+def _free_names(extremes: Rows[Extreme]) -> tuple[str, ...]:
     """``x``: free both ways; ``+x``: free one way; as linearised."""
     names = []
-    for name, ends in freedoms.items():
-        low, high = ends.low.linear is None, ends.high.linear is None
+    for place, name in enumerate(FREEDOMS):
+        low, high = (extremes[2 * place + side].linear_outcome == OPEN for side in range(2))
         if low or high:
             names.append(name if low and high else f"{'-' if low else '+'}{name}")
     return tuple(names)
@@ -217,12 +218,12 @@ class _Writer:
     def _end(self, index: int) -> PlayEnd:
         extreme = self.extremes[index]
         is_reached = extreme.outcome == REACHED
-        caged = self.work.certificate.outcome == CAGED
+        has_bound = self.work.certificate.outcome == CAGED and math.isfinite(self.bounds[index])
         motion = Pose(extreme.position, extreme.quaternion) if is_reached else None
         return PlayEnd(
             linear=float(extreme.linear) if extreme.linear_outcome == REACHED else None,
             exact=float(extreme.value) if is_reached else None,
-            certified=float(self.goals[index].sign * self.bounds[index]) if caged else None,
+            certified=float(self.goals[index].sign * self.bounds[index]) if has_bound else None,
             is_open=bool(extreme.outcome == OPEN),
             pose_world_object=None if motion is None else self.frame.outward(*motion.as_tuples()),
             _find_clearances=partial(self._clearances, index, motion),
