@@ -19,6 +19,8 @@ from cagepose.studies.play_rest import PlayRest
 
 MOST_CLEARANCES = 4
 """Of those that limit an end, so many are printed; the document has all."""
+ALIKE = 0.99
+"""Clearances worth this part of the best one are as good to close."""
 STYLES = {"caged": "bold green", "not certified": "bold yellow", "escapes": "bold red"}
 
 
@@ -28,7 +30,7 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
     for heading in ("", "unit", "linear", "exact", "certified within"):
         table.add_column(heading, overflow="fold")
     why = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
-    for heading in ("end", "limited by", f"less per {unit} closed", f"more per {unit} opened"):
+    for heading in ("end", f"to halve it, {unit}", "limited by", f"less per {unit} closed", f"more per {unit} opened"):
         why.add_column(heading, overflow="fold")
     rows = [(name, name in LENGTHS, ends.low, ends.high) for name, ends in play.freedoms.items()]
     rows += [(_point_name(place, play, unit), True, point.low, point.high) for place, point in enumerate(play.points)]
@@ -48,15 +50,15 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
     verdict = Text("cage: ")
     verdict.append(cage.verdict, style=STYLES[cage.verdict])
     verdict.append(f" ({cage.reason})")
-    times = f"analysis {play.analysis_s * 1e3:.3g} ms, certificate {play.certificate_s * 1e3:.3g} ms"
-    print_all(Text(f"{play.scene.name}: play from the start pose, in the cage's frame"), "", table, "", why, "")
-    print_all(verdict, Text(times))
-    if cage.leaves_at is not None:
-        print_all(Text(f"it leaves its face with the object's origin at ({_triple(cage.leaves_at.position_m, unit)})"))
-    for rest in rests:
-        print_all(_rest(rest, unit))
+    print_all(Text(f"{play.scene.name}: play from the start pose, in the cage's frame"), "", verdict)
     if cage.free_directions:
         print_all(Text(f"free directions: {' '.join(cage.free_directions)}"))
+    if cage.leaves_at is not None:
+        print_all(Text(f"it leaves its face with the object's origin at ({_triple(cage.leaves_at.position_m, unit)})"))
+    print_all("", table, "", why, "")
+    for rest in rests:
+        print_all(_rest(rest, unit))
+    print_all(Text(f"analysis {play.analysis_s * 1e3:.3g} ms, certificate {play.certificate_s * 1e3:.3g} ms"))
 
 
 def _rest(rest: PlayRest, unit: LengthUnit) -> Text:
@@ -92,12 +94,22 @@ def _value(value: float | None, is_length: bool, unit: LengthUnit) -> str:
     return short(shown, 6, 1e-12)
 
 
-def _limits(end: PlayEnd, is_length: bool, unit: LengthUnit) -> tuple[str, str, str]:
-    """Return the points that limit an end, and what closing and opening their gaps is worth."""
+def _limits(end: PlayEnd, is_length: bool, unit: LengthUnit) -> tuple[str, str, str, str]:
+    """Return the gap to close for half of an end, the points that limit it, and what their gaps are worth."""
     factor = 1.0 if is_length else math.degrees(1.0) / float(from_metres(1.0, unit))
     shown = end.clearances[:MOST_CLEARANCES]
-    names = ", ".join(f"{clearance.point} on {clearance.box}" for clearance in shown)
+    names = ", ".join(clearance.point for clearance in shown)
     closing = ", ".join(f"{clearance.closing * factor:.4g}" for clearance in shown)
     opening = ", ".join(short(clearance.opening * factor, 4, 1e-6) for clearance in shown)
     more = len(end.clearances) - len(shown)
-    return (f"{names}, {more} more" if more else names), closing, opening
+    return _halving(end, unit), f"{names}, {more} more" if more else names, closing, opening
+
+
+def _halving(end: PlayEnd, unit: LengthUnit) -> str:
+    """Say which gap to close by how much, to first order, for half of the way from the start to an end."""
+    best = end.clearances[0]
+    if not end.exact or best.closing <= 0.0:
+        return "-"
+    gap = float(from_metres(0.5 * abs(end.exact) / best.closing, unit))
+    alike = [other.point for other in end.clearances if other.closing >= ALIKE * best.closing][:MOST_CLEARANCES]
+    return f"close {'/'.join(alike)} by {gap:.3g}"
