@@ -159,7 +159,7 @@ def test_everything_stays_in_view_at_every_exaggeration(opened, rail):
     for exaggeration in (1, 20, 200):
         set_range(page, "exaggeration", EXAGGERATIONS.index(exaggeration))
         wait_until(page, f"cagepose.state().drawnExaggeration === {exaggeration}")
-        places = np.array(page.evaluate("cagepose.state().places"))
+        places = np.array(page.evaluate("cagepose.fitted()"))
         assert (places > 0.0).all()
         assert (places < [width, height]).all()
 
