@@ -52,7 +52,18 @@ def test_the_tables_name_what_limits_each_end(command: Command) -> None:
     assert "-0.313084 to 0.313084" in out
     assert "cage: caged" in out
     assert "greatest x" in out
-    assert "close C1/C8/C6/C3 by 0.5 " in out  # any one of them halves the least pitch
+    assert "close any of C1, C8, C6, C3 by 0.5 " in out  # any one of them halves the least pitch
+
+
+def test_a_load_that_finds_no_rest_nearby_is_not_shown_at_one(command: Command, sample: str) -> None:
+    (line,) = [line for line in command("play", sample).out.splitlines() if line.startswith("gravity ")]
+    assert line.startswith("gravity finds no rest nearby; to first order")
+
+
+def test_a_point_far_from_the_object_is_refused(command: Command) -> None:
+    answer = command("play", RAIL, "--at", "1e308,0,0")
+    assert answer.code == 2
+    assert "--at: is 1e+308 mm from the object's origin" in answer.err
 
 
 def test_closing_and_opening_each_gap_of_the_rails_pitch_moves_it_as_the_document_says(command: Command) -> None:

@@ -9,13 +9,12 @@ import pytest
 from scipy.optimize import linprog, minimize
 
 from caged_scenes import caged_scene
-from cagepose import Cage, Pose, Scene, play
-from cagepose.kernels.geometry import place_object
+from cagepose import Box, Cage, Load, Object, Pose, Scene, play
 from cagepose.kernels.linear_program import OPTIMAL, UNBOUNDED, solve_program
-from cagepose.kernels.play_rows import choose_faces, empty_play_room
+from cagepose.kernels.play_rows import empty_play_room, write_start
 from cagepose.studies.play import FREEDOMS
 from cagepose.studies.play_frame import PlayFrame
-from jit import callable_kernel, cases
+from jit import cases
 from rails import rail_scene
 
 MM = 1e-3
@@ -48,16 +47,12 @@ def value_of(scene: Scene, pose: Pose, name: str) -> float:
 
 def test_all_twelve_programs_of_random_caged_scenes_agree_with_highs():
     rng = np.random.default_rng(5)
-    choose, place = callable_kernel(choose_faces), place_object
     n_bounded = 0
-    origin, level = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)
     for _ in range(cases(250)):
         frame = PlayFrame(caged_scene(rng))
         room = empty_play_room(frame.geometry)
-        place(frame.geometry, origin, level, room.placement)
-        choose(frame.geometry, origin, frame.length_m, room)
+        write_start(frame.geometry, frame.length_m, room)
         n = len(room.faces)
-        room.bounds[n:] = np.inf
         for objective in np.vstack([np.eye(6), -np.eye(6)]):
             room.program.objective[:] = objective
             room.program.basis[0] = -1
@@ -93,6 +88,37 @@ def test_every_extreme_is_a_pose_outside_that_has_the_value():
                     touching = [scene.cage.names.index(clearance.point) for clearance in end.clearances]
                     assert touching
                     assert np.abs(gaps(scene, end.pose_world_object)[touching]).max() < 1e-10
+
+
+def clamped_cube(rng: np.random.Generator, least_apart: float) -> tuple[Scene, Pose]:
+    """A cube between two groups of points that touch it without any gap, 0.1 mm free to the other sides; its turn."""
+    turn = Pose(rng.uniform(-20, 20, 3) * MM, rng.normal(size=4))
+    points = []
+    for axis in range(3):
+        group = rng.uniform(least_apart, 4, (3, 3)) * np.array([[1, 1, 1], [-1, 1, 1], [1, -1, -1]])
+        for side in (-1, 1):
+            for point in group:
+                points.append(point if axis else point.copy())
+                points[-1] = points[-1].copy()
+                points[-1][axis] = side * (5.0 if axis == 0 else 5.1)
+    load = Load("gravity", gravity=(0, 0, -1))
+    return Scene(Object([Box((10 * MM,) * 3)], pose=turn), Cage(turn.transform(np.array(points) * MM)), [load]), turn
+
+
+def test_a_part_that_is_clamped_without_gap_has_every_end():
+    """By rounding, the points start some 1e-18 m inside or outside."""
+    rng = np.random.default_rng(12)
+    for _ in range(cases(40)):
+        scene, turn = clamped_cube(rng, 1.0)
+        found = play(scene, [(0, 0, 0)], list(turn.rotation.T), search_s=0.0)
+        for ends in found.freedoms.values():
+            assert ends.low.exact is not None
+            assert ends.high.exact is not None
+        along_x = found.points[0]
+        assert [along_x.low.exact, along_x.high.exact] == pytest.approx([0.0, 0.0], abs=1e-12)
+        for other in found.points[1:]:
+            assert other.high.exact is not None
+            assert other.high.exact > 0.09 * MM
 
 
 def nudged(pose: Pose, x: np.ndarray) -> Pose:

@@ -9,6 +9,8 @@ from cyclopts import Parameter
 
 from cagepose.cli.options import AtOption, SceneArgument, SetOption, Switch
 
+ERASE_LINE = "\r\x1b[K"
+
 
 def play_command(
     scene: SceneArgument,
@@ -30,7 +32,7 @@ def play_command(
 ) -> int:
     """Print the range of each freedom and point, what limits it, whether the object is caged, where loads leave it."""
     from cagepose.cli.triples import read_triple
-    from cagepose.errors import SceneFileError
+    from cagepose.errors import SceneError, SceneFileError
     from cagepose.files.scene_file import read_scene_file
     from cagepose.files.units import to_metres
 
@@ -57,14 +59,18 @@ def play_command(
     from cagepose.studies.play_rest import play_rests
 
     announce_kernels(play_is_compiled())
-    found = play(
-        scene_file.scene,
-        [to_metres(point, scene_file.length_unit) for point in points],
-        along,
-        progress=_show_search if sys.stderr.isatty() else None,
-    )
-    if found.cage.n_tried and sys.stderr.isatty():
-        sys.stderr.write("\n")
+    try:
+        found = play(
+            scene_file.scene,
+            [to_metres(point, scene_file.length_unit) for point in points],
+            along,
+            progress=_show_search if sys.stderr.isatty() else None,
+        )
+    except SceneError as error:
+        sys.stderr.write(f"--{error}\n")
+        return 2
+    if found.cage.verdict != "caged" and sys.stderr.isatty():
+        sys.stderr.write(ERASE_LINE)
     rests = play_rests(scene_file.scene)
     if json:
         from json import dumps

@@ -20,7 +20,10 @@ from cagepose.studies.play_rest import PlayRest
 MOST_CLEARANCES = 4
 """Of those that limit an end, so many are printed; the document has all."""
 ALIKE = 0.99
-"""Clearances worth this part of the best one are as good to close."""
+"""Clearances worth this part of the best one are as good to close; slopes say no more of a whole gap."""
+MEANING = "exact: no motion nearby goes farther; certified: no motion at all inside the cage does"
+NO_PLAY = 1e-12
+"""Metres or radians: an end that is nearer is at the start but for rounding."""
 STYLES = {"caged": "bold green", "not certified": "bold yellow", "escapes": "bold red"}
 
 
@@ -37,8 +40,8 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
     for name, is_length, low, high in rows:
         unit_name = str(unit) if is_length else "deg"
         ranges = [
-            f"{_value(getattr(low, kind), is_length, unit)} to {_value(getattr(high, kind), is_length, unit)}"
-            for kind in ("linear", "exact")
+            f"{_value(low.linear, is_length, unit)} to {_value(high.linear, is_length, unit)}",
+            f"{_exact(low, is_length, unit)} to {_exact(high, is_length, unit)}",
         ]
         is_certified = low.certified is not None and high.certified is not None
         bound = f"{_value(low.certified, is_length, unit)} to {_value(high.certified, is_length, unit)}"
@@ -55,7 +58,9 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
         print_all(Text(f"free directions: {' '.join(cage.free_directions)}"))
     if cage.leaves_at is not None:
         print_all(Text(f"it leaves its face with the object's origin at ({_triple(cage.leaves_at.position_m, unit)})"))
-    print_all("", table, "", why, "")
+    print_all("", table, "", Text(MEANING), "")
+    if why.row_count:
+        print_all(why, "")
     for rest in rests:
         print_all(_rest(rest, unit))
     print_all(Text(f"analysis {play.analysis_s * 1e3:.3g} ms, certificate {play.certificate_s * 1e3:.3g} ms"))
@@ -63,16 +68,21 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
 
 def _rest(rest: PlayRest, unit: LengthUnit) -> Text:
     """One line: where the load leaves the object, by which points, and what it leaves open."""
-    line = Text(f"{rest.phase} presses it ")
-    pose = rest.pose_world_object or rest.linear_pose_world_object
-    if pose is None:
-        return line.append("out: nothing stops the load")
+    line = Text(f"{rest.phase} ")
+    pose, forces = rest.pose_world_object, rest.exact_forces
+    if pose is not None:
+        line.append("presses it ")
+    else:
+        pose, forces = rest.linear_pose_world_object, rest.forces
+        if pose is None:
+            return line.append("presses it out: nothing stops the load")
+        line.append("finds no rest nearby", style="yellow").append("; to first order it would press it ")
     angles = ", ".join(short(math.degrees(angle), 4, 1e-9) for angle in pose.euler_zyx)
-    forces = ", ".join(f"{force.point} {force.force_n:.4g}" for force in rest.exact_forces or rest.forces)
     line.append(f"to ({_triple(pose.position_m, unit)}), yaw, pitch, roll ({angles}) deg, without friction;")
-    line.append(f" forces{' [N]' if rest.in_newtons else ''}: {forces}")
+    amounts = ", ".join(f"{force.point} {force.force_n:.4g}" for force in forces)
+    line.append(f" forces{' [N]' if rest.in_newtons else ''}: {amounts}")
     if rest.undetermined:
-        line.append(f"; free along {' '.join(freedom.name for freedom in rest.undetermined)}")
+        line.append(f"; to first order free along {' '.join(freedom.name for freedom in rest.undetermined)}")
     return line
 
 
@@ -94,6 +104,10 @@ def _value(value: float | None, is_length: bool, unit: LengthUnit) -> str:
     return short(shown, 6, 1e-12)
 
 
+def _exact(end: PlayEnd, is_length: bool, unit: LengthUnit) -> str:
+    return "not found" if end.exact is None and not end.is_open else _value(end.exact, is_length, unit)
+
+
 def _limits(end: PlayEnd, is_length: bool, unit: LengthUnit) -> tuple[str, str, str, str]:
     """Return the gap to close for half of an end, the points that limit it, and what their gaps are worth."""
     factor = 1.0 if is_length else math.degrees(1.0) / float(from_metres(1.0, unit))
@@ -107,9 +121,13 @@ def _limits(end: PlayEnd, is_length: bool, unit: LengthUnit) -> tuple[str, str, 
 
 def _halving(end: PlayEnd, unit: LengthUnit) -> str:
     """Say which gap to close by how much, to first order, for half of the way from the start to an end."""
-    best = end.clearances[0]
-    if not end.exact or best.closing <= 0.0:
+    usable = [clearance for clearance in end.clearances if 0.0 < clearance.closing < math.inf]
+    if end.exact is None or abs(end.exact) < NO_PLAY or not usable:
         return "-"
-    gap = float(from_metres(0.5 * abs(end.exact) / best.closing, unit))
-    alike = [other.point for other in end.clearances if other.closing >= ALIKE * best.closing][:MOST_CLEARANCES]
-    return f"close {'/'.join(alike)} by {gap:.3g}"
+    best = max(clearance.closing for clearance in usable)
+    by_m = 0.5 * abs(end.exact) / best
+    alike = [gap.point for gap in usable if gap.closing >= ALIKE * best and gap.gap_m >= ALIKE * by_m]
+    if not alike:
+        return "more than one gap"
+    names = alike[0] if len(alike) == 1 else f"any of {', '.join(alike[:MOST_CLEARANCES])}"
+    return f"close {names} by {float(from_metres(by_m, unit)):.3g}"

@@ -26,12 +26,13 @@ from cagepose.kernels.play_newton import (
 from cagepose.kernels.play_rows import (
     HARDLY,
     NOT_BEYOND,
+    START,
     PlayRoom,
     change_faces,
-    choose_faces,
-    gap_beyond,
+    gap_at,
     least_gap,
     write_rows,
+    write_start,
     write_trust_region,
 )
 from cagepose.kernels.pose import Quaternion, euler_zyx_from_quaternion, quaternion_about, quaternion_product
@@ -43,6 +44,8 @@ FIRST_RADIUS = 0.3
 """Radians, and lengths of the scene: the linear rows say little beyond."""
 LAST_RADIUS = 1e-6
 """Of the motion: the value errs by the square of this."""
+SHORTEST = 1e-9
+"""Radians, and lengths of the scene: where no step of this size can be taken, none is left."""
 LAST_STEP = 1e-7
 """Of the motion: a Newton step that is shorter has arrived; the value errs by the square of this."""
 MOST_PROGRAMS = 200
@@ -218,7 +221,7 @@ def moved_along_faces(
     place_object(geometry, position, quaternion, room.placement)
     for i in range(newton.n_rows):
         point, box = newton.pairs[i] // geometry.n_own_boxes, newton.pairs[i] % geometry.n_own_boxes
-        newton.bounds[i] = gap_beyond(geometry, room.placement, point, box, room.faces[newton.pairs[i]]) / length_m
+        newton.bounds[i] = gap_at(geometry, length_m, point, box, room)
     write_onto(newton)
     return moved(position, quaternion, newton.onto, length_m)
 
@@ -235,7 +238,7 @@ def merit_at(
 ) -> float:
     """Return the value less the penalty on the deepest point; lengths of the scene, or radians."""
     place_object(geometry, position, quaternion, room.placement)
-    inside = max(0.0, -least_gap(geometry, room) / length_m)
+    inside = max(0.0, -least_gap(geometry, length_m, room))
     unit = length_m if goal.kind == SHIFT else 1.0
     return value_at(goal, position, quaternion) / unit - penalty * inside
 
@@ -248,37 +251,41 @@ def climb(geometry: Geometry, length_m: float, goal: Goal, room: PlayRoom, extre
     Where the points that limit an extreme have run off their faces, the search goes on beyond the others.
     """
     unit = length_m if goal.kind == SHIFT else 1.0
-    position, quaternion = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)
-    radius, penalty = FIRST_RADIUS, 0.0
+    position, quaternion = START, (1.0, 0.0, 0.0, 0.0)
+    last_position, last_quaternion = position, quaternion
+    radius, longest, penalty = FIRST_RADIUS, FIRST_RADIUS, 0.0
     extreme.outcome = NOT_FOUND
+    has_arrived = False
     for n_programs in range(MOST_PROGRAMS):
         extreme.n_programs = n_programs + 1
+        size = size_of(position, quaternion, length_m)
+        if has_arrived or radius < max(LAST_RADIUS * size, SHORTEST):
+            position, quaternion = put_on_faces(geometry, length_m, position, quaternion, room)
+            note_extreme(goal, length_m, position, quaternion, room, extreme)
+            if not change_faces(geometry, length_m, room):
+                break
+            radius, longest, penalty, has_arrived = FIRST_RADIUS, FIRST_RADIUS, 0.0, False
         place_object(geometry, position, quaternion, room.placement)
         inside = max(0.0, -write_rows(geometry, position, length_m, room))
         value = value_at(goal, position, quaternion)
         factor = write_slope(goal, quaternion, length_m, room)
         write_trust_region(room, radius)
         if solve_program(room.rows, room.bounds, room.program) != OPTIMAL:
+            # The last step led to where no small motion brings all points out: take a shorter one.
             room.program.basis[0] = -1
-            radius *= 2.0
-            if radius > 1.0:
-                break
+            position, quaternion = last_position, last_quaternion
+            radius *= 0.25
+            longest = radius
             continue
         penalty = max(penalty, 2.0 * factor * total_price(room))
         is_top = write_newton_step(goal, quaternion, length_m, factor, room)
         gain = factor * promised(room.program) + penalty * inside
-        size = size_of(position, quaternion, length_m)
         merit = value / unit - penalty * inside
         noise = GAIN * abs(value) / unit + 1e-15
         by_newton = moved_along_faces(geometry, length_m, position, quaternion, room)
         more = merit_at(geometry, length_m, goal, by_newton[0], by_newton[1], penalty, room) - merit
-        has_arrived = is_top and size_of_step(room.newton.step) < LAST_STEP * size
-        if has_arrived or (max(gain, more) <= noise) or radius < LAST_RADIUS * size:
-            position, quaternion = put_on_faces(geometry, length_m, position, quaternion, room)
-            note_extreme(goal, length_m, position, quaternion, room, extreme)
-            if not change_faces(geometry, length_m, room):
-                break
-            radius, penalty = FIRST_RADIUS, 0.0
+        has_arrived = (is_top and size_of_step(room.newton.step) < LAST_STEP * size) or max(gain, more) <= noise
+        if has_arrived:
             continue
         to_position, to_quaternion = moved(position, quaternion, room.program.x_near, length_m)
         gained = merit_at(geometry, length_m, goal, to_position, to_quaternion, penalty, room) - merit
@@ -287,11 +294,12 @@ def climb(geometry: Geometry, length_m: float, goal: Goal, room: PlayRoom, extre
         elif gained > 0.75 * gain:
             radius = min(FIRST_RADIUS, 2.0 * radius)
         takes = gained > max(0.1 * gain, 0.0)
-        if more > max(gained, 0.0):
+        if more > max(gained, 0.0) and size_of_step(room.newton.step) <= longest:
             to_position, to_quaternion = by_newton
             takes = True
             radius = min(FIRST_RADIUS, max(radius, size_of_step(room.newton.step)))
         if takes:
+            last_position, last_quaternion = position, quaternion
             position, quaternion = to_position, to_quaternion
             if is_out(goal, value_at(goal, position, quaternion), quaternion, length_m):
                 extreme.outcome = OPEN
@@ -334,18 +342,13 @@ def find_play(geometry: Geometry, length_m: float, goals: Rows[Goal], extremes: 
     room
         See there.
     """
-    place_object(geometry, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0), room.placement)
-    choose_faces(geometry, (0.0, 0.0, 0.0), length_m, room)
-    for pair in range(len(room.faces)):
-        room.start_faces[pair] = room.faces[pair]
+    write_start(geometry, length_m, room)
     for i in range(len(goals)):
         goal, extreme = goals[i], extremes[i]
         for pair in range(len(room.faces)):
             room.faces[pair] = room.start_faces[pair]
-        place_object(geometry, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0), room.placement)
-        write_rows(geometry, (0.0, 0.0, 0.0), length_m, room)
-        for pair in range(len(room.faces)):
-            room.bounds[pair] = max(room.bounds[pair], 0.0)  # a start that touches may be inside by rounding
+        place_object(geometry, START, (1.0, 0.0, 0.0, 0.0), room.placement)
+        write_rows(geometry, START, length_m, room)
         solve_linear(length_m, goal, room, extreme)
         if extreme.linear_outcome == OPEN and travels_without_end(room.program):
             extreme.outcome, extreme.value = OPEN, extreme.linear

@@ -11,12 +11,12 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from cagepose.kernels.geometry import Geometry, place_object
+from cagepose.kernels.geometry import Geometry
 from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.linear_program import FAILED, OPTIMAL, UNBOUNDED, solve_program
 from cagepose.kernels.play_goal import PITCH, SHIFT, YAW, Goal, write_slope
 from cagepose.kernels.play_remainder import gap_left_out, spread, turning_left_out
-from cagepose.kernels.play_rows import PlayRoom, choose_faces, write_trust_region
+from cagepose.kernels.play_rows import PlayRoom, write_start
 from cagepose.kernels.program_bound import dual_bound
 from cagepose.kernels.record import FloatArray, IntArray, Rows, empty_record
 from cagepose.kernels.vector import Vector, cross, norm, row, scaled, vector_from
@@ -265,7 +265,6 @@ def angle_bound(goal: Goal, certificate: Certificate) -> float:
     turn = certificate.turn
     k = 5 - goal.kind  # components of w: roll about x, pitch about y, yaw about z
     one, other = (k + 1) % 3 + 3, (k + 2) % 3 + 3
-    k = k if goal.kind != SHIFT else 3
     bound = certificate.greatest[k] if goal.sign > 0.0 else -certificate.least[k]
     sine = max(bound, 0.0) + 0.5 * turn[one - 3] * turn[other - 3] + ROUNDING
     if goal.kind == PITCH:
@@ -310,11 +309,9 @@ def certify(
     room, work
         See there; ``work.certificate`` is the result.
     """
-    place_object(geometry, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0), room.placement)
-    choose_faces(geometry, (0.0, 0.0, 0.0), length_m, room)
-    write_trust_region(room, math.inf)
+    write_start(geometry, length_m, room)
     for pair in range(len(work.gaps)):
-        work.gaps[pair] = max(room.bounds[pair], 0.0)
+        work.gaps[pair] = room.bounds[pair]
         work.moved_out[pair] = 0.0
         work.fates[pair] = KEPT
     certificate = work.certificate

@@ -7,13 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cagepose.kernels.geometry import Geometry, Placement, empty_placement
-from cagepose.kernels.jit import kernel
+from cagepose.kernels.geometry import Geometry, Placement, empty_placement, place_object
+from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.linear_program import OPTIMAL, ProgramRoom, extents, program_rows
 from cagepose.kernels.play_newton import NewtonRoom
 from cagepose.kernels.record import FloatArray, IntArray, empty_record
 from cagepose.kernels.vector import Vector, cross, row
 
+START = (0.0, 0.0, 0.0)
+"""The motion begins here."""
 N_TRUST = 12
 """Rows |xi_k| <= radius of the trust region."""
 COUNTS = 1e-12
@@ -22,6 +24,8 @@ HARDLY = 1e-9
 """A gap whose multiplier is smaller does not limit the motion."""
 NOT_BEYOND = 1e-8
 """Lengths of the scene. A point that is beyond another face of the box by less stays with its face."""
+ROUNDING = 1e-13
+"""Lengths of the scene: gaps of points that touch are known so well."""
 
 
 class PlayRoom(NamedTuple):
@@ -40,8 +44,9 @@ class PlayRoom(NamedTuple):
         Those of (7.1), lengths divided by the scene's length, then those of the trust region.
     least, greatest
         Extents of the polytope, (6,).
-    start_faces
-        The faces at the start.
+    start_faces, spare
+        The faces at the start, and what is added to each gap so that none is below zero there: a start that touches
+        may be inside by rounding. (n_points * n_boxes,), the latter in lengths of the scene.
     program, newton
         See there.
     """
@@ -54,6 +59,7 @@ class PlayRoom(NamedTuple):
     least: FloatArray
     greatest: FloatArray
     start_faces: IntArray
+    spare: FloatArray
     program: ProgramRoom
     newton: NewtonRoom
 
@@ -69,6 +75,7 @@ def empty_play_room(geometry: Geometry) -> PlayRoom:
         np.zeros(6),
         np.zeros(6),
         np.zeros(n_pairs, np.int64),
+        np.zeros(n_pairs),
         empty_record(ProgramRoom),
         empty_record(NewtonRoom),
     )
@@ -80,6 +87,14 @@ def gap_beyond(geometry: Geometry, placement: Placement, point: int, box: int, f
     axis = face if face < 3 else face - 3
     along = placement.points_box[box, point, axis]
     gap: float = (along if face < 3 else -along) - geometry.half_sizes[box, axis]
+    return gap
+
+
+@kernel
+def gap_at(geometry: Geometry, length_m: float, point: int, box: int, room: PlayRoom) -> float:
+    """Return the gap of a point to the face that it stays beyond, with its spare, lengths of the scene."""
+    pair = point * geometry.n_own_boxes + box
+    gap: float = gap_beyond(geometry, room.placement, point, box, room.faces[pair]) / length_m + room.spare[pair]
     return gap
 
 
@@ -101,12 +116,18 @@ def choose_farthest_faces(geometry: Geometry, room: PlayRoom) -> None:
 
 
 @kernel
-def has_choice(geometry: Geometry, room: PlayRoom, pair: int) -> bool:
-    """Whether the point is beyond more than one face of the box."""
+def is_beyond(geometry: Geometry, length_m: float, pair: int, face: int, room: PlayRoom) -> bool:
+    """Whether the point is beyond that face by more than one that is flush with it can be by rounding."""
     point, box = pair // geometry.n_own_boxes, pair % geometry.n_own_boxes
+    return gap_beyond(geometry, room.placement, point, box, face) > NOT_BEYOND * length_m
+
+
+@kernel
+def has_choice(geometry: Geometry, length_m: float, pair: int, room: PlayRoom) -> bool:
+    """Whether the point is beyond more than one face of the box."""
     n_beyond = 0
     for face in range(6):
-        if gap_beyond(geometry, room.placement, point, box, face) > 0.0:
+        if is_beyond(geometry, length_m, pair, face, room):
             n_beyond += 1
     return n_beyond > 1
 
@@ -123,39 +144,60 @@ def room_left(pair: int, room: PlayRoom) -> float:
 
 
 @kernel
-def choose_faces(geometry: Geometry, position: Vector, length_m: float, room: PlayRoom) -> None:
-    """Choose the face that each point stays beyond (7.2), and write the rows.
+def choose_faces(geometry: Geometry, length_m: float, room: PlayRoom) -> None:
+    """Choose the face that each point stays beyond (7.2), at the start.
 
     Where a point is beyond several faces of a box, it is enough that it stays beyond one. Of these the face is best
     that the point cannot reach anyhow, by the rows of the points that have no choice.
     """
     choose_farthest_faces(geometry, room)
-    write_rows(geometry, position, length_m, room)
+    write_rows(geometry, START, length_m, room)
     write_trust_region(room, math.inf)
     n_choices = 0
     for pair in range(len(room.faces)):
         room.bounds[pair] = max(room.bounds[pair], 0.0)
-        if has_choice(geometry, room, pair):
+        if has_choice(geometry, length_m, pair, room):
             room.bounds[pair] = math.inf
             n_choices += 1
-    if n_choices == 0:
+    if n_choices == 0 or extents(room.rows, room.bounds, room.program, room.least, room.greatest) != OPTIMAL:
         return
-    outcome = extents(room.rows, room.bounds, room.program, room.least, room.greatest)
     for pair in range(len(room.faces)):
-        if room.bounds[pair] < math.inf or outcome != OPTIMAL:
+        if room.bounds[pair] < math.inf:
             continue
-        point, box, best = pair // geometry.n_own_boxes, pair % geometry.n_own_boxes, room.faces[pair]
-        most = -math.inf
+        point, box = pair // geometry.n_own_boxes, pair % geometry.n_own_boxes
+        best, most = room.faces[pair], -math.inf
         for face in range(6):
-            if gap_beyond(geometry, room.placement, point, box, face) > 0.0:
+            if is_beyond(geometry, length_m, pair, face, room):
                 room.faces[pair] = face
-                write_row(geometry, position, length_m, point, box, room)
+                write_row(geometry, START, length_m, point, box, room)
                 left = room_left(pair, room)
                 if left > most:
                     most, best = left, face
         room.faces[pair] = best
         room.bounds[pair] = math.inf
-    write_rows(geometry, position, length_m, room)
+
+
+@entry_kernel
+def write_start(geometry: Geometry, length_m: float, room: PlayRoom) -> None:
+    """Choose faces and write the rows (7.1) of the start, without a trust region.
+
+    Parameters
+    ----------
+    geometry, length_m
+        As in `cagepose.kernels.play.find_play`.
+    room
+        Its faces, rows, bounds and spare are written.
+    """
+    place_object(geometry, START, (1.0, 0.0, 0.0, 0.0), room.placement)
+    for pair in range(len(room.faces)):
+        room.spare[pair] = 0.0
+    choose_faces(geometry, length_m, room)
+    write_rows(geometry, START, length_m, room)
+    for pair in range(len(room.faces)):
+        room.start_faces[pair] = room.faces[pair]
+        room.spare[pair] = max(0.0, ROUNDING - room.bounds[pair])
+        room.bounds[pair] += room.spare[pair]
+    write_trust_region(room, math.inf)
 
 
 @kernel
@@ -174,7 +216,7 @@ def write_row(geometry: Geometry, position: Vector, length_m: float, point: int,
         room.arms[pair, k] = arm[k]
         room.rows[pair, k] = normal[k]
         room.rows[pair, 3 + k] = moment[k]
-    room.bounds[pair] = gap_beyond(geometry, room.placement, point, box, face) / length_m
+    room.bounds[pair] = gap_at(geometry, length_m, point, box, room)
 
 
 @kernel
@@ -183,9 +225,8 @@ def write_rows(geometry: Geometry, position: Vector, length_m: float, room: Play
     least = math.inf
     for point in range(len(geometry.points_world)):
         for box in range(geometry.n_own_boxes):
-            pair = point * geometry.n_own_boxes + box
             write_row(geometry, position, length_m, point, box, room)
-            least = min(least, room.bounds[pair])
+            least = min(least, room.bounds[point * geometry.n_own_boxes + box])
     return least
 
 
@@ -219,11 +260,10 @@ def change_faces(geometry: Geometry, length_m: float, room: PlayRoom) -> bool:
 
 
 @kernel
-def least_gap(geometry: Geometry, room: PlayRoom) -> float:
-    """Return the least gap over all points and boxes, each beyond its face, metres."""
-    n_boxes = geometry.n_own_boxes
+def least_gap(geometry: Geometry, length_m: float, room: PlayRoom) -> float:
+    """Return the least gap over all points and boxes, each beyond its face, lengths of the scene."""
     least = math.inf
     for point in range(len(geometry.points_world)):
-        for box in range(n_boxes):
-            least = min(least, gap_beyond(geometry, room.placement, point, box, room.faces[point * n_boxes + box]))
+        for box in range(geometry.n_own_boxes):
+            least = min(least, gap_at(geometry, length_m, point, box, room))
     return least

@@ -78,7 +78,7 @@ def judge_cage(
     stations, n_stations, is_out, n_tried = search_way_out(scene, frame, search_s, progress)
     if is_out:
         path = _path(frame, stations, n_stations - 1)
-        reason = f"a way out of {len(path)} motions was found"
+        reason = f"a way out of {len(path)} {'motion' if len(path) == 1 else 'motions'} was found"
         return CageVerdict("escapes", reason, free_directions, path, None, n_tried)
     reason, leaves_at = _reason(scene, frame, work, free_directions)
     searched = "no way out was found" if n_tried else "no way out was looked for"

@@ -11,6 +11,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike
 
+from cagepose.errors import Problem, SceneError
 from cagepose.kernels.jit import is_compiled, is_loaded
 from cagepose.kernels.play import OPEN, REACHED, Extreme, find_play
 from cagepose.kernels.play_certificate import CAGED, CertificateRoom, certify, empty_certificate_room
@@ -19,7 +20,7 @@ from cagepose.kernels.play_rows import empty_play_room
 from cagepose.kernels.record import Rows, empty_rows
 from cagepose.nouns.checks import FloatArray, finite_array, unit_vector
 from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import Scene
+from cagepose.nouns.scene import FARTHEST_START, Scene, millimetres
 from cagepose.studies.cage_verdict import CageVerdict, judge_cage
 from cagepose.studies.play_frame import FREEDOMS, PlayFrame
 from cagepose.studies.play_limits import Clearance, limiting_clearances
@@ -130,9 +131,9 @@ def play(
     Raises
     ------
     SceneError
-        A point or direction that is not three finite numbers, or a direction of length zero.
+        A point or direction that is not three finite numbers, a direction of length zero, or a point far away.
     """
-    points = [finite_array(point, (3,), "at") for point in at]
+    points = [_point_near(scene, point) for point in at]
     along = [unit_vector(direction, "direction") for direction in (directions if len(directions) else np.eye(3))]
     frame = PlayFrame(scene)
     pairs = [(point, direction) for point in points for direction in along]
@@ -165,6 +166,15 @@ def play(
 def play_is_compiled() -> bool:
     """Whether the machine code lies on disk already, so that the first analysis starts at once."""
     return all(is_compiled(kernel) for kernel in ("find_play", "certify"))
+
+
+def _point_near(scene: Scene, value: ArrayLike) -> FloatArray:
+    point = finite_array(value, (3,), "at")
+    farthest = float(np.abs(point).max())
+    if farthest > FARTHEST_START * scene.size_m:
+        found = f"is {millimetres(farthest)} from the object's origin, over {FARTHEST_START:g} times the scene's size"
+        raise SceneError([Problem(("at",), f"{found}; ask about a point of the object")])
+    return point
 
 
 def _goals(frame: PlayFrame, pairs: Sequence[tuple[FloatArray, FloatArray]]) -> Rows[Goal]:

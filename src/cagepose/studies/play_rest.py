@@ -12,7 +12,7 @@ import numpy as np
 from cagepose.kernels.linear_program import OPTIMAL, ProgramRoom, solve_program
 from cagepose.kernels.play import REACHED, Extreme, find_play
 from cagepose.kernels.play_goal import SHIFT, Goal
-from cagepose.kernels.play_rows import N_TRUST, empty_play_room
+from cagepose.kernels.play_rows import N_TRUST, empty_play_room, write_start
 from cagepose.kernels.record import Rows, empty_record, empty_rows
 from cagepose.nouns.checks import FloatArray
 from cagepose.nouns.pose import Pose
@@ -94,10 +94,8 @@ def play_rests(scene: Scene) -> tuple[PlayRest, ...]:
     goals, sizes = _load_goals(scene, frame)
     extremes = empty_rows(Extreme, len(goals))
     find_play(frame.geometry, frame.length_m, goals, extremes, room)
-    # Without a goal it only writes the rows of the start.
-    find_play(frame.geometry, frame.length_m, empty_rows(Goal, 0), empty_rows(Extreme, 0), room)
-    n_pairs = len(room.faces)
-    polytope = _Polytope(frame, room.rows, np.append(np.maximum(room.bounds[:n_pairs], 0.0), np.full(N_TRUST, np.inf)))
+    write_start(frame.geometry, frame.length_m, room)
+    polytope = _Polytope(frame, room.rows, room.bounds)
     return tuple(
         _rest(scene, frame, polytope, index, goals[index], float(size), extremes[index])
         for index, size in enumerate(sizes)
