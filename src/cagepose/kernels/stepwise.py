@@ -216,6 +216,14 @@ def phase_run(
     return LIMIT, first_event + rules.event_limit, position, quaternion
 
 
+@kernel
+def forget_contacts(touching: Touching) -> None:
+    """Begin a run: nothing has touched yet."""
+    touching.n_touching[0] = 0
+    for point in range(len(touching.is_touching)):
+        touching.is_touching[point] = False
+
+
 class Workspace(NamedTuple):
     """All arrays that a run writes to, so that compiled code makes none.
 
@@ -275,9 +283,7 @@ def stepwise_run(
     A phase that does not end stable is the last one that is run.
     """
     placement, touching, trace, verdicts = workspace
-    touching.n_touching[0] = 0
-    for point in range(len(geometry.points_world)):
-        touching.is_touching[point] = False
+    forget_contacts(touching)
     position, quaternion = start_position, start_quaternion
     n_events = int(np.int64(0))  # a plain 0 would compile `phase_run` twice, once for the literal
     for phase in range(len(verdicts)):
