@@ -8,12 +8,20 @@ from collections.abc import Callable, Iterator
 
 from rich.console import Console
 
+from bench.batch_table import batch_rows
+from bench.first_use_table import first_use_rows
+from bench.growth_table import growth_rows
 from bench.rail_table import rail_rows
 from bench.report import show
 from bench.rows import RESULTS, Row, machine, save
+from bench.scenes_table import scene_rows
 
 TABLES: dict[str, Callable[[], Iterator[Row]]] = {
     "rail": rail_rows,
+    "scenes": scene_rows,
+    "growth": growth_rows,
+    "batch": batch_rows,
+    "first-use": first_use_rows,
 }
 
 

@@ -38,8 +38,8 @@ class DrakeSettings:
         SAP's threshold, dimensionless, below which a contact is softened; Drake's default is 1.
     """
 
-    step_s: float = 0.02
-    window_steps: int = 10
+    step_s: float = 0.08
+    window_steps: int = 3
     loads: tuple[float, float] = (100.0, 200.0)
     damping_per_s: float = 2.0
     friction: float = 0.1
@@ -96,7 +96,9 @@ class DrakeStepper:
 def _fill(plant, body: PeerBody, settings: DrakeSettings):  # type: ignore[no-untyped-def]
     """Add the object and the spheres to a plant; return the object."""
     plant.mutable_gravity_field().set_gravity_vector(np.zeros(3))
-    plant.set_discrete_contact_approximation(DiscreteContactApproximation.__members__["k" + settings.approximation.title()])
+    plant.set_discrete_contact_approximation(
+        getattr(DiscreteContactApproximation, f"k{settings.approximation.title()}")
+    )
     if settings.approximation == "sap":
         plant.set_sap_near_rigid_threshold(settings.near_rigid)
     g = body.gyration_mm2
@@ -104,9 +106,7 @@ def _fill(plant, body: PeerBody, settings: DrakeSettings):  # type: ignore[no-un
     held = plant.AddRigidBody("object", SpatialInertia(1.0, np.zeros(3), inertia))
     angular_damping = settings.damping_per_s * float(g.diagonal().max())
     plant.AddJoint(
-        QuaternionFloatingJoint(
-            "free", plant.world_frame(), held.body_frame(), angular_damping, settings.damping_per_s
-        )
+        QuaternionFloatingJoint("free", plant.world_frame(), held.body_frame(), angular_damping, settings.damping_per_s)
     )
     properties = ProximityProperties()
     friction = CoulombFriction(settings.friction, settings.friction)

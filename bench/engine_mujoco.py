@@ -31,10 +31,10 @@ class MujocoSettings:
         As MuJoCo names them.
     """
 
-    step_s: float = 0.01
+    step_s: float = 0.014
     window_steps: int = 10
-    loads: tuple[float, float] = (100.0, 200.0)
-    damping_per_s: float = 1.0
+    loads: tuple[float, float] = (400.0, 400.0)
+    damping_per_s: float = 0.5
     time_constant_steps: float = 2.0
     damping_ratio: float = 1.0
     impedance: float = 0.99
@@ -43,7 +43,7 @@ class MujocoSettings:
     iterations: int = 100
     tolerance: float = 1e-16
     cone: str = "pyramidal"
-    integrator: str = "implicitfast"
+    integrator: str = "Euler"
 
 
 class MujocoStepper:

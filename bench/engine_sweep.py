@@ -69,9 +69,9 @@ class NumpySweep:
         assert motion.axis_world is not None
         assert motion.through_world is not None
         rotations, q = self._seen_from_boxes(pose)
-        _, through = rotations, np.array([pose.transform(place.position_m) for place in self._places])
+        centers = np.array([pose.transform(place.position_m) for place in self._places])
         axis = (motion.axis_world @ rotations)[:, None, :]
-        u = q - np.einsum("bij,bi->bj", rotations, motion.through_world - through)[:, None, :]
+        u = q - np.einsum("bij,bi->bj", rotations, motion.through_world - centers)[:, None, :]
         u_across = u - axis * (axis * u).sum(axis=2, keepdims=True)
         w = np.cross(axis, u)
         angle = self._first_entry(q, u_across, w)
@@ -87,9 +87,8 @@ class NumpySweep:
             pivot = -(half_slope + np.copysign(root, half_slope))
             real = half_slope * half_slope > gap * gap_pi
             with np.errstate(divide="ignore", invalid="ignore"):
-                pair = np.stack([gap / pivot, pivot / gap_pi])
-            angles = np.where(real, 2.0 * np.arctan(pair), np.inf) % (2.0 * math.pi)
-            roots.extend(np.nan_to_num(angles, nan=np.inf, posinf=np.inf))
+                angles = 2.0 * np.arctan(np.stack([gap / pivot, pivot / gap_pi])) % (2.0 * math.pi)
+            roots.extend(np.where(real & np.isfinite(angles), angles, np.inf))
         candidates = np.sort(np.concatenate(roots, axis=2), axis=2)
         following = np.concatenate([candidates[:, :, 1:], np.full((*q.shape[:2], 1), 2.0 * math.pi)], axis=2)
         middle = np.minimum(0.5 * (candidates + np.minimum(following, 2.0 * math.pi)), 2.0 * math.pi)[..., None]

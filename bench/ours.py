@@ -8,20 +8,21 @@
 
 from __future__ import annotations
 
+import math
 import statistics
 from collections.abc import Callable
+from functools import partial
 
 from bench.rail_case import Answer
-from bench.timing import collected, median_s, timed
+from bench.timing import collected, median_s
 from cagepose import Scene, run
 from cagepose.kernels.proof import empty_proof_room, prove
 from cagepose.nouns.pose import Pose
 from cagepose.runs.judge import Judge
+from cagepose.runs.stepwise import NO_SLIP_ANGLE_DEFAULT_RAD
 
 METHODS = ("stepwise", "quasistatic")
 PARTS = ("", "-solve", "-call")
-NO_SLIP_FRICTION = {"stepwise": 0.1003, "quasistatic": 0.0}
-"""Coefficient of friction of the proof where the scene gives none; tan(0.1 rad) for stepwise."""
 
 
 def engine_name(method: str, part: str = "") -> str:
@@ -36,18 +37,26 @@ def measure(scene: Scene, method: str, budget_s: float) -> tuple[dict[str, float
     proof_s = 0.0
     for phase in range(len(found.phases)):
         prove_once = proof_call(scene, method, found.phases[phase].pose, phase)
-        prove_once()
-        times = collected(lambda call=prove_once: timed(call)[0], budget_s / 6.0)  # type: ignore[misc]
-        proof_s += statistics.median(times)
+        proof_s += median_s(prove_once, budget_s / 6.0)
     answer = Answer(tuple(phase.pose.rotation for phase in found.phases))
     return {"": solve_s + proof_s, "-solve": solve_s, "-call": whole_s}, answer
 
 
 def proof_call(scene: Scene, method: str, pose: Pose, phase: int) -> Callable[[], object]:
     """Return the compiled proof of a pose, ready to be called, as `cagepose.run` calls it."""
-    friction = scene.friction_coefficient
-    judge = Judge(scene, NO_SLIP_FRICTION[method] if friction is None else friction)
+    default = math.tan(NO_SLIP_ANGLE_DEFAULT_RAD) if method == "stepwise" else 0.0
+    judge = Judge(scene, default if scene.friction_coefficient is None else scene.friction_coefficient)
     room = empty_proof_room(judge.geometry)
-    inside = judge.frames.inward(pose)
-    arguments = (judge.loads[phase], judge.friction, scene.size_m, judge.tolerances, room)
-    return lambda: prove(judge.geometry, judge.body, *inside, *arguments)
+    position, quaternion = judge.frames.inward(pose)
+    return partial(
+        prove,
+        judge.geometry,
+        judge.body,
+        position,
+        quaternion,
+        judge.loads[phase],
+        judge.friction,
+        scene.size_m,
+        judge.tolerances,
+        room,
+    )

@@ -115,7 +115,7 @@ def _shrunken(
 ) -> tuple[FloatArray, FloatArray, list[tuple[int, int, int]]]:
     """Return (low corner, high corner) of a box whose faces in use are moved inwards, and (point, axis, sign)."""
     low, high = -half, half.copy()
-    faces = []
+    faces = list[tuple[int, int, int]]()
     for axis in range(3):
         others = [k for k in range(3) if k != axis]
         over_face = (np.abs(points_box[:, others]) <= half[others]).all(axis=1)

@@ -15,7 +15,7 @@ TITLES = {
     "scenes": "All scenes, both methods: solve and proof",
     "growth": "How the cost of one run grows: exponent of a power law fitted to the upper half",
     "batch": "Many runs in one call",
-    "first use": "The first run in a new process",
+    "first-use": "The first run in a new process",
 }
 
 
@@ -49,10 +49,9 @@ def show(console: Console, table: str, rows: Sequence[Row]) -> None:
 def _time(seconds: float | None) -> str:
     if seconds is None:
         return ""
-    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
-        if seconds >= size:
-            break
-    return f"{seconds / size:.3g} {unit}" if seconds < 1000.0 else f"{seconds:.0f} s"
+    if seconds >= 1.0:
+        return f"{seconds:.3g} s"
+    return f"{seconds * 1e3:.3g} ms" if seconds >= 1e-3 else f"{seconds * 1e6:.3g} us"
 
 
 def _plain(value: object) -> str:

@@ -14,6 +14,7 @@ import random
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
+from itertools import product
 from typing import Any
 
 from bench.peer_body import peer_body
@@ -29,7 +30,7 @@ SLOWEST_S = 5.0
 STEPS: Mapping[str, Sequence[Any]] = {
     "step_s": (0.001, 0.002, 0.003, 0.005, 0.007, 0.01, 0.014, 0.02, 0.03, 0.04, 0.06, 0.08),
     "window_steps": (2, 3, 5, 7, 10, 15, 20, 30, 50),
-    "loads": tuple((first, second) for first in (30, 60, 100, 200, 400, 800, 1600) for second in (10, 20, 50, 100, 200, 400)),
+    "loads": tuple(product((30, 60, 100, 200, 400, 800, 1600), (10, 20, 50, 100, 200, 400, 800))),
     "damping_per_s": (0.0, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0),
 }
 """Settings of all time-stepping engines that are tuned, and the values tried."""
