@@ -27,17 +27,17 @@ class PybulletSettings:
         contactERP, numSolverIterations, contactSlop and solverResidualThreshold.
     """
 
-    step_s: float = 0.005
+    step_s: float = 0.007
     window_steps: int = 20
     loads: tuple[float, float] = (100.0, 200.0)
-    linear_damping: float = 0.9
+    linear_damping: float = 0.2
     angular_damping: float = 0.9
     friction: float = 0.1
     units_per_mm: float = 10.0
-    erp: float = 0.2
-    iterations: int = 200
+    erp: float = 1.0
+    iterations: int = 50
     slop: float = 0.0
-    residual: float = 1e-12
+    residual: float = 1e-5
 
 
 class PybulletStepper:

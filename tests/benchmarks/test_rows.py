@@ -42,7 +42,7 @@ def test_the_exact_tilts_have_no_error_and_a_lost_rail_an_infinite_one():
 
 
 def test_an_engine_that_is_missing_becomes_a_row_that_says_so(monkeypatch):
-    def missing(scene, engine):
+    def missing(_scene, engine):
         raise ImportError(f"No module named {engine!r}")
 
     monkeypatch.setattr(rail_table, "PEERS", {"drake": missing})
@@ -55,9 +55,9 @@ def test_an_engine_that_is_missing_becomes_a_row_that_says_so(monkeypatch):
 def test_an_engine_is_measured_and_compared_with_the_slower_of_our_methods(monkeypatch):
     scene = rail_scenes()[0]
     answer = Answer(tuple(turned_by(scene, tilt) for tilt in EXACT_TILTS_RAD))
-    monkeypatch.setattr(rail_table, "PEERS", {"fake": lambda scene, engine: (lambda: answer, {"step_s": 1.0})})
+    monkeypatch.setattr(rail_table, "PEERS", {"fake": lambda *_: (lambda: answer, {"step_s": 1.0})})
     monkeypatch.setattr(rail_table, "rail_scenes", lambda: [scene])
-    monkeypatch.setattr(rail_table.ours, "measure", lambda scene, method, budget_s: (OUR_TIMES_S[method], answer))
+    monkeypatch.setattr(rail_table.ours, "measure", lambda _scene, method, _budget_s: (OUR_TIMES_S[method], answer))
     rows = {row.engine: row for row in rail_table.rail_rows()}
     assert rows["cagepose-quasistatic"].ratio_to_ours == 1.0
     assert rows["cagepose-stepwise"].ratio_to_ours == 0.5

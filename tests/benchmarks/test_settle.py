@@ -1,4 +1,4 @@
-"""The rule by which every engine that moves through time counts as settled, on a body that follows a list of heights."""
+"""When an engine that moves through time counts as settled, shown on a body that follows a list of heights."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Scripted:
     def restart(self):
         pass
 
-    def push(self, phase, torque, force):
+    def push(self, _phase, torque, _force):
         self.torques.append(torque)
 
     def advance(self):
