@@ -12,7 +12,7 @@ from bench.peers import TIME_STEPPERS, load_time_stepper
 from bench.rail_case import PLAY_M, Answer, rail_scenes, tilt_error
 from bench.rows import Row
 from bench.settle import QUIET_PART_OF_PLAY, QUIET_WINDOWS, NotSettledError, run_to_rest
-from bench.timing import median_s
+from bench.timing import median_cpu_s, median_s
 from cagepose import Scene
 
 BUDGET_S = 0.4
@@ -53,7 +53,9 @@ def peer_row(scene: Scene, engine: str) -> Row:
         answer = run()
     except (NotSettledError, RuntimeError) as error:
         return Row("rail", name, engine, settings=settings, skipped=f"found no rest: {error}")
-    return Row("rail", name, engine, median_s(run, BUDGET_S), tilt_error(scene, answer.rotations), settings=settings)
+    error = tilt_error(scene, answer.rotations)
+    details = {"cpu_s": median_cpu_s(run, BUDGET_S)}
+    return Row("rail", name, engine, median_s(run, BUDGET_S), error, settings=settings, details=details)
 
 
 Prepared = tuple[Callable[[], Answer], dict[str, Any]]
@@ -92,4 +94,9 @@ PEERS: dict[str, Callable[[Scene, str], Prepared]] = {
 
 
 def _with_ratio(row: Row, slower_s: float) -> Row:
-    return row if row.median_s is None else replace(row, ratio_to_ours=row.median_s / slower_s)
+    if row.median_s is None:
+        return row
+    details = dict(row.details)
+    if "cpu_s" in details:
+        details["cpu_ratio"] = details["cpu_s"] / slower_s
+    return replace(row, ratio_to_ours=row.median_s / slower_s, details=details)
