@@ -53,9 +53,9 @@ def peer_row(scene: Scene, engine: str) -> Row:
         answer = run()
     except (NotSettledError, RuntimeError) as error:
         return Row("rail", name, engine, settings=settings, skipped=f"found no rest: {error}")
-    error = tilt_error(scene, answer.rotations)
+    off = tilt_error(scene, answer.rotations)
     details = {"cpu_s": median_cpu_s(run, BUDGET_S)}
-    return Row("rail", name, engine, median_s(run, BUDGET_S), error, settings=settings, details=details)
+    return Row("rail", name, engine, median_s(run, BUDGET_S), off, settings=settings, details=details)
 
 
 Prepared = tuple[Callable[[], Answer], dict[str, Any]]

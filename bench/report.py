@@ -35,9 +35,9 @@ def show(console: Console, table: str, rows: Sequence[Row]) -> None:
     for row in measured:
         if before is not None and row.scene != before:
             drawn.add_section()
-        cells = [row.scene if row.scene != before else "", row.engine, _time(row.median_s)]
-        cells += [_plain(row.error)] * has_error + [_plain(row.ratio_to_ours)] * has_ratio
-        drawn.add_row(*cells, *(_plain(row.details.get(name)) for name in details))
+        cells = [row.scene if row.scene != before else "", row.engine, time_text(row.median_s)]
+        cells += [as_text(row.error)] * has_error + [as_text(row.ratio_to_ours)] * has_ratio
+        drawn.add_row(*cells, *(as_text(row.details.get(name)) for name in details))
         before = row.scene
     if measured:
         console.print(drawn)
@@ -46,7 +46,8 @@ def show(console: Console, table: str, rows: Sequence[Row]) -> None:
             console.print(f"skipped: {row.engine}, {row.scene}: {row.skipped}", markup=False)
 
 
-def _time(seconds: float | None) -> str:
+def time_text(seconds: float | None) -> str:
+    """Write a time in the unit that suits it; None: nothing."""
     if seconds is None:
         return ""
     if seconds >= 1.0:
@@ -54,7 +55,8 @@ def _time(seconds: float | None) -> str:
     return f"{seconds * 1e3:.3g} ms" if seconds >= 1e-3 else f"{seconds * 1e6:.3g} us"
 
 
-def _plain(value: object) -> str:
+def as_text(value: object) -> str:
+    """Write a figure with two digits or so; None: nothing."""
     if value is None:
         return ""
     if not isinstance(value, float):

@@ -21,7 +21,7 @@ def median_s(call: Callable[[], object], budget_s: float = 1.0, least: int = 3, 
 
 
 def median_cpu_s(call: Callable[[], object], budget_s: float, least: int = 3) -> float:
-    """Return the median CPU time of ``call``: on a busy machine a run of milliseconds waits, one of microseconds not."""
+    """Return the median CPU time of ``call``: on a busy machine a long run has to wait, a short one not."""
     return statistics.median(collected(lambda: _cpu_s(call), budget_s, least))
 
 
