@@ -61,14 +61,15 @@ def test_an_engine_is_measured_and_compared_with_the_slower_of_our_methods(monke
     rows = {row.engine: row for row in rail_table.rail_rows()}
     assert rows["cagepose-quasistatic"].ratio_to_ours == 1.0
     assert rows["cagepose-stepwise"].ratio_to_ours == 0.5
+    assert rows["cagepose-stepwise"].details["cpu_ratio"] == pytest.approx(0.5)
     assert rows["fake"].error < 1e-13
     assert rows["fake"].settings == {"step_s": 1.0}
     assert rows["fake"].ratio_to_ours == pytest.approx(rows["fake"].median_s / 2.0)
 
 
 OUR_TIMES_S = {
-    "stepwise": {"": 1.0, "-solve": 0.5, "-call": 5.0},
-    "quasistatic": {"": 2.0, "-solve": 1.0, "-call": 9.0},
+    "stepwise": {"": (1.0, 0.9), "-solve": (0.5, 0.5), "-call": (5.0, 4.0)},
+    "quasistatic": {"": (2.0, 1.8), "-solve": (1.0, 1.0), "-call": (9.0, 8.0)},
 }
 
 
