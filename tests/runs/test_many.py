@@ -11,8 +11,9 @@ import pytest
 
 import cagepose
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, SceneError, Variation, run, run_many
+from cagepose.kernels.stepwise_batch import stepwise_runs
 from cagepose.runs import many
-from jit import cases
+from jit import JIT_IS_OFF, cases
 from rails import rail_scene
 
 METHODS = ("stepwise", "quasistatic")
@@ -188,3 +189,13 @@ def test_calls_that_mean_nothing_are_refused() -> None:
     with pytest.raises(SceneError, match="force: varies, but 0 phases"):
         run_many(falling_cube(), Variation(force_magnitude_n=[1.0]))
     assert cagepose.run_many is run_many
+
+
+@pytest.mark.skipif(JIT_IS_OFF, reason="nothing is compiled")
+def test_nothing_is_compiled_again_whatever_varies() -> None:
+    """Arrays that are read-only, or not in C order, would be other types to the compiler."""
+    run_many(block(), method="stepwise")
+    values = {name: draw(np.random.default_rng(5), 2) for name, draw in VARIED.items()}
+    for name, value in values.items():
+        run_many(block(), Variation(**{name: np.asfortranarray(value)}), method="stepwise")
+    assert len(stepwise_runs.signatures) == 1

@@ -8,7 +8,7 @@ import numpy as np
 
 from cagepose.kernels.batch import Endings, Starts, empty_endings
 from cagepose.kernels.geometry import Geometry
-from cagepose.kernels.jit import is_loaded
+from cagepose.kernels.jit import is_loaded, machine_code
 from cagepose.kernels.metric import PhaseLoad
 from cagepose.kernels.pose import write_quaternions
 from cagepose.kernels.proof import ProofRoom, empty_proof_room
@@ -103,7 +103,7 @@ class StepwiseBatch(Batch[tuple[Geometry, Workspace]]):
 
     def run(self, first: int, last: int, room: tuple[Geometry, Workspace]) -> None:
         geometry, work = room
-        stepwise_runs(
+        machine_code(stepwise_runs)(
             first,
             last,
             self._starts,
@@ -141,7 +141,7 @@ class QuasistaticBatch(Batch[tuple[Geometry, QuasistaticWorkspace, ProofRoom]]):
 
     def run(self, first: int, last: int, room: tuple[Geometry, QuasistaticWorkspace, ProofRoom]) -> None:
         geometry, work, at = room
-        quasistatic_runs(
+        machine_code(quasistatic_runs)(
             first,
             last,
             self._starts,
@@ -172,15 +172,20 @@ def _starts(scene: Scene, columns: dict[str, FloatArray], frictions: FloatArray)
     if points is not None:
         sizes_m = np.maximum(object_size(scene.object), cage_sizes(points))
     return Starts(
-        columns.get("cage_position_m", cage.position_m[None]),
-        _quaternions(columns.get("cage_euler_zyx"), cage),
-        scene.cage.points_cage[None] if points is None else points,
-        columns.get("object_position_m", held.position_m[None]),
-        _quaternions(columns.get("object_euler_zyx"), held),
+        _owned(columns.get("cage_position_m", cage.position_m[None])),
+        _owned(_quaternions(columns.get("cage_euler_zyx"), cage)),
+        _owned(scene.cage.points_cage[None] if points is None else points),
+        _owned(columns.get("object_position_m", held.position_m[None])),
+        _owned(_quaternions(columns.get("object_euler_zyx"), held)),
         sizes_m,
-        frictions,
+        _owned(frictions),
         FARTHEST_START,
     )
+
+
+def _owned(array: FloatArray) -> FloatArray:
+    """A copy that can be written to, in C order: to Numba any other is of another type, to be compiled for anew."""
+    return np.array(array, order="C")
 
 
 def _quaternions(angles: FloatArray | None, pose: Pose) -> FloatArray:
