@@ -16,6 +16,7 @@ from functools import partial
 from bench.rail_case import Answer
 from bench.timing import collected, median_cpu_s, median_s
 from cagepose import Scene, run
+from cagepose.kernels.jit import machine_code
 from cagepose.kernels.proof import empty_proof_room, prove
 from cagepose.nouns.pose import Pose
 from cagepose.runs.judge import Judge
@@ -55,7 +56,7 @@ def proof_call(scene: Scene, method: str, pose: Pose, phase: int) -> Callable[[]
     room = empty_proof_room(judge.geometry)
     position, quaternion = judge.frames.inward(pose)
     return partial(
-        prove,
+        machine_code(prove),
         judge.geometry,
         judge.body,
         position,

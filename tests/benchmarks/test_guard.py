@@ -1,0 +1,95 @@
+"""Runs may not become slower unnoticed: measured against other work in the same process, on whatever machine."""
+
+from __future__ import annotations
+
+import os
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cagepose import Variation
+from cagepose.kernels.jit import machine_code
+from cagepose.kernels.linear_program import ProgramRoom, program_rows, solve_program
+from cagepose.kernels.record import empty_record
+from cagepose.runs.batches import QuasistaticBatch, StepwiseBatch
+from jit import JIT_IS_OFF
+from rails import rail_scene
+
+REPEATS, RUNS, PROGRAMS = 100, 10, 20
+COUNT = """
+import sys
+from collections import Counter
+from rails import rail_scene
+from cagepose import run
+scene = rail_scene(pitch_deg=0.1)
+calls = Counter()
+def note(frame, event, argument):
+    if event == "call" and "kernels" in frame.f_code.co_filename:
+        calls[frame.f_code.co_name] += 1
+sys.setprofile(note)
+run(scene, "stepwise")
+sys.setprofile(None)
+print(calls["place_object"], calls["turn_entry"], calls["below_face"], calls["steepest_contact"])
+"""
+
+
+def yardstick() -> Callable[[], None]:
+    """Solve one small linear program of 60 rows a few times: the same kind of work, and no part of a run."""
+    rng = np.random.default_rng(1)
+    rows, bounds = program_rows(60)
+    rows[:], bounds[:] = rng.normal(size=(60, 6)), rng.uniform(0.5, 1.0, 60)
+    room = empty_record(ProgramRoom)
+    room.objective[:] = rng.normal(size=6)
+    solve_program(rows, bounds, room)
+    solve = machine_code(solve_program)
+
+    def solve_all() -> None:
+        for _ in range(PROGRAMS):
+            room.basis[0] = -1
+            solve(rows, bounds, room)
+
+    return solve_all
+
+
+def seconds(call: Callable[[], object]) -> float:
+    began = time.perf_counter()
+    call()
+    return time.perf_counter() - began
+
+
+@pytest.mark.skipif(JIT_IS_OFF, reason="nothing is compiled")
+@pytest.mark.parametrize(
+    ("kind", "most"), [(StepwiseBatch, 3.2), (QuasistaticBatch, 8.5)], ids=["stepwise", "quasistatic"]
+)
+def test_a_rail_run_takes_no_more_linear_programs_than_it_did(kind, most: float) -> None:
+    batch = kind(rail_scene(pitch_deg=0.1), Variation(friction_coefficient=np.zeros(RUNS)))
+    batch.load()
+    room = batch.room()
+    programs = yardstick()
+    pairs = [(seconds(lambda: batch.run(0, RUNS, room)), seconds(programs)) for _ in range(REPEATS)]
+    ratio = statistics.median(run_s / RUNS / (program_s / PROGRAMS) for run_s, program_s in pairs)
+    assert ratio < most, f"a run takes as long as {ratio:.1f} programs; at most {most} when this was written"
+
+
+def test_a_rail_run_asks_no_more_of_its_kernels_than_it_did() -> None:
+    """Counted with kernels as plain Python: what culling saves shows here, on any machine, to the last call."""
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(sys.path)}
+    printed = subprocess.run(
+        [sys.executable, "-c", COUNT],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=Path(__file__).parent,
+    ).stdout
+    placed, turns, faces, steepest = (int(number) for number in printed.split())
+    assert placed <= 18
+    assert turns <= 257
+    assert faces <= 854
+    assert steepest <= 63
