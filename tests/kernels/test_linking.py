@@ -30,10 +30,29 @@ print(type(next(iter(row.overloads.values())).library).__name__)
 """
 
 
+SHARED = """
+import numba, numpy as np
+from cagepose.kernels.linear_program import ProgramRoom, factorise, program_rows, solve_program
+from cagepose.kernels.record import empty_record
+
+rows, bounds = program_rows(6)
+rows[:], bounds[:] = np.eye(6), 1.0
+room = empty_record(ProgramRoom)
+room.objective[:], room.basis[0] = 1.0, -1
+solve_program(rows, bounds, room)
+numba.njit(lambda *arguments: factorise(*arguments))(rows, bounds, room)
+print(room.x_near.tolist())
+"""
+
+
 def output(change: str, cache: Path) -> list[str]:
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(cache)}
-    command = [sys.executable, "-c", PROGRAM.format(change=change)]
-    return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.splitlines()
+    return printed(PROGRAM.format(change=change), environment).splitlines()
+
+
+def printed(program: str, environment: dict[str, str]) -> str:
+    command = [sys.executable, "-c", program]
+    return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout
 
 
 def test_linked_kernels_give_what_numbas_own_way_gives(tmp_path: Path) -> None:
@@ -48,3 +67,9 @@ def test_linked_kernels_give_what_numbas_own_way_gives(tmp_path: Path) -> None:
 
     assert "vector.row" in kept(tmp_path / "plain")
     assert "vector.row" not in kept(tmp_path / "linked")  # only what Python calls
+
+
+def test_a_kernel_that_one_function_has_taken_in_still_serves_another(tmp_path: Path) -> None:
+    """Both bring a copy: the address of one is not looked for in the other, where it is private."""
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    assert printed(SHARED, environment) == f"{[1.0] * 6}\n"

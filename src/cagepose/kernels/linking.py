@@ -10,6 +10,7 @@ It hangs on how Numba keeps its LLVM modules, which is none of its public interf
 
 from __future__ import annotations
 
+from itertools import count
 from typing import Any
 
 import numba
@@ -23,6 +24,9 @@ TRIED = ((0, 68),)
 """Releases of Numba in which all tests passed with this. In others kernels are compiled in Numba's own way, with the
 same results, only more slowly.
 """
+
+
+_PRIVATE = count()
 
 
 def is_tried() -> bool:
@@ -78,6 +82,8 @@ class EntryLibrary(JITCodeLibrary):  # type: ignore[misc]
         for function in self._final_module.functions:
             if not function.is_declaration and function.linkage.name == "linkonce_odr":
                 function.linkage = "internal"
+                # LLVM would find this one, and no address, for a kernel that another function brings along.
+                function.name = f"{function.name}.{next(_PRIVATE)}"
         super()._optimize_final_module()
 
 

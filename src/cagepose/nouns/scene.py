@@ -126,7 +126,7 @@ class Scene:
             ("cage", cage),
             ("loads", loads),
             ("name", str(name)),
-            ("friction_coefficient", friction_coefficient),
+            ("friction_coefficient", None if friction_coefficient is None else float(friction_coefficient)),
             ("method", method),
             ("metric", metric),
             ("tolerances", tolerances),
