@@ -77,7 +77,6 @@ def _read(scene: str, set_values: tuple[str, ...], method: str | None, out: str 
     from os.path import realpath
 
     from cagepose.errors import SceneFileError, printable
-    from cagepose.files.run_file import check_can_save
     from cagepose.files.scene_file import read_scene_file
     from cagepose.runs.solve import METHODS
 
@@ -90,6 +89,8 @@ def _read(scene: str, set_values: tuple[str, ...], method: str | None, out: str 
     if method is not None and method not in METHODS:
         problems.append(printable(f"--method {method}: is no known method; use one of: {', '.join(METHODS)}") + "\n")
     if out is not None:
+        from cagepose.files.run_file import check_can_save
+
         try:
             if scene_file is not None and realpath(out) == realpath(scene):
                 raise OSError("is the scene file itself; name another")
