@@ -40,6 +40,7 @@ from cagepose.kernels.onset import (
 from cagepose.kernels.pose import Quaternion
 from cagepose.kernels.record import empty_record
 from cagepose.kernels.stability import MARGINAL, STABLE_REST, StabilityRoom, find_held, find_shared, stability
+from cagepose.kernels.sure_contacts import SureRoom, rest_is_sure
 from cagepose.kernels.tolerances import KernelTolerances
 from cagepose.kernels.uniqueness import (
     N_COLUMNS,
@@ -77,6 +78,8 @@ class JudgeRoom:
         ``solver.y``: scaled twist of the motion that nothing stops.
     modes
         ``modes.y``: that of another onset that Coulomb's law allows.
+    sure
+        See there.
     rest
         Undetermined freedoms.
     sum_only
@@ -87,6 +90,7 @@ class JudgeRoom:
 
     solver: OnsetRoom
     modes: ModesRoom
+    sure: SureRoom
     rest: StabilityRoom
     sum_only: ScaledVector
     wedged: bool
@@ -233,7 +237,9 @@ def judge_faces(
         )
         steady = max(steady, with_these)
         if code != HELD_WITHOUT_FRICTION:
-            answer = other_onset(contacts, friction, solver.load, room.modes, solver.newton, at.system)
+            answer = UNIQUE
+            if not rest_is_sure(contacts, friction, solver.load, solver.load_terms, room.sure, room.rest, at.system):
+                answer = other_onset(contacts, friction, solver.load, room.modes, solver.newton, at.system)
             if answer == OTHER_FOUND:
                 return OTHER_ONSET, steady
             proof = max(proof, PROVEN_UNIQUE if answer == UNIQUE else UNIQUENESS_NOT_SHOWN)
