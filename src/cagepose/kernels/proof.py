@@ -38,7 +38,7 @@ from cagepose.kernels.onset import (
     onset_with_faces,
 )
 from cagepose.kernels.pose import Quaternion
-from cagepose.kernels.record import empty_record
+from cagepose.kernels.record import Rows, empty_rows
 from cagepose.kernels.stability import MARGINAL, STABLE_REST, StabilityRoom, find_held, find_shared, stability
 from cagepose.kernels.sure_contacts import SureRoom, rest_is_sure
 from cagepose.kernels.tolerances import KernelTolerances
@@ -97,21 +97,22 @@ class JudgeRoom:
 
 
 class ProofRoom(NamedTuple):
-    """Room for one proof: what is at the pose, where ``contacts`` hold the forces of a rest, and the rest."""
+    """Room for one proof: what is at the pose, where ``contacts`` hold the forces of a rest, one room for all else,
+    and that of a system."""
 
     placement: Placement
     contacts: ContactSet
-    room: JudgeRoom
+    rooms: Rows[JudgeRoom]
     system: System
 
 
 def empty_proof_room(geometry: Geometry) -> ProofRoom:
     """Return room for one proof (plain Python)."""
     n_contacts = CONTACTS_PER_POINT * len(geometry.points_world)
-    room = empty_record(JudgeRoom)
-    room.sum_only[6] = 1.0
+    rooms = empty_rows(JudgeRoom, 1)
+    rooms[0].sum_only[6] = 1.0
     return ProofRoom(
-        empty_placement(geometry), empty_contact_set(n_contacts), room, empty_system(max(N_COLUMNS, n_contacts))
+        empty_placement(geometry), empty_contact_set(n_contacts), rooms, empty_system(max(N_COLUMNS, n_contacts))
     )
 
 
@@ -128,7 +129,7 @@ def stand_at(
     """Fill placement, contacts and load at a pose; False: too many contacts."""
     frame = frame_at(body, quaternion)
     place_object(geometry, position, quaternion, at.placement)
-    solver = at.room.solver
+    solver = at.rooms[0].solver
     solver.load_terms = write_load(load, quaternion, frame, solver.load)
     return find_contacts(geometry, at.placement, position, frame, touch_m, at.contacts)
 
@@ -194,7 +195,7 @@ def prove(
     """
     if not stand_at(geometry, body, position, quaternion, load, tolerances.touch_m, at):
         return TOO_MANY_CONTACTS, STABLE_REST, 0
-    contacts, room = at.contacts, at.room
+    contacts, room = at.contacts, at.rooms[0]
     code = onset(contacts, friction, room.solver)
     if code > HELD_BY_FRICTION:
         room.solver.residual = left_by_friction(contacts, friction, room.solver)
@@ -223,7 +224,7 @@ def judge_faces(
     at: ProofRoom, friction: float, load: PhaseLoad, quaternion: Quaternion, frame: Frame, size_m: float
 ) -> tuple[int, int]:
     """Return (code of the proof, code of stability) of a rest: the least sure of all combinations of faces."""
-    contacts, room, solver = at.contacts, at.room, at.room.solver
+    contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
     every = bool(np.bool_(True))
     proof, steady = PROVEN_WITHOUT_FRICTION, STABLE_REST
     for _ in range(COMBINATIONS_LIMIT):
@@ -311,8 +312,8 @@ def critical_friction(
     least = 0.0
     every = bool(np.bool_(False))
     for _ in range(COMBINATIONS_LIMIT):
-        least = max(least, least_friction(at.contacts, at.room.solver))
-        write_forces(at.room.solver.cone, least, at.contacts.rows, at.contacts.used[0])
+        least = max(least, least_friction(at.contacts, at.rooms[0].solver))
+        write_forces(at.rooms[0].solver.cone, least, at.contacts.rows, at.contacts.used[0])
         if least == math.inf or not choose_next_faces(at.contacts, every):
             return least
     return math.nan
