@@ -16,7 +16,7 @@ from cagepose.kernels.contacts import face_normal, is_hidden, touches_face
 from cagepose.kernels.geometry import Geometry, Placement
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.metric import Frame, write_scaled_wrench
-from cagepose.kernels.record import FloatArray, IntArray, Rows, empty_rows
+from cagepose.kernels.record import FloatArray, IntArray, Rows, empty_kernel_rows
 from cagepose.kernels.vector import Vector, cross, minus, norm, row, vector_from
 
 SAME_NORMAL = 1e-9
@@ -97,7 +97,7 @@ class ContactSet(NamedTuple):
 
 def empty_contact_set(n_rows: int) -> ContactSet:
     """Return room for ``n_rows`` contacts (plain Python)."""
-    return ContactSet(np.zeros(1, np.int64), empty_rows(ContactRow, n_rows))
+    return ContactSet(np.zeros(1, np.int64), empty_kernel_rows(ContactRow, n_rows))
 
 
 @kernel
@@ -171,6 +171,25 @@ def last_of_group(contacts: ContactSet, first: int) -> int:
     while last + 1 < contacts.used[0] and contacts.rows[last + 1].group == first:
         last += 1
     return last
+
+
+@kernel
+def put_best_faces_back(contacts: ContactSet) -> None:
+    """Choose the faces of the best combination again, with their forces."""
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        contact.chosen = contact.best_chosen
+        for j in range(3):
+            contact.forces[j] = contact.best_forces[j]
+
+
+@kernel
+def has_one_choice(contacts: ContactSet) -> bool:
+    """Whether there is no edge, so that all faces count."""
+    n_chosen = 0
+    for i in range(contacts.used[0]):
+        n_chosen += 1 if contacts.rows[i].chosen else 0
+    return bool(n_chosen == contacts.used[0])
 
 
 @kernel

@@ -63,5 +63,11 @@ def empty_record(record: type[R_co]) -> R_co:
 
 def empty_rows(record: type[R_co], n_rows: int) -> Rows[R_co]:
     """Return an array of ``n_rows`` records, all zero (plain Python)."""
-    made: Rows[R_co] = np.zeros(n_rows, dtype_of(record))  # a recarray would take four times as long to hand over
+    made: Rows[R_co] = np.zeros(n_rows, dtype_of(record)).view(np.recarray)
+    return made
+
+
+def empty_kernel_rows(record: type[R_co], n_rows: int) -> Rows[R_co]:
+    """Return the same as `empty_rows` in a plain array, without ``rows.field``: Numba takes it over in 1 us, not 5."""
+    made: Rows[R_co] = np.zeros(n_rows, dtype_of(record))
     return made

@@ -71,15 +71,16 @@ class StabilityRoom:
 @kernel
 def write_outside(basis: PassiveSet, column: FloatArray, out: FloatArray) -> bool:
     """Write the part of a column outside the span of a basis; False: there is none, and zero is written."""
-    for k in range(6):
-        out[k] = column[k]
-    for _ in range(2):
-        for place in range(basis.used):
-            part = inner(basis.basis[place], out, 6)
-            for k in range(6):
-                out[k] -= part * basis.basis[place, k]
-    if length(out, 6) > IN_SPAN * length(column, 6):
-        return True
+    if basis.used < WRENCH:
+        for k in range(6):
+            out[k] = column[k]
+        for _ in range(2):
+            for place in range(basis.used):
+                part = inner(basis.basis[place], out, 6)
+                for k in range(6):
+                    out[k] -= part * basis.basis[place, k]
+        if length(out, 6) > IN_SPAN * length(column, 6):
+            return True
     for k in range(6):
         out[k] = 0.0
     return False
@@ -89,7 +90,10 @@ def write_outside(basis: PassiveSet, column: FloatArray, out: FloatArray) -> boo
 def hold(basis: PassiveSet, column: FloatArray, room: StabilityRoom) -> None:
     """Add a column to a basis unless it lies in its span."""
     if write_outside(basis, column, room.rest):
-        append_column(basis, column, basis.used, 0.0)
+        size = length(room.rest, 6)
+        for k in range(6):
+            basis.basis[basis.used, k] = room.rest[k] / size
+        basis.used += 1
 
 
 @kernel
