@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal
 
+import numpy as np
+
 from cagepose.kernels.contact_set import ContactRow, ContactSet
 from cagepose.kernels.curvature import write_curvature
 from cagepose.kernels.eigen import symmetric_eigen
@@ -140,7 +142,7 @@ def lies_in_cone(contacts: ContactSet, i: int, sign: float, room: StabilityRoom,
 
     With -1 no free twist opens it; with +1 no free twist that the others allow closes it.
     """
-    n_others = 0
+    n_others = int(np.int64(0))
     for k in range(contacts.used[0]):
         other = contacts.rows[k]
         if k != i and other.chosen and not other.is_equality and not other.is_rejected:
