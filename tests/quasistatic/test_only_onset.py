@@ -130,12 +130,18 @@ def test_rest_is_never_sure_where_the_search_finds_another_onset(prover):
 
 
 def forces_under_friction(random: np.random.Generator, held: Held) -> np.ndarray | None:
-    """Normal forces of a motion from rest under random friction inside the cones, found by iteration; None: not found.
+    """Normal forces of a motion from rest under friction inside the cones, found by iteration; None: not found.
 
-    Whatever the motion, they are those that leave the least of the load and of the friction (5.4).
+    Whatever the motion, they are those that leave the least of the load and of the friction (5.4). Friction is random,
+    or full and along what loads or unloads one contact the most.
     """
     n = len(held.columns)
     angles, parts = random.uniform(0, 2 * np.pi, n), random.choice([1.0, 1.0, 0.5], n)
+    if random.random() < 0.5:
+        unloading = np.einsum(
+            "k,jtk->jt", np.linalg.pinv(held.columns[:, 0].T)[random.integers(n)], held.columns[:, 1:]
+        )
+        angles, parts = np.arctan2(unloading[:, 1], unloading[:, 0]), random.choice([1.0, -1.0], n)
     rubbing = held.columns[:, 1] * np.cos(angles)[:, None] + held.columns[:, 2] * np.sin(angles)[:, None]
     rubbing *= held.friction * parts[:, None]
     forces = np.zeros(n)
