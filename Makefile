@@ -6,6 +6,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 LOCKED := $(VENV)/.locked
 READY := $(VENV)/.ready
+PEERS := $(VENV)/.peers
 UV_VERSION := 0.13.8
 
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
@@ -56,8 +57,13 @@ format: $(READY)  ## put all code into the project's style
 golden: $(READY)  ## write the golden runs of all scenes anew (say why in the commit)
 	@$(BIN)/python tests/golden_runs.py
 
-bench: $(READY)  ## measure how long the scenes take
-	@$(BIN)/python bench/bench.py $(if $(ONLY),--only $(ONLY))
+bench: $(PEERS)  ## measure cagepose beside its peers, minutes (ONLY=rail: that table alone)
+	@$(BIN)/python -m bench $(if $(ONLY),--only $(ONLY))
+
+$(PEERS): $(READY) bench/requirements.lock
+	@echo "Installing the peers of the benchmark into $(VENV), once ..."
+	@if $(BIN)/python -m pip install -qq --require-hashes -r bench/requirements.lock; then touch $@; \
+	    else echo "Not all peers can be installed here; the benchmark skips those that are missing." >&2; fi
 
 docs: $(READY)  ## build the documentation into build/docs
 	@$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --builder html docs build/docs
@@ -67,6 +73,9 @@ lock:  ## renew requirements.lock from pyproject.toml
 	@$(PYTHON) -m venv build/lock
 	@build/lock/bin/python -m pip install -qq uv==$(UV_VERSION)
 	@build/lock/bin/uv pip compile pyproject.toml --extra plot --extra view --group dev --group docs --output-file requirements.lock --upgrade \
+	    --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-annotate --no-emit-index-url \
+	    --no-config --custom-compile-command "make lock" --quiet
+	@build/lock/bin/uv pip compile pyproject.toml --extra bench --constraint requirements.lock --output-file bench/requirements.lock \
 	    --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-annotate --no-emit-index-url \
 	    --no-config --custom-compile-command "make lock" --quiet
 

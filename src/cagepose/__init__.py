@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from cagepose.nouns.scene import Scene as Scene
     from cagepose.nouns.tolerances import Tolerances as Tolerances
     from cagepose.runs.critical import with_critical_friction as with_critical_friction
+    from cagepose.runs.many import Runs as Runs
+    from cagepose.runs.many import run_many as run_many
     from cagepose.runs.proof import FreeMotion as FreeMotion
     from cagepose.runs.proof import Proof as Proof
     from cagepose.runs.run import Contact as Contact
@@ -42,6 +44,7 @@ if TYPE_CHECKING:
     from cagepose.runs.run import PhaseRun as PhaseRun
     from cagepose.runs.run import Run as Run
     from cagepose.runs.solve import run as run
+    from cagepose.runs.variation import Variation as Variation
     from cagepose.studies.comparison import Comparison as Comparison
     from cagepose.studies.comparison import Parting as Parting
     from cagepose.studies.comparison import Variant as Variant
@@ -67,9 +70,11 @@ _HOMES = {
     "cagepose.nouns.scene": ("Adjustable", "Scene"),
     "cagepose.nouns.tolerances": ("Tolerances",),
     "cagepose.runs.critical": ("with_critical_friction",),
+    "cagepose.runs.many": ("Runs", "run_many"),
     "cagepose.runs.proof": ("FreeMotion", "Proof"),
     "cagepose.runs.run": ("Contact", "Event", "Frame", "Motion", "PhaseRun", "Run"),
     "cagepose.runs.solve": ("run",),
+    "cagepose.runs.variation": ("Variation",),
     "cagepose.studies.comparison": ("Comparison", "Parting", "Variant", "compare"),
     "cagepose.studies.play": ("Play", "play"),
     "cagepose.files.run_file": ("load_run", "save_run"),
@@ -100,17 +105,20 @@ __all__ = [
     "Proof",
     "Run",
     "RunFileError",
+    "Runs",
     "Scene",
     "SceneError",
     "SceneFileError",
     "Tolerances",
     "Variant",
+    "Variation",
     "__version__",
     "compare",
     "load_run",
     "load_scene",
     "play",
     "run",
+    "run_many",
     "save_run",
     "with_critical_friction",
 ]

@@ -30,7 +30,7 @@ def travel(point, direction, half=CUBE, depth=RESOLUTION):
 
 
 def turn(point, through, axis, half=CUBE, depth=RESOLUTION):
-    key = _turn(point, through, axis, half, depth, RESOLUTION)
+    key = _turn(point, through, axis, half, depth, RESOLUTION, math.inf)
     return math.inf if key == math.inf else _angle(key)
 
 
@@ -196,6 +196,7 @@ def test_angles_do_not_depend_on_scale(scale):
         (scale, scale, scale),
         scale * RESOLUTION,
         scale * RESOLUTION,
+        math.inf,
     )
     assert small < math.inf
     assert _angle(large) == pytest.approx(small, rel=1e-13)

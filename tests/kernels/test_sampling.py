@@ -79,8 +79,11 @@ class Turn:
         return turned - self.pitch * moments[:, None] * self.axis
 
     def entry(self, point, half, depth):
-        key = _turn(tuple(point), tuple(self.through), tuple(self.axis), tuple(half), depth, RESOLUTION)
+        key = self.key(point, half, depth, math.inf)
         return math.inf if key == math.inf else _angle(key)
+
+    def key(self, point, half, depth, least):
+        return _turn(tuple(point), tuple(self.through), tuple(self.axis), tuple(half), depth, RESOLUTION, least)
 
 
 class Screw(Turn):
@@ -120,6 +123,25 @@ def test_first_contact_is_neither_late_nor_early(motion_kind):
             until = left[0] if len(left) else len(below)
             assert below[:until].max(initial=-1.0) > RESOLUTION, f"case {case}: contact at {entry} leads nowhere"
     assert n_met > 5
+    assert n_blocked > 0
+
+
+def test_a_turn_is_cut_short_only_where_nothing_is_met_before():
+    rng = np.random.default_rng(8)
+    n_cut = n_blocked = 0
+    for _ in range(cases(3000)):
+        half = rng.uniform(0.1, 1.0, 3)
+        point = random_start(rng, half)
+        motion = Turn(rng)
+        key = motion.key(point, half, RESOLUTION, math.inf)
+        assert (motion.key(point, half, RESOLUTION, -math.inf) == -math.inf) == (key == -math.inf)
+        n_blocked += key == -math.inf
+        least = rng.normal() if key == math.inf else key + rng.normal() if key > -math.inf else rng.normal()
+        found = motion.key(point, half, RESOLUTION, least)
+        assert found in (key, math.inf)
+        assert found == key or key > least
+        n_cut += found != key
+    assert n_cut > 0
     assert n_blocked > 0
 
 

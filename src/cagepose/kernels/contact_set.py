@@ -13,7 +13,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from cagepose.kernels.contacts import face_normal, is_hidden, touches_face
-from cagepose.kernels.geometry import Geometry, Placement
+from cagepose.kernels.geometry import Geometry, Placement, box_point
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.metric import Frame, write_scaled_wrench
 from cagepose.kernels.record import FloatArray, IntArray, Rows, empty_kernel_rows
@@ -139,7 +139,7 @@ def find_contacts(
         arm = minus(row(geometry.points_world, point), center)
         for box in range(geometry.n_own_boxes):
             half_size = row(geometry.half_sizes, box)
-            point_box = row(placement.points_box[box], point)
+            point_box = box_point(placement, box, point)
             if placement.gaps[box, point] > touch_m:
                 continue
             first = contacts.used[0]

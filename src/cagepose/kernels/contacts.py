@@ -18,6 +18,7 @@ from cagepose.kernels.geometry import (
     Geometry,
     Placement,
     box_gap,
+    box_point,
     empty_placement,
     place_object,
     point_in_box,
@@ -66,8 +67,8 @@ def face_normal(placement: Placement, box: int, axis: int, side: float) -> Vecto
 
 @kernel
 def touches_face(point_box: Vector, half_size: Vector, axis: int, touch_m: float) -> bool:
-    """Whether the point lies within ``touch_m`` of the face (or of the opposite one) along ``axis``."""
-    return abs(abs(point_box[axis]) - half_size[axis]) <= touch_m and box_gap(point_box, half_size) <= touch_m
+    """Whether a point no farther than ``touch_m`` from the box touches the face (or its opposite) along ``axis``."""
+    return abs(abs(point_box[axis]) - half_size[axis]) <= touch_m
 
 
 @kernel
@@ -99,7 +100,7 @@ def moved_coordinate(point: Vector, axis: int, value: float) -> Vector:
 def is_hidden(geometry: Geometry, placement: Placement, box: int, point: int, axis: int, touch_m: float) -> bool:
     """Whether the face that the point touches along ``axis`` is covered by another box at this place (2.7)."""
     half_size = row(geometry.half_sizes, box)
-    probe = row(placement.points_box[box], point)
+    probe = box_point(placement, box, point)
     on_edge = False
     for k in range(3):
         if k == axis:
@@ -114,7 +115,7 @@ def is_hidden(geometry: Geometry, placement: Placement, box: int, point: int, ax
 def is_near_edge(geometry: Geometry, placement: Placement, box: int, point: int, axis: int, touch_m: float) -> bool:
     """Whether the point lies within the touch tolerance of an edge where the union's surface really ends."""
     half_size = row(geometry.half_sizes, box)
-    point_box = row(placement.points_box[box], point)
+    point_box = box_point(placement, box, point)
     for k in range(3):
         if k != axis and abs(point_box[k]) > half_size[k] - touch_m:
             beyond = moved_coordinate(point_box, k, math.copysign(half_size[k] + PROBE * touch_m, point_box[k]))
@@ -137,11 +138,9 @@ def steepest_contact(
     best_cosine = -math.inf
     best_normal = (0.0, 0.0, 0.0)
     is_tie = False
-    if placement.depths[point] < -tolerances.touch_m:
-        return False, best_normal, is_tie
     for box in range(geometry.n_own_boxes):
         half_size = row(geometry.half_sizes, box)
-        point_box = row(placement.points_box[box], point)
+        point_box = box_point(placement, box, point)
         if placement.gaps[box, point] > tolerances.touch_m:
             continue
         for axis in range(3):
@@ -168,7 +167,7 @@ def fill_contact_rows(geometry: Geometry, placement: Placement, touch_m: float, 
     for point in range(len(geometry.points_world)):
         for box in range(geometry.n_own_boxes):
             half_size = row(geometry.half_sizes, box)
-            point_box = row(placement.points_box[box], point)
+            point_box = box_point(placement, box, point)
             if placement.gaps[box, point] > touch_m:
                 continue
             for axis in range(3):
@@ -215,5 +214,5 @@ def deepest_boxes(geometry: Geometry, position: Vector, quaternion: Quaternion) 
     """
     placement = empty_placement(geometry)
     place_object(geometry, position, quaternion, placement)
-    depths = (geometry.half_sizes[:, None, :] - np.abs(placement.points_box)).min(axis=2)
+    depths = (geometry.half_sizes[:, :, None] - np.abs(placement.points_box)).min(axis=1)
     return placement.depths, depths.argmax(axis=0)

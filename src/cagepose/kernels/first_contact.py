@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.geometry import Geometry, Placement, point_in_box, vector_in_box
+from cagepose.kernels.geometry import Geometry, Placement, box_point, point_in_box, vector_in_box
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.screw import screw_entry
 from cagepose.kernels.tolerances import KernelTolerances
@@ -51,7 +51,7 @@ def first_contact_travel(
             if gap <= skip_gap_m or gap > SAFE * least:
                 continue
             entry = travel_entry(
-                row(placement.points_box[box], point),
+                box_point(placement, box, point),
                 velocity_box,
                 half_size,
                 allowed_depth(placement.depths[point], tolerances),
@@ -88,7 +88,7 @@ def first_contact_turn(
         through_box = point_in_box(placement, box, through)
         axis_box = vector_in_box(placement, box, axis)
         for point in range(len(geometry.points_world)):
-            point_box = row(placement.points_box[box], point)
+            point_box = box_point(placement, box, point)
             if is_out_of_reach(placement.gaps[box, point], point_box, through_box, axis_box, least):
                 continue
             entry = turn_entry(
@@ -98,6 +98,7 @@ def first_contact_turn(
                 half_size,
                 allowed_depth(placement.depths[point], tolerances),
                 tolerances.resolution_m,
+                least,
             )
             if entry < least:
                 least, first_point = entry, point
@@ -124,12 +125,13 @@ def turn_is_blocked_at_once(
             if placement.gaps[box, point] > tolerances.resolution_m:
                 continue
             entry = turn_entry(
-                row(placement.points_box[box], point),
+                box_point(placement, box, point),
                 point_in_box(placement, box, through),
                 vector_in_box(placement, box, axis),
                 row(geometry.half_sizes, box),
                 allowed_depth(placement.depths[point], tolerances),
                 tolerances.resolution_m,
+                -math.inf,
             )
             if entry == -math.inf:
                 return True
@@ -161,7 +163,7 @@ def first_contact_screw(
         velocity_box = vector_in_box(placement, box, velocity)
         center_box = point_in_box(placement, box, center)
         for point in range(len(geometry.points_world)):
-            point_box = row(placement.points_box[box], point)
+            point_box = box_point(placement, box, point)
             point_velocity = plus(velocity_box, cross(axis_box, minus(point_box, center_box)))
             gap = placement.gaps[box, point]
             # No point moves farther than its path is long, and a screw's path has a constant speed.

@@ -67,6 +67,35 @@ class LinkedLibrary(JITCodeLibrary):  # type: ignore[misc]
         return found
 
 
+class EntryLibrary(JITCodeLibrary):  # type: ignore[misc]
+    """The LLVM module of a function that Python calls, and in the end all that it calls."""
+
+    def _optimize_final_module(self) -> None:
+        """Keep all kernels to itself: one that is called from one place only is taken in there, with no call left.
+
+        A call passes each array as seven numbers or more, so that calling costs more than many a kernel does.
+        """
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage.name == "linkonce_odr":
+                function.linkage = "internal"
+        super()._optimize_final_module()
+
+
+@register_pass(mutates_CFG=False, analysis_only=True)
+class UseEntryLibrary(LoweringPass):  # type: ignore[misc]
+    """Before lowering: give the function a library of ours."""
+
+    _name = "use_entry_library"
+
+    def __init__(self) -> None:
+        super().__init__()
+
+    def run_pass(self, state: Any) -> bool:
+        state.library = EntryLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        return False
+
+
 @register_pass(mutates_CFG=False, analysis_only=True)
 class UseLinkedLibrary(LoweringPass):  # type: ignore[misc]
     """Before lowering: give the kernel a library of ours, and ask for no machine code."""
@@ -111,5 +140,15 @@ class LinkedCompiler(CompilerBase):  # type: ignore[misc]
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
         passes.add_pass_after(UseLinkedLibrary, AnnotateTypes)
         passes.add_pass_after(OfferToCallers, NativeLowering)
+        passes.finalize()
+        return [passes]
+
+
+class EntryCompiler(CompilerBase):  # type: ignore[misc]
+    """Numba's own passes, with a library of ours."""
+
+    def define_pipelines(self) -> list[PassManager]:
+        passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes.add_pass_after(UseEntryLibrary, AnnotateTypes)
         passes.finalize()
         return [passes]

@@ -139,10 +139,10 @@ def shallowest_face(geometry: Geometry, placement: Placement, point: int, box: i
     """Return (axis, side) of the face of ``box`` that the point is nearest to from inside, or farthest beyond."""
     best_axis, best_gap = 0, -math.inf
     for axis in range(3):
-        gap = abs(placement.points_box[box, point, axis]) - geometry.half_sizes[box, axis]
+        gap = abs(placement.points_box[box, axis, point]) - geometry.half_sizes[box, axis]
         if gap > best_gap:
             best_axis, best_gap = axis, gap
-    return best_axis, math.copysign(1.0, placement.points_box[box, point, best_axis])
+    return best_axis, math.copysign(1.0, placement.points_box[box, best_axis, point])
 
 
 @kernel
@@ -166,7 +166,7 @@ def pin_contacts(geometry: Geometry, placement: Placement, contacts: ContactSet,
         if contact.step_forces[0] > 0.0 and contact.is_sticking:
             for turn in range(1, 3):
                 axis = (contact.axis + turn) % 3
-                at = placement.points_box[contact.box, contact.point, axis]
+                at = placement.points_box[contact.box, axis, contact.point]
                 add_pin(pins, contact.point, contact.box, axis, 1.0, at)
 
 

@@ -192,7 +192,7 @@ def fate_of(geometry: Geometry, pair: int, length_m: float, room: PlayRoom, work
         k = (face + step) % 3
         columns = room.placement.box_rotations[box]
         axis = (columns[0, k], columns[1, k], columns[2, k])
-        here = room.placement.points_box[box, point, k] / length_m
+        here = room.placement.points_box[box, k, point] / length_m
         _, left_out = gap_left_out(axis, arm, travel, turn)
         left = geometry.half_sizes[box, k] / length_m - left_out - certificate.slack
         if not is_within(room, certificate, axis, cross(arm, axis), here, left, work.lost_at[pair]):

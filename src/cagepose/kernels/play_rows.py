@@ -85,7 +85,7 @@ def empty_play_room(geometry: Geometry) -> PlayRoom:
 def gap_beyond(geometry: Geometry, placement: Placement, point: int, box: int, face: int) -> float:
     """Return how far the point is beyond the plane of a face, metres."""
     axis = face if face < 3 else face - 3
-    along = placement.points_box[box, point, axis]
+    along = placement.points_box[box, axis, point]
     gap: float = (along if face < 3 else -along) - geometry.half_sizes[box, axis]
     return gap
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.jit import entry_kernel, kernel
+from cagepose.kernels.record import FloatArray
 from cagepose.kernels.vector import Matrix, Vector, cross, minus, plus, scaled
 
 Quaternion = tuple[float, float, float, float]
@@ -66,6 +67,15 @@ def quaternion_from_euler_zyx(yaw_rad: float, pitch_rad: float, roll_rad: float)
 
 
 @entry_kernel
+def write_quaternions(angles: FloatArray, quaternions: FloatArray) -> None:
+    """Write the quaternion (n, 4) of each row of yaw, pitch, roll (n, 3)."""
+    for index in range(len(angles)):
+        found = quaternion_from_euler_zyx(angles[index, 0], angles[index, 1], angles[index, 2])
+        for k in range(4):
+            quaternions[index, k] = found[k]
+
+
+@entry_kernel
 def euler_zyx_from_quaternion(q: Quaternion) -> Vector:
     """Return (yaw, pitch, roll) in radians; pitch within +-pi/2. At the pole, where yaw and roll merge, roll is 0.
 
@@ -77,6 +87,16 @@ def euler_zyx_from_quaternion(q: Quaternion) -> Vector:
     if cos_pitch < 1e-12:
         return (math.atan2(-m[0][1], m[1][1]), pitch, 0.0)
     return (math.atan2(m[1][0], m[0][0]), pitch, math.atan2(m[2][1], m[2][2]))
+
+
+@entry_kernel
+def write_euler_zyx(quaternions: FloatArray, angles: FloatArray) -> None:
+    """Write yaw, pitch, roll (n, 3) of each row of quaternions (n, 4)."""
+    for index in range(len(quaternions)):
+        q = quaternions[index]
+        found = euler_zyx_from_quaternion((q[0], q[1], q[2], q[3]))
+        for k in range(3):
+            angles[index, k] = found[k]
 
 
 @entry_kernel

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.contact_set import ContactSet
-from cagepose.kernels.geometry import Geometry, Placement, point_in_box, vector_in_box
+from cagepose.kernels.geometry import Geometry, Placement, box_point, point_in_box, vector_in_box
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.screw import next_below
 from cagepose.kernels.vector import Vector, cross, dot, minus, norm, plus, row, scaled
@@ -42,7 +42,7 @@ def first_run_off(
             continue
         box = contact.box
         half_size = row(geometry.half_sizes, box)
-        point_box = row(placement.points_box[box], contact.point)
+        point_box = box_point(placement, box, contact.point)
         spin_box = vector_in_box(placement, box, spin)
         arm = minus(point_box, point_in_box(placement, box, center))
         moves = plus(vector_in_box(placement, box, velocity), cross(spin_box, arm))

@@ -195,18 +195,18 @@ def phase_run(
         if loads.is_push[phase] and step.note == PLAIN and has_face_tie(touching):
             step = Step(step.rule, step.motion, step.along, step.through, step.amount, step.hit_point, EDGE_TIE)
         halfway = pose_during(step, position, quaternion, 0.5)
-        for i in range(touching.n_touching[0]):
-            point = touching.order[i]
-            touching.let_go[point] = depth_of_point(geometry, halfway[0], halfway[1], point) < -tolerances.touch_m
         position, quaternion = pose_during(step, position, quaternion, 1.0)
         write_event(trace, event, phase, step, position, quaternion)
         load = load_at(loads, phase, position, quaternion)
         place_object(geometry, position, quaternion, placement)
         find_touching(geometry, placement, load, tolerances, touching)
         for point in range(len(geometry.points_world)):
-            is_new = not touching.was_touching[point] or touching.let_go[point] or point == step.hit_point
-            trace.touching[event, point] = touching.is_touching[point]
-            trace.hit[event, point] = touching.is_touching[point] and is_new
+            is_hit = touching.is_touching[point]
+            trace.touching[event, point] = is_hit
+            if is_hit and touching.was_touching[point] and point != step.hit_point:
+                # Reached anew, if it did not touch halfway, as in a swing back.
+                is_hit = depth_of_point(geometry, halfway[0], halfway[1], point) < -tolerances.touch_m
+            trace.hit[event, point] = is_hit
         if step.motion == NONE:
             return STABLE, event + 1, position, quaternion
         if step.amount == math.inf:
@@ -214,6 +214,14 @@ def phase_run(
         if was_met(trace, first_event, event, size_m, tolerances.resolution_m):
             return CYCLING, event + 1, position, quaternion
     return LIMIT, first_event + rules.event_limit, position, quaternion
+
+
+@kernel
+def forget_contacts(touching: Touching) -> None:
+    """Begin a run: nothing has touched yet."""
+    touching.n_touching[0] = 0
+    for point in range(len(touching.is_touching)):
+        touching.is_touching[point] = False
 
 
 class Workspace(NamedTuple):
@@ -275,9 +283,7 @@ def stepwise_run(
     A phase that does not end stable is the last one that is run.
     """
     placement, touching, trace, verdicts = workspace
-    touching.n_touching[0] = 0
-    for point in range(len(geometry.points_world)):
-        touching.is_touching[point] = False
+    forget_contacts(touching)
     position, quaternion = start_position, start_quaternion
     n_events = int(np.int64(0))  # a plain 0 would compile `phase_run` twice, once for the literal
     for phase in range(len(verdicts)):

@@ -26,9 +26,8 @@ class Touching(NamedTuple):
         Indices of the points that touch, the longest touching first, (n_points,), of which `n_touching` are used.
     n_touching
         How many points touch, (1,).
-    is_touching, was_touching, let_go
-        Which points touch now, which touched before the last motion, and which did not touch halfway, (n_points,). A
-        point that touches before and after but not halfway was reached anew, as in a swing back.
+    is_touching, was_touching
+        Which points touch now, and which touched before the last motion, (n_points,).
     alphas
         Angle between each touching point's normal and the load, (n_points,), radians.
     normals
@@ -43,7 +42,6 @@ class Touching(NamedTuple):
     n_touching: NDArray[np.int64]
     is_touching: NDArray[np.bool_]
     was_touching: NDArray[np.bool_]
-    let_go: NDArray[np.bool_]
     alphas: FloatArray
     normals: FloatArray
     is_tie: NDArray[np.bool_]
@@ -55,7 +53,6 @@ def empty_touching(n_points: int) -> Touching:
     return Touching(
         np.empty(n_points, np.int64),
         np.zeros(1, np.int64),
-        np.zeros(n_points, np.bool_),
         np.zeros(n_points, np.bool_),
         np.zeros(n_points, np.bool_),
         np.empty(n_points),
@@ -78,6 +75,9 @@ def find_touching(
     """Step (*): find all contacts again. Points that still touch keep their place in the order, new ones come after."""
     for point in range(len(geometry.points_world)):
         touching.was_touching[point] = touching.is_touching[point]
+        touching.is_touching[point] = touching.is_tie[point] = False
+        if placement.depths[point] < -tolerances.touch_m:
+            continue  # before the call: passing all arrays costs more than many a kernel
         touches, normal, is_tie = steepest_contact(geometry, placement, point, load.direction, tolerances)
         touching.is_touching[point] = touches
         touching.is_tie[point] = is_tie

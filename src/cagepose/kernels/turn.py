@@ -23,6 +23,8 @@ from cagepose.kernels.geometry import box_gap
 from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.vector import Vector, cross, dot, minus, scaled
 
+SAFE = 1e-12
+"""Of a key: so that rounding passes over nothing that comes first."""
 Below = tuple[float, float, bool]
 """Solution set of one inequality in c: (first, second, between). Between the roots, or outside of them."""
 
@@ -99,6 +101,43 @@ def common_start(faces: tuple[Below, ...], key: float) -> float:
 
 
 @kernel
+def beyond_until(
+    point_box: Vector, w: Vector, point_pi_box: Vector, half_size: Vector, allowed_depth_m: float, resolution_m: float
+) -> float:
+    """Return a key up to which the point stays beyond one face, that which it is farthest beyond; -inf: none is known.
+
+    It answers for most pairs, at a ninth of the cost of the whole box.
+    """
+    k = 0
+    for other in range(1, 3):
+        if abs(point_box[other]) - half_size[other] > abs(point_box[k]) - half_size[k]:
+            k = other
+    sign = math.copysign(1.0, point_box[k])
+    gap, gap_pi, half_slope = sign * point_box[k] - half_size[k], sign * point_pi_box[k] - half_size[k], -sign * w[k]
+    first, second, between = below_face(gap - resolution_m, half_slope, gap_pi - resolution_m)
+    if between:
+        return first
+    # It touches. Once beyond the grown face it has left, and does not go in before it comes back through that face.
+    inner_first, _, inner_between = below_face(gap + allowed_depth_m, half_slope, gap_pi + allowed_depth_m)
+    return second if inner_between and inner_first > second else -math.inf
+
+
+@kernel
+def entry_of_box(
+    point_box: Vector, w: Vector, point_pi_box: Vector, half_size: Vector, allowed_depth_m: float, resolution_m: float
+) -> float:
+    """Return the key at which the point enters the box, from all its faces; see `turn_entry`."""
+    inner_key = first_common(box_faces(point_box, w, point_pi_box, half_size, -allowed_depth_m))
+    if inner_key == math.inf:
+        return math.inf
+    if box_gap(point_box, half_size) <= resolution_m:
+        outer = box_faces(point_box, w, point_pi_box, half_size, resolution_m)
+        if common_start(outer, inner_key) == -math.inf:
+            return -math.inf
+    return min(inner_key, common_start(box_faces(point_box, w, point_pi_box, half_size, 0.0), inner_key))
+
+
+@kernel
 def turn_entry(
     point_box: Vector,
     through_box: Vector,
@@ -106,8 +145,11 @@ def turn_entry(
     half_size: Vector,
     allowed_depth_m: float,
     resolution_m: float,
+    least: float,
 ) -> float:
     """Return the key c = -cot(s/2) of the angle at which the point enters the box; -inf: blocked at once; inf: never.
+
+    Also inf where it is clear that the key is above ``least``: so -inf asks only whether the point blocks at once.
 
     Parameters
     ----------
@@ -119,6 +161,8 @@ def turn_entry(
         Half edge lengths, metres.
     allowed_depth_m, resolution_m
         See equation (2.5) in `cagepose.kernels.travel`; metres.
+    least
+        What the key is compared with.
     """
     u = minus(point_box, through_box)
     w = cross(axis_box, u)
@@ -128,14 +172,10 @@ def turn_entry(
         if across >= 0.0 and across * across >= u_perp[k] * u_perp[k] + w[k] * w[k]:
             return math.inf
     point_pi_box = minus(point_box, scaled(u_perp, 2.0))
-    inner_key = first_common(box_faces(point_box, w, point_pi_box, half_size, -allowed_depth_m))
-    if inner_key == math.inf:
+    clear = beyond_until(point_box, w, point_pi_box, half_size, allowed_depth_m, resolution_m)
+    if clear == math.inf or clear - SAFE * (1.0 + abs(clear)) > least:
         return math.inf
-    if box_gap(point_box, half_size) <= resolution_m:
-        outer = box_faces(point_box, w, point_pi_box, half_size, resolution_m)
-        if common_start(outer, inner_key) == -math.inf:
-            return -math.inf
-    return min(inner_key, common_start(box_faces(point_box, w, point_pi_box, half_size, 0.0), inner_key))
+    return entry_of_box(point_box, w, point_pi_box, half_size, allowed_depth_m, resolution_m)
 
 
 @entry_kernel

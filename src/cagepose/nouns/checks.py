@@ -32,7 +32,8 @@ def finite_array(value: ArrayLike, shape: tuple[int, ...], key: str) -> FloatArr
         wanted_text = " x ".join("n" if n == -1 else str(n) for n in shape)
         raise SceneError([Problem((key,), f"has shape {array.shape}; give {wanted_text} numbers")])
     if not np.isfinite(array).all():
-        raise SceneError([Problem((key,), f"holds a number that is not finite: {array.tolist()}")])
+        at = [int(index) for index in np.argwhere(~np.isfinite(array))[0]]
+        raise SceneError([Problem((key, *at), f"is {array[tuple(at)]}; give a finite number")])
     array.setflags(write=False)
     return array
 

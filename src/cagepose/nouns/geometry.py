@@ -52,9 +52,17 @@ def scene_size(held: Object, cage: Cage) -> float:
 
     Each is measured as twice the greatest distance from the middle, so the size does not depend on any frame.
     """
+    return max(object_size(held), float(cage_sizes(cage.points_cage)))
+
+
+def object_size(held: Object) -> float:
+    """The object's diameter, metres."""
     corners = np.concatenate([box.corners_object() for box in held.boxes])
-    return 2.0 * max(_radius(corners), _radius(cage.points_cage))
+    return float(cage_sizes(corners))
 
 
-def _radius(points: FloatArray) -> float:
-    return float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())
+def cage_sizes(points: FloatArray) -> FloatArray:
+    """The diameters of sets of points (..., n, 3), metres."""
+    distances = np.linalg.norm(points - points.mean(axis=-2, keepdims=True), axis=-1)
+    sizes: FloatArray = 2.0 * distances.max(axis=-1)
+    return sizes

@@ -7,7 +7,7 @@ import time
 
 import numpy as np
 
-from cagepose.kernels.jit import is_loaded
+from cagepose.kernels.jit import is_loaded, machine_code
 from cagepose.kernels.slip import SlipRules
 from cagepose.kernels.stepwise import RULE_NAMES, PhaseLoads, StepwiseRules, empty_workspace, stepwise_run
 from cagepose.kernels.support import SupportRules
@@ -51,8 +51,8 @@ SMALL_POSE_RAD = math.radians(45.0)
 def run_stepwise(scene: Scene) -> Run:
     """Run a scene by the paper's rules (docs/theory)."""
     frames = Frames(scene, middle_of_boxes(scene))
-    geometry, rules = frames.geometry(scene), _rules(scene)
-    loads = _phase_loads(scene, frames.middle_object)
+    geometry, rules = frames.geometry(scene), rules_of_size(scene, scene.size_m)
+    loads = phase_loads(scene, frames.middle_object)
     tolerances = kernel_tolerances(scene.size_m, scene.tolerances.touch)
     workspace = empty_workspace(geometry, len(scene.loads), rules)
     arguments = (
@@ -66,8 +66,9 @@ def run_stepwise(scene: Scene) -> Run:
     )
     if not is_loaded(stepwise_run):
         stepwise_run(*arguments)  # so that the time measured is that of the run
+    run_compiled = machine_code(stepwise_run)
     began = time.perf_counter()
-    n_phases, n_events = stepwise_run(*arguments)
+    n_phases, n_events = run_compiled(*arguments)
     solve_s = time.perf_counter() - began
 
     friction = scene.friction_coefficient
@@ -84,15 +85,21 @@ def run_stepwise(scene: Scene) -> Run:
     return Run(scene, "stepwise", tuple(phases), tuple(_warnings(scene, phases, judge.friction)), solve_s)
 
 
-def _rules(scene: Scene) -> StepwiseRules:
+def no_slip_angle_rad(scene: Scene) -> float:
+    """Return the angle below which a contact does not slip (R4): the friction angle, or the paper's threshold."""
     friction = scene.friction_coefficient
-    equal_distance_m = EQUAL_DISTANCE_OF_SIZE * scene.size_m
+    return NO_SLIP_ANGLE_DEFAULT_RAD if friction is None else math.atan(friction)
+
+
+def rules_of_size(scene: Scene, size_m: float) -> StepwiseRules:
+    """Return the numbers of the method for a scene that is so large."""
+    equal_distance_m = EQUAL_DISTANCE_OF_SIZE * size_m
     return StepwiseRules(
         SupportRules(
             LEAST_MOMENT, key_of_angle(BLOCKED_ANGLE_RAD), key_of_angle(scene.tolerances.touch), equal_distance_m
         ),
         SlipRules(
-            NO_SLIP_ANGLE_DEFAULT_RAD if friction is None else math.atan(friction),
+            no_slip_angle_rad(scene),
             math.pi / 2.0 + scene.tolerances.grazing_band_rad,
             PARALLEL_SINE,
             equal_distance_m,
@@ -101,7 +108,7 @@ def _rules(scene: Scene) -> StepwiseRules:
     )
 
 
-def _phase_loads(scene: Scene, middle_object: FloatArray) -> PhaseLoads:
+def phase_loads(scene: Scene, middle_object: FloatArray) -> PhaseLoads:
     """Gravity acts at the centre of gravity; beside a force it is ignored (R8b)."""
     directions, points = [], []
     for load in scene.loads:

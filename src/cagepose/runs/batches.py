@@ -1,0 +1,239 @@
+"""Many runs of one scene as the kernels take them: one class for each method."""
+
+from __future__ import annotations
+
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from cagepose.kernels.batch import Endings, Starts, empty_endings
+from cagepose.kernels.geometry import Geometry
+from cagepose.kernels.jit import is_loaded, machine_code
+from cagepose.kernels.metric import PhaseLoad
+from cagepose.kernels.pose import write_quaternions
+from cagepose.kernels.proof import ProofRoom, empty_proof_room
+from cagepose.kernels.quasistatic import QuasistaticRules, QuasistaticWorkspace, empty_quasistatic_workspace
+from cagepose.kernels.quasistatic_batch import quasistatic_runs
+from cagepose.kernels.record import Rows, dtype_of
+from cagepose.kernels.stepwise import PhaseLoads, Workspace, empty_workspace
+from cagepose.kernels.stepwise_batch import stepwise_runs
+from cagepose.kernels.tolerances import kernel_tolerances
+from cagepose.nouns.checks import FloatArray, as_vector
+from cagepose.nouns.geometry import cage_sizes, object_size
+from cagepose.nouns.pose import Pose
+from cagepose.nouns.scene import FARTHEST_START, Scene
+from cagepose.runs.frames import middle_of_boxes
+from cagepose.runs.judge import body_of
+from cagepose.runs.quasistatic import STEP_LIMIT, TURN_STEP_RAD
+from cagepose.runs.stepwise import no_slip_angle_rad, phase_loads, rules_of_size
+from cagepose.runs.variation import Variation
+from cagepose.runs.weights import dead_loads
+
+Room = TypeVar("Room")
+
+
+class Batch(Generic[Room]):
+    """Runs of one scene. A method says what one thread needs (`room`) and calls its kernel (`run`).
+
+    Attributes
+    ----------
+    n_runs
+        How many.
+    endings
+        Filled by `run_piece`.
+    """
+
+    n_runs: int
+    endings: Endings
+
+    def _begin(self, scene: Scene, variation: Variation) -> dict[str, FloatArray]:
+        self.n_runs, columns = variation.columns(scene)
+        self.endings = empty_endings(self.n_runs, len(scene.loads), len(scene.cage.names))
+        self._idle_rooms = list[Room]()
+        return columns
+
+    def room(self) -> Room:
+        """Return what one thread writes to."""
+        raise NotImplementedError
+
+    def is_loaded(self) -> bool:
+        """Whether the kernel can be called at once."""
+        raise NotImplementedError
+
+    def run(self, first: int, last: int, room: Room) -> None:
+        """Run ``first`` up to, without, ``last``."""
+        raise NotImplementedError
+
+    def load(self) -> None:
+        """Compile the kernel, or read it from disk, so that threads need not."""
+        if not self.is_loaded():
+            self.run(0, 0, self.room())
+
+    def run_piece(self, first: int, last: int) -> int:
+        """Run ``first`` up to, without, ``last``, in any thread; return how many these are."""
+        try:
+            room = self._idle_rooms.pop()
+        except IndexError:
+            room = self.room()
+        self.run(first, last, room)
+        if last < self.n_runs:
+            self._idle_rooms.append(room)
+        return last - first
+
+
+class StepwiseBatch(Batch[tuple[Geometry, Workspace]]):
+    """Runs of one scene by the paper's rules."""
+
+    def __init__(self, scene: Scene, variation: Variation) -> None:
+        columns = self._begin(scene, variation)
+        self._middle = middle_of_boxes(scene)
+        self._geometry = _seen_from(scene, self._middle)
+        frictions = columns.get("friction_coefficient")
+        angles = np.array([no_slip_angle_rad(scene)]) if frictions is None else np.arctan(frictions)
+        self._starts = _starts(scene, columns, angles)
+        self._loads = _stepwise_loads(scene, columns, self._middle)
+        self._rules = rules_of_size(scene, 1.0)
+        self._tolerances = kernel_tolerances(1.0, scene.tolerances.touch)
+
+    def room(self) -> tuple[Geometry, Workspace]:
+        return _own_points(self._geometry), empty_workspace(self._geometry, self.endings.verdicts.shape[1], self._rules)
+
+    def is_loaded(self) -> bool:
+        return is_loaded(stepwise_runs)
+
+    def run(self, first: int, last: int, room: tuple[Geometry, Workspace]) -> None:
+        geometry, work = room
+        machine_code(stepwise_runs)(
+            first,
+            last,
+            self._starts,
+            self._loads,
+            geometry,
+            as_vector(self._middle),
+            self._rules,
+            self._tolerances,
+            work,
+            self.endings,
+        )
+
+
+class QuasistaticBatch(Batch[tuple[Geometry, QuasistaticWorkspace, ProofRoom]]):
+    """Runs of one scene by the mechanics."""
+
+    def __init__(self, scene: Scene, variation: Variation) -> None:
+        columns = self._begin(scene, variation)
+        self._middle = scene.object.center_of_gravity_m
+        self._geometry = _seen_from(scene, self._middle)
+        self._body = body_of(scene)
+        friction = scene.friction_coefficient or 0.0
+        self._starts = _starts(scene, columns, columns.get("friction_coefficient", np.array([friction])))
+        self._loads = _quasistatic_loads(scene, columns)
+        self._rules = QuasistaticRules(friction, TURN_STEP_RAD, STEP_LIMIT)
+        self._tolerances = kernel_tolerances(1.0, scene.tolerances.touch)
+
+    def room(self) -> tuple[Geometry, QuasistaticWorkspace, ProofRoom]:
+        geometry = _own_points(self._geometry)
+        work = empty_quasistatic_workspace(geometry, self.endings.verdicts.shape[1], STEP_LIMIT)
+        return geometry, work, empty_proof_room(geometry)
+
+    def is_loaded(self) -> bool:
+        return is_loaded(quasistatic_runs)
+
+    def run(self, first: int, last: int, room: tuple[Geometry, QuasistaticWorkspace, ProofRoom]) -> None:
+        geometry, work, at = room
+        machine_code(quasistatic_runs)(
+            first,
+            last,
+            self._starts,
+            self._loads,
+            geometry,
+            self._body,
+            as_vector(self._middle),
+            self._rules,
+            self._tolerances,
+            work,
+            at,
+            self.endings,
+        )
+
+
+def _seen_from(scene: Scene, middle_object: FloatArray) -> Geometry:
+    return scene.geometry._replace(box_positions=scene.geometry.box_positions - middle_object)
+
+
+def _own_points(geometry: Geometry) -> Geometry:
+    return geometry._replace(points_world=geometry.points_world.copy())
+
+
+def _starts(scene: Scene, columns: dict[str, FloatArray], frictions: FloatArray) -> Starts:
+    cage, held = scene.cage.pose_world_cage, scene.object.pose_world_object
+    points = columns.get("points_cage_m")
+    sizes_m = np.array([scene.size_m])
+    if points is not None:
+        sizes_m = np.maximum(object_size(scene.object), cage_sizes(points))
+    return Starts(
+        _owned(columns.get("cage_position_m", cage.position_m[None])),
+        _owned(_quaternions(columns.get("cage_euler_zyx"), cage)),
+        _owned(scene.cage.points_cage[None] if points is None else points),
+        _owned(columns.get("object_position_m", held.position_m[None])),
+        _owned(_quaternions(columns.get("object_euler_zyx"), held)),
+        sizes_m,
+        _owned(frictions),
+        FARTHEST_START,
+    )
+
+
+def _owned(array: FloatArray) -> FloatArray:
+    """A copy that can be written to, in C order: to Numba any other is of another type, to be compiled for anew."""
+    return np.array(array, order="C")
+
+
+def _quaternions(angles: FloatArray | None, pose: Pose) -> FloatArray:
+    if angles is None:
+        return pose.quaternion_wxyz[None]
+    found = np.empty((len(angles), 4))
+    write_quaternions(angles, found)
+    return found
+
+
+def _stepwise_loads(scene: Scene, columns: dict[str, FloatArray], middle_object: FloatArray) -> PhaseLoads:
+    base = phase_loads(scene, middle_object)
+    directions, points = base.directions_world[None], base.points_object[None]
+    push = np.flatnonzero(base.is_push)
+    if "force_direction_world" in columns:
+        directions = np.repeat(directions, len(columns["force_direction_world"]), axis=0)
+        directions[:, push[0]] = _unit_rows(columns["force_direction_world"])
+    if "force_at_object_m" in columns:
+        points = np.repeat(points, len(columns["force_at_object_m"]), axis=0)
+        points[:, push[0]] = columns["force_at_object_m"] - middle_object
+    return PhaseLoads(directions, points, base.is_push)
+
+
+def _quasistatic_loads(scene: Scene, columns: dict[str, FloatArray]) -> Rows[Rows[PhaseLoad]]:
+    base = dead_loads(scene)
+    pushes = [index for index, load in enumerate(scene.loads) if load.force is not None]
+    varied = [name for name in columns if name.startswith("force_")]
+    n_rows = len(columns[varied[0]]) if varied else 1
+    loads = np.zeros((n_rows, len(scene.loads)), dtype_of(PhaseLoad)).view(np.recarray)
+    loads[:] = base
+    if varied:
+        load, place = scene.loads[pushes[0]], pushes[0]
+        forces = loads["forces_world"]
+        size = float(np.linalg.norm(forces[0, place, 1]))
+        magnitudes = columns.get("force_magnitude_n", np.full(n_rows, size))[:, None]
+        directions = columns.get("force_direction_world")
+        assert load.force is not None
+        unit = load.force.direction_world[None] if directions is None else _unit_rows(directions)
+        in_newtons = scene.object.mass_kg is not None and load.force.magnitude_n is not None
+        if load.gravity_world is not None and not in_newtons:
+            forces[:, place, 0] *= magnitudes / size  # the weight is a part of the force, then
+        forces[:, place, 1] = magnitudes * unit
+        if "force_at_object_m" in columns:
+            loads["arms_object"][:, place, 1] = columns["force_at_object_m"] - scene.object.center_of_gravity_m
+    return loads
+
+
+def _unit_rows(vectors: FloatArray) -> FloatArray:
+    scaled = vectors / np.abs(vectors).max(axis=1, keepdims=True)  # so that squares neither vanish nor overflow
+    unit: FloatArray = scaled / np.linalg.norm(scaled, axis=1, keepdims=True)
+    return unit

@@ -1,0 +1,188 @@
+"""Many runs at once: `run_many`, its columns, and the threads that fill them."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.errors import Problem, SceneError
+from cagepose.kernels.batch import INVALID, NOT_RUN
+from cagepose.kernels.pose import write_euler_zyx
+from cagepose.kernels.proof import OTHER_ONSET, UNIQUENESS_NOT_SHOWN
+from cagepose.kernels.trace import RESTS, VERDICT_NAMES
+from cagepose.nouns.checks import FloatArray
+from cagepose.nouns.scene import Scene
+from cagepose.runs.batches import Batch, QuasistaticBatch, StepwiseBatch
+from cagepose.runs.solve import chosen_method
+from cagepose.runs.variation import Variation
+
+LONGEST_PIECE = 256
+"""Runs of one call of a kernel: some 10 ms of work, so that progress is seen and Ctrl-C is heard."""
+PIECES_FOR_A_THREAD = 8
+"""At least, if there are so many runs: so that all threads end at about the same time."""
+
+
+@dataclass(frozen=True, eq=False)
+class Runs:
+    """The results of `run_many`: columns with one row for each run.
+
+    Attributes
+    ----------
+    methods
+        "stepwise" or "quasistatic", (n,).
+    phase_verdicts
+        Of each phase, (n, n_phases): as `PhaseRun.verdict`; "invalid" where no run could begin (a cage point inside the
+        object at the start, two points that are one, or a start too far from the cage); "" where it was not reached.
+    n_events
+        Events (stepwise) or steps (quasistatic) of each phase, (n, n_phases).
+    position_m, quaternion_wxyz
+        The object's pose in the world after each phase, (n, n_phases, 3) and (n, n_phases, 4); NaN where not reached.
+    touching
+        Which cage points touch after each phase, (n, n_phases, n_points).
+    solve_s
+        How long all runs took together, seconds.
+    """
+
+    methods: NDArray[np.str_]
+    phase_verdicts: NDArray[np.str_]
+    n_events: NDArray[np.int64]
+    position_m: FloatArray
+    quaternion_wxyz: FloatArray
+    touching: NDArray[np.bool_]
+    solve_s: float
+
+    def __len__(self) -> int:
+        return len(self.phase_verdicts)
+
+    @property
+    def verdict(self) -> NDArray[np.str_]:
+        """Verdict of the last phase that was reached, (n,): as `Run.verdict`."""
+        last = np.maximum((self.phase_verdicts != "").sum(axis=1) - 1, 0)
+        found: NDArray[np.str_] = self.phase_verdicts[np.arange(len(self)), last]
+        return found
+
+    @property
+    def euler_zyx(self) -> FloatArray:
+        """Yaw, pitch and roll after each phase, (n, n_phases, 3), radians."""
+        angles = np.empty(self.position_m.shape)
+        write_euler_zyx(self.quaternion_wxyz.reshape(-1, 4), angles.reshape(-1, 3))
+        return angles
+
+
+def run_many(
+    scenes: Scene | Sequence[Scene],
+    variation: Variation | None = None,
+    *,
+    method: str | None = None,
+    threads: int | None = None,
+    progress: bool | Callable[[float], None] = False,
+) -> Runs:
+    """Run one scene many times with values that vary, or many scenes, on several threads without Python between runs.
+
+    Poses and verdicts are those of `cagepose.run`. Left out are events, contact forces, remarks, and what a proof says
+    beyond the verdict: run the few rows that matter one by one.
+
+    Parameters
+    ----------
+    scenes
+        One scene, or several.
+    variation
+        What differs, if it is one scene: that is built and checked only once.
+    method
+        As for `cagepose.run`.
+    threads
+        How many; None: one for each core.
+    progress
+        True: a line on standard error. A function: called with the share of the runs that are done.
+
+    Raises
+    ------
+    SceneError
+        An unknown method, no scene, a variation of several scenes, or one that no scene could have.
+    """
+    all_scenes = [scenes] if isinstance(scenes, Scene) else list(scenes)
+    if not all_scenes:
+        raise SceneError([Problem(("scenes",), "is empty; give at least one scene")])
+    if variation is not None and not isinstance(scenes, Scene):
+        raise SceneError([Problem(("variation",), f"is of one scene, and {len(all_scenes)} are given; give one scene")])
+    if threads is not None and threads < 1:
+        raise SceneError([Problem(("threads",), f"is {threads}; give 1 or more")])
+    methods = [chosen_method(scene, method) for scene in all_scenes]
+    kinds: dict[str, Callable[[Scene, Variation], Batch[Any]]]
+    kinds = {"stepwise": StepwiseBatch, "quasistatic": QuasistaticBatch}
+    batches: list[Batch[Any]] = [
+        kinds[name](scene, variation or Variation()) for scene, name in zip(all_scenes, methods, strict=True)
+    ]
+    for batch in {type(batch): batch for batch in batches}.values():
+        batch.load()
+    began = time.perf_counter()
+    _run_all(batches, threads or os.cpu_count() or 1, _show_progress if progress is True else progress or None)
+    solve_s = time.perf_counter() - began
+    return _columns(methods, batches, solve_s)
+
+
+def _run_all(batches: Sequence[Batch[Any]], n_threads: int, progress: Callable[[float], None] | None) -> None:
+    n_runs, n_done = sum(batch.n_runs for batch in batches), 0
+    length = max(1, min(LONGEST_PIECE, n_runs // (PIECES_FOR_A_THREAD * n_threads)))
+    executor = ThreadPoolExecutor(n_threads)
+    try:
+        pieces = [
+            executor.submit(batch.run_piece, first, min(first + length, batch.n_runs))
+            for batch in batches
+            for first in range(0, batch.n_runs, length)
+        ]
+        for piece in as_completed(pieces):
+            n_done += piece.result()
+            if progress is not None:
+                progress(n_done / n_runs)
+    finally:
+        executor.shutdown(cancel_futures=True)
+
+
+def _columns(methods: list[str], batches: Sequence[Batch[Any]], solve_s: float) -> Runs:
+    names = np.full(max(INVALID, len(VERDICT_NAMES)) + 2, "", dtype="<U10")
+    names[: len(VERDICT_NAMES)] = VERDICT_NAMES
+    names[INVALID], names[NOT_RUN] = "invalid", ""
+    endings = [batch.endings for batch in batches]
+    codes = _stacked([found.verdicts for found in endings], NOT_RUN)
+    proofs = _stacked([found.proofs for found in endings], NOT_RUN)
+    verdicts = names[codes]
+    verdicts[(codes == RESTS) & ((proofs == OTHER_ONSET) | (proofs == UNIQUENESS_NOT_SHOWN))] = "may rest"
+    quaternions = _stacked([found.quaternions for found in endings], np.nan)
+    quaternions[quaternions[..., 0] < 0.0] *= -1.0  # as `Pose` has them
+    return Runs(
+        np.repeat(methods, [batch.n_runs for batch in batches]),
+        verdicts,
+        _stacked([found.n_events for found in endings], 0),
+        _stacked([found.positions for found in endings], np.nan),
+        quaternions,
+        _stacked([found.touching for found in endings], False),
+        solve_s,
+    )
+
+
+def _stacked(arrays: list[NDArray[Any]], filling: Any) -> NDArray[Any]:
+    """One below the other; where scenes differ in phases or points, the smaller ones are filled up."""
+    if len(arrays) == 1:
+        return arrays[0]
+    shape = np.max([array.shape[1:] for array in arrays], axis=0)
+    whole = np.full((sum(map(len, arrays)), *shape), filling, arrays[0].dtype)
+    first = 0
+    for array in arrays:
+        whole[(slice(first, first + len(array)), *map(slice, array.shape[1:]))] = array
+        first += len(array)
+    return whole
+
+
+def _show_progress(share: float) -> None:
+    ends = "\n" if share >= 1.0 else ""
+    sys.stderr.write(f"\rcagepose: {'#' * int(30 * share):30} {share:4.0%}{ends}")
+    sys.stderr.flush()

@@ -1,0 +1,201 @@
+"""`run_many` against `run`, one row at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+
+import cagepose
+from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, SceneError, Variation, run, run_many
+from cagepose.kernels.stepwise_batch import stepwise_runs
+from cagepose.runs import many
+from jit import JIT_IS_OFF, cases
+from rails import rail_scene
+
+METHODS = ("stepwise", "quasistatic")
+MM = 1e-3
+
+
+def block(**changed: Any) -> Scene:
+    """A block that falls between posts and is pushed against them; each keyword is one that `Variation` has."""
+    points = changed.get(
+        "points_cage_m", np.array([[x, y, z] for x in (-12, 12.5) for y in (-9, 9.5) for z in (-6, 6.5)]) * MM
+    )
+    cage = Pose(changed.get("cage_position_m", (0, 0, 0)), euler_zyx=changed.get("cage_euler_zyx", (0, 0, 0)))
+    start = Pose(changed.get("object_position_m", (0, 0, 0)), euler_zyx=changed.get("object_euler_zyx", (0, 0, 0)))
+    force = Force(
+        changed.get("force_direction_world", (1, 0.2, 0.1)),
+        changed.get("force_at_object_m", (-10 * MM, 1 * MM, 2 * MM)),
+        changed.get("force_magnitude_n", 3.0),
+    )
+    boxes = [Box((22 * MM, 16 * MM, 6 * MM)), Box((10 * MM, 17 * MM, 3 * MM), Pose((0, 0, 4 * MM)))]
+    return Scene(
+        Object(boxes, mass_kg=0.2, pose=start),
+        Cage(points, pose=cage),
+        [Load("weight", gravity=(0, 0, -9.81)), Load("push", gravity=(0, 0, -9.81), force=force)],
+        friction_coefficient=changed.get("friction_coefficient", 0.1),
+    )
+
+
+def falling_cube(method: str | None = None) -> Scene:
+    load = Load("weight", gravity=(0, 0, -1))
+    return Scene(Object([Box((MM, MM, MM))]), Cage([(0, 0, 5 * MM)]), [load], method=method)
+
+
+def points_moved(rng: np.random.Generator, n: int) -> np.ndarray:
+    return block().cage.points_cage + rng.uniform(-0.3, 0.3, (n, 8, 3)) * MM
+
+
+VARIED: dict[str, Callable[[np.random.Generator, int], np.ndarray]] = {
+    "cage_position_m": lambda rng, n: rng.uniform(-0.2, 0.2, (n, 3)) * MM,
+    "cage_euler_zyx": lambda rng, n: rng.uniform(-0.02, 0.02, (n, 3)),
+    "points_cage_m": points_moved,
+    "object_position_m": lambda rng, n: rng.uniform(-0.2, 0.2, (n, 3)) * MM,
+    "object_euler_zyx": lambda rng, n: rng.uniform(-0.02, 0.02, (n, 3)),
+    "friction_coefficient": lambda rng, n: rng.uniform(0.0, 0.3, n),
+    "force_direction_world": lambda rng, n: rng.normal(size=(n, 3)),
+    "force_at_object_m": lambda rng, n: rng.uniform(-9, 9, (n, 3)) * MM,
+    "force_magnitude_n": lambda rng, n: rng.uniform(0.5, 20.0, n),
+}
+
+
+def assert_same(found: many.Runs, row: int, scene: Scene, method: str) -> None:
+    alone = run(scene, method)
+    assert found.verdict[row] == alone.verdict
+    assert found.methods[row] == method
+    for place, phase in enumerate(alone.phases):
+        assert found.phase_verdicts[row, place] == phase.verdict
+        assert found.position_m[row, place] == pytest.approx(phase.pose.position_m, abs=1e-13)
+        assert found.quaternion_wxyz[row, place] == pytest.approx(phase.pose.quaternion_wxyz, abs=1e-12)
+        assert found.euler_zyx[row, place] == pytest.approx(phase.pose.euler_zyx, abs=1e-12)
+        names = {scene.cage.names[point] for point in np.flatnonzero(found.touching[row, place])}
+        assert names == {contact.point for contact in phase.contacts}
+    n_phases = len(alone.phases)
+    assert (found.phase_verdicts[row, n_phases:] == "").all()
+    assert np.isnan(found.position_m[row, n_phases:]).all()
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("name", VARIED)
+def test_each_thing_that_varies_gives_the_runs_of_scenes_built_one_by_one(name: str, method: str) -> None:
+    values = VARIED[name](np.random.default_rng(3), cases(8))
+    found = run_many(block(), Variation(**{name: values}), method=method, threads=2)
+    assert len(found) == len(values)
+    for row, value in enumerate(values):
+        if found.verdict[row] == "invalid":
+            with pytest.raises(SceneError):
+                block(**{name: value})
+        else:
+            assert_same(found, row, block(**{name: value}), method)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_all_that_varies_at_once_and_in_any_order_and_number_of_threads(method: str) -> None:
+    rng = np.random.default_rng(4)
+    n = cases(40)
+    values = {name: draw(rng, n) for name, draw in VARIED.items()}
+    found = run_many(block(), Variation(**values), method=method, threads=1)
+    order = rng.permutation(n)
+    again = run_many(
+        block(), Variation(**{name: array[order] for name, array in values.items()}), method=method, threads=3
+    )
+    assert (again.verdict == found.verdict[order]).all()
+    assert np.array_equal(again.position_m, found.position_m[order], equal_nan=True)
+    valid = np.flatnonzero(found.verdict != "invalid")
+    assert len(valid) > n // 4
+    for row in valid[:10]:
+        assert_same(found, row, block(**{name: array[row] for name, array in values.items()}), method)
+
+
+def test_a_run_that_could_not_begin_is_named() -> None:
+    """One point inside, two points that are one, and a start far away."""
+    points = np.repeat(block().cage.points_cage[None], 3, axis=0)
+    points[0, 0] = 0.0
+    points[1, 1] = points[1, 0]
+    found = run_many(block(), Variation(points_cage_m=points), method="stepwise")
+    assert found.verdict[:2].tolist() == ["invalid", "invalid"]
+    assert found.verdict[2] != "invalid"
+    far = run_many(block(), Variation(object_position_m=[(1e4, 0, 0), (0, 0, 0)]), method="stepwise")
+    assert far.verdict[0] == "invalid"
+    assert far.phase_verdicts[0].tolist() == ["invalid", ""]
+    assert np.isnan(far.position_m[0]).all()
+
+
+def test_several_scenes_of_different_shape_in_one_table() -> None:
+    scenes = [falling_cube(), block(), rail_scene(pitch_deg=0.1)]
+    found = run_many(scenes, method="stepwise", threads=2)
+    assert found.verdict[0] == "escapes"
+    assert found.phase_verdicts.shape == (3, 2)
+    assert found.touching.shape == (3, 2, 14)
+    for row, scene in enumerate(scenes):
+        assert_same(found, row, scene, "stepwise")
+
+
+def test_each_scene_keeps_its_own_method() -> None:
+    scenes = [falling_cube(method) for method in ("quasistatic", "stepwise")]
+    assert run_many(scenes).methods.tolist() == ["quasistatic", "stepwise"]
+
+
+def test_progress_comes_to_one() -> None:
+    shares = list[float]()
+    run_many(block(), Variation(cage_euler_zyx=np.zeros((50, 3))), method="stepwise", threads=2, progress=shares.append)
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+    assert len(shares) > 5
+
+
+def test_progress_is_drawn_on_standard_error(capsys: pytest.CaptureFixture[str]) -> None:
+    run_many(block(), method="stepwise", progress=True)
+    assert capsys.readouterr().err == f"\rcagepose: {'#' * 30} 100%\n"
+
+
+@dataclass(frozen=True)
+class Wrong:
+    variation: Variation
+    message: str
+
+
+WRONG = {
+    "shape": Wrong(Variation(cage_euler_zyx=[0.0, 0.0, 0.1]), r"cage_euler_zyx: has shape \(3,\); give n x 3 numbers"),
+    "points": Wrong(Variation(points_cage_m=np.zeros((2, 3, 3))), "points_cage_m: has shape .* n x 8 x 3"),
+    "rows": Wrong(
+        Variation(cage_euler_zyx=np.zeros((2, 3)), friction_coefficient=[0.1] * 3),
+        "friction_coefficient: has 3 rows and cage_euler_zyx 2; give one for each run",
+    ),
+    "nan": Wrong(Variation(friction_coefficient=[0.1, np.nan]), r"friction_coefficient\[1\]: is nan"),
+    "friction": Wrong(Variation(friction_coefficient=[0.1, -0.1]), r"friction_coefficient\[1\]: is below zero"),
+    "direction": Wrong(Variation(force_direction_world=np.zeros((2, 3))), r"force_direction_world\[0\]: is zero"),
+    "magnitude": Wrong(Variation(force_magnitude_n=[1.0, 0.0]), r"force_magnitude_n\[1\]: is not above zero"),
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG.values(), ids=WRONG)
+def test_what_no_scene_could_have_is_refused(wrong: Wrong) -> None:
+    with pytest.raises(SceneError, match=wrong.message):
+        run_many(block(), wrong.variation)
+
+
+def test_calls_that_mean_nothing_are_refused() -> None:
+    with pytest.raises(SceneError, match="scenes: is empty"):
+        run_many([])
+    with pytest.raises(SceneError, match="variation: is of one scene, and 2 are given"):
+        run_many([block(), block()], Variation(friction_coefficient=[0.1]))
+    with pytest.raises(SceneError, match="threads: is 0"):
+        run_many(block(), threads=0)
+    with pytest.raises(SceneError, match="force: varies, but 0 phases"):
+        run_many(falling_cube(), Variation(force_magnitude_n=[1.0]))
+    assert cagepose.run_many is run_many
+
+
+@pytest.mark.skipif(JIT_IS_OFF, reason="nothing is compiled")
+def test_nothing_is_compiled_again_whatever_varies() -> None:
+    """Arrays that are read-only, or not in C order, would be other types to the compiler."""
+    run_many(block(), method="stepwise")
+    values = {name: draw(np.random.default_rng(5), 2) for name, draw in VARIED.items()}
+    for name, value in values.items():
+        run_many(block(), Variation(**{name: np.asfortranarray(value)}), method="stepwise")
+    assert len(stepwise_runs.signatures) == 1
