@@ -16,7 +16,7 @@ from cagepose.kernels.contacts import face_normal, is_hidden, touches_face
 from cagepose.kernels.geometry import Geometry, Placement, box_point
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.metric import Frame, write_scaled_wrench
-from cagepose.kernels.record import FloatArray, IntArray, Rows, empty_kernel_rows
+from cagepose.kernels.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.vector import Vector, cross, minus, norm, row, vector_from
 
 SAME_NORMAL = 1e-9
@@ -97,7 +97,7 @@ class ContactSet(NamedTuple):
 
 def empty_contact_set(n_rows: int) -> ContactSet:
     """Return room for ``n_rows`` contacts (plain Python)."""
-    return ContactSet(np.zeros(1, np.int64), empty_kernel_rows(ContactRow, n_rows))
+    return ContactSet(np.zeros(1, np.int64), empty_rows(ContactRow, n_rows))
 
 
 @kernel

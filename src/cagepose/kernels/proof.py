@@ -41,7 +41,7 @@ from cagepose.kernels.onset import (
     onset_with_faces,
 )
 from cagepose.kernels.pose import Quaternion
-from cagepose.kernels.record import Rows, empty_kernel_rows
+from cagepose.kernels.record import Rows, empty_rows
 from cagepose.kernels.stability import MARGINAL, STABLE_REST, StabilityRoom, find_held, find_shared, stability
 from cagepose.kernels.sure_contacts import SureRoom, rest_is_sure
 from cagepose.kernels.tolerances import KernelTolerances
@@ -113,7 +113,7 @@ class ProofRoom(NamedTuple):
 def empty_proof_room(geometry: Geometry) -> ProofRoom:
     """Return room for one proof (plain Python)."""
     n_contacts = CONTACTS_PER_POINT * len(geometry.points_world)
-    rooms = empty_kernel_rows(JudgeRoom, 1)
+    rooms = empty_rows(JudgeRoom, 1)
     rooms[0].sum_only[6] = 1.0
     return ProofRoom(
         empty_placement(geometry), empty_contact_set(n_contacts), rooms, empty_system(max(N_COLUMNS, n_contacts))
