@@ -11,6 +11,8 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
+import numpy as np
+
 from cagepose.kernels.contact_set import ContactRow
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.least_squares import (
@@ -142,7 +144,7 @@ def cone_residual(
         all that the contacts can carry.
     """
     passive = room.passive
-    n_generators = 0
+    n_generators = int(np.int64(0))  # a plain 0 would compile what is called twice, once for the literal
     for k in range(passive.used):  # renumber, so that the room is never full
         label = passive.labels[k]
         room.contacts[k] = room.contacts[label]

@@ -174,6 +174,25 @@ def last_of_group(contacts: ContactSet, first: int) -> int:
 
 
 @kernel
+def put_best_faces_back(contacts: ContactSet) -> None:
+    """Choose the faces of the best combination again, with their forces."""
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        contact.chosen = contact.best_chosen
+        for j in range(3):
+            contact.forces[j] = contact.best_forces[j]
+
+
+@kernel
+def has_one_choice(contacts: ContactSet) -> bool:
+    """Whether there is no edge, so that all faces count."""
+    n_chosen = 0
+    for i in range(contacts.used[0]):
+        n_chosen += 1 if contacts.rows[i].chosen else 0
+    return bool(n_chosen == contacts.used[0])
+
+
+@kernel
 def choose_next_faces(contacts: ContactSet, every: bool) -> bool:
     """Choose the next combination of faces on edges; False: there is none, and the first is chosen again.
 

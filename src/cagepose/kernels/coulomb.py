@@ -33,8 +33,8 @@ ROUNDS = 240
 ROUNDS_UNDAMPED = 60
 DAMPED = 0.4
 """Contacts that take turns in slipping meet half way if each goes only this part of its way."""
-ROUNDS_BETWEEN = 6
-"""Rounds before Newton's method is tried (again)."""
+FIRST_ROUNDS, ROUNDS_BETWEEN = 3, 6
+"""Newton's method is tried after each of the first rounds, which mostly show the modes, and then after so many."""
 OBEYS, LAST_RESORT = 1e-9, 1e-6
 """In lengths of the motion: the greatest violation of Coulomb's law. Where that is not reached, in lengths of the load:
 it bends the path by far less than a step does."""
@@ -56,6 +56,20 @@ def motion_left(rows: Rows[ContactRow], n_contacts: int, b: FloatArray, y: Float
             for j in range(3):
                 for k in range(6):
                     y[k] -= rows[i].columns[j, k] * rows[i].forces[j]
+
+
+@kernel
+def keep_forces(rows: Rows[ContactRow], n_contacts: int) -> None:
+    for i in range(n_contacts):
+        for j in range(3):
+            rows[i].kept_forces[j] = rows[i].forces[j]
+
+
+@kernel
+def put_forces_back(rows: Rows[ContactRow], n_contacts: int) -> None:
+    for i in range(n_contacts):
+        for j in range(3):
+            rows[i].forces[j] = rows[i].kept_forces[j]
 
 
 @kernel
@@ -106,9 +120,7 @@ def solves_with_modes(
     motion_left(rows, n_contacts, b, y)
     if obeys(rows, n_contacts, friction, terms, y):
         return True
-    for i in range(n_contacts):
-        for j in range(3):
-            rows[i].forces[j] = rows[i].kept_forces[j]
+    put_forces_back(rows, n_contacts)
     motion_left(rows, n_contacts, b, y)
     return False
 
@@ -145,10 +157,9 @@ def solves_with_any_modes(
 @kernel
 def read_modes(rows: Rows[ContactRow], n_contacts: int, slow_speed: float, y: FloatArray) -> None:
     """Read off which contacts open, stick and slip, and keep the forces."""
+    keep_forces(rows, n_contacts)
     for i in range(n_contacts):
         contact = rows[i]
-        for j in range(3):
-            contact.kept_forces[j] = contact.forces[j]
         contact.mode = OPENS
         if contact.forces[0] > 0.0:
             slip = steepest_tangent(contact, y)[0]
@@ -187,7 +198,7 @@ def coulomb_onset(
         motion_left(rows, n_contacts, b, y)
         if obeys(rows, n_contacts, friction, terms, y):
             return True
-        if turn % ROUNDS_BETWEEN == 0:
+        if turn <= FIRST_ROUNDS or turn % ROUNDS_BETWEEN == 0:
             slow = SLOW if turn % (2 * ROUNDS_BETWEEN) != 0 else SLOWEST
             read_modes(rows, n_contacts, slow * length(y, 6), y)
             if solves_with_modes(rows, n_contacts, friction, b, terms, y, newton):

@@ -11,13 +11,15 @@ from typing import Annotated
 from cagepose.kernels.cone import steepest_tangent
 from cagepose.kernels.contact_set import ContactRow
 from cagepose.kernels.jit import kernel
-from cagepose.kernels.least_squares import inner
+from cagepose.kernels.least_squares import inner, length
 from cagepose.kernels.record import FloatArray, IntArray, Rows
 
 CONTACT_LIMIT = 12
 """More contacts than this that carry: left to the sweeps."""
 UNKNOWNS = 6 + 3 * CONTACT_LIMIT
 NEWTON_STEPS = 8
+STILL = 1e-14
+"""In lengths of the load: after so small a change the next one is rounding, since the digits double."""
 SINGULAR = 1e-11
 """Pivots below this fraction of the greatest are zero: forces of several sticking contacts need not be unique."""
 
@@ -138,16 +140,21 @@ def newton_on_modes(
     n = number_unknowns(rows, n_contacts, y)
     if n < 0:
         return
+    still = STILL * length(b, 6)
     for _ in range(NEWTON_STEPS):
         write_system(rows, n_contacts, friction, b, y, n, room)
         eliminate(room, n)
+        greatest = 0.0
         for place in range(n):
             change, unknown = room.matrix[place, n], room.order[place]
+            greatest = max(greatest, abs(change))
             if unknown < 6:
                 y[unknown] += change
         for i in range(n_contacts):
             if rows[i].mode != OPENS:
                 add_changes(room, n, rows[i])
+        if greatest <= still:
+            break
     for i in range(n_contacts):
         contact = rows[i]
         if contact.mode == OPENS:

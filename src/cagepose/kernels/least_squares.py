@@ -278,13 +278,11 @@ def nonnegative_least_squares(system: System, n_columns: int, passive: PassiveSe
         least_price = PRICE * rounding_scale(passive)
         best, best_price = n_columns, 0.0
         for j in range(n_columns):
-            if rejected[j] or label_is_passive(passive, j):
+            along = inner(columns[j], passive.residual, passive.n_rows)
+            if rejected[j] or along <= 0.0:
                 continue
-            size = length(columns[j], passive.n_rows)
-            if size == 0.0:
-                continue
-            price = inner(columns[j], passive.residual, passive.n_rows) / size
-            if price > least_price and price > best_price:
+            price = along / length(columns[j], passive.n_rows)
+            if price > least_price and price > best_price and not label_is_passive(passive, j):
                 best, best_price = j, price
         if best == n_columns:
             break

@@ -16,7 +16,7 @@ from cagepose.kernels.cone import (
     cone_residual,
     write_forces,
 )
-from cagepose.kernels.contact_set import ContactRow, ContactSet, choose_next_faces
+from cagepose.kernels.contact_set import ContactRow, ContactSet, choose_next_faces, put_best_faces_back
 from cagepose.kernels.coulomb import allowed_error, coulomb_onset
 from cagepose.kernels.coulomb_newton import NewtonRoom
 from cagepose.kernels.jit import kernel
@@ -53,7 +53,7 @@ class OnsetRoom:
     span
         Basis of all that the carrying contacts can push along, if none of them slips.
     residual
-        What is left of the load, in lengths of its terms: zero, to rounding, if the object is held.
+        What the contacts leave of the load, in lengths of the terms: zero, to rounding, if the object is held.
     """
 
     load: ScaledVector
@@ -117,10 +117,10 @@ def onset_with_faces(
         code = HELD_BY_FRICTION
     write_forces(cone, used, rows, n_contacts)
     scale = rounding_scale(cone.passive)
+    room.residual = left / scale if scale > 0.0 else 0.0
     for k in range(6):
         y[k] = cone.passive.residual[k]
     if is_balance(rows, left, used, 1.0, scale, room):
-        room.residual = left / scale if scale > 0.0 else 0.0
         return code
     if friction > 0.0 and not coulomb_onset(rows, n_contacts, friction, b, cone, y, room.newton):
         return UNSOLVED
@@ -134,13 +134,13 @@ def onset(contacts: ContactSet, friction: float, room: OnsetRoom) -> int:
     Filled: which faces are chosen, their forces, and in ``room`` the motion y (zero if held) and the residual.
     """
     rows, n_contacts = contacts.rows, contacts.used[0]
-    best_code, best_speed = -1, -1.0
+    best_code, best_speed, best_left = -1, -1.0, 0.0
     every = bool(np.bool_(False))
     for _ in range(COMBINATIONS_LIMIT):
         code = onset_with_faces(rows, n_contacts, friction, room.load, room.load_terms, room.trial, room)
         speed = length(room.trial, 6) if code == MOVES else 0.0
         if code > best_code or (code == best_code and speed > best_speed * (1.0 + 1e-9)):
-            best_code, best_speed = code, speed
+            best_code, best_speed, best_left = code, speed, room.residual
             for k in range(6):
                 room.y[k] = room.trial[k] if code == MOVES else 0.0
             for i in range(n_contacts):
@@ -151,12 +151,8 @@ def onset(contacts: ContactSet, friction: float, room: OnsetRoom) -> int:
             break
     else:
         return UNSOLVED
-    for i in range(n_contacts):
-        rows[i].chosen = rows[i].best_chosen
-        for j in range(3):
-            rows[i].forces[j] = rows[i].best_forces[j]
-    if best_code == MOVES:
-        room.residual = best_speed / length(room.load, 6)
+    put_best_faces_back(contacts)
+    room.residual = best_left
     return best_code
 
 

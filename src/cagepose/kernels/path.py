@@ -155,7 +155,7 @@ def pin_face(geometry: Geometry, placement: Placement, point: int, box: int, pin
 @kernel
 def pin_contacts(geometry: Geometry, placement: Placement, contacts: ContactSet, pins: Pins) -> None:
     """Pin the contacts that carry in this step: to their faces, and where they stick also in the face."""
-    pins.room.used = 0
+    pins.rooms[0].used = 0
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
         if contact.step_forces[0] > 0.0:
@@ -200,7 +200,7 @@ def pushed_out(
     geometry = setting.geometry
     holds = True
     for _ in range(POINTS_PUSHED):
-        if room.pins.room.used > 0:
+        if room.pins.rooms[0].used > 0:
             holds, position, quaternion = pull_back(
                 geometry, setting.body, position, quaternion, room.pins, setting.size_m
             )

@@ -22,7 +22,7 @@ from cagepose.kernels.metric import (
     write_scaled_wrench,
 )
 from cagepose.kernels.pose import Quaternion, rotated
-from cagepose.kernels.record import Rows, empty_record, empty_rows
+from cagepose.kernels.record import Rows, empty_rows
 from cagepose.kernels.vector import Vector, cross, dot, minus, row, scaled
 
 ROUNDS = 12
@@ -61,21 +61,21 @@ class PullRoom:
 
 
 class Pins(NamedTuple):
-    """Pins 0 to room.used - 1 of ``rows`` are to hold."""
+    """Pins 0 to rooms[0].used - 1 of ``rows`` are to hold."""
 
-    room: PullRoom
+    rooms: Rows[PullRoom]
     rows: Rows[Pin]
 
 
 def empty_pins(n_pins: int) -> Pins:
     """Return room for ``n_pins`` (plain Python)."""
-    return Pins(empty_record(PullRoom), empty_rows(Pin, n_pins))
+    return Pins(empty_rows(PullRoom, 1), empty_rows(Pin, n_pins))
 
 
 @kernel
 def add_pin(pins: Pins, point: int, box: int, axis: int, side: float, target: float) -> bool:
     """Add a pin; False: there is no room, or it is there already."""
-    n = pins.room.used
+    n = pins.rooms[0].used
     if n == len(pins.rows):
         return False
     for i in range(n):
@@ -84,7 +84,7 @@ def add_pin(pins: Pins, point: int, box: int, axis: int, side: float, target: fl
             return False
     pin = pins.rows[n]
     pin.point, pin.box, pin.axis, pin.side, pin.target = point, box, axis, side, target
-    pins.room.used = n + 1
+    pins.rooms[0].used = n + 1
     return True
 
 
@@ -103,7 +103,7 @@ def pull_back(
 
     Pins that depend on others follow from them: where they do not, that shows as a point inside the object later.
     """
-    room, rows = pins.room, pins.rows
+    room, rows = pins.rooms[0], pins.rows
     worst_before = math.inf
     for _ in range(ROUNDS):
         frame = frame_at(body, quaternion)

@@ -23,7 +23,10 @@ from cagepose.kernels.contact_set import (
     choose_next_faces,
     empty_contact_set,
     find_contacts,
+    has_one_choice,
+    put_best_faces_back,
 )
+from cagepose.kernels.coulomb import keep_forces, put_forces_back
 from cagepose.kernels.geometry import Geometry, Placement, empty_placement, place_object
 from cagepose.kernels.jit import entry_kernel, kernel
 from cagepose.kernels.least_squares import System, clear, empty_system, length, rounding_scale
@@ -38,8 +41,9 @@ from cagepose.kernels.onset import (
     onset_with_faces,
 )
 from cagepose.kernels.pose import Quaternion
-from cagepose.kernels.record import empty_record
+from cagepose.kernels.record import Rows, empty_rows
 from cagepose.kernels.stability import MARGINAL, STABLE_REST, StabilityRoom, find_held, find_shared, stability
+from cagepose.kernels.sure_contacts import SureRoom, rest_is_sure
 from cagepose.kernels.tolerances import KernelTolerances
 from cagepose.kernels.uniqueness import (
     N_COLUMNS,
@@ -77,6 +81,8 @@ class JudgeRoom:
         ``solver.y``: scaled twist of the motion that nothing stops.
     modes
         ``modes.y``: that of another onset that Coulomb's law allows.
+    sure
+        See there.
     rest
         Undetermined freedoms.
     sum_only
@@ -87,27 +93,30 @@ class JudgeRoom:
 
     solver: OnsetRoom
     modes: ModesRoom
+    sure: SureRoom
     rest: StabilityRoom
     sum_only: ScaledVector
     wedged: bool
 
 
 class ProofRoom(NamedTuple):
-    """Room for one proof: what is at the pose, where ``contacts`` hold the forces of a rest, and the rest."""
+    """Room for one proof: what is at the pose, where ``contacts`` hold the forces of a rest, one room for all else,
+    and that of a system.
+    """
 
     placement: Placement
     contacts: ContactSet
-    room: JudgeRoom
+    rooms: Rows[JudgeRoom]
     system: System
 
 
 def empty_proof_room(geometry: Geometry) -> ProofRoom:
     """Return room for one proof (plain Python)."""
     n_contacts = CONTACTS_PER_POINT * len(geometry.points_world)
-    room = empty_record(JudgeRoom)
-    room.sum_only[6] = 1.0
+    rooms = empty_rows(JudgeRoom, 1)
+    rooms[0].sum_only[6] = 1.0
     return ProofRoom(
-        empty_placement(geometry), empty_contact_set(n_contacts), room, empty_system(max(N_COLUMNS, n_contacts))
+        empty_placement(geometry), empty_contact_set(n_contacts), rooms, empty_system(max(N_COLUMNS, n_contacts))
     )
 
 
@@ -124,7 +133,7 @@ def stand_at(
     """Fill placement, contacts and load at a pose; False: too many contacts."""
     frame = frame_at(body, quaternion)
     place_object(geometry, position, quaternion, at.placement)
-    solver = at.room.solver
+    solver = at.rooms[0].solver
     solver.load_terms = write_load(load, quaternion, frame, solver.load)
     return find_contacts(geometry, at.placement, position, frame, touch_m, at.contacts)
 
@@ -190,42 +199,53 @@ def prove(
     """
     if not stand_at(geometry, body, position, quaternion, load, tolerances.touch_m, at):
         return TOO_MANY_CONTACTS, STABLE_REST, 0
-    contacts, room = at.contacts, at.room
+    contacts, room = at.contacts, at.rooms[0]
     code = onset(contacts, friction, room.solver)
     if code > HELD_BY_FRICTION:
-        room.solver.residual = left_by_friction(contacts, friction, room.solver)
         if code != MOVES:  # no balance, and no motion found either: what is left of the load separates them
+            room.solver.residual = left_by_friction(contacts, friction, room.solver)
             for k in range(6):
                 room.solver.y[k] = room.solver.cone.passive.residual[k]
         return PROVEN_MOVES, STABLE_REST, 0
     frame = frame_at(body, quaternion)
     clear(room.rest.ways, WRENCH, 1.0)
-    proof, steady = judge_faces(at, friction, load, quaternion, frame, size_m)
-    for i in range(contacts.used[0]):
-        contact = contacts.rows[i]
-        contact.chosen = contact.best_chosen
-        for j in range(3):
-            contact.forces[j] = contact.best_forces[j]
+    one_choice = has_one_choice(contacts)
+    proof, steady = judge_faces(at, code, one_choice, friction, load, quaternion, frame, size_m)
+    if not one_choice:
+        put_best_faces_back(contacts)
     if code != HELD_WITHOUT_FRICTION:
         room.wedged = proof != PROVEN_UNIQUE and has_self_stress(contacts, friction, room)
-        spare_friction(contacts, (1.0 - RESERVE) * friction, room)
-    find_held(contacts, friction, room.rest, at.system)
+    if not one_choice:
+        if code != HELD_WITHOUT_FRICTION:
+            spare_friction(contacts, (1.0 - RESERVE) * friction, room)
+        find_held(contacts, friction, room.rest, at.system)
     find_shared(contacts, room.rest)
     return proof, steady, room.rest.ways.used
 
 
 @kernel
 def judge_faces(
-    at: ProofRoom, friction: float, load: PhaseLoad, quaternion: Quaternion, frame: Frame, size_m: float
+    at: ProofRoom,
+    code: int,
+    one_choice: bool,
+    friction: float,
+    load: PhaseLoad,
+    quaternion: Quaternion,
+    frame: Frame,
+    size_m: float,
 ) -> tuple[int, int]:
-    """Return (code of the proof, code of stability) of a rest: the least sure of all combinations of faces."""
-    contacts, room, solver = at.contacts, at.room, at.room.solver
+    """Return (code of the proof, code of stability) of a rest: the least sure of all combinations of faces.
+
+    Where there is one choice of faces only, its onset, with this code, has been solved, and its forces stay.
+    """
+    contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
     every = bool(np.bool_(True))
     proof, steady = PROVEN_WITHOUT_FRICTION, STABLE_REST
     for _ in range(COMBINATIONS_LIMIT):
-        code = onset_with_faces(
-            contacts.rows, contacts.used[0], friction, solver.load, solver.load_terms, solver.trial, solver
-        )
+        if not one_choice:
+            code = onset_with_faces(
+                contacts.rows, contacts.used[0], friction, solver.load, solver.load_terms, solver.trial, solver
+            )
         if code != HELD_WITHOUT_FRICTION:
             spare_friction(contacts, (1.0 - RESERVE) * friction, room)
         with_these = stability(
@@ -233,7 +253,11 @@ def judge_faces(
         )
         steady = max(steady, with_these)
         if code != HELD_WITHOUT_FRICTION:
-            answer = other_onset(contacts, friction, solver.load, room.modes, solver.newton, at.system)
+            answer = UNIQUE
+            if not rest_is_sure(contacts, friction, solver.load, solver.load_terms, room.sure, room.rest, at.system):
+                keep_forces(contacts.rows, contacts.used[0])
+                answer = other_onset(contacts, friction, solver.load, room.modes, solver.newton, at.system)
+                put_forces_back(contacts.rows, contacts.used[0])
             if answer == OTHER_FOUND:
                 return OTHER_ONSET, steady
             proof = max(proof, PROVEN_UNIQUE if answer == UNIQUE else UNIQUENESS_NOT_SHOWN)
@@ -305,8 +329,8 @@ def critical_friction(
     least = 0.0
     every = bool(np.bool_(False))
     for _ in range(COMBINATIONS_LIMIT):
-        least = max(least, least_friction(at.contacts, at.room.solver))
-        write_forces(at.room.solver.cone, least, at.contacts.rows, at.contacts.used[0])
+        least = max(least, least_friction(at.contacts, at.rooms[0].solver))
+        write_forces(at.rooms[0].solver.cone, least, at.contacts.rows, at.contacts.used[0])
         if least == math.inf or not choose_next_faces(at.contacts, every):
             return least
     return math.nan

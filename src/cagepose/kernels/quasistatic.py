@@ -44,7 +44,7 @@ from cagepose.kernels.path import (
 )
 from cagepose.kernels.pose import Quaternion, turned_by
 from cagepose.kernels.projection import ON_FACE
-from cagepose.kernels.record import Rows, empty_record, empty_rows
+from cagepose.kernels.record import Rows, empty_rows
 from cagepose.kernels.stiff import StiffRoom, curvature_along, stiff_step
 from cagepose.kernels.tolerances import KernelTolerances
 from cagepose.kernels.trace import (
@@ -115,8 +115,8 @@ class QuasistaticWorkspace(NamedTuple):
         Room for contacts at a pose that is tried.
     turned
         Room for the contacts in the coordinates of an implicit step.
-    room
-        Room of fixed size.
+    rooms
+        One room of fixed size.
     path
         Room of the steps.
     touched
@@ -131,7 +131,7 @@ class QuasistaticWorkspace(NamedTuple):
     contacts: ContactSet
     ahead: ContactSet
     turned: Rows[ContactRow]
-    room: RunRoom
+    rooms: Rows[RunRoom]
     path: PathRoom
     touched: NDArray[np.bool_]
     trace: Trace
@@ -147,7 +147,7 @@ def empty_quasistatic_workspace(geometry: Geometry, n_phases: int, step_limit: i
         empty_contact_set(n_contacts),
         empty_contact_set(n_contacts),
         empty_rows(ContactRow, n_contacts),
-        empty_record(RunRoom),
+        empty_rows(RunRoom, 1),
         empty_path_room(n_points),
         np.zeros(n_points, np.bool_),
         empty_trace(n_phases * step_limit, n_points),
@@ -178,7 +178,7 @@ def next_twist(
     setting: Setting, quaternion: Quaternion, frame: Frame, turn_step_rad: float, work: QuasistaticWorkspace
 ) -> Twist:
     """Return the twist to follow from a pose that moves; the contacts' ``step_forces`` belong to it."""
-    contacts, room = work.contacts, work.room
+    contacts, room = work.contacts, work.rooms[0]
     y = room.solver.y
     carries = False
     for i in range(contacts.used[0]):
@@ -218,8 +218,8 @@ def is_held_on_the_way(
                 copy_contact(work.ahead.rows, i, kept)
                 kept += 1
         work.ahead.used[0] = kept
-    work.room.solver.load_terms = write_load(setting.load, quaternion, frame, work.room.solver.load)
-    return is_held(work.ahead, setting.friction, work.room.solver)
+    work.rooms[0].solver.load_terms = write_load(setting.load, quaternion, frame, work.rooms[0].solver.load)
+    return is_held(work.ahead, setting.friction, work.rooms[0].solver)
 
 
 @kernel
@@ -349,8 +349,8 @@ def phase_run(
     event = first_event
     while event < first_event + step_limit:
         note_touching(work)
-        work.room.solver.load_terms = write_load(setting.load, quaternion, frame, work.room.solver.load)
-        code = onset(work.contacts, setting.friction, work.room.solver) if fits else UNSOLVED
+        work.rooms[0].solver.load_terms = write_load(setting.load, quaternion, frame, work.rooms[0].solver.load)
+        code = onset(work.contacts, setting.friction, work.rooms[0].solver) if fits else UNSOLVED
         is_rest = code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
         if is_rest and n_polished < POLISHES and gap_left(work.contacts) > ON_FACE * setting.size_m:
             position, quaternion = polished(setting, position, quaternion, work)

@@ -3,6 +3,9 @@
 A tuple of arrays is seven numbers for each of them. With some seventy arrays of room a kernel passed five hundred
 numbers to every kernel it called, and compiling all that copying took longer than compiling the mechanics. A record
 holds the arrays of fixed size, a row of records what there is for each contact, point or event.
+
+Python hands a large record to a kernel as an array of one: NumPy describes a record's fields anew whenever its memory
+is asked for, which took 40 us for the room of a proof; an array takes 0.2 us.
 """
 
 from __future__ import annotations
@@ -55,8 +58,7 @@ def dtype_of(record: type[object]) -> np.dtype[Any]:
 
 def empty_record(record: type[R_co]) -> R_co:
     """Return one record, all zero (plain Python)."""
-    made: R_co = np.zeros(1, dtype_of(record)).view(np.recarray)[0]
-    return made
+    return empty_rows(record, 1)[0]
 
 
 def empty_rows(record: type[R_co], n_rows: int) -> Rows[R_co]:

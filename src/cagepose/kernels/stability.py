@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal
 
+import numpy as np
+
 from cagepose.kernels.contact_set import ContactRow, ContactSet
 from cagepose.kernels.curvature import write_curvature
 from cagepose.kernels.eigen import symmetric_eigen
@@ -71,15 +73,16 @@ class StabilityRoom:
 @kernel
 def write_outside(basis: PassiveSet, column: FloatArray, out: FloatArray) -> bool:
     """Write the part of a column outside the span of a basis; False: there is none, and zero is written."""
-    for k in range(6):
-        out[k] = column[k]
-    for _ in range(2):
-        for place in range(basis.used):
-            part = inner(basis.basis[place], out, 6)
-            for k in range(6):
-                out[k] -= part * basis.basis[place, k]
-    if length(out, 6) > IN_SPAN * length(column, 6):
-        return True
+    if basis.used < WRENCH:
+        for k in range(6):
+            out[k] = column[k]
+        for _ in range(2):
+            for place in range(basis.used):
+                part = inner(basis.basis[place], out, 6)
+                for k in range(6):
+                    out[k] -= part * basis.basis[place, k]
+        if length(out, 6) > IN_SPAN * length(column, 6):
+            return True
     for k in range(6):
         out[k] = 0.0
     return False
@@ -89,7 +92,10 @@ def write_outside(basis: PassiveSet, column: FloatArray, out: FloatArray) -> boo
 def hold(basis: PassiveSet, column: FloatArray, room: StabilityRoom) -> None:
     """Add a column to a basis unless it lies in its span."""
     if write_outside(basis, column, room.rest):
-        append_column(basis, column, basis.used, 0.0)
+        size = length(room.rest, 6)
+        for k in range(6):
+            basis.basis[basis.used, k] = room.rest[k] / size
+        basis.used += 1
 
 
 @kernel
@@ -136,7 +142,7 @@ def lies_in_cone(contacts: ContactSet, i: int, sign: float, room: StabilityRoom,
 
     With -1 no free twist opens it; with +1 no free twist that the others allow closes it.
     """
-    n_others = 0
+    n_others = int(np.int64(0))
     for k in range(contacts.used[0]):
         other = contacts.rows[k]
         if k != i and other.chosen and not other.is_equality and not other.is_rejected:

@@ -136,7 +136,7 @@ def write_modes(
     """Write the system of the present modes; return the number of columns. Column 0 is the scale of the load."""
     write_velocity(contacts, n_rows, b, b, 1.0, system.columns[0], room)
     room.owners[0] = -1
-    n_columns = 1
+    n_columns = int(np.int64(1))
     around = friction / math.cos(math.pi / GENERATORS)
     for place in range(n_rows):
         mode = room.modes[place]
@@ -257,7 +257,7 @@ def other_onset(
 
     The forces of the contacts are lost.
     """
-    n_rows = 0
+    n_rows = int(np.int64(0))  # a plain 0 would compile the whole search twice, once for the literal
     for i in range(contacts.used[0]):
         if contacts.rows[i].chosen:
             if n_rows == CONTACT_LIMIT:

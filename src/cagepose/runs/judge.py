@@ -99,7 +99,7 @@ class Judge:
             self.tolerances,
             self._room,
         )
-        room, contacts = self._room.room, self._room.contacts
+        room, contacts = self._room.rooms[0], self._room.contacts
         touching = [contacts.rows[i] for i in range(contacts.used[0])]
         names = self.scene.cage.names
         held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
