@@ -32,8 +32,9 @@ def test_all_names_every_public_class_and_function_once() -> None:
             "Proof",
             "Run",
         ),
-        *("RunFileError", "Scene", "SceneError", "SceneFileError", "Tolerances", "Variant", "__version__"),
-        *("compare", "load_run", "load_scene", "play", "run", "save_run", "with_critical_friction"),
+        *("RunFileError", "Runs", "Scene", "SceneError", "SceneFileError", "Tolerances", "Variant", "Variation"),
+        *("__version__", "compare", "load_run", "load_scene", "play", "run", "run_many", "save_run"),
+        "with_critical_friction",
     }
 
 

@@ -166,7 +166,13 @@ WRONG = {
         Variation(cage_euler_zyx=np.zeros((2, 3)), friction_coefficient=[0.1] * 3),
         "friction_coefficient: has 3 rows and cage_euler_zyx 2; give one for each run",
     ),
-    "nan": Wrong(Variation(friction_coefficient=[0.1, np.nan]), r"friction_coefficient\[1\]: is nan"),
+    "nan": Wrong(
+        Variation(friction_coefficient=[0.1, np.nan]),
+        r"friction_coefficient: holds a number that is not finite: \[0.1, nan",
+    ),
+    "one nan of many": Wrong(
+        Variation(friction_coefficient=[0.1] * 70 + [np.nan] * 10), r"friction_coefficient\[70\]: is nan; give a finite"
+    ),
     "friction": Wrong(Variation(friction_coefficient=[0.1, -0.1]), r"friction_coefficient\[1\]: is below zero"),
     "direction": Wrong(Variation(force_direction_world=np.zeros((2, 3))), r"force_direction_world\[0\]: is zero"),
     "magnitude": Wrong(Variation(force_magnitude_n=[1.0, 0.0]), r"force_magnitude_n\[1\]: is not above zero"),

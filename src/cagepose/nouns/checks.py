@@ -11,6 +11,8 @@ from cagepose.errors import Problem, SceneError
 from cagepose.kernels.vector import Vector
 
 FloatArray = NDArray[np.float64]
+SHOWN = 64
+"""An error shows an array of so many numbers whole; of a longer one it names the first place that is wrong."""
 
 
 def finite_array(value: ArrayLike, shape: tuple[int, ...], key: str) -> FloatArray:
@@ -32,6 +34,8 @@ def finite_array(value: ArrayLike, shape: tuple[int, ...], key: str) -> FloatArr
         wanted_text = " x ".join("n" if n == -1 else str(n) for n in shape)
         raise SceneError([Problem((key,), f"has shape {array.shape}; give {wanted_text} numbers")])
     if not np.isfinite(array).all():
+        if array.size <= SHOWN:
+            raise SceneError([Problem((key,), f"holds a number that is not finite: {array.tolist()}")])
         at = [int(index) for index in np.argwhere(~np.isfinite(array))[0]]
         raise SceneError([Problem((key, *at), f"is {array[tuple(at)]}; give a finite number")])
     array.setflags(write=False)
