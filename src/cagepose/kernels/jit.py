@@ -90,13 +90,21 @@ def is_loaded(entry: Callable[..., object]) -> bool:
     return bool(getattr(entry, "signatures", True))
 
 
+_MACHINE_CODE: dict[Callable[..., object], Any] = {}
+
+
 def machine_code(entry: F) -> F:
     """Return a loaded kernel without the search for one that fits the types of its arguments.
 
     That search takes 20 us, half as long as a run. So whoever calls the machine code gives the same types each time.
     """
-    overloads = list(getattr(entry, "overloads", {}).values())
-    return overloads[0].entry_point if len(overloads) == 1 else entry
+    overloads = getattr(entry, "overloads", {})
+    if len(overloads) != 1:
+        return entry
+    if entry not in _MACHINE_CODE:  # to look into ``overloads`` takes longer than a run: each look hashes all types
+        _MACHINE_CODE[entry] = next(iter(overloads.values())).entry_point
+    found: F = _MACHINE_CODE[entry]
+    return found
 
 
 def is_compiled(entry_name: str) -> bool:
