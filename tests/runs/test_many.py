@@ -20,7 +20,7 @@ METHODS = ("stepwise", "quasistatic")
 MM = 1e-3
 
 
-def block(**changed: Any) -> Scene:
+def block(*, mass_kg: float | None = 0.2, magnitude_n: float | None = 3.0, **changed: Any) -> Scene:
     """A block that falls between posts and is pushed against them; each keyword is one that `Variation` has."""
     points = changed.get(
         "points_cage_m", np.array([[x, y, z] for x in (-12, 12.5) for y in (-9, 9.5) for z in (-6, 6.5)]) * MM
@@ -30,11 +30,11 @@ def block(**changed: Any) -> Scene:
     force = Force(
         changed.get("force_direction_world", (1, 0.2, 0.1)),
         changed.get("force_at_object_m", (-10 * MM, 1 * MM, 2 * MM)),
-        changed.get("force_magnitude_n", 3.0),
+        changed.get("force_magnitude_n", magnitude_n),
     )
     boxes = [Box((22 * MM, 16 * MM, 6 * MM)), Box((10 * MM, 17 * MM, 3 * MM), Pose((0, 0, 4 * MM)))]
     return Scene(
-        Object(boxes, mass_kg=0.2, pose=start),
+        Object(boxes, mass_kg=mass_kg, pose=start),
         Cage(points, pose=cage),
         [Load("weight", gravity=(0, 0, -9.81)), Load("push", gravity=(0, 0, -9.81), force=force)],
         friction_coefficient=changed.get("friction_coefficient", 0.1),
@@ -91,6 +91,20 @@ def test_each_thing_that_varies_gives_the_runs_of_scenes_built_one_by_one(name: 
                 block(**{name: value})
         else:
             assert_same(found, row, block(**{name: value}), method)
+
+
+@pytest.mark.parametrize(("mass_kg", "magnitude_n"), [(None, 3.0), (0.2, None), (None, None)])
+@pytest.mark.parametrize("name", ["force_magnitude_n", "force_direction_world"])
+def test_weight_and_force_count_as_in_a_scene_of_its_own(
+    name: str, mass_kg: float | None, magnitude_n: float | None
+) -> None:
+    """A mass counts in newtons as soon as the force has a magnitude, though the scene itself may give none."""
+    values = VARIED[name](np.random.default_rng(6), 6)
+    scene = block(mass_kg=mass_kg, magnitude_n=magnitude_n)
+    found = run_many(scene, Variation(**{name: values}), method="quasistatic")
+    for row, value in enumerate(values):
+        alone = block(mass_kg=mass_kg, magnitude_n=magnitude_n, **{name: value})
+        assert_same(found, row, alone, "quasistatic")
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -54,8 +54,10 @@ class Endings(NamedTuple):
 
     Attributes
     ----------
-    verdicts, proofs, n_events
+    verdicts, n_events
         Codes, and how many events (stepwise) or steps (quasistatic) it took, (n, n_phases).
+    proofs
+        Code where a quasistatic phase comes to rest, (n, n_phases).
     positions, quaternions
         The object's pose in the world, (n, n_phases, 3) metres and (n, n_phases, 4).
     touching

@@ -42,7 +42,7 @@ def quasistatic_runs(
     at: ProofRoom,
     endings: Endings,
 ) -> None:
-    """Run ``first`` up to, without, ``last``, and prove where each phase ends.
+    """Run ``first`` up to, without, ``last``, and prove where a phase comes to rest.
 
     Parameters
     ----------
@@ -80,10 +80,11 @@ def quasistatic_runs(
             verdict, n_events, position, quaternion = phase_run(
                 setting, position, quaternion, phase, rules.step_limit, n_events, work
             )
-            proof, _, _ = prove(geometry, body, position, quaternion, load, friction, size_m, run_tolerances, at)
-            if verdict == RESTS and proof in (PROVEN_MOVES, TOO_MANY_CONTACTS):
-                verdict = STALLED
-            endings.proofs[run, phase] = proof
+            if verdict == RESTS:
+                proof, _, _ = prove(geometry, body, position, quaternion, load, friction, size_m, run_tolerances, at)
+                endings.proofs[run, phase] = proof
+                if proof in (PROVEN_MOVES, TOO_MANY_CONTACTS):
+                    verdict = STALLED
             write_ending(endings, run, phase, verdict, n_events - before, position, quaternion, middle_object, origin)
             for i in range(work.contacts.used[0]):
                 endings.touching[run, phase, work.contacts.rows[i].point] = True

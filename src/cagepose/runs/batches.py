@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -20,19 +21,20 @@ from cagepose.kernels.stepwise_batch import stepwise_runs
 from cagepose.kernels.tolerances import kernel_tolerances
 from cagepose.nouns.checks import FloatArray, as_vector
 from cagepose.nouns.geometry import cage_sizes, object_size
+from cagepose.nouns.load import Force, Load
 from cagepose.nouns.pose import Pose
 from cagepose.nouns.scene import FARTHEST_START, Scene
-from cagepose.runs.frames import middle_of_boxes
+from cagepose.runs.frames import Frames, middle_of_boxes
 from cagepose.runs.judge import body_of
 from cagepose.runs.quasistatic import STEP_LIMIT, TURN_STEP_RAD
 from cagepose.runs.stepwise import no_slip_angle_rad, phase_loads, rules_of_size
 from cagepose.runs.variation import Variation
-from cagepose.runs.weights import dead_loads
+from cagepose.runs.weights import dead_loads, weigh
 
 Room = TypeVar("Room")
 
 
-class Batch(Generic[Room]):
+class Batch(ABC, Generic[Room]):
     """Runs of one scene. A method says what one thread needs (`room`) and calls its kernel (`run`).
 
     Attributes
@@ -46,23 +48,24 @@ class Batch(Generic[Room]):
     n_runs: int
     endings: Endings
 
-    def _begin(self, scene: Scene, variation: Variation) -> dict[str, FloatArray]:
+    def _begin(self, scene: Scene, variation: Variation, middle_object: FloatArray) -> dict[str, FloatArray]:
+        self._scene, self._frames = scene, Frames(scene, middle_object)
         self.n_runs, columns = variation.columns(scene)
         self.endings = empty_endings(self.n_runs, len(scene.loads), len(scene.cage.names))
         self._idle_rooms = list[Room]()
         return columns
 
+    @abstractmethod
     def room(self) -> Room:
         """Return what one thread writes to."""
-        raise NotImplementedError
 
+    @abstractmethod
     def is_loaded(self) -> bool:
         """Whether the kernel can be called at once."""
-        raise NotImplementedError
 
+    @abstractmethod
     def run(self, first: int, last: int, room: Room) -> None:
         """Run ``first`` up to, without, ``last``."""
-        raise NotImplementedError
 
     def load(self) -> None:
         """Compile the kernel, or read it from disk, so that threads need not."""
@@ -85,18 +88,17 @@ class StepwiseBatch(Batch[tuple[Geometry, Workspace]]):
     """Runs of one scene by the paper's rules."""
 
     def __init__(self, scene: Scene, variation: Variation) -> None:
-        columns = self._begin(scene, variation)
-        self._middle = middle_of_boxes(scene)
-        self._geometry = _seen_from(scene, self._middle)
+        columns = self._begin(scene, variation, middle_of_boxes(scene))
         frictions = columns.get("friction_coefficient")
         angles = np.array([no_slip_angle_rad(scene)]) if frictions is None else np.arctan(frictions)
         self._starts = _starts(scene, columns, angles)
-        self._loads = _stepwise_loads(scene, columns, self._middle)
+        self._loads = _stepwise_loads(scene, columns, self._frames.middle_object)
         self._rules = rules_of_size(scene, 1.0)
         self._tolerances = kernel_tolerances(1.0, scene.tolerances.touch)
 
     def room(self) -> tuple[Geometry, Workspace]:
-        return _own_points(self._geometry), empty_workspace(self._geometry, self.endings.verdicts.shape[1], self._rules)
+        geometry = self._frames.geometry(self._scene)
+        return geometry, empty_workspace(geometry, len(self._scene.loads), self._rules)
 
     def is_loaded(self) -> bool:
         return is_loaded(stepwise_runs)
@@ -109,7 +111,7 @@ class StepwiseBatch(Batch[tuple[Geometry, Workspace]]):
             self._starts,
             self._loads,
             geometry,
-            as_vector(self._middle),
+            as_vector(self._frames.middle_object),
             self._rules,
             self._tolerances,
             work,
@@ -121,9 +123,7 @@ class QuasistaticBatch(Batch[tuple[Geometry, QuasistaticWorkspace, ProofRoom]]):
     """Runs of one scene by the mechanics."""
 
     def __init__(self, scene: Scene, variation: Variation) -> None:
-        columns = self._begin(scene, variation)
-        self._middle = scene.object.center_of_gravity_m
-        self._geometry = _seen_from(scene, self._middle)
+        columns = self._begin(scene, variation, scene.object.center_of_gravity_m)
         self._body = body_of(scene)
         friction = scene.friction_coefficient or 0.0
         self._starts = _starts(scene, columns, columns.get("friction_coefficient", np.array([friction])))
@@ -132,8 +132,8 @@ class QuasistaticBatch(Batch[tuple[Geometry, QuasistaticWorkspace, ProofRoom]]):
         self._tolerances = kernel_tolerances(1.0, scene.tolerances.touch)
 
     def room(self) -> tuple[Geometry, QuasistaticWorkspace, ProofRoom]:
-        geometry = _own_points(self._geometry)
-        work = empty_quasistatic_workspace(geometry, self.endings.verdicts.shape[1], STEP_LIMIT)
+        geometry = self._frames.geometry(self._scene)
+        work = empty_quasistatic_workspace(geometry, len(self._scene.loads), STEP_LIMIT)
         return geometry, work, empty_proof_room(geometry)
 
     def is_loaded(self) -> bool:
@@ -148,21 +148,13 @@ class QuasistaticBatch(Batch[tuple[Geometry, QuasistaticWorkspace, ProofRoom]]):
             self._loads,
             geometry,
             self._body,
-            as_vector(self._middle),
+            as_vector(self._frames.middle_object),
             self._rules,
             self._tolerances,
             work,
             at,
             self.endings,
         )
-
-
-def _seen_from(scene: Scene, middle_object: FloatArray) -> Geometry:
-    return scene.geometry._replace(box_positions=scene.geometry.box_positions - middle_object)
-
-
-def _own_points(geometry: Geometry) -> Geometry:
-    return geometry._replace(points_world=geometry.points_world.copy())
 
 
 def _starts(scene: Scene, columns: dict[str, FloatArray], frictions: FloatArray) -> Starts:
@@ -210,24 +202,26 @@ def _stepwise_loads(scene: Scene, columns: dict[str, FloatArray], middle_object:
 
 
 def _quasistatic_loads(scene: Scene, columns: dict[str, FloatArray]) -> Rows[Rows[PhaseLoad]]:
-    base = dead_loads(scene)
-    pushes = [index for index, load in enumerate(scene.loads) if load.force is not None]
     varied = [name for name in columns if name.startswith("force_")]
     n_rows = len(columns[varied[0]]) if varied else 1
     loads = np.zeros((n_rows, len(scene.loads)), dtype_of(PhaseLoad)).view(np.recarray)
-    loads[:] = base
+    loads[:] = dead_loads(scene)
     if varied:
-        load, place = scene.loads[pushes[0]], pushes[0]
-        forces = loads["forces_world"]
-        size = float(np.linalg.norm(forces[0, place, 1]))
-        magnitudes = columns.get("force_magnitude_n", np.full(n_rows, size))[:, None]
-        directions = columns.get("force_direction_world")
-        assert load.force is not None
-        unit = load.force.direction_world[None] if directions is None else _unit_rows(directions)
-        in_newtons = scene.object.mass_kg is not None and load.force.magnitude_n is not None
-        if load.gravity_world is not None and not in_newtons:
-            forces[:, place, 0] *= magnitudes / size  # the weight is a part of the force, then
-        forces[:, place, 1] = magnitudes * unit
+        ((place, load, force),) = [
+            (k, load, load.force) for k, load in enumerate(scene.loads) if load.force is not None
+        ]
+        magnitudes = np.ones(n_rows)
+        if "force_magnitude_n" in columns:  # of a force of 1 N: a scene may give none, and count no newtons then
+            magnitudes = columns["force_magnitude_n"]
+            force = Force(force.direction_world, force.at_object_m, 1.0)
+        weighed = weigh(scene, Load(load.name, gravity=load.gravity_world, force=force))
+        pushes = weighed.force[None]
+        if "force_direction_world" in columns:
+            pushes = np.linalg.norm(weighed.force) * _unit_rows(columns["force_direction_world"])
+        # Where newtons do not count, the weight is a part of the force.
+        weights = np.ones(n_rows) if weighed.in_newtons else magnitudes
+        loads["forces_world"][:, place, 0] = weights[:, None] * weighed.gravity
+        loads["forces_world"][:, place, 1] = magnitudes[:, None] * pushes
         if "force_at_object_m" in columns:
             loads["arms_object"][:, place, 1] = columns["force_at_object_m"] - scene.object.center_of_gravity_m
     return loads
