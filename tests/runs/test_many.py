@@ -19,12 +19,18 @@ from rails import rail_scene
 METHODS = ("stepwise", "quasistatic")
 MM = 1e-3
 
+POSTS = [
+    *[(8, 5, -3.5), (-8.2, 5.1, -3.4), (7.9, -5.3, -3.6), (-7.8, -4.9, -3.5)],
+    *[(7.1, 5, 3.6), (-7, 5.2, 3.5), (6.9, -5.1, 3.4), (-7.2, -5, 3.6)],
+    *[(11.5, 4, 0.5), (-11.4, -4.1, 0.4), (11.6, -3.9, -0.6), (-11.5, 4.2, -0.5)],
+    *[(6, 8.6, 0.3), (-6.1, 8.5, -0.4), (6.2, -8.4, 0.2), (-5.9, -8.6, -0.3)],
+]
+"""Millimetres: under the block, over it, at its ends, at its sides, each about 0.5 mm away."""
+
 
 def block(*, mass_kg: float | None = 0.2, magnitude_n: float | None = 3.0, **changed: Any) -> Scene:
-    """A block that falls between posts and is pushed against them; each keyword is one that `Variation` has."""
-    points = changed.get(
-        "points_cage_m", np.array([[x, y, z] for x in (-12, 12.5) for y in (-9, 9.5) for z in (-6, 6.5)]) * MM
-    )
+    """A block caged by posts; each keyword of ``changed`` is one that `Variation` has."""
+    points = changed.get("points_cage_m", np.array(POSTS) * MM)
     cage = Pose(changed.get("cage_position_m", (0, 0, 0)), euler_zyx=changed.get("cage_euler_zyx", (0, 0, 0)))
     start = Pose(changed.get("object_position_m", (0, 0, 0)), euler_zyx=changed.get("object_euler_zyx", (0, 0, 0)))
     force = Force(
@@ -47,7 +53,7 @@ def falling_cube(method: str | None = None) -> Scene:
 
 
 def points_moved(rng: np.random.Generator, n: int) -> np.ndarray:
-    return block().cage.points_cage + rng.uniform(-0.3, 0.3, (n, 8, 3)) * MM
+    return block().cage.points_cage + rng.uniform(-0.3, 0.3, (n, len(POSTS), 3)) * MM
 
 
 VARIED: dict[str, Callable[[np.random.Generator, int], np.ndarray]] = {
@@ -85,6 +91,7 @@ def test_each_thing_that_varies_gives_the_runs_of_scenes_built_one_by_one(name: 
     values = VARIED[name](np.random.default_rng(3), cases(8))
     found = run_many(block(), Variation(**{name: values}), method=method, threads=2)
     assert len(found) == len(values)
+    assert np.isfinite(found.position_m[:, 1]).all(axis=1).mean() > 0.5  # the push matters
     for row, value in enumerate(values):
         if found.verdict[row] == "invalid":
             with pytest.raises(SceneError):
@@ -121,6 +128,7 @@ def test_all_that_varies_at_once_and_in_any_order_and_number_of_threads(method: 
     assert np.array_equal(again.position_m, found.position_m[order], equal_nan=True)
     valid = np.flatnonzero(found.verdict != "invalid")
     assert len(valid) > n // 4
+    assert np.isfinite(found.position_m[valid, 1]).all(axis=1).mean() > 0.5
     for row in valid[:10]:
         assert_same(found, row, block(**{name: array[row] for name, array in values.items()}), method)
 
@@ -144,7 +152,7 @@ def test_several_scenes_of_different_shape_in_one_table() -> None:
     found = run_many(scenes, method="stepwise", threads=2)
     assert found.verdict[0] == "escapes"
     assert found.phase_verdicts.shape == (3, 2)
-    assert found.touching.shape == (3, 2, 14)
+    assert found.touching.shape == (3, 2, len(POSTS))
     for row, scene in enumerate(scenes):
         assert_same(found, row, scene, "stepwise")
 
@@ -175,7 +183,7 @@ class Wrong:
 
 WRONG = {
     "shape": Wrong(Variation(cage_euler_zyx=[0.0, 0.0, 0.1]), r"cage_euler_zyx: has shape \(3,\); give n x 3 numbers"),
-    "points": Wrong(Variation(points_cage_m=np.zeros((2, 3, 3))), "points_cage_m: has shape .* n x 8 x 3"),
+    "points": Wrong(Variation(points_cage_m=np.zeros((2, 3, 3))), "points_cage_m: has shape .* n x 16 x 3"),
     "rows": Wrong(
         Variation(cage_euler_zyx=np.zeros((2, 3)), friction_coefficient=[0.1] * 3),
         "friction_coefficient: has 3 rows and cage_euler_zyx 2; give one for each run",
