@@ -11,8 +11,6 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
-import numpy as np
-
 from cagepose.kernels.contact_set import ContactRow
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.least_squares import (
@@ -114,6 +112,59 @@ def generator_price(
 
 
 @kernel
+def renumber(room: ConeRoom) -> int:
+    """Number the generators in use from zero on, so that the room is never full; return how many there are."""
+    passive = room.passive
+    for k in range(passive.used):
+        label = passive.labels[k]
+        room.contacts[k] = room.contacts[label]
+        room.directions[k, 0], room.directions[k, 1] = room.directions[label, 0], room.directions[label, 1]
+        passive.labels[k] = k
+    return int(passive.used)
+
+
+@kernel
+def add_generator(
+    rows: Rows[ContactRow], n_contacts: int, friction: float, b: FloatArray, charged: bool, number: int, room: ConeRoom
+) -> int:
+    """Let the generator in that lies most along the residual, as the one with this number; return the next number.
+
+    -1: none lies along it. Parameters as for `cone_residual`.
+    """
+    passive = room.passive
+    scale = rounding_scale(passive)
+    left = length(passive.residual, passive.n_rows)
+    best, best_price = -1, 0.0
+    for i in range(n_contacts):
+        if not rows[i].chosen or rows[i].is_rejected:
+            continue
+        price, is_steeper = generator_price(rows, i, friction, charged, room)
+        size = length(rows[i].columns[0], 6)
+        if price > best_price * size and price > (STEEPER * left if is_steeper else PRICE * scale) * size:
+            best, best_price = i, price / size
+    if best < 0:
+        return -1
+    _, one, two = steepest_tangent(rows[best], passive.residual)
+    if friction == 0.0:  # so that what follows with friction may go on from here
+        one = two = 0.0
+    write_generator(rows[best], friction, one, two, room.column)
+    room.column[N_ROWS - 1] = 1.0
+    room.contacts[number] = best
+    room.directions[number, 0], room.directions[number, 1] = one, two
+    cost = friction * rows[best].slip if charged else 0.0
+    if append_column(passive, room.column, number, cost) or (
+        charged and exchange_column(passive, room.column, number, cost)
+    ):
+        settle(passive, b)
+    if label_is_passive(passive, number):
+        for i in range(n_contacts):
+            rows[i].is_rejected = False
+    else:
+        rows[best].is_rejected = True
+    return number + 1
+
+
+@kernel
 def cone_residual(
     rows: Rows[ContactRow],
     n_contacts: int,
@@ -144,46 +195,17 @@ def cone_residual(
         all that the contacts can carry.
     """
     passive = room.passive
-    n_generators = int(np.int64(0))  # a plain 0 would compile what is called twice, once for the literal
-    for k in range(passive.used):  # renumber, so that the room is never full
-        label = passive.labels[k]
-        room.contacts[k] = room.contacts[label]
-        room.directions[k, 0], room.directions[k, 1] = room.directions[label, 0], room.directions[label, 1]
-        passive.labels[k] = k
-        n_generators = k + 1
+    n_generators = renumber(room)
     for i in range(n_contacts):
         rows[i].is_rejected = False
-    while n_generators < GENERATOR_LIMIT:
-        scale = rounding_scale(passive)
-        left = length(passive.residual, passive.n_rows)
-        if friction > 0.0 and not charged and left <= BALANCED * scale:
-            break
-        best, best_price = -1, 0.0
-        for i in range(n_contacts):
-            if not rows[i].chosen or rows[i].is_rejected:
-                continue
-            price, is_steeper = generator_price(rows, i, friction, charged, room)
-            size = length(rows[i].columns[0], 6)
-            if price > best_price * size and price > (STEEPER * left if is_steeper else PRICE * scale) * size:
-                best, best_price = i, price / size
-        if best < 0:
-            break
-        _, one, two = steepest_tangent(rows[best], passive.residual)
-        write_generator(rows[best], friction, one, two, room.column)
-        room.column[N_ROWS - 1] = 1.0
-        room.contacts[n_generators] = best
-        room.directions[n_generators, 0], room.directions[n_generators, 1] = one, two
-        cost = friction * rows[best].slip if charged else 0.0
-        if append_column(passive, room.column, n_generators, cost) or (
-            charged and exchange_column(passive, room.column, n_generators, cost)
+    while 0 <= n_generators < GENERATOR_LIMIT:
+        if (
+            friction > 0.0
+            and not charged
+            and length(passive.residual, passive.n_rows) <= BALANCED * rounding_scale(passive)
         ):
-            settle(passive, b)
-        if label_is_passive(passive, n_generators):
-            for i in range(n_contacts):
-                rows[i].is_rejected = False
-        else:
-            rows[best].is_rejected = True
-        n_generators += 1
+            break
+        n_generators = add_generator(rows, n_contacts, friction, b, charged, n_generators, room)
     return length(passive.residual, passive.n_rows)
 
 

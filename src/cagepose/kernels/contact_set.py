@@ -174,6 +174,24 @@ def last_of_group(contacts: ContactSet, first: int) -> int:
 
 
 @kernel
+def choose_first_faces(contacts: ContactSet) -> None:
+    """Choose the faces that `find_contacts` has chosen."""
+    for i in range(contacts.used[0]):
+        contacts.rows[i].chosen = contacts.rows[i].group == i
+        contacts.rows[i].has_carried = False
+
+
+@kernel
+def keep_faces(contacts: ContactSet) -> None:
+    """Note the faces that are chosen, with their forces, as the best combination so far."""
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        contact.best_chosen = contact.chosen
+        for j in range(3):
+            contact.best_forces[j] = contact.forces[j]
+
+
+@kernel
 def put_best_faces_back(contacts: ContactSet) -> None:
     """Choose the faces of the best combination again, with their forces."""
     for i in range(contacts.used[0]):

@@ -16,7 +16,7 @@ from cagepose.kernels.cone import (
     cone_residual,
     write_forces,
 )
-from cagepose.kernels.contact_set import ContactRow, ContactSet, choose_next_faces, put_best_faces_back
+from cagepose.kernels.contact_set import ContactRow, ContactSet, choose_next_faces, keep_faces, put_best_faces_back
 from cagepose.kernels.coulomb import allowed_error, coulomb_onset
 from cagepose.kernels.coulomb_newton import NewtonRoom
 from cagepose.kernels.jit import kernel
@@ -143,10 +143,7 @@ def onset(contacts: ContactSet, friction: float, room: OnsetRoom) -> int:
             best_code, best_speed, best_left = code, speed, room.residual
             for k in range(6):
                 room.y[k] = room.trial[k] if code == MOVES else 0.0
-            for i in range(n_contacts):
-                rows[i].best_chosen = rows[i].chosen
-                for j in range(3):
-                    rows[i].best_forces[j] = rows[i].forces[j]
+            keep_faces(contacts)
         if not choose_next_faces(contacts, every):
             break
     else:

@@ -19,7 +19,8 @@ from cagepose.kernels.geometry import Geometry
 from cagepose.kernels.jit import entry_kernel
 from cagepose.kernels.metric import Body, PhaseLoad
 from cagepose.kernels.path import Setting
-from cagepose.kernels.proof import PROVEN_MOVES, TOO_MANY_CONTACTS, ProofRoom, prove
+from cagepose.kernels.proof import PROVEN_MOVES, TOO_MANY_CONTACTS, UNIQUENESS_NOT_SHOWN, ProofRoom, prove
+from cagepose.kernels.proof_search import search_onsets
 from cagepose.kernels.quasistatic import QuasistaticRules, QuasistaticWorkspace, phase_run
 from cagepose.kernels.record import Rows
 from cagepose.kernels.tolerances import KernelTolerances
@@ -82,6 +83,8 @@ def quasistatic_runs(
             )
             if verdict == RESTS:
                 proof, _, _ = prove(geometry, body, position, quaternion, load, friction, size_m, run_tolerances, at)
+                if proof == UNIQUENESS_NOT_SHOWN:
+                    proof = search_onsets(friction, at)
                 endings.proofs[run, phase] = proof
                 if proof in (PROVEN_MOVES, TOO_MANY_CONTACTS):
                     verdict = STALLED

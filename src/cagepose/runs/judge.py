@@ -9,6 +9,7 @@ import numpy as np
 
 from cagepose.kernels.contact_set import ContactSet
 from cagepose.kernels.contacts import contact_rows
+from cagepose.kernels.critical_friction import critical_friction
 from cagepose.kernels.jit import machine_code
 from cagepose.kernels.metric import Body
 from cagepose.kernels.pose import Quaternion
@@ -18,11 +19,12 @@ from cagepose.kernels.proof import (
     PROVEN_UNIQUE,
     PROVEN_WITHOUT_FRICTION,
     TOO_MANY_CONTACTS,
+    UNIQUENESS_NOT_SHOWN,
     ProofRoom,
-    critical_friction,
     empty_proof_room,
     prove,
 )
+from cagepose.kernels.proof_search import first_motion, search_onsets
 from cagepose.kernels.record import empty_record
 from cagepose.kernels.stability import STABILITY_NAMES
 from cagepose.kernels.tolerances import kernel_tolerances
@@ -99,6 +101,10 @@ class Judge:
             self.tolerances,
             self._room,
         )
+        if code == UNIQUENESS_NOT_SHOWN:
+            code = search_onsets(self.friction, self._room)
+        elif code == PROVEN_MOVES:
+            first_motion(self.friction, self._room)
         room, contacts = self._room.rooms[0], self._room.contacts
         touching = [contacts.rows[i] for i in range(contacts.used[0])]
         names = self.scene.cage.names
