@@ -65,10 +65,11 @@ def steepest_tangent(contact: ContactRow, vector: FloatArray) -> tuple[float, fl
     """Return (length of the tangential part of a scaled twist at a contact, its direction)."""
     one = inner(contact.columns[1], vector, 6)
     two = inner(contact.columns[2], vector, 6)
-    size = math.hypot(one, two)
+    size = math.sqrt(one * one + two * two)
     if size == 0.0:
         return 0.0, 1.0, 0.0
-    return size, one / size, two / size
+    inverse = 1.0 / size
+    return size, inverse * one, inverse * two
 
 
 @kernel
@@ -139,6 +140,8 @@ def add_generator(
         if not rows[i].chosen or rows[i].is_rejected:
             continue
         price, is_steeper = generator_price(rows, i, friction, charged, room)
+        if price <= 0.0:
+            continue
         size = length(rows[i].columns[0], 6)
         if price > best_price * size and price > (STEEPER * left if is_steeper else PRICE * scale) * size:
             best, best_price = i, price / size

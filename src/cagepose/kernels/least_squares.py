@@ -1,9 +1,9 @@
 """Non-negative least squares by the active-set method of Lawson and Hanson: min 1/2 |A x - b|^2 + c.x, x >= 0.
 
-Columns with x > 0 are "passive". Their orthonormal basis is kept by Gram-Schmidt, each column made orthogonal twice,
-which leaves it orthogonal to rounding; normal equations would lose half of the digits. A column enters only if it
-reduces the residual, so it has a part outside the span of the passive ones: dependent columns never meet in one basis,
-and degenerate sets are safe. At most as many columns are passive as there are rows.
+Columns with x > 0 are "passive". Their orthonormal basis is kept by Gram-Schmidt, each column made orthogonal twice
+where once leaves little of it, so that it is orthogonal to rounding; normal equations would lose half of the digits. A
+column enters only if it reduces the residual, so it has a part outside the span of the passive ones: dependent columns
+never meet in one basis, and degenerate sets are safe. At most as many columns are passive as there are rows.
 """
 
 from __future__ import annotations
@@ -19,6 +19,10 @@ from cagepose.kernels.record import FloatArray, IntArray
 
 MOST_ROWS = 13
 """Of all systems that are solved with this: those of `cagepose.kernels.uniqueness`."""
+WRENCH_ROWS = 6
+"""Of most of them."""
+ENOUGH_LEFT = 0.5
+"""A vector of whose square one orthogonalisation leaves more is orthogonal to rounding."""
 DEPENDENT = 1e-10
 """A column whose part outside the span of the others is smaller than this fraction of it depends on them."""
 PRICE = 1e-14
@@ -38,10 +42,10 @@ class PassiveSet:
         Length of the terms of b: where they cancel, b is shorter.
     labels
         Which column each one is.
-    columns, basis
-        A_p and Q, transposed.
+    columns, sizes, basis
+        A_p, transposed, the lengths of its columns, and Q, transposed.
     triangle
-        R transposed.
+        R transposed, with the inverse of its diagonal.
     costs
         Cost c of each column; zero for plain least squares.
     x, target, held
@@ -55,6 +59,7 @@ class PassiveSet:
     terms: float
     labels: Annotated[IntArray, MOST_ROWS + 1]
     columns: Annotated[FloatArray, MOST_ROWS + 1, MOST_ROWS]
+    sizes: Annotated[FloatArray, MOST_ROWS + 1]
     basis: Annotated[FloatArray, MOST_ROWS + 1, MOST_ROWS]
     triangle: Annotated[FloatArray, MOST_ROWS + 1, MOST_ROWS + 1]
     costs: Annotated[FloatArray, MOST_ROWS + 1]
@@ -80,6 +85,9 @@ def empty_system(n_columns: int) -> System:
 @kernel
 def inner(a: FloatArray, b: FloatArray, n: int) -> float:
     """Return the inner product of the first ``n`` entries."""
+    if n == WRENCH_ROWS:  # in pairs, of which three have to wait for each other, not six
+        pairs: float = (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]) + (a[4] * b[4] + a[5] * b[5])
+        return pairs
     total = 0.0
     for k in range(n):
         total += a[k] * b[k]
@@ -100,23 +108,36 @@ def clear(passive: PassiveSet, n_rows: int, terms: float) -> None:
 @kernel
 def orthogonalise(passive: PassiveSet, place: int) -> bool:
     """Make basis vector ``place`` from its column and those before it; False: the column depends on them."""
-    column, vector = passive.columns[place], passive.basis[place]
-    for row in range(passive.n_rows):
+    if passive.n_rows == WRENCH_ROWS:  # nearly always: loops of a length that is known are several times as fast
+        return orthogonalise_rows(passive, place, WRENCH_ROWS)
+    return orthogonalise_rows(passive, place, passive.n_rows)
+
+
+@kernel
+def orthogonalise_rows(passive: PassiveSet, place: int, n_rows: int) -> bool:
+    column, vector, basis, triangle = passive.columns[place], passive.basis[place], passive.basis, passive.triangle
+    for row in range(n_rows):
         vector[row] = column[row]
     for k in range(place):
-        passive.triangle[place, k] = 0.0
+        triangle[place, k] = 0.0
+    size = inner(column, column, n_rows)
+    left = size
     for _ in range(2):
+        before = left
         for k in range(place):
-            part = inner(passive.basis[k], vector, passive.n_rows)
-            passive.triangle[place, k] += part
-            for row in range(passive.n_rows):
-                vector[row] -= part * passive.basis[k, row]
-    left = length(vector, passive.n_rows)
-    if left <= DEPENDENT * length(column, passive.n_rows):
+            part = inner(basis[k], vector, n_rows)
+            triangle[place, k] += part
+            for row in range(n_rows):
+                vector[row] -= part * basis[k, row]
+        left = inner(vector, vector, n_rows)
+        if left > ENOUGH_LEFT * before:
+            break
+    if left <= DEPENDENT * DEPENDENT * size:
         return False
-    passive.triangle[place, place] = left
-    for row in range(passive.n_rows):
-        vector[row] /= left
+    passive.sizes[place] = math.sqrt(size)
+    triangle[place, place] = 1.0 / math.sqrt(left)
+    for row in range(n_rows):
+        vector[row] *= triangle[place, place]
     return True
 
 
@@ -154,23 +175,31 @@ def remove_column(passive: PassiveSet, place: int) -> None:
 @kernel
 def aim(passive: PassiveSet, b: FloatArray) -> None:
     """Write the unconstrained least squares solution over the passive columns into ``target``."""
-    n = passive.used
-    for row in range(passive.n_rows):
-        passive.residual[row] = b[row]
+    if passive.n_rows == WRENCH_ROWS:
+        aim_rows(passive, b, WRENCH_ROWS)
+    else:
+        aim_rows(passive, b, passive.n_rows)
+
+
+@kernel
+def aim_rows(passive: PassiveSet, b: FloatArray, n_rows: int) -> None:
+    n, residual, basis = passive.used, passive.residual, passive.basis
+    for row in range(n_rows):
+        residual[row] = b[row]
     for k in range(n):  # one basis vector after the other, from what is left: rounding stays that of the residual
-        part = inner(passive.basis[k], passive.residual, passive.n_rows)
+        part = inner(basis[k], residual, n_rows)
         passive.target[k] = part
-        for row in range(passive.n_rows):
-            passive.residual[row] -= part * passive.basis[k, row]
+        for row in range(n_rows):
+            residual[row] -= part * basis[k, row]
     for k in range(n):  # costs hold the columns at a_k . residual = c_k: add Q R^-T c
         held = passive.costs[k]
         for earlier in range(k):
             held -= passive.triangle[k, earlier] * passive.held[earlier]
-        passive.held[k] = held / passive.triangle[k, k]
-        passive.target[k] -= passive.held[k]
-        if passive.held[k] != 0.0:
-            for row in range(passive.n_rows):
-                passive.residual[row] += passive.held[k] * passive.basis[k, row]
+        passive.held[k] = held * passive.triangle[k, k]
+        if held != 0.0:
+            passive.target[k] -= passive.held[k]
+            for row in range(n_rows):
+                residual[row] += passive.held[k] * basis[k, row]
     solve_triangle(passive)
 
 
@@ -180,7 +209,7 @@ def solve_triangle(passive: PassiveSet) -> None:
     for k in range(passive.used - 1, -1, -1):
         for later in range(k + 1, passive.used):
             passive.target[k] -= passive.triangle[later, k] * passive.target[later]
-        passive.target[k] /= passive.triangle[k, k]
+        passive.target[k] *= passive.triangle[k, k]
 
 
 @kernel
@@ -242,7 +271,7 @@ def rounding_scale(passive: PassiveSet) -> float:
     """Return the length of the terms that the residual is the sum of: its rounding is about 1e-16 of this."""
     scale = passive.terms
     for k in range(passive.used):
-        scale += passive.x[k] * length(passive.columns[k], passive.n_rows)
+        scale += passive.x[k] * passive.sizes[k]
     return scale
 
 
@@ -278,8 +307,10 @@ def nonnegative_least_squares(system: System, n_columns: int, passive: PassiveSe
         least_price = PRICE * rounding_scale(passive)
         best, best_price = n_columns, 0.0
         for j in range(n_columns):
+            if rejected[j]:
+                continue
             along = inner(columns[j], passive.residual, passive.n_rows)
-            if rejected[j] or along <= 0.0:
+            if along <= 0.0:
                 continue
             price = along / length(columns[j], passive.n_rows)
             if price > least_price and price > best_price and not label_is_passive(passive, j):

@@ -129,7 +129,7 @@ def pull_back(
         for i in range(room.basis.used):
             for j in range(i):
                 rows[i].value -= room.basis.triangle[i, j] * rows[j].value
-            rows[i].value /= room.basis.triangle[i, i]
+            rows[i].value *= room.basis.triangle[i, i]
             for k in range(6):
                 room.y[k] += rows[i].value * room.basis.basis[i, k]
         velocity, spin = twist_of(room.y, frame)

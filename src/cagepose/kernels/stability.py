@@ -12,6 +12,7 @@ from cagepose.kernels.curvature import write_curvature
 from cagepose.kernels.eigen import symmetric_eigen
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.least_squares import (
+    ENOUGH_LEFT,
     PassiveSet,
     System,
     append_column,
@@ -76,12 +77,18 @@ def write_outside(basis: PassiveSet, column: FloatArray, out: FloatArray) -> boo
     if basis.used < WRENCH:
         for k in range(6):
             out[k] = column[k]
+        size = inner(column, column, 6)
+        left = size
         for _ in range(2):
+            before = left
             for place in range(basis.used):
                 part = inner(basis.basis[place], out, 6)
                 for k in range(6):
                     out[k] -= part * basis.basis[place, k]
-        if length(out, 6) > IN_SPAN * length(column, 6):
+            left = inner(out, out, 6)
+            if left > ENOUGH_LEFT * before:
+                break
+        if left > IN_SPAN * IN_SPAN * size:
             return True
     for k in range(6):
         out[k] = 0.0
@@ -184,20 +191,22 @@ def is_same_face(one: ContactRow, other: ContactRow) -> bool:
 @kernel
 def find_shared(contacts: ContactSet, room: StabilityRoom) -> None:
     """Mark the contacts whose normal force could be another: their wrench lies in the span of the rest."""
-    rows, n = contacts.rows, contacts.used[0]
+    rows, n, span = contacts.rows, contacts.used[0], room.scratch
+    clear(span, WRENCH, 1.0)
+    for i in range(n):
+        if rows[i].is_sticking:
+            hold(span, rows[i].columns[1], room)
+            hold(span, rows[i].columns[2], room)
+    n_tangential = span.used
     for i in range(n):
         rows[i].is_shared = False
         if not rows[i].is_equality:
             continue
-        clear(room.scratch, WRENCH, 1.0)
+        span.used = n_tangential
         for k in range(n):
-            if rows[k].is_equality:
-                if not is_same_face(rows[k], rows[i]):
-                    hold(room.scratch, rows[k].columns[0], room)
-                if rows[k].is_sticking:
-                    hold(room.scratch, rows[k].columns[1], room)
-                    hold(room.scratch, rows[k].columns[2], room)
-        rows[i].is_shared = not write_outside(room.scratch, rows[i].columns[0], room.rest)
+            if rows[k].is_equality and not is_same_face(rows[k], rows[i]):
+                hold(span, rows[k].columns[0], room)
+        rows[i].is_shared = not write_outside(span, rows[i].columns[0], room.rest)
 
 
 @kernel

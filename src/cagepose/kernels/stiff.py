@@ -14,8 +14,8 @@ from typing import Annotated
 
 from cagepose.kernels.contact_set import ContactRow, ContactSet
 from cagepose.kernels.jit import kernel
-from cagepose.kernels.least_squares import inner, length
-from cagepose.kernels.metric import ScaledVector
+from cagepose.kernels.least_squares import PassiveSet, append_column, clear, inner, length
+from cagepose.kernels.metric import WRENCH, ScaledVector
 from cagepose.kernels.onset import MOVES, OnsetRoom, onset_with_faces
 from cagepose.kernels.record import FloatArray, Rows
 
@@ -23,9 +23,6 @@ RAISES = 12
 """How often rho is raised, four times each, before the explicit step is taken after all."""
 LEAST_RHO = 1e-9
 """In curvatures: freedoms without curvature (a block that slides on a plane) keep the matrix regular by this."""
-HOLD = 10.0
-"""In curvatures: stiffness given to the contacts that carry. They do not move along their normals, so it changes
-nothing but that the matrix need be positive only along the faces."""
 
 
 class StiffRoom:
@@ -34,7 +31,9 @@ class StiffRoom:
     Attributes
     ----------
     curvature
-        S.
+        S, and then its part along the faces.
+    held
+        Basis of what the contacts that carry hold.
     factor
         Cholesky factor, lower.
     b, delta
@@ -42,6 +41,7 @@ class StiffRoom:
     """
 
     curvature: Annotated[FloatArray, 6, 6]
+    held: PassiveSet
     factor: Annotated[FloatArray, 6, 6]
     b: ScaledVector
     delta: ScaledVector
@@ -102,22 +102,38 @@ def solve_upper(factor: FloatArray, vector: FloatArray) -> None:
 
 
 @kernel
-def write_matrix(contacts: ContactSet, room: StiffRoom, rho: float, hold: float) -> None:
-    """Write rho 1 + S + hold sum a a' over the contacts that carry (normals, and tangents where they stick)."""
+def keep_along_faces(contacts: ContactSet, room: StiffRoom) -> None:
+    """Take out of S what lies across the faces (and, where contacts stick, along them): nothing moves there, but it
+    would make the matrix look as if it were not positive.
+    """
+    held, curvature = room.held, room.curvature
+    clear(held, WRENCH, 1.0)
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        if contact.forces[0] > 0.0:
+            for which in range(3 if contact.is_sticking else 1):
+                append_column(held, contact.columns[which], which, 0.0)
+    for place in range(held.used):
+        across = held.basis[place]
+        for j in range(6):  # first every row, then every column
+            part = inner(curvature[j], across, 6)
+            for k in range(6):
+                curvature[j, k] -= part * across[k]
+        for k in range(6):
+            part = 0.0
+            for j in range(6):
+                part += across[j] * curvature[j, k]
+            for j in range(6):
+                curvature[j, k] -= part * across[j]
+
+
+@kernel
+def write_matrix(room: StiffRoom, rho: float) -> None:
+    """Write rho 1 + S."""
     for j in range(6):
         for k in range(6):
             room.factor[j, k] = room.curvature[j, k]
         room.factor[j, j] += rho
-    for i in range(contacts.used[0]):
-        contact = contacts.rows[i]
-        if contact.forces[0] <= 0.0:
-            continue
-        for which in range(3 if contact.is_sticking else 1):
-            a = contact.columns[which]
-            weight = hold / inner(a, a, 6)
-            for j in range(6):
-                for k in range(6):
-                    room.factor[j, k] += weight * a[j] * a[k]
 
 
 @kernel
@@ -136,10 +152,11 @@ def stiff_step(
     contacts.
     """
     n_contacts = contacts.used[0]
+    keep_along_faces(contacts, room)
     size = greatest_curvature(room.curvature)
     rho = max(rho, LEAST_RHO * size)
     for _ in range(RAISES):
-        write_matrix(contacts, room, rho, HOLD * (size + rho))
+        write_matrix(room, rho)
         if cholesky(room.factor, 1e-3 * rho):
             break
         rho = max(4.0 * rho, 1e-3 * size)

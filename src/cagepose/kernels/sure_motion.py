@@ -43,8 +43,8 @@ def leaves_cones(rows: Rows[ContactRow], n_contacts: int, friction: float, slack
     for i in range(n_contacts):
         if rows[i].chosen:
             normal = rows[i].columns[0]
-            price = inner(normal, twist, 6) + friction * steepest_tangent(rows[i], twist)[0]
-            if price > slack * length(normal, 6):
+            allowed = slack * length(normal, 6) - inner(normal, twist, 6)
+            if allowed < 0.0 or friction * steepest_tangent(rows[i], twist)[0] > allowed:
                 return False
     return True
 
