@@ -7,7 +7,7 @@ from typing import Any
 
 import numba
 
-JIT_IS_OFF = bool(numba.config.DISABLE_JIT)
+from cagepose.kernels.jit import JIT_IS_OFF
 
 
 def callable_kernel(kernel: Callable[..., Any]) -> Callable[..., Any]:

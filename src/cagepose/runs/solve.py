@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from cagepose.errors import Problem, SceneError
-from cagepose.kernels.jit import is_compiled
+from cagepose.kernels.cache import is_compiled
 from cagepose.nouns.scene import Scene
 from cagepose.runs.quasistatic import run_quasistatic
 from cagepose.runs.run import Run
