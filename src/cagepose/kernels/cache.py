@@ -63,7 +63,7 @@ def cache_folder() -> Path | None:
     else:
         root = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache")
     try:
-        folder = root.expanduser() / "cagepose" / f"kernels-{_hash()}"
+        folder = root.expanduser() / "cagepose" / f"kernels-{inputs_hash()}"
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
@@ -72,7 +72,8 @@ def cache_folder() -> Path | None:
     return folder
 
 
-def _hash() -> str:
+def inputs_hash() -> str:
+    """Return a hash of all that machine code depends on, beside its arguments."""
     digest = hashlib.sha256()
     # Numba's settings too: with some of them it makes other code.
     settings = sorted(

@@ -23,12 +23,18 @@ JIT_IS_OFF = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 
 
 class Kernel:
-    """A function that only other kernels call, as a part of them."""
+    """A function that other kernels call, as a part of them.
+
+    From Python it is plain Python: for a handful of numbers that is faster than to hand them over.
+    """
 
     def __init__(self, function: Callable[..., object]) -> None:
-        update_wrapper(self, function)  # type: ignore[arg-type]
+        update_wrapper(self, function)
         self._function = function
         self.name = function.__name__
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self._function(*arguments)
 
     @cached_property
     def dispatcher(self) -> Any:
@@ -44,7 +50,7 @@ class Kernel:
 
 
 class Entry(Kernel):
-    """A kernel that Python calls too."""
+    """A kernel that is machine code for Python too."""
 
     def __init__(self, function: Callable[..., object]) -> None:
         super().__init__(function)
@@ -74,12 +80,12 @@ _LOADING = RLock()
 
 
 def kernel(function: F) -> F:
-    """Compile a function that only other kernels call, as a part of them."""
+    """Compile a function where other kernels call it, as a part of them."""
     return function if JIT_IS_OFF else Kernel(function)  # type: ignore[return-value]
 
 
 def entry_kernel(function: F) -> F:
-    """Compile a function that Python calls too, and keep it on disk."""
+    """Compile a function for Python too, and keep it on disk."""
     return function if JIT_IS_OFF else Entry(function)  # type: ignore[return-value]
 
 

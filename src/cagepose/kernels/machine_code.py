@@ -32,21 +32,22 @@ class MachineCode:
         self._tracker = linker.link(_compiler(), f"{file.name}.{next(_NUMBERS)}")  # the code lives as long as this
         self._function = _FUNCTION(self._tracker[file.name])
         self._name, self._results = file.name, file.results
+        letters = "".join(_letters(file.results))
+        self._unpack = struct.Struct("=" + letters.replace(TRUTH, "q")).unpack_from
+        self._room = bytes(8 * len(letters))
 
     def bound(self, arguments: Arguments, owner: object) -> Callable[..., Any]:
         """Return a call with these arguments, the first of which, if they are numbers, can be given anew.
 
         It is for one thread at a time. ``owner`` keeps alive the arrays whose addresses are among the arguments.
         """
-        n_results = len(list(_letters(self._results)))
         formats = "".join(arguments.formats)
-        slots = bytearray(struct.pack(f"={formats}", *arguments.slots) + bytes(8 * n_results))
-        memory = (ctypes.c_char * len(slots)).from_buffer(slots)
+        slots = bytearray(struct.pack(f"={formats}", *arguments.slots) + self._room)
+        memory = ctypes.c_char.from_buffer(slots)
         address = ctypes.addressof(memory)
         first_result = 8 * len(formats)
         pointers = (address, address + first_result)
-        function, name, results = self._function, self._name, self._results
-        unpack = struct.Struct("=" + "".join(_letters(results)).replace(TRUTH, "q")).unpack_from
+        function, name, results, unpack = self._function, self._name, self._results, self._unpack
 
         def call(*first: int | float) -> Any:
             if first:
@@ -78,4 +79,4 @@ def _shaped(results: Any, numbers: Iterator[int | float]) -> Any:
 def _compiler() -> Any:
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    return llvm.create_lljit_compiler()
+    return llvm.create_lljit_compiler(suppress_errors=True)  # errors are raised too

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from dataclasses import dataclass
 from pathlib import Path
-from secrets import token_hex
 from typing import Any
 
 _CHECKSUM_BYTES = hashlib.sha256().digest_size
@@ -37,7 +37,7 @@ class ObjectFile:
     def write(self, path: Path) -> None:
         """Write it, if the disk lets us: the next process compiles it anew otherwise."""
         content = json.dumps([self.name, self.results]).encode() + b"\n" + self.code
-        draft = path.with_name(f".{path.name}.{token_hex(8)}")
+        draft = path.with_name(f".{path.name}.{os.urandom(8).hex()}")
         try:
             draft.write_bytes(hashlib.sha256(content).digest() + content)
             draft.replace(path)
