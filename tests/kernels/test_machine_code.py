@@ -6,6 +6,7 @@ import gc
 import os
 import subprocess
 import sys
+import weakref
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
@@ -32,6 +33,7 @@ define i32 @asks(i64* %arguments, i64* %results) {
 """
 SMALL = """
 import sys
+import weakref
 import numpy as np
 from cagepose.kernels.pose import write_quaternions
 
@@ -103,9 +105,10 @@ def test_records_are_written_to_where_they_are() -> None:
 @pytest.mark.parametrize("order", ["C", "F", "A"])
 def test_an_array_may_have_its_numbers_in_any_order(order: str) -> None:
     target = np.zeros((3, 2))
-    source = {"C": np.ones((3, 2)), "F": np.ones((2, 3)).T, "A": np.ones((6, 4))[::2, ::2]}[order]
-    Entry(fill)(source, target)
-    assert (target == 1.0).all()
+    numbers = np.arange(24.0)
+    source = {"C": numbers[:6].reshape(3, 2), "F": numbers[:6].reshape(2, 3).T, "A": numbers.reshape(6, 4)[::2, ::2]}
+    Entry(fill)(source[order], target)
+    assert (target == source[order]).all()
 
 
 def test_each_kind_of_arguments_has_machine_code_of_its_own() -> None:
@@ -135,8 +138,11 @@ def test_an_exception_in_a_kernel_is_an_error_in_python() -> None:
 
 def test_a_bound_call_keeps_its_arrays_and_takes_the_first_numbers_anew() -> None:
     target = np.zeros(3)
-    call = bound(Entry(copy), 0, np.array([5.0, 6.0, 7.0]), target)
+    source = np.array([5.0, 6.0, 7.0])
+    call, kept = bound(Entry(copy), 0, source, target), weakref.ref(source)
+    del source
     gc.collect()
+    assert kept() is not None
     assert call(2) == 5.0
     assert target.tolist() == [0.0, 0.0, 7.0]
     call(0)

@@ -63,7 +63,8 @@ class Arguments:
             self.formats.append("d")
             return FLOAT
         if isinstance(value, np.ndarray):
-            array = value.view(np.ndarray)  # each look at a record array takes a microsecond
+            # Each look at a record array takes a microsecond.
+            array = value if type(value) is np.ndarray else value.view(np.ndarray)
             flags, n_axes = array.flags, array.ndim
             self.slots += (_address(array), *array.shape, *array.strides)
             self.formats.append("q" * (1 + 2 * n_axes))
