@@ -12,14 +12,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import numpy as np
 
 from bench.rail_case import Answer
 from bench.timing import median_cpu_s, median_s
 from cagepose import Scene, Variation, run
-from cagepose.kernels.jit import machine_code
+from cagepose.kernels.jit import bound
 from cagepose.kernels.proof import empty_proof_room, prove
 from cagepose.nouns.pose import Pose
 from cagepose.runs.batches import Batch, QuasistaticBatch, StepwiseBatch
@@ -37,9 +36,8 @@ def engine_name(method: str, part: str = "") -> str:
 def measure(scene: Scene, method: str, budget_s: float) -> tuple[dict[str, tuple[float, float]], Answer]:
     """Return (median wall, median CPU) seconds of each of `PARTS`, and the answer."""
     found = run(scene, method)
-    batch: Batch[Any] = (StepwiseBatch if method == "stepwise" else QuasistaticBatch)(scene, Variation())
-    batch.load()
-    prepared = partial(batch.run, 0, 1, batch.room())
+    batch: Batch = (StepwiseBatch if method == "stepwise" else QuasistaticBatch)(scene, Variation())
+    prepared = partial(batch.room(), 0, 1)
     proofs = [proof_call(scene, method, phase.pose, index) for index, phase in enumerate(found.phases)]
     whole = partial(run, scene, method)
     run_s = np.array([median_s(prepared, budget_s / 4.0), median_cpu_s(prepared, budget_s / 4.0)])
@@ -58,8 +56,8 @@ def proof_call(scene: Scene, method: str, pose: Pose, phase: int) -> Callable[[]
     judge = Judge(scene, default if scene.friction_coefficient is None else scene.friction_coefficient)
     room = empty_proof_room(judge.geometry)
     position, quaternion = judge.frames.inward(pose)
-    return partial(
-        machine_code(prove),
+    return bound(
+        prove,
         judge.geometry,
         judge.body,
         position,

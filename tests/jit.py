@@ -7,11 +7,11 @@ from typing import Any
 
 import numba
 
-JIT_IS_OFF = bool(numba.config.DISABLE_JIT)
+from cagepose.kernels.jit import JIT_IS_OFF
 
 
 def callable_kernel(kernel: Callable[..., Any]) -> Callable[..., Any]:
-    """A kernel that only kernels call has no Python wrapper: give it one."""
+    """The machine code of a kernel, which is plain Python when Python calls it."""
     if JIT_IS_OFF:
         return kernel
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from cagepose import Variation
-from cagepose.kernels.jit import machine_code
+from cagepose.kernels.jit import bound
 from cagepose.kernels.linear_program import ProgramRoom, program_rows, solve_program
 from cagepose.kernels.record import empty_record
 from cagepose.runs.batches import QuasistaticBatch, StepwiseBatch
@@ -46,13 +46,12 @@ def yardstick() -> Callable[[], None]:
     rows[:], bounds[:] = rng.normal(size=(60, 6)), rng.uniform(0.5, 1.0, 60)
     room = empty_record(ProgramRoom)
     room.objective[:] = rng.normal(size=6)
-    solve_program(rows, bounds, room)
-    solve = machine_code(solve_program)
+    solve = bound(solve_program, rows, bounds, room)
 
     def solve_all() -> None:
         for _ in range(PROGRAMS):
             room.basis[0] = -1
-            solve(rows, bounds, room)
+            solve()
 
     return solve_all
 
@@ -69,10 +68,9 @@ def seconds(call: Callable[[], object]) -> float:
 )
 def test_a_rail_run_takes_no_more_linear_programs_than_it_did(kind, most: float) -> None:
     batch = kind(rail_scene(pitch_deg=0.1), Variation(friction_coefficient=np.zeros(RUNS)))
-    batch.load()
-    room = batch.room()
+    run = batch.room()
     programs = yardstick()
-    pairs = [(seconds(lambda: batch.run(0, RUNS, room)), seconds(programs)) for _ in range(REPEATS)]
+    pairs = [(seconds(lambda: run(0, RUNS)), seconds(programs)) for _ in range(REPEATS)]
     ratio = statistics.median(run_s / RUNS / (program_s / PROGRAMS) for run_s, program_s in pairs)
     assert ratio < most, f"a run takes as long as {ratio:.1f} programs; at most {most} when this was written"
 

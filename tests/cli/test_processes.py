@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from jit import JIT_IS_OFF
+
 CAGEPOSE = [sys.executable, "-m", "cagepose"]
 HEAVY = ("numba", "numpy", "scipy", "matplotlib", "viser", "pydantic", "ruamel", "rich", "cyclopts")
 
@@ -46,6 +48,25 @@ def test_the_help_of_a_command_waits_for_no_kernels(name: str) -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
+
+
+@pytest.mark.skipif(JIT_IS_OFF, reason="nothing is compiled")
+@pytest.mark.parametrize("method", [[], ["--method", "stepwise"]])
+def test_a_run_whose_machine_code_lies_on_disk_needs_no_compiler(
+    method: list[str], tmp_path: Path, sample_text: str
+) -> None:
+    """Importing Numba and loading what it knows takes longer than all the rest of a run together."""
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(sample_text, encoding="utf-8")
+    assert _run("run", str(scene), *method).returncode == 0
+    code = (
+        "import sys; from cagepose.cli.app import main\n"
+        f"assert main(['run', {str(scene)!r}, *{method!r}]) == 0\n"
+        "print([name for name in ('numba', 'scipy') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+    assert done.stderr == ""
 
 
 def test_help_costs_under_a_fifth_of_a_second_beyond_bare_python() -> None:

@@ -114,8 +114,9 @@ def test_json_is_one_document_and_nothing_else(command: Command, sample: str) ->
 def test_a_run_that_must_compile_says_so_on_standard_error(
     command: Command, sample: str, monkeypatch: pytest.MonkeyPatch, folder: Path | None, message: str
 ) -> None:
+    command("compare", sample)  # loads all that is needed below
     monkeypatch.setattr(cagepose.runs.solve, "kernels_are_compiled", lambda _: False)
-    monkeypatch.setattr("cagepose.kernels.jit.CACHE_FOLDER", folder)
+    monkeypatch.setattr("cagepose.kernels.cache.cache_folder", lambda: folder)
     answer = command("run", sample)
     assert answer.err == message
     assert answer.out.startswith("sample: rests")

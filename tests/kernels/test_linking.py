@@ -26,7 +26,7 @@ turns = np.array([np.eye(3), [[0, -1, 0], [1, 0, 0], [0, 0, 1.0]]])
 geometry = Geometry(boxes, np.array([[0, 0, 0], [0.1, 0, 0.2]]), turns, 2, np.array([[0.1, 0.3, 0.2], [0, 0.1, 0.5]]))
 position, quaternion = moved_pose((0.1, 0.2, 0.3), (1.0, 0.0, 0.0, 0.0), (0.6, 0.0, 0.8), (1.0, 2.0, 3.0), 0.5, 0.25)
 print(position, quaternion, *(array.tolist() for array in deepest_boxes(geometry, position, quaternion)))
-print(type(next(iter(row.overloads.values())).library).__name__)
+print(type(next(iter(row.dispatcher.overloads.values())).library).__name__)
 """
 
 
@@ -63,10 +63,10 @@ def test_linked_kernels_give_what_numbas_own_way_gives(tmp_path: Path) -> None:
     assert linked == plain
 
     def kept(folder: Path) -> set[str]:
-        return {path.name.split("-")[0] for path in folder.rglob("*.nbc")}
+        return {path.name.split("-")[0] for path in folder.rglob("*-*.*")}
 
     assert "vector.row" in kept(tmp_path / "plain")
-    assert "vector.row" not in kept(tmp_path / "linked")  # only what Python calls
+    assert kept(tmp_path / "linked") == {"place_object"}  # only what Python calls
 
 
 def test_a_kernel_that_one_function_has_taken_in_still_serves_another(tmp_path: Path) -> None:

@@ -226,4 +226,4 @@ def test_nothing_is_compiled_again_whatever_varies() -> None:
     values = {name: draw(np.random.default_rng(5), 2) for name, draw in VARIED.items()}
     for name, value in values.items():
         run_many(block(), Variation(**{name: np.asfortranarray(value)}), method="stepwise")
-    assert len(stepwise_runs.signatures) == 1
+    assert len(stepwise_runs.loaded) == 1

@@ -21,8 +21,8 @@ def announce_compilation(methods: Iterable[str]) -> None:
 
 def announce_kernels(are_compiled: bool) -> None:
     """Write that line unless the kernels that are needed are compiled."""
-    from cagepose.kernels.jit import CACHE_FOLDER
+    from cagepose.kernels.cache import cache_folder
 
     if not are_compiled:
-        sys.stderr.write(EVERY_RUN if CACHE_FOLDER is None else FIRST_RUN)
+        sys.stderr.write(EVERY_RUN if cache_folder() is None else FIRST_RUN)
         sys.stderr.flush()

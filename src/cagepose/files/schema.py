@@ -91,7 +91,8 @@ Method = Annotated[str, AfterValidator(_known_method), WithJsonSchema({"type": "
 
 
 class _Mapping(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+    # Models are built when they are first asked for: those that are parts of another only there, and not twice.
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True, defer_build=True)
 
 
 class UnitsModel(_Mapping):

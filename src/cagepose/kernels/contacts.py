@@ -161,8 +161,16 @@ def steepest_contact(
 
 
 @entry_kernel
-def fill_contact_rows(geometry: Geometry, placement: Placement, touch_m: float, rows: ContactRows) -> int:
-    """Write as many rows as fit; return how many there are."""
+def fill_contact_rows(
+    geometry: Geometry,
+    position: Vector,
+    quaternion: Quaternion,
+    touch_m: float,
+    placement: Placement,
+    rows: ContactRows,
+) -> int:
+    """Write ``placement``, and as many rows as fit; return how many there are."""
+    place_object(geometry, position, quaternion, placement)
     n_rows = 0
     for point in range(len(geometry.points_world)):
         for box in range(geometry.n_own_boxes):
@@ -201,10 +209,13 @@ def empty_contact_rows(n_rows: int) -> ContactRows:
 def contact_rows(geometry: Geometry, position: Vector, quaternion: Quaternion, touch_m: float) -> ContactRows:
     """Return all contacts at a pose, by point, then box, then face (plain Python)."""
     placement = empty_placement(geometry)
-    place_object(geometry, position, quaternion, placement)
-    rows = empty_contact_rows(fill_contact_rows(geometry, placement, touch_m, empty_contact_rows(0)))
-    fill_contact_rows(geometry, placement, touch_m, rows)
-    return rows
+    n_room = 3 * len(geometry.points_world)  # a corner of a box has three faces
+    while True:
+        rows = empty_contact_rows(n_room)
+        n_rows = fill_contact_rows(geometry, position, quaternion, touch_m, placement, rows)
+        if n_rows <= n_room:
+            return ContactRows._make(column[:n_rows] for column in rows)
+        n_room = n_rows
 
 
 def deepest_boxes(geometry: Geometry, position: Vector, quaternion: Quaternion) -> tuple[FloatArray, NDArray[np.int64]]:

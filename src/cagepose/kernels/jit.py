@@ -1,114 +1,104 @@
-"""The two decorators of all kernels, and where their machine code is kept.
+"""The two decorators of all kernels, and how Python calls them.
 
-Numba's own disk cache looks only at the file of the function it compiles: edit a callee in another file and stale code
-runs. So the cache folder's name holds a hash of all kernel sources, and an edit anywhere starts an empty one. If no
-folder can be written, kernels are compiled anew in each process; nothing else changes.
+Machine code comes from the disk if it lies there (`cagepose.kernels.cache`), without Numba, whose import takes longer
+than a whole run. Numba is imported when there is something to compile.
 """
 
 from __future__ import annotations
 
-import hashlib
 import os
-import sys
-import tempfile
 from collections.abc import Callable
-from pathlib import Path
-from typing import Any, TypeVar
+from functools import cached_property, update_wrapper
+from threading import RLock
+from typing import Any, ParamSpec, TypeVar
 
-import numba
+from cagepose.kernels.arguments import Arguments, Kind
 
 F = TypeVar("F", bound=Callable[..., object])
+P = ParamSpec("P")
+R = TypeVar("R")
+
+JIT_IS_OFF = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
+"""Numba's own switch, read without Numba: kernels are plain Python then."""
 
 
-def _source_hash() -> str:
-    digest = hashlib.sha256()
-    digest.update(f"{sys.version_info[:2]} {numba.__version__}".encode())
-    for source in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(source.name.encode() + b"\0" + source.read_bytes())
-    return digest.hexdigest()[:16]
+class Kernel:
+    """A function that other kernels call, as a part of them.
+
+    From Python it is plain Python: for a handful of numbers that is faster than to hand them over.
+    """
+
+    def __init__(self, function: Callable[..., object]) -> None:
+        update_wrapper(self, function)
+        self._function = function
+        self.name = function.__name__
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self._function(*arguments)
+
+    @cached_property
+    def dispatcher(self) -> Any:
+        """What Numba compiles where a kernel calls this one."""
+        from cagepose.kernels import linking  # here, as it imports Numba
+
+        return linking.dispatcher_of(self._function, is_entry=isinstance(self, Entry))
+
+    @property
+    def _numba_type_(self) -> Any:
+        """Numba asks what it does not know for this."""
+        return self.dispatcher._numba_type_
 
 
-def _cache_folder() -> Path | None:
-    """Return a folder that can be written, or None. `NUMBA_CACHE_DIR` and `XDG_CACHE_HOME` are respected."""
-    chosen = os.environ.get("NUMBA_CACHE_DIR")
-    if chosen:
-        root = Path(chosen)
-    elif sys.platform == "win32":
-        root = Path(os.environ.get("LOCALAPPDATA", "~"))
-    else:
-        root = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache")
-    try:
-        folder = root.expanduser() / "cagepose" / f"kernels-{_source_hash()}"
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except (OSError, RuntimeError):  # RuntimeError: no home folder to expand "~" to
-        return None
-    return folder
+class Entry(Kernel):
+    """A kernel that is machine code for Python too."""
+
+    def __init__(self, function: Callable[..., object]) -> None:
+        super().__init__(function)
+        self.loaded = dict[tuple[Kind, ...], Any]()
+        """Machine code for each kind of arguments that it was called with."""
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self.bound(*arguments)()
+
+    def bound(self, *arguments: Any) -> Callable[..., Any]:
+        """See `bound`."""
+        taken = Arguments(arguments)
+        if taken.kinds not in self.loaded:
+            with _LOADING:
+                if taken.kinds not in self.loaded:
+                    self.loaded[taken.kinds] = self._load(taken.kinds)
+        code = self.loaded[taken.kinds]
+        return _bound_in_python(self.dispatcher, arguments) if code is None else code.bound(taken, arguments)
+
+    def _load(self, kinds: tuple[Kind, ...]) -> Any:
+        from cagepose.kernels.cache import load_machine_code  # here, as LLVM takes a while too
+
+        return load_machine_code(self, kinds)
 
 
-CACHE_FOLDER = None if numba.config.DISABLE_JIT else _cache_folder()
+_LOADING = RLock()
 
 
 def kernel(function: F) -> F:
-    """Compile a function that only other kernels call, as a part of them."""
-    if numba.config.DISABLE_JIT:
-        return function
-    from cagepose.kernels.linking import LinkedCompiler, is_tried
-
-    if is_tried():
-        return _compiled(function, cache=False, pipeline_class=LinkedCompiler, no_cpython_wrapper=True)
-    return _compiled(function, cache=CACHE_FOLDER is not None, no_cpython_wrapper=True)
+    """Compile a function where other kernels call it, as a part of them."""
+    return function if JIT_IS_OFF else Kernel(function)  # type: ignore[return-value]
 
 
 def entry_kernel(function: F) -> F:
-    """Compile a function that Python calls too, and keep it on disk."""
-    if numba.config.DISABLE_JIT:
-        return function
-    from cagepose.kernels.linking import EntryCompiler, is_tried
-
-    options = {"pipeline_class": EntryCompiler} if is_tried() else {}
-    return _compiled(function, cache=CACHE_FOLDER is not None, **options)
+    """Compile a function for Python too, and keep it on disk."""
+    return function if JIT_IS_OFF else Entry(function)  # type: ignore[return-value]
 
 
-def _compiled(function: F, **options: Any) -> F:
-    """No Python objects, no GIL, IEEE arithmetic; no counting of references, since kernels make no arrays."""
-    # Numba reads its setting when the decorator runs; ours must not leak to other users of Numba in this process.
-    previous = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = "" if CACHE_FOLDER is None else str(CACHE_FOLDER)
-    try:
-        compiled: F = numba.njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True, _nrt=False, **options)(
-            function
-        )
-    finally:
-        numba.config.CACHE_DIR = previous
-    return compiled
+def bound(entry: Callable[P, R], *arguments: P.args, **_: P.kwargs) -> Callable[..., R]:
+    """Return a call of a kernel with these arguments, its machine code loaded; for one thread at a time.
 
-
-def is_loaded(entry: Callable[..., object]) -> bool:
-    """Whether calling a kernel runs at once, without compiling it or reading it from disk first."""
-    return bool(getattr(entry, "signatures", True))
-
-
-_MACHINE_CODE: dict[Callable[..., object], Any] = {}
-
-
-def machine_code(entry: F) -> F:
-    """Return a loaded kernel without the search for one that fits the types of its arguments.
-
-    That search takes 20 us, half as long as a run. So whoever calls the machine code gives the same types each time.
+    To take thirty arrays apart takes as long as a run, so that is done here once. The call takes the first of the
+    arguments anew, if they are numbers.
     """
-    overloads = getattr(entry, "overloads", {})
-    if len(overloads) != 1:
-        return entry
-    if entry not in _MACHINE_CODE:  # to look into ``overloads`` takes longer than a run: each look hashes all types
-        _MACHINE_CODE[entry] = next(iter(overloads.values())).entry_point
-    found: F = _MACHINE_CODE[entry]
-    return found
+    if isinstance(entry, Entry):
+        return entry.bound(*arguments)
+    return _bound_in_python(entry, arguments)
 
 
-def is_compiled(entry_name: str) -> bool:
-    """Whether the machine code of the kernel ``entry_name`` lies on disk (or none is needed)."""
-    if numba.config.DISABLE_JIT:
-        return True
-    return CACHE_FOLDER is not None and any(CACHE_FOLDER.rglob(f"*{entry_name}*.nbc"))
+def _bound_in_python(function: Callable[..., R], arguments: tuple[Any, ...]) -> Callable[..., R]:
+    return lambda *first: function(*first, *arguments[len(first) :])

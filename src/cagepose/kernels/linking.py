@@ -1,4 +1,4 @@
-"""Compiling many small kernels into one: a kernel of ours is only typed and lowered, its callers take it in.
+"""Compiling many small kernels into one: each is only typed and lowered, and taken in by what Python calls.
 
 Numba makes machine code of every function that another one calls, and optimises it again with each of its callers, so
 a call tree of two hundred small functions ten levels deep is optimised ten times over. Here only the functions that
@@ -10,6 +10,7 @@ It hangs on how Numba keeps its LLVM modules, which is none of its public interf
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from itertools import count
 from typing import Any
 
@@ -17,8 +18,14 @@ import numba
 from numba import _dynfunc
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.compiler_machinery import LoweringPass, PassManager, register_pass
 from numba.core.typed_passes import AnnotateTypes, NativeLowering
+
+from cagepose.kernels.arguments import Kind
+from cagepose.kernels.c_function import add_c_function, format_of, type_of
+from cagepose.kernels.cache import cache_folder
+from cagepose.kernels.object_file import ObjectFile
 
 TRIED = ((0, 68),)
 """Releases of Numba in which all tests passed with this. In others kernels are compiled in Numba's own way, with the
@@ -32,6 +39,40 @@ _PRIVATE = count()
 def is_tried() -> bool:
     """Whether kernels can be linked with the installed release of Numba."""
     return numba.version_info.short in TRIED
+
+
+def dispatcher_of(function: Callable[..., object], is_entry: bool) -> Any:
+    """Return what stands for a kernel where other kernels call it."""
+    if is_tried():
+        return _dispatcher(function, no_cpython_wrapper=True, pipeline_class=LinkedCompiler)
+    # Numba reads its setting when the decorator runs; ours must not leak to other users of Numba in this process.
+    previous, folder = numba.config.CACHE_DIR, cache_folder()
+    numba.config.CACHE_DIR = str(folder or "")
+    try:
+        return _dispatcher(function, no_cpython_wrapper=not is_entry, cache=folder is not None)
+    finally:
+        numba.config.CACHE_DIR = previous
+
+
+def _dispatcher(function: Callable[..., object], **options: Any) -> Any:
+    """No Python objects, no GIL, IEEE arithmetic; no counting of references, since kernels make no arrays."""
+    return numba.njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True, _nrt=False, **options)(function)
+
+
+@global_compiler_lock  # type: ignore[untyped-decorator]
+def object_file(dispatcher: Any, kinds: Sequence[Kind], name: str) -> ObjectFile:
+    """Return the machine code of a kernel for arguments of these kinds, with all that it calls, as the C function
+    ``name`` of `add_c_function`.
+    """
+    signature = tuple(type_of(kind) for kind in kinds)
+    dispatcher.compile(signature)
+    compiled = dispatcher.overloads[signature]
+    context = compiled.target_context
+    library = EntryLibrary(context.codegen(), name)
+    library.add_linking_library(compiled.library)
+    add_c_function(library, context, compiled.fndesc, name)
+    library.finalize()
+    return ObjectFile(name, format_of(compiled.fndesc.restype), library.machine_code())
 
 
 class LinkedLibrary(JITCodeLibrary):  # type: ignore[misc]
@@ -79,27 +120,21 @@ class EntryLibrary(JITCodeLibrary):  # type: ignore[misc]
 
         A call passes each array as seven numbers or more, so that calling costs more than many a kernel does.
         """
-        for function in self._final_module.functions:
-            if not function.is_declaration and function.linkage.name == "linkonce_odr":
-                function.linkage = "internal"
-                # LLVM would find this one, and no address, for a kernel that another function brings along.
-                function.name = f"{function.name}.{next(_PRIVATE)}"
+        module = self._final_module
+        for value in (*module.functions, *module.global_variables):
+            if not value.is_declaration and value.linkage.name in ("linkonce_odr", "common"):
+                value.linkage = "internal"
         super()._optimize_final_module()
 
+    def _finalize_final_module(self) -> None:
+        """Keep it out of Numba's engine, which would make machine code of it too."""
+        self._verify_declare_only_symbols()
+        self._finalized = True
 
-@register_pass(mutates_CFG=False, analysis_only=True)
-class UseEntryLibrary(LoweringPass):  # type: ignore[misc]
-    """Before lowering: give the function a library of ours."""
-
-    _name = "use_entry_library"
-
-    def __init__(self) -> None:
-        super().__init__()
-
-    def run_pass(self, state: Any) -> bool:
-        state.library = EntryLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
-        state.library.enable_object_caching()
-        return False
+    def machine_code(self) -> bytes:
+        """Return it as an object file, as a linker takes them."""
+        code: bytes = self._codegen._tm.emit_object(self._final_module)
+        return code
 
 
 @register_pass(mutates_CFG=False, analysis_only=True)
@@ -146,15 +181,5 @@ class LinkedCompiler(CompilerBase):  # type: ignore[misc]
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
         passes.add_pass_after(UseLinkedLibrary, AnnotateTypes)
         passes.add_pass_after(OfferToCallers, NativeLowering)
-        passes.finalize()
-        return [passes]
-
-
-class EntryCompiler(CompilerBase):  # type: ignore[misc]
-    """Numba's own passes, with a library of ours."""
-
-    def define_pipelines(self) -> list[PassManager]:
-        passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.add_pass_after(UseEntryLibrary, AnnotateTypes)
         passes.finalize()
         return [passes]

@@ -14,7 +14,7 @@ from cagepose.kernels.vector import Matrix, Vector, cross, minus, plus, scaled
 Quaternion = tuple[float, float, float, float]
 
 
-@entry_kernel
+@kernel
 def quaternion_product(p: Quaternion, q: Quaternion) -> Quaternion:
     """Return p q, scaled back to length one: first turn by q, then by p."""
     w = p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3]
@@ -47,7 +47,7 @@ def rotated(q: Quaternion, a: Vector) -> Vector:
     return plus(plus(a, scaled(t, q[0])), cross(r, t))
 
 
-@entry_kernel
+@kernel
 def matrix_from_quaternion(q: Quaternion) -> Matrix:
     w, x, y, z = q
     return (
@@ -57,7 +57,7 @@ def matrix_from_quaternion(q: Quaternion) -> Matrix:
     )
 
 
-@entry_kernel
+@kernel
 def quaternion_from_euler_zyx(yaw_rad: float, pitch_rad: float, roll_rad: float) -> Quaternion:
     """Return the quaternion of Rz(yaw) Ry(pitch) Rx(roll)."""
     about_z = quaternion_about((0.0, 0.0, 1.0), yaw_rad)
@@ -75,7 +75,7 @@ def write_quaternions(angles: FloatArray, quaternions: FloatArray) -> None:
             quaternions[index, k] = found[k]
 
 
-@entry_kernel
+@kernel
 def euler_zyx_from_quaternion(q: Quaternion) -> Vector:
     """Return (yaw, pitch, roll) in radians; pitch within +-pi/2. At the pole, where yaw and roll merge, roll is 0.
 
@@ -99,7 +99,7 @@ def write_euler_zyx(quaternions: FloatArray, angles: FloatArray) -> None:
             angles[index, k] = found[k]
 
 
-@entry_kernel
+@kernel
 def moved_pose(
     position: Vector, quaternion: Quaternion, along: Vector, through: Vector, distance_m: float, angle_rad: float
 ) -> tuple[Vector, Quaternion]:

@@ -20,7 +20,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.geometry import box_gap
-from cagepose.kernels.jit import entry_kernel, kernel
+from cagepose.kernels.jit import kernel
 from cagepose.kernels.vector import Vector, cross, dot, minus, scaled
 
 SAFE = 1e-12
@@ -178,7 +178,7 @@ def turn_entry(
     return entry_of_box(point_box, w, point_pi_box, half_size, allowed_depth_m, resolution_m)
 
 
-@entry_kernel
+@kernel
 def key_of_angle(angle_rad: float) -> float:
     """Return c = -cot(s/2) for 0 < s < 2 pi."""
     return -1.0 / math.tan(0.5 * angle_rad)

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Generic, TypeVar
+from collections.abc import Callable
 
 import numpy as np
 
 from cagepose.kernels.batch import Endings, Starts, empty_endings
-from cagepose.kernels.geometry import Geometry
-from cagepose.kernels.jit import is_loaded, machine_code
+from cagepose.kernels.jit import bound
 from cagepose.kernels.metric import PhaseLoad
 from cagepose.kernels.pose import write_quaternions
-from cagepose.kernels.proof import ProofRoom, empty_proof_room
-from cagepose.kernels.quasistatic import QuasistaticRules, QuasistaticWorkspace, empty_quasistatic_workspace
+from cagepose.kernels.proof import empty_proof_room
+from cagepose.kernels.quasistatic import QuasistaticRules, empty_quasistatic_workspace
 from cagepose.kernels.quasistatic_batch import quasistatic_runs
 from cagepose.kernels.record import Rows, dtype_of
-from cagepose.kernels.stepwise import PhaseLoads, Workspace, empty_workspace
+from cagepose.kernels.stepwise import PhaseLoads, empty_workspace
 from cagepose.kernels.stepwise_batch import stepwise_runs
 from cagepose.kernels.tolerances import kernel_tolerances
 from cagepose.nouns.checks import FloatArray, as_vector
@@ -31,11 +30,9 @@ from cagepose.runs.stepwise import no_slip_angle_rad, phase_loads, rules_of_size
 from cagepose.runs.variation import Variation
 from cagepose.runs.weights import dead_loads, weigh
 
-Room = TypeVar("Room")
 
-
-class Batch(ABC, Generic[Room]):
-    """Runs of one scene. A method says what one thread needs (`room`) and calls its kernel (`run`).
+class Batch(ABC):
+    """Runs of one scene. A method says which kernel runs them, and with what (`room`).
 
     Attributes
     ----------
@@ -52,39 +49,30 @@ class Batch(ABC, Generic[Room]):
         self._scene, self._frames = scene, Frames(scene, middle_object)
         self.n_runs, columns = variation.columns(scene)
         self.endings = empty_endings(self.n_runs, len(scene.loads), len(scene.cage.names))
-        self._idle_rooms = list[Room]()
+        self._idle_rooms = list[Callable[[int, int], None]]()
         return columns
 
     @abstractmethod
-    def room(self) -> Room:
-        """Return what one thread writes to."""
-
-    @abstractmethod
-    def is_loaded(self) -> bool:
-        """Whether the kernel can be called at once."""
-
-    @abstractmethod
-    def run(self, first: int, last: int, room: Room) -> None:
-        """Run ``first`` up to, without, ``last``."""
+    def room(self) -> Callable[[int, int], None]:
+        """Return a call of the kernel, with room for one thread: it runs the first up to, without, the last."""
 
     def load(self) -> None:
         """Compile the kernel, or read it from disk, so that threads need not."""
-        if not self.is_loaded():
-            self.run(0, 0, self.room())
+        self._idle_rooms.append(self.room())
 
     def run_piece(self, first: int, last: int) -> int:
         """Run ``first`` up to, without, ``last``, in any thread; return how many these are."""
         try:
-            room = self._idle_rooms.pop()
+            run = self._idle_rooms.pop()
         except IndexError:
-            room = self.room()
-        self.run(first, last, room)
+            run = self.room()
+        run(first, last)
         if last < self.n_runs:
-            self._idle_rooms.append(room)
+            self._idle_rooms.append(run)
         return last - first
 
 
-class StepwiseBatch(Batch[tuple[Geometry, Workspace]]):
+class StepwiseBatch(Batch):
     """Runs of one scene by the paper's rules."""
 
     def __init__(self, scene: Scene, variation: Variation) -> None:
@@ -96,30 +84,24 @@ class StepwiseBatch(Batch[tuple[Geometry, Workspace]]):
         self._rules = rules_of_size(scene, 1.0)
         self._tolerances = kernel_tolerances(1.0, scene.tolerances.touch)
 
-    def room(self) -> tuple[Geometry, Workspace]:
+    def room(self) -> Callable[[int, int], None]:
         geometry = self._frames.geometry(self._scene)
-        return geometry, empty_workspace(geometry, len(self._scene.loads), self._rules)
-
-    def is_loaded(self) -> bool:
-        return is_loaded(stepwise_runs)
-
-    def run(self, first: int, last: int, room: tuple[Geometry, Workspace]) -> None:
-        geometry, work = room
-        machine_code(stepwise_runs)(
-            first,
-            last,
+        return bound(
+            stepwise_runs,
+            0,
+            0,
             self._starts,
             self._loads,
             geometry,
             as_vector(self._frames.middle_object),
             self._rules,
             self._tolerances,
-            work,
+            empty_workspace(geometry, len(self._scene.loads), self._rules),
             self.endings,
         )
 
 
-class QuasistaticBatch(Batch[tuple[Geometry, QuasistaticWorkspace, ProofRoom]]):
+class QuasistaticBatch(Batch):
     """Runs of one scene by the mechanics."""
 
     def __init__(self, scene: Scene, variation: Variation) -> None:
@@ -131,19 +113,12 @@ class QuasistaticBatch(Batch[tuple[Geometry, QuasistaticWorkspace, ProofRoom]]):
         self._rules = QuasistaticRules(friction, TURN_STEP_RAD, STEP_LIMIT)
         self._tolerances = kernel_tolerances(1.0, scene.tolerances.touch)
 
-    def room(self) -> tuple[Geometry, QuasistaticWorkspace, ProofRoom]:
+    def room(self) -> Callable[[int, int], None]:
         geometry = self._frames.geometry(self._scene)
-        work = empty_quasistatic_workspace(geometry, len(self._scene.loads), STEP_LIMIT)
-        return geometry, work, empty_proof_room(geometry)
-
-    def is_loaded(self) -> bool:
-        return is_loaded(quasistatic_runs)
-
-    def run(self, first: int, last: int, room: tuple[Geometry, QuasistaticWorkspace, ProofRoom]) -> None:
-        geometry, work, at = room
-        machine_code(quasistatic_runs)(
-            first,
-            last,
+        return bound(
+            quasistatic_runs,
+            0,
+            0,
             self._starts,
             self._loads,
             geometry,
@@ -151,8 +126,8 @@ class QuasistaticBatch(Batch[tuple[Geometry, QuasistaticWorkspace, ProofRoom]]):
             as_vector(self._frames.middle_object),
             self._rules,
             self._tolerances,
-            work,
-            at,
+            empty_quasistatic_workspace(geometry, len(self._scene.loads), STEP_LIMIT),
+            empty_proof_room(geometry),
             self.endings,
         )
 

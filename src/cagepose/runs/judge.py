@@ -10,7 +10,6 @@ import numpy as np
 from cagepose.kernels.contact_set import ContactSet
 from cagepose.kernels.contacts import contact_rows
 from cagepose.kernels.critical_friction import critical_friction
-from cagepose.kernels.jit import machine_code
 from cagepose.kernels.metric import Body
 from cagepose.kernels.pose import Quaternion
 from cagepose.kernels.proof import (
@@ -91,7 +90,7 @@ class Judge:
     def proof(self, pose: Pose, phase: int) -> tuple[Proof, tuple[Contact, ...]]:
         """Return the proof at a pose under the load of a phase, and the contacts with their forces."""
         inside = self.frames.inward(pose)
-        code, steady, n_undetermined = machine_code(prove)(
+        code, steady, n_undetermined = prove(
             self.geometry,
             self.body,
             *inside,

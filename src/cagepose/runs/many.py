@@ -116,9 +116,9 @@ def run_many(
     if threads is not None and threads < 1:
         raise SceneError([Problem(("threads",), f"is {threads}; give 1 or more")])
     methods = [chosen_method(scene, method) for scene in all_scenes]
-    kinds: dict[str, Callable[[Scene, Variation], Batch[Any]]]
+    kinds: dict[str, Callable[[Scene, Variation], Batch]]
     kinds = {"stepwise": StepwiseBatch, "quasistatic": QuasistaticBatch}
-    batches: list[Batch[Any]] = [
+    batches: list[Batch] = [
         kinds[name](scene, variation or Variation()) for scene, name in zip(all_scenes, methods, strict=True)
     ]
     for batch in {type(batch): batch for batch in batches}.values():
@@ -129,7 +129,7 @@ def run_many(
     return _columns(methods, batches, solve_s)
 
 
-def _run_all(batches: Sequence[Batch[Any]], n_threads: int, progress: Callable[[float], None] | None) -> None:
+def _run_all(batches: Sequence[Batch], n_threads: int, progress: Callable[[float], None] | None) -> None:
     n_runs, n_done = sum(batch.n_runs for batch in batches), 0
     length = max(1, min(LONGEST_PIECE, n_runs // (PIECES_FOR_A_THREAD * n_threads)))
     executor = ThreadPoolExecutor(n_threads)
@@ -147,7 +147,7 @@ def _run_all(batches: Sequence[Batch[Any]], n_threads: int, progress: Callable[[
         executor.shutdown(cancel_futures=True)
 
 
-def _columns(methods: list[str], batches: Sequence[Batch[Any]], solve_s: float) -> Runs:
+def _columns(methods: list[str], batches: Sequence[Batch], solve_s: float) -> Runs:
     names = np.full(max(INVALID, len(VERDICT_NAMES)) + 2, "", dtype="<U10")
     names[: len(VERDICT_NAMES)] = VERDICT_NAMES
     names[INVALID], names[NOT_RUN] = "invalid", ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from cagepose.kernels.jit import is_loaded, machine_code
+from cagepose.kernels.jit import bound
 from cagepose.kernels.quasistatic import (
     RULE_NAMES,
     QuasistaticRules,
@@ -34,12 +34,19 @@ def run_quasistatic(scene: Scene, turn_step_rad: float = TURN_STEP_RAD) -> Run:
     rules = QuasistaticRules(friction, turn_step_rad, STEP_LIMIT)
     work = empty_quasistatic_workspace(judge.geometry, len(scene.loads), STEP_LIMIT)
     start = frames.inward(scene.object.pose_world_object)
-    arguments = (judge.geometry, judge.body, *start, judge.loads, rules, scene.size_m, judge.tolerances, work)
-    if not is_loaded(quasistatic_run):
-        quasistatic_run(*arguments)  # so that the time measured is that of the run
-    run_compiled = machine_code(quasistatic_run)
+    run_compiled = bound(
+        quasistatic_run,
+        judge.geometry,
+        judge.body,
+        *start,
+        judge.loads,
+        rules,
+        scene.size_m,
+        judge.tolerances,
+        work,
+    )
     began = time.perf_counter()
-    n_phases, n_steps = run_compiled(*arguments)
+    n_phases, n_steps = run_compiled()
     solve_s = time.perf_counter() - began
 
     phases = list[PhaseRun]()

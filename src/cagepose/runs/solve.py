@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from cagepose.errors import Problem, SceneError
-from cagepose.kernels.jit import is_compiled
 from cagepose.nouns.scene import Scene
 from cagepose.runs.quasistatic import run_quasistatic
 from cagepose.runs.run import Run
@@ -56,4 +55,6 @@ def chosen_method(scene: Scene, method: str | None = None) -> str:
 
 def kernels_are_compiled(method: str = DEFAULT_METHOD) -> bool:
     """Whether the machine code of a method lies on disk already, so that the first run starts at once."""
+    from cagepose.kernels.cache import is_compiled  # here, as it loads LLVM: to read a scene file takes half as long
+
     return all(is_compiled(kernel) for kernel in _SOLVERS[method][1])

@@ -7,7 +7,7 @@ import time
 
 import numpy as np
 
-from cagepose.kernels.jit import is_loaded, machine_code
+from cagepose.kernels.jit import bound
 from cagepose.kernels.slip import SlipRules
 from cagepose.kernels.stepwise import RULE_NAMES, PhaseLoads, StepwiseRules, empty_workspace, stepwise_run
 from cagepose.kernels.support import SupportRules
@@ -55,7 +55,8 @@ def run_stepwise(scene: Scene) -> Run:
     loads = phase_loads(scene, frames.middle_object)
     tolerances = kernel_tolerances(scene.size_m, scene.tolerances.touch)
     workspace = empty_workspace(geometry, len(scene.loads), rules)
-    arguments = (
+    run_compiled = bound(
+        stepwise_run,
         geometry,
         *frames.inward(scene.object.pose_world_object),
         loads,
@@ -64,11 +65,8 @@ def run_stepwise(scene: Scene) -> Run:
         tolerances,
         workspace,
     )
-    if not is_loaded(stepwise_run):
-        stepwise_run(*arguments)  # so that the time measured is that of the run
-    run_compiled = machine_code(stepwise_run)
     began = time.perf_counter()
-    n_phases, n_events = run_compiled(*arguments)
+    n_phases, n_events = run_compiled()
     solve_s = time.perf_counter() - began
 
     friction = scene.friction_coefficient

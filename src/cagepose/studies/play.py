@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cagepose.errors import Problem, SceneError
-from cagepose.kernels.jit import is_compiled, is_loaded
+from cagepose.kernels.cache import is_compiled
+from cagepose.kernels.jit import bound
 from cagepose.kernels.play import OPEN, REACHED, Extreme, find_play
 from cagepose.kernels.play_certificate import CAGED, CertificateRoom, certify, empty_certificate_room
 from cagepose.kernels.play_goal import PITCH, ROLL, SHIFT, YAW, Goal
@@ -143,13 +144,12 @@ def play(
     work = empty_certificate_room(len(room.faces))
     bounds = np.full(len(goals), np.inf)
     touch_m = scene.tolerances.touch * scene.size_m
-    if not (is_loaded(find_play) and is_loaded(certify)):  # so that the times below are those of the analysis alone
-        find_play(frame.geometry, frame.length_m, empty_rows(Goal, 0), empty_rows(Extreme, 0), room)
-        certify(frame.geometry, frame.length_m, touch_m, empty_rows(Goal, 0), bounds, room, work)
+    analyse = bound(find_play, frame.geometry, frame.length_m, goals, extremes, room)
+    certify_ends = bound(certify, frame.geometry, frame.length_m, touch_m, goals, bounds, room, work)
     started = perf_counter()
-    find_play(frame.geometry, frame.length_m, goals, extremes, room)
+    analyse()
     analysed = perf_counter()
-    certify(frame.geometry, frame.length_m, touch_m, goals, bounds, room, work)
+    certify_ends()
     certified = perf_counter()
     writer = _Writer(scene, frame, goals, extremes, bounds, work)
     freedoms = {name: PlayRange(*writer.ends(place)) for place, name in enumerate(FREEDOMS)}

@@ -1,0 +1,87 @@
+"""Where machine code is kept.
+
+The folder's name holds a hash of all that machine code depends on: an edit of any kernel, another release of Numba or
+another processor (home folders are shared between machines) starts an empty one. If no folder can be written, kernels
+are compiled anew in each process; nothing else changes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+import tempfile
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+import llvmlite.binding as llvm
+
+from cagepose.kernels.arguments import Kind
+from cagepose.kernels.jit import JIT_IS_OFF, Entry
+from cagepose.kernels.machine_code import MachineCode
+from cagepose.kernels.object_file import read_object_file
+
+
+def load_machine_code(entry: Entry, kinds: tuple[Kind, ...]) -> MachineCode | None:
+    """Return machine code for such arguments, from disk or compiled now; None: Numba must call it in its own way."""
+    name = f"{entry.name}-{hashlib.sha256(repr(kinds).encode()).hexdigest()[:16]}"
+    folder = cache_folder()
+    path = None if folder is None else folder / f"{name}.o"
+    file = None if path is None else read_object_file(path)
+    if file is not None:
+        try:
+            return MachineCode(file)
+        except RuntimeError:  # it asks for a function that only a process with Numba has
+            pass
+    from cagepose.kernels import linking  # here, as it imports Numba
+
+    if not linking.is_tried():
+        return None
+    file = linking.object_file(entry.dispatcher, kinds, name)
+    if path is not None:
+        file.write(path)
+    return MachineCode(file)
+
+
+def is_compiled(entry_name: str) -> bool:
+    """Whether the machine code of the kernel ``entry_name`` lies on disk (or none is needed)."""
+    if JIT_IS_OFF:
+        return True
+    folder = cache_folder()
+    return folder is not None and any(folder.rglob(f"*{entry_name}-*"))
+
+
+@cache
+def cache_folder() -> Path | None:
+    """Return a folder that can be written, or None. `NUMBA_CACHE_DIR` and `XDG_CACHE_HOME` are respected."""
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    if chosen:
+        root = Path(chosen)
+    elif sys.platform == "win32":
+        root = Path(os.environ.get("LOCALAPPDATA", "~"))
+    else:
+        root = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache")
+    try:
+        folder = root.expanduser() / "cagepose" / f"kernels-{inputs_hash()}"
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except (OSError, RuntimeError):  # RuntimeError: no home folder to expand "~" to
+        return None
+    return folder
+
+
+def inputs_hash() -> str:
+    """Return a hash of all that machine code depends on, beside its arguments."""
+    digest = hashlib.sha256()
+    # Numba's settings too: with some of them it makes other code.
+    settings = sorted(
+        item for item in os.environ.items() if item[0].startswith("NUMBA_") and item[0] != "NUMBA_CACHE_DIR"
+    )
+    processor = (llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten())
+    releases = (sys.version_info[:2], version("numba"), version("llvmlite"), version("numpy"))
+    digest.update(repr((releases, processor, settings)).encode())
+    for source in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(source.name.encode() + b"\0" + source.read_bytes())
+    return digest.hexdigest()[:16]
