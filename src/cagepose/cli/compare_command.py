@@ -44,10 +44,9 @@ def compare_command(
         return 2
 
     from cagepose.cli.first_run import announce_compilation
-    from cagepose.runs.solve import METHODS
     from cagepose.studies.comparison import compare
 
-    announce_compilation(METHODS)
+    announce_compilation()
     comparison = compare(scene_file.scene, friction or None)
     if json:
         from json import dumps

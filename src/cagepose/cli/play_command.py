@@ -54,11 +54,11 @@ def play_command(
         sys.stderr.write("\n".join(problems) + "\n")
         return 2
 
-    from cagepose.cli.first_run import announce_kernels
-    from cagepose.studies.play import play, play_is_compiled
+    from cagepose.cli.first_run import announce_compilation
+    from cagepose.studies.play import play
     from cagepose.studies.play_rest import play_rests
 
-    announce_kernels(play_is_compiled())
+    announce_compilation()
     try:
         found = play(
             scene_file.scene,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from cagepose.cli.first_run import announce_kernels
+from cagepose.cli.first_run import announce_compilation
 from cagepose.cli.options import AtOption, SetOption
 from cagepose.cli.run_source import MethodOption, RunOrSceneArgument, read_run_or_scene, run_of
 
@@ -83,9 +83,9 @@ def _play_picture(
     from cagepose.faces.style import figure_bytes
     from cagepose.files.run_file import RunFile
     from cagepose.files.units import to_metres
-    from cagepose.studies.play import play, play_is_compiled
+    from cagepose.studies.play import play
 
-    announce_kernels(play_is_compiled())
+    announce_compilation()
     found = play(source.run.scene if isinstance(source, RunFile) else source.scene)
     said = f"{found.scene.name}, {found.cage.verdict}"
     if kind == "extremes":

@@ -29,7 +29,7 @@ def reproduce_command(
 
     try:
         check_report_folder(out, METHODS)
-        announce_compilation(METHODS)
+        announce_compilation()
         progress = _teller()
         reproduction = reproduce(METHODS, progress)
         written = write_report(out, reproduction, progress)

@@ -59,9 +59,9 @@ def read_run_or_scene(
 def run_of(source: RunFile | SceneFile, method: str | None) -> RunFile:
     """Return the run of a source: the saved one, or the scene's, which is run now."""
     from cagepose.files.run_file import RunFile
-    from cagepose.runs.solve import chosen_method, run
+    from cagepose.runs.solve import run
 
     if isinstance(source, RunFile):
         return source
-    announce_compilation([chosen_method(source.scene, method)])
+    announce_compilation()
     return RunFile(run(source.scene, method), source.length_unit)

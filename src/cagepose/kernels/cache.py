@@ -11,6 +11,7 @@ import hashlib
 import os
 import sys
 import tempfile
+from collections.abc import Callable
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -18,22 +19,25 @@ from pathlib import Path
 import llvmlite.binding as llvm
 
 from cagepose.kernels.arguments import Kind
-from cagepose.kernels.jit import JIT_IS_OFF, Entry
+from cagepose.kernels.jit import Entry
 from cagepose.kernels.machine_code import MachineCode
 from cagepose.kernels.object_file import read_object_file
+
+before_compiling: list[Callable[[], None]] = []
+"""Called once each, when something is compiled for the first time in this process."""
 
 
 def load_machine_code(entry: Entry, kinds: tuple[Kind, ...]) -> MachineCode | None:
     """Return machine code for such arguments, from disk or compiled now; None: Numba must call it in its own way."""
-    name = f"{entry.name}-{hashlib.sha256(repr(kinds).encode()).hexdigest()[:16]}"
-    folder = cache_folder()
-    path = None if folder is None else folder / f"{name}.o"
+    name, path = _place(entry, kinds)
     file = None if path is None else read_object_file(path)
     if file is not None:
         try:
             return MachineCode(file)
         except RuntimeError:  # it asks for a function that only a process with Numba has
             pass
+    while before_compiling:
+        before_compiling.pop()()
     from cagepose.kernels import linking  # here, as it imports Numba
 
     if not linking.is_tried():
@@ -44,12 +48,17 @@ def load_machine_code(entry: Entry, kinds: tuple[Kind, ...]) -> MachineCode | No
     return MachineCode(file)
 
 
-def is_compiled(entry_name: str) -> bool:
-    """Whether the machine code of the kernel ``entry_name`` lies on disk (or none is needed)."""
-    if JIT_IS_OFF:
-        return True
+def is_kept(entry: Entry, kinds: tuple[Kind, ...]) -> bool:
+    """Whether machine code for such arguments lies on disk."""
+    _, path = _place(entry, kinds)
+    return path is not None and path.exists()
+
+
+def _place(entry: Entry, kinds: tuple[Kind, ...]) -> tuple[str, Path | None]:
+    """Return the name of an entry's machine code, and where it is kept."""
+    name = f"{entry.name}-{hashlib.sha256(repr(kinds).encode()).hexdigest()[:16]}"
     folder = cache_folder()
-    return folder is not None and any(folder.rglob(f"*{entry_name}-*"))
+    return name, None if folder is None else folder / f"{name}.o"
 
 
 @cache

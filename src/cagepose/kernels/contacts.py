@@ -23,7 +23,7 @@ from cagepose.kernels.geometry import (
     place_object,
     point_in_box,
 )
-from cagepose.kernels.jit import entry_kernel, kernel
+from cagepose.kernels.jit import kernel, rare_kernel
 from cagepose.kernels.pose import Quaternion
 from cagepose.kernels.record import FloatArray
 from cagepose.kernels.tolerances import KernelTolerances
@@ -160,7 +160,7 @@ def steepest_contact(
     return best_cosine > -math.inf, best_normal, is_tie
 
 
-@entry_kernel
+@rare_kernel
 def fill_contact_rows(
     geometry: Geometry,
     position: Vector,

@@ -10,7 +10,7 @@ from cagepose.kernels.balance import left_by_friction
 from cagepose.kernels.cone import BALANCED, HELD, write_forces
 from cagepose.kernels.contact_set import ContactRow, choose_next_faces
 from cagepose.kernels.geometry import Geometry
-from cagepose.kernels.jit import entry_kernel, kernel
+from cagepose.kernels.jit import kernel, rare_kernel
 from cagepose.kernels.metric import Body, PhaseLoad
 from cagepose.kernels.onset import COMBINATIONS_LIMIT, OnsetRoom
 from cagepose.kernels.pose import Quaternion
@@ -61,7 +61,7 @@ def least_friction(rows: Rows[ContactRow], n_contacts: int, solver: OnsetRoom) -
     return high
 
 
-@entry_kernel
+@rare_kernel
 def critical_friction(
     geometry: Geometry,
     body: Body,

@@ -1,7 +1,7 @@
-"""The two decorators of all kernels, and how Python calls them.
+"""The decorators of all kernels, and how Python calls them.
 
 Machine code comes from the disk if it lies there (`cagepose.kernels.cache`), without Numba, whose import takes longer
-than a whole run. Numba is imported when there is something to compile.
+than a whole run. Numba is imported when there is something to compile, and that is put off where it would not pay.
 """
 
 from __future__ import annotations
@@ -9,8 +9,11 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from functools import cached_property, update_wrapper
-from threading import RLock
+from threading import Lock, RLock, get_ident
+from time import perf_counter
 from typing import Any, ParamSpec, TypeVar
+
+import numpy as np
 
 from cagepose.kernels.arguments import Arguments, Kind
 
@@ -20,6 +23,25 @@ R = TypeVar("R")
 
 JIT_IS_OFF = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 """Numba's own switch, read without Numba: kernels are plain Python then."""
+
+PATIENCE_S = 1.0
+"""For how long, in a process, a rare kernel is plain Python before it is compiled."""
+
+
+class OutOfPatienceError(Exception):
+    """A rare kernel takes too long as plain Python."""
+
+
+class _Trial:
+    """The call of a rare kernel that is being tried as plain Python: by which thread, and until when."""
+
+    def __init__(self) -> None:
+        self.lock = Lock()
+        self.thread = 0
+        self.until = float("inf")
+
+
+_TRIAL = _Trial()
 
 
 class Kernel:
@@ -34,6 +56,8 @@ class Kernel:
         self.name = function.__name__
 
     def __call__(self, *arguments: Any) -> Any:
+        if perf_counter() > _TRIAL.until and get_ident() == _TRIAL.thread:
+            raise OutOfPatienceError
         return self._function(*arguments)
 
     @cached_property
@@ -58,6 +82,8 @@ class Entry(Kernel):
         """Machine code for each kind of arguments that it was called with."""
 
     def __call__(self, *arguments: Any) -> Any:
+        if get_ident() == _TRIAL.thread:  # as a part of a rare kernel
+            return super().__call__(*arguments)
         return self.bound(*arguments)()
 
     def bound(self, *arguments: Any) -> Callable[..., Any]:
@@ -76,6 +102,40 @@ class Entry(Kernel):
         return load_machine_code(self, kinds)
 
 
+class RareEntry(Entry):
+    """An entry that is compiled when it has taken `PATIENCE_S` as plain Python: see `rare_kernel`."""
+
+    def __init__(self, function: Callable[..., object]) -> None:
+        super().__init__(function)
+        self.patience_s = PATIENCE_S
+
+    def __call__(self, *arguments: Any) -> Any:
+        is_new = self.patience_s > 0.0 and not self.loaded and not self._is_kept(arguments)
+        if is_new and _TRIAL.lock.acquire(blocking=False):  # one at a time: `until` is one thread's
+            try:
+                return self._try_in_python(arguments)
+            except (OutOfPatienceError, ArithmeticError, ValueError):  # machine code knows infinities and NaN
+                self.patience_s = 0.0
+            finally:
+                _TRIAL.lock.release()
+        return super().__call__(*arguments)
+
+    def _is_kept(self, arguments: tuple[Any, ...]) -> bool:
+        from cagepose.kernels.cache import is_kept
+
+        return is_kept(self, Arguments(arguments).kinds)
+
+    def _try_in_python(self, arguments: tuple[Any, ...]) -> Any:
+        began = perf_counter()
+        _TRIAL.thread, _TRIAL.until = get_ident(), began + self.patience_s
+        try:
+            with np.errstate(all="ignore"):
+                return self._function(*arguments)
+        finally:
+            _TRIAL.thread, _TRIAL.until = 0, float("inf")
+            self.patience_s -= perf_counter() - began
+
+
 _LOADING = RLock()
 
 
@@ -87,6 +147,15 @@ def kernel(function: F) -> F:
 def entry_kernel(function: F) -> F:
     """Compile a function for Python too, and keep it on disk."""
     return function if JIT_IS_OFF else Entry(function)  # type: ignore[return-value]
+
+
+def rare_kernel(function: F) -> F:
+    """Compile a function for Python too, but not before it has taken a second as plain Python in this process.
+
+    It is for what is called once or twice for each answer: to compile it takes as long as a thousand calls. It must
+    not read what it has written before, as a call that takes too long is made again.
+    """
+    return function if JIT_IS_OFF else RareEntry(function)  # type: ignore[return-value]
 
 
 def bound(entry: Callable[P, R], *arguments: P.args, **_: P.kwargs) -> Callable[..., R]:

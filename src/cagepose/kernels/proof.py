@@ -17,7 +17,7 @@ from cagepose.kernels.contact_set import (
     put_best_faces_back,
 )
 from cagepose.kernels.geometry import Geometry, Placement, empty_placement, place_object
-from cagepose.kernels.jit import entry_kernel, kernel
+from cagepose.kernels.jit import kernel, rare_kernel
 from cagepose.kernels.least_squares import System, clear, empty_system
 from cagepose.kernels.metric import WRENCH, Body, Frame, PhaseLoad, ScaledVector, frame_at, write_load
 from cagepose.kernels.onset import (
@@ -112,7 +112,7 @@ def stand_at(
     return find_contacts(geometry, at.placement, position, frame, touch_m, at.contacts)
 
 
-@entry_kernel
+@rare_kernel
 def prove(
     geometry: Geometry,
     body: Body,

@@ -13,7 +13,7 @@ from cagepose.kernels.contact_set import (
     keep_faces,
     put_best_faces_back,
 )
-from cagepose.kernels.jit import entry_kernel, kernel
+from cagepose.kernels.jit import entry_kernel, kernel, rare_kernel
 from cagepose.kernels.least_squares import rounding_scale
 from cagepose.kernels.onset import COMBINATIONS_LIMIT, HELD_BY_FRICTION, MOVES, onset
 from cagepose.kernels.proof import OTHER_ONSET, PROVEN_UNIQUE, UNIQUENESS_NOT_SHOWN, JudgeRoom, ProofRoom
@@ -81,7 +81,7 @@ def search_onsets(friction: float, at: ProofRoom) -> int:
     return proof
 
 
-@entry_kernel
+@rare_kernel
 def first_motion(friction: float, at: ProofRoom) -> None:
     """Write into ``at.rooms[0].solver.y`` how an object begins to move that does so by `cagepose.kernels.proof.prove`.
 
@@ -96,6 +96,7 @@ def first_motion(friction: float, at: ProofRoom) -> None:
         As left by the proof.
     """
     contacts, solver = at.contacts, at.rooms[0].solver
+    choose_first_faces(contacts)
     if onset(contacts, friction, solver) != MOVES:
         solver.residual = left_by_friction(contacts.rows, contacts.used[0], friction, solver)
         for k in range(6):

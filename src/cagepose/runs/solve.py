@@ -10,11 +10,7 @@ from cagepose.runs.quasistatic import run_quasistatic
 from cagepose.runs.run import Run
 from cagepose.runs.stepwise import run_stepwise
 
-_SOLVERS: dict[str, tuple[Callable[[Scene], Run], tuple[str, ...]]] = {
-    "stepwise": (run_stepwise, ("stepwise_run", "prove")),
-    "quasistatic": (run_quasistatic, ("quasistatic_run", "prove")),
-}
-"""For each method what runs it, and the kernels that are compiled for it."""
+_SOLVERS: dict[str, Callable[[Scene], Run]] = {"stepwise": run_stepwise, "quasistatic": run_quasistatic}
 
 METHODS = tuple(_SOLVERS)
 DEFAULT_METHOD = "quasistatic"
@@ -35,8 +31,7 @@ def run(scene: Scene, method: str | None = None) -> Run:
     SceneError
         An unknown method.
     """
-    solver, _ = _SOLVERS[chosen_method(scene, method)]
-    return solver(scene)
+    return _SOLVERS[chosen_method(scene, method)](scene)
 
 
 def chosen_method(scene: Scene, method: str | None = None) -> str:
@@ -51,10 +46,3 @@ def chosen_method(scene: Scene, method: str | None = None) -> str:
     if chosen not in _SOLVERS:
         raise SceneError([Problem(("method",), f"is {chosen!r}; known methods: {', '.join(METHODS)}")])
     return chosen
-
-
-def kernels_are_compiled(method: str = DEFAULT_METHOD) -> bool:
-    """Whether the machine code of a method lies on disk already, so that the first run starts at once."""
-    from cagepose.kernels.cache import is_compiled  # here, as it loads LLVM: to read a scene file takes half as long
-
-    return all(is_compiled(kernel) for kernel in _SOLVERS[method][1])

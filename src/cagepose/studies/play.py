@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cagepose.errors import Problem, SceneError
-from cagepose.kernels.cache import is_compiled
 from cagepose.kernels.jit import bound
 from cagepose.kernels.play import OPEN, REACHED, Extreme, find_play
 from cagepose.kernels.play_certificate import CAGED, CertificateRoom, certify, empty_certificate_room
@@ -161,11 +160,6 @@ def play(
         analysed - started,
         certified - analysed,
     )
-
-
-def play_is_compiled() -> bool:
-    """Whether the machine code lies on disk already, so that the first analysis starts at once."""
-    return all(is_compiled(kernel) for kernel in ("find_play", "certify"))
 
 
 def _point_near(scene: Scene, value: ArrayLike) -> FloatArray:
