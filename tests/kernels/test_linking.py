@@ -18,13 +18,15 @@ import numpy as np
 from cagepose.kernels import linking
 {change}
 from cagepose.kernels.contacts import deepest_boxes
-from cagepose.kernels.geometry import Geometry, row
+from cagepose.kernels.geometry import Geometry, empty_placement, place_object, row
+from cagepose.kernels.jit import bound
 from cagepose.kernels.pose import moved_pose
 
 boxes = np.array([[0.3, 0.2, 0.1], [0.1, 0.1, 0.4]])
 turns = np.array([np.eye(3), [[0, -1, 0], [1, 0, 0], [0, 0, 1.0]]])
 geometry = Geometry(boxes, np.array([[0, 0, 0], [0.1, 0, 0.2]]), turns, 2, np.array([[0.1, 0.3, 0.2], [0, 0.1, 0.5]]))
 position, quaternion = moved_pose((0.1, 0.2, 0.3), (1.0, 0.0, 0.0, 0.0), (0.6, 0.0, 0.8), (1.0, 2.0, 3.0), 0.5, 0.25)
+bound(place_object, geometry, position, quaternion, empty_placement(geometry))
 print(position, quaternion, *(array.tolist() for array in deepest_boxes(geometry, position, quaternion)))
 print(type(next(iter(row.dispatcher.overloads.values())).library).__name__)
 """

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cagepose.kernels.jit import entry_kernel, kernel
+from cagepose.kernels.jit import kernel, rare_kernel
 from cagepose.kernels.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.record import FloatArray
 from cagepose.kernels.vector import Vector, matrix, minus, plus, row, times, transposed_times
@@ -83,7 +83,7 @@ def box_gap(point_box: Vector, half_size: Vector) -> float:
     return max(abs(point_box[0]) - half_size[0], abs(point_box[1]) - half_size[1], abs(point_box[2]) - half_size[2])
 
 
-@entry_kernel
+@rare_kernel
 def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, placement: Placement) -> None:
     """Fill ``placement`` for the object at the given pose."""
     rotation = matrix_from_quaternion(quaternion)
