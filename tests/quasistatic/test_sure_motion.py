@@ -1,0 +1,95 @@
+"""The short proof that contacts do not balance a load, against the full problem with round cones and by its own terms.
+
+Contact sets are those of `test_only_onset`; half of the loads are such that some forces inside the cones balance them,
+some of them only just, and the rest are any.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from cagepose.kernels.cone import BALANCED, HELD, ConeRoom, clear_cone, cone_residual
+from cagepose.kernels.least_squares import rounding_scale
+from cagepose.kernels.metric import WRENCH
+from cagepose.kernels.record import empty_record
+from cagepose.kernels.sure_motion import SURELY, WIDER, leaves_cones, moves_surely
+from jit import callable_kernel, cases
+from quasistatic.test_only_onset import Held, contacts_of, random_held
+
+
+class Judge:
+    """Both ways to ask, of one contact set and load after the other."""
+
+    def __init__(self) -> None:
+        self.room = empty_record(ConeRoom)
+        self._clear, self._solve = callable_kernel(clear_cone), callable_kernel(cone_residual)
+        self._sure, self._leaves = callable_kernel(moves_surely), callable_kernel(leaves_cones)
+        self._scale = callable_kernel(rounding_scale)
+
+    def left(self, case: Held, friction: float) -> float:
+        """What the contacts leave of the load, in lengths of the terms."""
+        contacts = contacts_of(case)
+        self._clear(self.room, case.load, WRENCH, 1.0)
+        left = self._solve(contacts.rows, contacts.used[0], friction, case.load, np.bool_(False), self.room)
+        return left / self._scale(self.room.passive)
+
+    def moves(self, case: Held) -> bool:
+        self.left(case, 0.0)
+        contacts = contacts_of(case)
+        return bool(self._sure(contacts.rows, contacts.used[0], case.friction, case.load, self.room))
+
+    def leaves(self, case: Held, twist: np.ndarray, slack: float) -> bool:
+        contacts = contacts_of(case)
+        return bool(self._leaves(contacts.rows, contacts.used[0], case.friction, slack, twist))
+
+
+@pytest.fixture(scope="module")
+def judge() -> Judge:
+    return Judge()
+
+
+def random_case(random: np.random.Generator) -> Held:
+    case = random_held(random)
+    if random.random() < 0.5:
+        return case
+    away = random.normal(size=7) * 10.0 ** random.uniform(-12, 0.5)
+    load = np.where(np.arange(7) < 6, case.load + away, 0.0)
+    return case._replace(load=load / np.linalg.norm(load))
+
+
+def test_what_it_says_moves_has_no_balance_and_its_twist_shows_it(judge: Judge) -> None:
+    random, n_moving, n_sure = np.random.default_rng(0), 0, 0
+    for _ in range(cases(4000)):
+        case = random_case(random)
+        is_sure, twist = judge.moves(case), judge.room.passive.residual[:6].copy()
+        if is_sure:
+            assert case.load[:6] @ twist > SURELY * np.linalg.norm(twist)
+            normal, tangential = case.columns[:, 0] @ twist, case.columns[:, 1:] @ twist
+            resists = normal + case.friction * np.linalg.norm(tangential, axis=1)
+            assert (resists <= 1e-13 * np.linalg.norm(case.columns[:, 0], axis=1)).all()
+            assert judge.left(case, case.friction) > HELD
+        if judge.left(case, case.friction) > 1e-3 and judge.left(case, WIDER * case.friction) > 1e-3:
+            n_moving += 1
+            n_sure += is_sure
+    print(f"\n{n_moving} loads that nothing balances, not even with wider cones: {n_sure} of them shown")
+    assert n_moving > cases(4000) // 20
+    assert n_sure > 0.95 * n_moving
+
+
+def test_a_twist_that_a_force_resists_is_no_proof(judge: Judge) -> None:
+    random = np.random.default_rng(1)
+    for _ in range(cases(300)):
+        case = random_held(random)
+        twist = random.normal(size=6)
+        normal, tangential = case.columns[:, 0] @ twist, case.columns[:, 1:] @ twist
+        resists = normal + case.friction * np.linalg.norm(tangential, axis=1)
+        assert judge.leaves(case, twist, 0.0) == bool((resists <= 0.0).all())
+
+
+def test_balanced_loads_are_never_said_to_move(judge: Judge) -> None:
+    random = np.random.default_rng(2)
+    for _ in range(cases(2000)):
+        case = random_held(random)
+        if judge.left(case, case.friction) <= BALANCED:
+            assert not judge.moves(case)
