@@ -139,7 +139,10 @@ def is_valid_start(
     touch_m: float,
     placement: Placement,
 ) -> bool:
-    """Whether the object starts near the cage, no point is inside it, and no two points that vary are one."""
+    """Whether the object starts near the cage, no point is inside it, and no two points that vary are one.
+
+    The placement is that of the start afterwards.
+    """
     if norm(position) > starts.farthest * size_m:
         return False
     place_object(geometry, position, quaternion, placement)

@@ -9,7 +9,7 @@ import numpy as np
 from cagepose.kernels.jit import kernel, rare_kernel
 from cagepose.kernels.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.record import FloatArray
-from cagepose.kernels.vector import Vector, matrix, minus, plus, row, times, transposed_times
+from cagepose.kernels.vector import Matrix, Vector, matrix, minus, plus, row, times, transposed_times
 
 
 class Geometry(NamedTuple):
@@ -120,16 +120,15 @@ def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, p
 
 
 @kernel
-def depth_of_point(geometry: Geometry, position: Vector, quaternion: Quaternion, point: int) -> float:
-    """Return how deep one point lies in the object at the given pose, as `Placement.depths` has it."""
-    rotation = matrix_from_quaternion(quaternion)
+def is_clear_of(geometry: Geometry, position: Vector, rotation: Matrix, point: int, touch_m: float) -> bool:
+    """Whether one point touches no box, as `Placement.gaps` has it, when the object is at the given pose."""
     point_object = transposed_times(rotation, minus(row(geometry.points_world, point), position))
-    depth = -np.inf
     for box in range(len(geometry.half_sizes)):
         from_box = minus(point_object, row(geometry.box_positions, box))
         point_box = transposed_times(matrix(geometry.box_rotations, box), from_box)
-        depth = max(depth, -box_gap(point_box, row(geometry.half_sizes, box)))
-    return depth
+        if box_gap(point_box, row(geometry.half_sizes, box)) <= touch_m:
+            return False
+    return True
 
 
 @kernel

@@ -11,7 +11,7 @@ from typing import Any
 
 import llvmlite.binding as llvm
 
-from cagepose.kernels.arguments import TRUTH, Arguments
+from cagepose.kernels.arguments import FLOAT, INTEGER, TRUTH, Arguments
 from cagepose.kernels.object_file import ObjectFile
 
 _FUNCTION = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p)  # it lets go of the interpreter's lock
@@ -33,6 +33,7 @@ class MachineCode:
         self._function = _FUNCTION(self._tracker[file.name])
         self._name, self._results = file.name, file.results
         letters = "".join(_letters(file.results))
+        self._is_flat = isinstance(file.results, list) and all(part in (FLOAT, INTEGER) for part in file.results)
         self._unpack = struct.Struct("=" + letters.replace(TRUTH, "q")).unpack_from
         self._room = bytes(8 * len(letters))
 
@@ -48,13 +49,20 @@ class MachineCode:
         first_result = 8 * len(formats)
         pointers = (address, address + first_result)
         function, name, results, unpack = self._function, self._name, self._results, self._unpack
+        is_flat, packers = self._is_flat, dict[int, Callable[..., None]]()
 
         def call(*first: int | float) -> Any:
             if first:
-                struct.pack_into(f"={formats[: len(first)]}", slots, 0, *first)
+                n_first = len(first)
+                if n_first not in packers:
+                    packers[n_first] = struct.Struct(f"={formats[:n_first]}").pack_into
+                packers[n_first](slots, 0, *first)
             if function(*pointers):
                 raise RuntimeError(f"the kernel {name} failed: it raised an exception")
-            return _shaped(results, iter(unpack(slots, first_result))) if results else None
+            if results is None:
+                return None
+            numbers = unpack(slots, first_result)
+            return numbers if is_flat else _shaped(results, iter(numbers))
 
         call.__dict__["keeps"] = (owner, memory, self)
         return call

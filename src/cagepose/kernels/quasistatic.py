@@ -45,7 +45,7 @@ from cagepose.kernels.path import (
 from cagepose.kernels.pose import Quaternion, turned_by
 from cagepose.kernels.projection import ON_FACE
 from cagepose.kernels.record import Rows, empty_rows
-from cagepose.kernels.stiff import StiffRoom, curvature_along, stiff_step
+from cagepose.kernels.stiff import StiffRoom, curvature_along, keep_along_faces, stiff_step
 from cagepose.kernels.tolerances import KernelTolerances
 from cagepose.kernels.trace import (
     ESCAPES,
@@ -191,8 +191,9 @@ def next_twist(
     end = longest_step(velocity, spin, carries, turn_step_rad, setting.size_m)
     if end < math.inf:
         write_curvature(contacts, setting.load, quaternion, frame, room.stiff.curvature)
+        rho = max(keep_along_faces(contacts, room.stiff), 1.0 / end)
         if abs(curvature_along(room.stiff.curvature, y)) * end > STIFF:
-            if stiff_step(contacts, work.turned, setting.friction, 1.0 / end, room.stiff, room.solver):
+            if stiff_step(contacts, work.turned, setting.friction, rho, room.stiff, room.solver):
                 velocity, spin = twist_of(room.stiff.delta, frame)
                 end = min(1.0, longest_step(velocity, spin, carries, turn_step_rad, setting.size_m))
                 for i in range(contacts.used[0]):

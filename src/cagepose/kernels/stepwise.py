@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.first_contact import first_contact_travel
-from cagepose.kernels.geometry import Geometry, Placement, depth_of_point, empty_placement, place_object
+from cagepose.kernels.geometry import Geometry, Placement, empty_placement, is_clear_of, place_object
 from cagepose.kernels.jit import entry_kernel, kernel
-from cagepose.kernels.pose import Quaternion, rotated
+from cagepose.kernels.pose import Quaternion, matrix_from_quaternion, rotated
 from cagepose.kernels.record import FloatArray
 from cagepose.kernels.slip import SlipRules, slip_step
 from cagepose.kernels.support import PointLoad, SupportRules, pairwise_stability, turn_about_one, turn_about_two
@@ -186,15 +186,20 @@ def phase_run(
     trace: Trace,
     first_event: int,
 ) -> tuple[int, int, Vector, Quaternion]:
-    """Run one phase; return (verdict code, number of events so far, position, quaternion)."""
+    """Run one phase from where ``placement`` is; return (verdict code, events so far, position, quaternion)."""
     load = load_at(loads, phase, position, quaternion)
-    place_object(geometry, position, quaternion, placement)
     find_touching(geometry, placement, load, tolerances, touching)
     for event in range(first_event, first_event + rules.event_limit):
         step = next_step(geometry, placement, touching, load, loads.is_push[phase], rules, tolerances)
         if loads.is_push[phase] and step.note == PLAIN and has_face_tie(touching):
             step = Step(step.rule, step.motion, step.along, step.through, step.amount, step.hit_point, EDGE_TIE)
+        if step.motion == NONE:
+            write_event(trace, event, phase, step, position, quaternion)
+            for point in range(len(geometry.points_world)):
+                trace.touching[event, point], trace.hit[event, point] = touching.is_touching[point], False
+            return STABLE, event + 1, position, quaternion
         halfway = pose_during(step, position, quaternion, 0.5)
+        halfway_rotation = matrix_from_quaternion(halfway[1])
         position, quaternion = pose_during(step, position, quaternion, 1.0)
         write_event(trace, event, phase, step, position, quaternion)
         load = load_at(loads, phase, position, quaternion)
@@ -205,10 +210,8 @@ def phase_run(
             trace.touching[event, point] = is_hit
             if is_hit and touching.was_touching[point] and point != step.hit_point:
                 # Reached anew, if it did not touch halfway, as in a swing back.
-                is_hit = depth_of_point(geometry, halfway[0], halfway[1], point) < -tolerances.touch_m
+                is_hit = is_clear_of(geometry, halfway[0], halfway_rotation, point, tolerances.touch_m)
             trace.hit[event, point] = is_hit
-        if step.motion == NONE:
-            return STABLE, event + 1, position, quaternion
         if step.amount == math.inf:
             return (ESCAPES if step.motion == TRAVEL else SPINS), event + 1, position, quaternion
         if was_met(trace, first_event, event, size_m, tolerances.resolution_m):
@@ -285,6 +288,7 @@ def stepwise_run(
     placement, touching, trace, verdicts = workspace
     forget_contacts(touching)
     position, quaternion = start_position, start_quaternion
+    place_object(geometry, position, quaternion, placement)
     n_events = int(np.int64(0))  # a plain 0 would compile `phase_run` twice, once for the literal
     for phase in range(len(verdicts)):
         verdicts[phase], n_events, position, quaternion = phase_run(

@@ -102,10 +102,11 @@ def solve_upper(factor: FloatArray, vector: FloatArray) -> None:
 
 
 @kernel
-def keep_along_faces(contacts: ContactSet, room: StiffRoom) -> None:
+def keep_along_faces(contacts: ContactSet, room: StiffRoom) -> float:
     """Take out of S what lies across the faces (and, where contacts stick, along them): nothing moves there, but it
-    would make the matrix look as if it were not positive.
+    would make the matrix look as if it were not positive. Return the least rho that stands out from the rounding.
     """
+    least_rho = LEAST_RHO * greatest_curvature(room.curvature)
     held, curvature = room.held, room.curvature
     clear(held, WRENCH, 1.0)
     for i in range(contacts.used[0]):
@@ -125,6 +126,7 @@ def keep_along_faces(contacts: ContactSet, room: StiffRoom) -> None:
                 part += across[j] * curvature[j, k]
             for j in range(6):
                 curvature[j, k] -= part * across[j]
+    return least_rho
 
 
 @kernel
@@ -148,13 +150,11 @@ def stiff_step(
     """Write the step into ``room.delta`` and what the contacts carry into their ``step_forces``; False: take the
     explicit step.
 
-    Given are the explicit motion ``solver.y``, ``room.curvature`` and which contacts stick; ``turned`` is room for the
-    contacts.
+    Given are the explicit motion ``solver.y``, ``room.curvature`` along the faces, and which contacts stick; ``turned``
+    is room for the contacts.
     """
     n_contacts = contacts.used[0]
-    keep_along_faces(contacts, room)
     size = greatest_curvature(room.curvature)
-    rho = max(rho, LEAST_RHO * size)
     for _ in range(RAISES):
         write_matrix(room, rho)
         if cholesky(room.factor, 1e-3 * rho):

@@ -43,6 +43,8 @@ class SureRoom:
         z0, what the contacts take along their normals without friction: a scaled wrench.
     lever
         u of equation (5.19).
+    carrying
+        Contacts that carry without friction.
     contacts, limits
         Contacts that surely carry, and the friction mu f_n that each surely has.
     passive
@@ -51,6 +53,7 @@ class SureRoom:
 
     pressed: ScaledVector
     lever: ScaledVector
+    carrying: Annotated[IntArray, WRENCH]
     contacts: Annotated[IntArray, WRENCH]
     limits: Annotated[FloatArray, WRENCH]
     passive: PassiveSet
@@ -109,13 +112,21 @@ def greatest_shift(n_contacts: int, room: SureRoom, system: System) -> float:
 
 
 @kernel
-def least_force(contacts: ContactSet, i: int, shift: float, spare: float, room: SureRoom, system: System) -> float:
-    """Return what a contact carries at least, whatever motion begins, equation (5.20); 0: perhaps nothing."""
-    passive, column = room.passive, system.columns[i]
+def least_force(
+    contacts: ContactSet, place: int, n_carrying: int, shift: float, spare: float, room: SureRoom, system: System
+) -> float:
+    """Return what one of the carrying contacts carries at least, whatever motion begins, equation (5.20); 0: perhaps
+    nothing.
+    """
+    i, passive = room.carrying[place], room.passive
+    column = system.columns[i]
     for k in range(6):
         column[k] = 0.0
         system.right_side[k] = room.pressed[k]
     clear(passive, WRENCH, length(room.pressed, 6))
+    for other in range(n_carrying):  # most of them carry without it, too
+        if other != place:
+            append_column(passive, system.columns[room.carrying[other]], room.carrying[other], 0.0)
     apart = nonnegative_least_squares(system, contacts.used[0], passive)
     work = apart * (apart - shift)
     for j in range(contacts.used[0]):  # what rounding has left of the others' prices
@@ -140,14 +151,13 @@ def find_sure(contacts: ContactSet, friction: float, b: FloatArray, room: SureRo
     for k in range(6):
         room.pressed[k] = b[k] - passive.residual[k]
     for k in range(n_carrying):
-        room.contacts[k] = passive.labels[k]
+        room.carrying[k] = passive.labels[k]
     shift = greatest_shift(n, room, system)
     n_sure = 0
     for k in range(n_carrying):
-        i = room.contacts[k]
-        force = least_force(contacts, i, shift, spare, room, system) if shift < math.inf else 0.0
+        force = least_force(contacts, k, n_carrying, shift, spare, room, system) if shift < math.inf else 0.0
         if force > 0.0:
-            room.contacts[n_sure], room.limits[n_sure] = i, friction * force
+            room.contacts[n_sure], room.limits[n_sure] = room.carrying[k], friction * force
             n_sure += 1
     return n_sure
 
