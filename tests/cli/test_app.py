@@ -80,7 +80,6 @@ def test_ctrl_c_ends_cleanly(command: Command, sample: str, monkeypatch: pytest.
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(cagepose.runs.solve, "kernels_are_compiled", lambda _: True)
     monkeypatch.setattr(cagepose.runs.solve, "run", interrupted)
     assert command("run", sample) == (130, "", "cagepose: stopped\n")
 
