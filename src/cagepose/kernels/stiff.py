@@ -31,7 +31,7 @@ class StiffRoom:
     Attributes
     ----------
     curvature
-        S, and then its part along the faces.
+        S, and then what `keep_along_faces` makes of it.
     held
         Basis of what the contacts that carry hold.
     factor
@@ -103,8 +103,10 @@ def solve_upper(factor: FloatArray, vector: FloatArray) -> None:
 
 @kernel
 def keep_along_faces(contacts: ContactSet, room: StiffRoom) -> float:
-    """Take out of S what lies across the faces (and, where contacts stick, along them): nothing moves there, but it
-    would make the matrix look as if it were not positive. Return the least rho that stands out from the rounding.
+    """Replace what S has across the faces (and, where contacts stick, along them) by the greatest curvature along them.
+
+    Nothing moves there, but it could make the matrix look as if it were not positive, or rounding of the forces as if
+    it moved the object. Return the least rho that stands out from the rounding.
     """
     least_rho = LEAST_RHO * greatest_curvature(room.curvature)
     held, curvature = room.held, room.curvature
@@ -126,6 +128,12 @@ def keep_along_faces(contacts: ContactSet, room: StiffRoom) -> float:
                 part += across[j] * curvature[j, k]
             for j in range(6):
                 curvature[j, k] -= part * across[j]
+    along = greatest_curvature(curvature)
+    for place in range(held.used):
+        across = held.basis[place]
+        for j in range(6):
+            for k in range(6):
+                curvature[j, k] += along * across[j] * across[k]
     return least_rho
 
 
