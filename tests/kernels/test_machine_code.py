@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from cagepose.kernels import cache
+from cagepose.kernels.cache import cache_folder
 from cagepose.kernels.jit import Entry, bound
 from cagepose.kernels.machine_code import MachineCode
 from cagepose.kernels.object_file import ObjectFile, read_object_file
@@ -215,3 +216,25 @@ def test_the_next_process_needs_no_numba(tmp_path: Path) -> None:
     command = [sys.executable, "-c", SMALL]
     found = [subprocess.run(command, env=environment, capture_output=True, text=True, check=True) for _ in range(2)]
     assert [done.stdout for done in found] == ["[[1.0, 0.0, 0.0, 0.0]] True\n", "[[1.0, 0.0, 0.0, 0.0]] False\n"]
+
+
+def test_a_folder_that_can_only_be_read_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse_to_write(**_: object) -> None:
+        raise PermissionError
+
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    cache_folder.cache_clear()
+    try:
+        kept = cache_folder()
+        assert kept is not None
+        monkeypatch.setattr(cache, "cache_folder", lambda: kept)
+        assert Entry(refuse)(3) == 3
+        assert cache.is_writable()
+        monkeypatch.setattr("tempfile.TemporaryFile", refuse_to_write)
+        monkeypatch.setattr("cagepose.kernels.linking.object_file", refuse_to_write)  # nothing is compiled
+        cache_folder.cache_clear()
+        assert cache_folder() == kept
+        assert Entry(refuse)(4) == 4
+        assert not cache.is_writable()
+    finally:
+        cache_folder.cache_clear()

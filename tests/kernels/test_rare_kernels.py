@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -111,13 +112,27 @@ def test_the_time_limit_of_one_thread_does_not_stop_another(monkeypatch: pytest.
     assert began.wait(60.0)
     try:
         assert halved(4.0) == 2.0  # its own limit is over, ours is not
-        other = RareEntry(halves)
-        assert other(np.ones(4)) == 2.0  # compiled: only one is tried at a time
-        assert other.loaded
     finally:
         go_on.set()
         thread.join()
     assert answers == [2.0]  # it ran out of patience and was called as machine code
+
+
+def test_threads_that_try_at_the_same_time_take_turns() -> None:
+    rare = RareEntry(halves)
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(rare, [np.ones(1000)] * 20)) == [500.0] * 20
+    assert not rare.loaded
+
+
+def test_a_rare_kernel_may_be_a_part_of_another(folder: Path) -> None:
+    part = RareEntry(halves)
+
+    def twice(values: FloatArray) -> float:
+        return 2.0 * part(values)
+
+    assert RareEntry(twice)(np.ones(10)) == 10.0
+    assert not list(folder.iterdir())
 
 
 def test_what_no_kernel_takes_is_refused_before_it_is_tried() -> None:

@@ -19,7 +19,7 @@ def announce_compilation() -> None:
 
 
 def _say_so() -> None:
-    from cagepose.kernels.cache import cache_folder
+    from cagepose.kernels.cache import is_writable
 
-    sys.stderr.write(EVERY_RUN if cache_folder() is None else FIRST_RUN)
+    sys.stderr.write(FIRST_RUN if is_writable() else EVERY_RUN)
     sys.stderr.flush()

@@ -84,7 +84,8 @@ def balance(contacts: ContactSet, friction: float, room: OnsetRoom) -> int:
     """Return the code of the load in ``room``, whichever faces count on edges: MOVES as soon as it is not balanced.
 
     Filled: which faces are chosen, their forces, and the residual; for MOVES ``cone.passive.residual`` is a twist along
-    which the load works and that no contact force resists (5.6). UNSOLVED: there are too many choices.
+    which the load works and that no contact force resists (5.6). UNSOLVED: there are too many choices to ask them all;
+    those that were asked hold.
     """
     rows, n_contacts = contacts.rows, contacts.used[0]
     best_code, best_left = -1, 0.0
@@ -98,7 +99,9 @@ def balance(contacts: ContactSet, friction: float, room: OnsetRoom) -> int:
             best_code, best_left = code, room.residual
             keep_faces(contacts)
         if not choose_next_faces(contacts, every):
-            put_best_faces_back(contacts)
-            room.residual = best_left
-            return best_code
-    return UNSOLVED
+            break
+    else:
+        best_code = UNSOLVED
+    put_best_faces_back(contacts)
+    room.residual = best_left
+    return best_code

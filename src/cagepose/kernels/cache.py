@@ -61,9 +61,21 @@ def _place(entry: Entry, kinds: tuple[Kind, ...]) -> tuple[str, Path | None]:
     return name, None if folder is None else folder / f"{name}.o"
 
 
+def is_writable() -> bool:
+    """Whether what is compiled now will be kept."""
+    folder = cache_folder()
+    if folder is None:
+        return False
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False
+
+
 @cache
 def cache_folder() -> Path | None:
-    """Return a folder that can be written, or None. `NUMBA_CACHE_DIR` and `XDG_CACHE_HOME` are respected."""
+    """Return the folder, or None if there is none. `NUMBA_CACHE_DIR` and `XDG_CACHE_HOME` are respected."""
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     if chosen:
         root = Path(chosen)
@@ -74,8 +86,6 @@ def cache_folder() -> Path | None:
     try:
         folder = root.expanduser() / "cagepose" / f"kernels-{inputs_hash()}"
         folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
     except (OSError, RuntimeError):  # RuntimeError: no home folder to expand "~" to
         return None
     return folder

@@ -110,14 +110,13 @@ class RareEntry(Entry):
         self.patience_s = PATIENCE_S
 
     def __call__(self, *arguments: Any) -> Any:
-        is_new = self.patience_s > 0.0 and not self.loaded and not self._is_kept(arguments)
-        if is_new and _TRIAL.lock.acquire(blocking=False):  # one at a time: `until` is one thread's
-            try:
-                return self._try_in_python(arguments)
-            except (OutOfPatienceError, ArithmeticError, ValueError):  # machine code knows infinities and NaN
-                self.patience_s = 0.0
-            finally:
-                _TRIAL.lock.release()
+        is_part = get_ident() == _TRIAL.thread
+        if not is_part and self.patience_s > 0.0 and not self.loaded and not self._is_kept(arguments):
+            with _TRIAL.lock:  # one at a time: `until` is one thread's; others wait for no more than their patience
+                try:
+                    return self._try_in_python(arguments)
+                except (OutOfPatienceError, ArithmeticError, ValueError):  # machine code knows infinities and NaN
+                    self.patience_s = 0.0
         return super().__call__(*arguments)
 
     def _is_kept(self, arguments: tuple[Any, ...]) -> bool:

@@ -24,7 +24,7 @@ from numba.core.typed_passes import AnnotateTypes, NativeLowering
 
 from cagepose.kernels.arguments import Kind
 from cagepose.kernels.c_function import add_c_function, format_of, type_of
-from cagepose.kernels.cache import cache_folder
+from cagepose.kernels.cache import cache_folder, is_writable
 from cagepose.kernels.object_file import ObjectFile
 
 TRIED = ((0, 68),)
@@ -46,7 +46,7 @@ def dispatcher_of(function: Callable[..., object], is_entry: bool) -> Any:
     if is_tried():
         return _dispatcher(function, no_cpython_wrapper=True, pipeline_class=LinkedCompiler)
     # Numba reads its setting when the decorator runs; ours must not leak to other users of Numba in this process.
-    previous, folder = numba.config.CACHE_DIR, cache_folder()
+    previous, folder = numba.config.CACHE_DIR, cache_folder() if is_writable() else None
     numba.config.CACHE_DIR = str(folder or "")
     try:
         return _dispatcher(function, no_cpython_wrapper=not is_entry, cache=folder is not None)

@@ -22,9 +22,9 @@ from cagepose.kernels.least_squares import System, clear, empty_system
 from cagepose.kernels.metric import WRENCH, Body, Frame, PhaseLoad, ScaledVector, frame_at, write_load
 from cagepose.kernels.onset import (
     COMBINATIONS_LIMIT,
-    HELD_BY_FRICTION,
     HELD_WITHOUT_FRICTION,
     MOVES,
+    UNSOLVED,
     OnsetRoom,
 )
 from cagepose.kernels.pose import Quaternion
@@ -35,14 +35,8 @@ from cagepose.kernels.tolerances import KernelTolerances
 from cagepose.kernels.uniqueness import N_COLUMNS, ModesRoom
 from cagepose.kernels.vector import Vector
 
-PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE, OTHER_ONSET, UNIQUENESS_NOT_SHOWN, PROVEN_MOVES, TOO_MANY_CONTACTS = (
-    0,
-    1,
-    2,
-    3,
-    4,
-    5,
-)
+PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE, OTHER_ONSET, UNIQUENESS_NOT_SHOWN = 0, 1, 2, 3
+TOO_MANY_CHOICES, PROVEN_MOVES, TOO_MANY_CONTACTS = 4, 5, 6
 """Codes of a proof."""
 
 
@@ -52,7 +46,9 @@ class JudgeRoom:
     Attributes
     ----------
     solver
-        ``solver.y``: scaled twist along which the load works and that no contact force resists (5.6).
+        ``solver.residual``: what is left of the load; ``solver.y``: motion that begins, see `first_motion`.
+    twist, twist_residual
+        Scaled twist along which the load works and that no contact force resists (5.6), and what is left then.
     modes
         ``modes.y``: that of another onset that Coulomb's law allows.
     sure
@@ -66,6 +62,8 @@ class JudgeRoom:
     """
 
     solver: OnsetRoom
+    twist: ScaledVector
+    twist_residual: float
     modes: ModesRoom
     sure: SureRoom
     rest: StabilityRoom
@@ -144,16 +142,23 @@ def prove(
         return TOO_MANY_CONTACTS, STABLE_REST, 0
     contacts, room = at.contacts, at.rooms[0]
     code = balance(contacts, friction, room.solver)
-    if code > HELD_BY_FRICTION:
+    if code == MOVES:
+        room.twist_residual = room.solver.residual
         for k in range(6):
-            room.solver.y[k] = room.solver.cone.passive.residual[k]
-        return (PROVEN_MOVES if code == MOVES else TOO_MANY_CONTACTS), STABLE_REST, 0
-    frame = frame_at(body, quaternion)
+            room.twist[k] = room.solver.cone.passive.residual[k]
+        return PROVEN_MOVES, STABLE_REST, 0
+    left = room.solver.residual
     clear(room.rest.ways, WRENCH, 1.0)
+    if code == UNSOLVED:
+        find_held(contacts, friction, room.rest, at.system)
+        find_shared(contacts, room.rest)
+        return TOO_MANY_CHOICES, MARGINAL, 0
+    frame = frame_at(body, quaternion)
     one_choice = has_one_choice(contacts)
     proof, steady = judge_faces(at, code, one_choice, friction, load, quaternion, frame, size_m)
     if not one_choice:
         put_best_faces_back(contacts)
+        room.solver.residual = left
         find_held(contacts, friction, room.rest, at.system)
     find_shared(contacts, room.rest)
     return proof, steady, room.rest.ways.used

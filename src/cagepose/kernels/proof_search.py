@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cagepose.kernels.balance import balance_with_faces, left_by_friction
+from cagepose.kernels.balance import balance_with_faces
 from cagepose.kernels.cone import HELD, N_ROWS, clear_cone, cone_residual
 from cagepose.kernels.contact_set import (
     ContactSet,
@@ -85,8 +85,8 @@ def search_onsets(friction: float, at: ProofRoom) -> int:
 def first_motion(friction: float, at: ProofRoom) -> None:
     """Write into ``at.rooms[0].solver.y`` how an object begins to move that does so by `cagepose.kernels.proof.prove`.
 
-    It is the onset that obeys Coulomb's law (5.7) or, where none is found, what is left of the load (5.6). The residual
-    is then the least that contact forces leave of the load.
+    It is the onset that obeys Coulomb's law (5.7), and the residual is then the least that contact forces leave of the
+    load. Where none is found, it is the twist of the proof (5.6), with the residual of that.
 
     Parameters
     ----------
@@ -95,9 +95,9 @@ def first_motion(friction: float, at: ProofRoom) -> None:
     at
         As left by the proof.
     """
-    contacts, solver = at.contacts, at.rooms[0].solver
+    contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
     choose_first_faces(contacts)
     if onset(contacts, friction, solver) != MOVES:
-        solver.residual = left_by_friction(contacts.rows, contacts.used[0], friction, solver)
+        solver.residual = room.twist_residual
         for k in range(6):
-            solver.y[k] = solver.cone.passive.residual[k]
+            solver.y[k] = room.twist[k]

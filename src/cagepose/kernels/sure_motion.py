@@ -14,7 +14,7 @@ import numpy as np
 from cagepose.kernels.cone import GENERATOR_LIMIT, ConeRoom, add_generator, renumber, steepest_tangent
 from cagepose.kernels.contact_set import ContactRow
 from cagepose.kernels.jit import kernel
-from cagepose.kernels.least_squares import PRICE, inner, length
+from cagepose.kernels.least_squares import PRICE, inner, length, rounding_scale
 from cagepose.kernels.record import FloatArray, Rows
 
 WIDER = 1.05
@@ -65,8 +65,8 @@ def moves_surely(rows: Rows[ContactRow], n_contacts: int, friction: float, b: Fl
     number = renumber(room)
     for i in range(n_contacts):
         rows[i].is_rejected = False
-    while 0 <= number < GENERATOR_LIMIT and length(passive.residual, 6) > SURELY * passive.terms:
+    while 0 <= number < GENERATOR_LIMIT and length(passive.residual, 6) > SURELY * rounding_scale(passive):
         if leaves_cones(rows, n_contacts, friction, PRICE * passive.terms, passive.residual):
-            return True
+            return inner(b, passive.residual, 6) > 0.0
         number = add_generator(rows, n_contacts, WIDER * friction, b, charged, number, room)
     return False

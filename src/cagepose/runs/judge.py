@@ -17,6 +17,7 @@ from cagepose.kernels.proof import (
     PROVEN_MOVES,
     PROVEN_UNIQUE,
     PROVEN_WITHOUT_FRICTION,
+    TOO_MANY_CHOICES,
     TOO_MANY_CONTACTS,
     UNIQUENESS_NOT_SHOWN,
     ProofRoom,
@@ -42,6 +43,7 @@ REASONS = {
     PROVEN_UNIQUE: "the contacts balance the load with friction, and every other contact mode is ruled out",
     OTHER_ONSET: "the contacts can balance the load with friction, but Coulomb's law allows this motion too",
     PROVEN_MOVES: "no contact forces balance the load",
+    TOO_MANY_CHOICES: "the contacts can balance the load with the first faces at edges that were asked, of too many",
     TOO_MANY_CONTACTS: "more faces touch at one place than a proof has room for",
 }
 NOT_SHOWN = "the contacts can balance the load with friction, but that the object cannot move was not shown"

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from cagepose.errors import Problem, SceneError
 from cagepose.kernels.batch import INVALID, NOT_RUN
 from cagepose.kernels.pose import write_euler_zyx
-from cagepose.kernels.proof import OTHER_ONSET, UNIQUENESS_NOT_SHOWN
+from cagepose.kernels.proof import OTHER_ONSET, TOO_MANY_CHOICES, UNIQUENESS_NOT_SHOWN
 from cagepose.kernels.trace import RESTS, VERDICT_NAMES
 from cagepose.nouns.checks import FloatArray
 from cagepose.nouns.scene import Scene
@@ -155,7 +155,7 @@ def _columns(methods: list[str], batches: Sequence[Batch], solve_s: float) -> Ru
     codes = _stacked([found.verdicts for found in endings], NOT_RUN)
     proofs = _stacked([found.proofs for found in endings], NOT_RUN)
     verdicts = names[codes]
-    verdicts[(codes == RESTS) & ((proofs == OTHER_ONSET) | (proofs == UNIQUENESS_NOT_SHOWN))] = "may rest"
+    verdicts[(codes == RESTS) & np.isin(proofs, (OTHER_ONSET, UNIQUENESS_NOT_SHOWN, TOO_MANY_CHOICES))] = "may rest"
     quaternions = _stacked([found.quaternions for found in endings], np.nan)
     quaternions[quaternions[..., 0] < 0.0] *= -1.0  # as `Pose` has them
     return Runs(
