@@ -1,9 +1,10 @@
 """Non-negative least squares by the active-set method of Lawson and Hanson: min 1/2 |A x - b|^2 + c.x, x >= 0.
 
 Columns with x > 0 are "passive". Their orthonormal basis is kept by Gram-Schmidt, each column made orthogonal twice
-where once leaves little of it, so that it is orthogonal to rounding; normal equations would lose half of the digits. A
-column enters only if it reduces the residual, so it has a part outside the span of the passive ones: dependent columns
-never meet in one basis, and degenerate sets are safe. At most as many columns are passive as there are rows.
+where once leaves little of it, so that it is orthogonal to rounding, and by rotations when a column leaves; normal
+equations would lose half of the digits. A column enters only if it reduces the residual, so it has a part outside the
+span of the passive ones: dependent columns never meet in one basis, and degenerate sets are safe. At most as many
+columns are passive as there are rows.
 """
 
 from __future__ import annotations
@@ -160,16 +161,30 @@ def append_column(passive: PassiveSet, column: FloatArray, label: int, cost: flo
 
 @kernel
 def remove_column(passive: PassiveSet, place: int) -> None:
-    """Take one column out; the basis behind it is made anew."""
+    """Take one column out. R keeps one entry below the diagonal in each column behind it; rotations take them away."""
     passive.used -= 1
-    for k in range(place, passive.used):
+    n, triangle = passive.used, passive.triangle
+    for k in range(place, n):
         passive.labels[k] = passive.labels[k + 1]
         passive.costs[k] = passive.costs[k + 1]
         passive.x[k] = passive.x[k + 1]
+        passive.sizes[k] = passive.sizes[k + 1]
         for row in range(passive.n_rows):
             passive.columns[k, row] = passive.columns[k + 1, row]
-    for k in range(place, passive.used):
-        orthogonalise(passive, k)
+        for row in range(k + 1):
+            triangle[k, row] = triangle[k + 1, row]
+        triangle[k, k + 1] = 1.0 / triangle[k + 1, k + 1]
+    for k in range(place, n):
+        size = math.sqrt(triangle[k, k] * triangle[k, k] + triangle[k, k + 1] * triangle[k, k + 1])
+        cosine, sine = triangle[k, k] / size, triangle[k, k + 1] / size
+        triangle[k, k] = 1.0 / size
+        for later in range(k + 1, n):
+            upper, lower = triangle[later, k], triangle[later, k + 1]
+            triangle[later, k], triangle[later, k + 1] = cosine * upper + sine * lower, cosine * lower - sine * upper
+        one, other = passive.basis[k], passive.basis[k + 1]
+        for row in range(passive.n_rows):
+            upper, lower = one[row], other[row]
+            one[row], other[row] = cosine * upper + sine * lower, cosine * lower - sine * upper
 
 
 @kernel

@@ -38,7 +38,7 @@ from cagepose.kernels.trace import (
     pose_during,
     write_event,
 )
-from cagepose.kernels.vector import Vector, minus, norm, plus, row, vector_from
+from cagepose.kernels.vector import Vector, dot, minus, plus, row, vector_from
 
 RULE_NAMES = ("A-1", "A-2", "A-3", "A-4", "B-1", "B-2", "B-3", "B-4", "Slp-1", "Slp-2")
 PHASE_A, PHASE_B = 0, 4  # codes of A-1 and B-1; steps 2, 3 and 4 follow
@@ -147,7 +147,9 @@ def was_met(trace: Trace, first: int, last: int, size_m: float, resolution_m: fl
     """
     for event in range(first, last):
         then, now = trace.rows[event], trace.rows[last]
-        offset = norm(minus(vector_from(then.position), vector_from(now.position)))
+        offset = minus(vector_from(then.position), vector_from(now.position))
+        if dot(offset, offset) > resolution_m * resolution_m:
+            continue
         overlap = 0.0
         for k in range(4):
             overlap += then.quaternion[k] * now.quaternion[k]
@@ -155,7 +157,7 @@ def was_met(trace: Trace, first: int, last: int, size_m: float, resolution_m: fl
         turned = 0.0
         for k in range(4):
             turned = max(turned, abs(then.quaternion[k] - sign * now.quaternion[k]))
-        if offset <= resolution_m and turned * size_m <= resolution_m:
+        if turned * size_m <= resolution_m:
             same_contacts = True
             for point in range(trace.touching.shape[1]):
                 same_contacts = same_contacts and trace.touching[event, point] == trace.touching[last, point]
