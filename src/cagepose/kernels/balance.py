@@ -35,8 +35,14 @@ RESERVE = 1e-6
 @kernel
 def left_by_friction(rows: Rows[ContactRow], n_contacts: int, friction: float, room: OnsetRoom) -> float:
     """Return what contact forces with this friction leave of the load, in lengths of the terms."""
+    clear_cone(room.cone, room.load, WRENCH, room.load_terms)
+    return left_going_on(rows, n_contacts, friction, room)
+
+
+@kernel
+def left_going_on(rows: Rows[ContactRow], n_contacts: int, friction: float, room: OnsetRoom) -> float:
+    """Return the same, going on from the solution in ``room``, which is that for less friction."""
     cone = room.cone
-    clear_cone(cone, room.load, WRENCH, room.load_terms)
     charged = bool(np.bool_(False))
     left = cone_residual(rows, n_contacts, friction, room.load, charged, cone)
     scale = rounding_scale(cone.passive)
@@ -63,10 +69,12 @@ def balance_with_faces(rows: Rows[ContactRow], n_contacts: int, friction: float,
         return HELD_WITHOUT_FRICTION
     if friction == 0.0:
         return MOVES
-    if step_to_balance(rows, n_contacts, cone) > friction and moves_surely(rows, n_contacts, friction, room.load, cone):
-        room.residual = length(cone.passive.residual, 6) / rounding_scale(cone.passive)
-        return MOVES
-    left = left_by_friction(rows, n_contacts, spared, room)
+    if step_to_balance(rows, n_contacts, cone) > friction:
+        if moves_surely(rows, n_contacts, friction, room.load, cone):
+            room.residual = length(cone.passive.residual, 6) / rounding_scale(cone.passive)
+            return MOVES
+        clear_cone(cone, room.load, WRENCH, room.load_terms)  # its cones were wider
+    left = left_going_on(rows, n_contacts, spared, room)
     if left > BALANCED:
         left = left_by_friction(rows, n_contacts, friction, room)
         take_forces(rows, n_contacts, friction, left, room)
