@@ -108,6 +108,7 @@ class RareEntry(Entry):
     def __init__(self, function: Callable[..., object]) -> None:
         super().__init__(function)
         self.patience_s = PATIENCE_S
+        self._may_be_kept = True
 
     def __call__(self, *arguments: Any) -> Any:
         is_part = get_ident() == _TRIAL.thread
@@ -120,9 +121,12 @@ class RareEntry(Entry):
         return super().__call__(*arguments)
 
     def _is_kept(self, arguments: tuple[Any, ...]) -> bool:
+        if not self._may_be_kept:  # a look at the disk takes longer than many a call
+            return False
         from cagepose.kernels.cache import is_kept
 
-        return is_kept(self, Arguments(arguments).kinds)
+        self._may_be_kept = is_kept(self, Arguments(arguments).kinds)
+        return self._may_be_kept
 
     def _try_in_python(self, arguments: tuple[Any, ...]) -> Any:
         began = perf_counter()
