@@ -63,15 +63,14 @@ def first_contact_travel(
 
 
 @kernel
-def is_out_of_reach(gap_m: float, point_box: Vector, through_box: Vector, axis_box: Vector, key: float) -> bool:
+def is_out_of_reach(gap_m: float, arm_m2: float, key: float) -> bool:
     """Whether a point cannot get as far as a box before the turn comes to ``key``: the chord is shorter than the gap.
 
-    The chord of the angle s is 2 r sin(s/2), and sin^2(s/2) = 1 / (1 + c^2).
+    The chord of the angle s is 2 r sin(s/2), with r^2 = ``arm_m2`` and sin^2(s/2) = 1 / (1 + c^2).
     """
     if gap_m <= 0.0 or key >= 0.0:  # beyond half a turn chords shrink again
         return False
-    arm = cross(axis_box, minus(point_box, through_box))
-    return gap_m * gap_m * (1.0 + key * key) > SAFE * 4.0 * dot(arm, arm)
+    return gap_m * gap_m * (1.0 + key * key) > SAFE * 4.0 * arm_m2
 
 
 @kernel
@@ -83,16 +82,18 @@ def first_contact_turn(
     Keys are c = -cot(s/2), see `cagepose.kernels.turn`; -inf: blocked at once.
     """
     least, first_point = math.inf, -1
+    for point in range(len(geometry.points_world)):
+        arm = cross(axis, minus(row(geometry.points_world, point), through))
+        placement.arms[point] = dot(arm, arm)
     for box in range(len(geometry.half_sizes)):
         half_size = row(geometry.half_sizes, box)
         through_box = point_in_box(placement, box, through)
         axis_box = vector_in_box(placement, box, axis)
         for point in range(len(geometry.points_world)):
-            point_box = box_point(placement, box, point)
-            if is_out_of_reach(placement.gaps[box, point], point_box, through_box, axis_box, least):
+            if is_out_of_reach(placement.gaps[box, point], placement.arms[point], least):
                 continue
             entry = turn_entry(
-                point_box,
+                box_point(placement, box, point),
                 through_box,
                 axis_box,
                 half_size,

@@ -53,6 +53,8 @@ class Placement(NamedTuple):
     depths
         How deep each point lies in the object: the greatest depth over the boxes, below zero outside, (n_points,),
         metres.
+    arms
+        Room for the squared distance of each point from the axis of a turn, (n_points,), square metres.
     """
 
     box_positions: FloatArray
@@ -61,6 +63,7 @@ class Placement(NamedTuple):
     points_box: FloatArray
     gaps: FloatArray
     depths: FloatArray
+    arms: FloatArray
 
 
 def empty_placement(geometry: Geometry) -> Placement:
@@ -73,6 +76,7 @@ def empty_placement(geometry: Geometry) -> Placement:
         np.empty((3, n_points)),
         np.empty((n_boxes, 3, n_points)),
         np.empty((n_boxes, n_points)),
+        np.empty(n_points),
         np.empty(n_points),
     )
 
