@@ -10,10 +10,8 @@ from typing import Any
 
 import pytest
 
-from cagepose import run
 from cagepose.faces.report import report_files
 from cagepose.studies.reproduction import METHODS
-from cagepose.studies.sample import sample_scene
 
 Command = Callable[..., Any]
 
@@ -21,8 +19,7 @@ Command = Callable[..., Any]
 def test_the_whole_command_writes_a_report_prints_the_table_and_takes_under_30_s(
     command: Command, in_folder: Path
 ) -> None:
-    for method in METHODS:
-        run(sample_scene(), method=method)  # so that compiling, if need be, is not counted
+    command("reproduce", "--out", "first")  # so that compiling, if need be, is not counted
     began_s = time.process_time()  # of this process, whatever else the machine does
     answer = command("reproduce", "--out", "report")
     assert time.process_time() - began_s < 30.0

@@ -23,6 +23,8 @@ HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
 POINTS_PUSHED = 8
 """Points that may be pushed out of the object after a step."""
+ROUNDING = 1e-15
+"""In lengths of the terms of a load: a slower motion may be no motion."""
 STRAIGHT = 1e-14
 """Radians for each length of the object: a motion that turns by less is a travel."""
 
@@ -82,9 +84,9 @@ class Twist(NamedTuple):
 
 
 @kernel
-def straightened(velocity: Vector, spin: Vector, reach_m: float) -> Vector:
-    """Return the spin, or zero where it is rounding."""
-    if norm(spin) * reach_m <= STRAIGHT * norm(velocity):
+def straightened(velocity: Vector, spin: Vector, reach_m: float, terms: float) -> Vector:
+    """Return the spin, or zero where it is rounding, of the motion or of the terms of the load that it is left of."""
+    if norm(spin) * reach_m <= max(STRAIGHT * norm(velocity), ROUNDING * terms):
         return (0.0, 0.0, 0.0)
     return spin
 

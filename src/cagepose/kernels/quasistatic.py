@@ -187,7 +187,7 @@ def next_twist(
         carries = carries or contact.forces[0] > 0.0
     carry_as_at_onset(contacts)
     velocity, spin = twist_of(y, frame)
-    spin = straightened(velocity, spin, setting.body.reach_m)
+    spin = straightened(velocity, spin, setting.body.reach_m, room.solver.load_terms)
     end = longest_step(velocity, spin, carries, turn_step_rad, setting.size_m)
     if end < math.inf:
         write_curvature(contacts, setting.load, quaternion, frame, room.stiff.curvature)
