@@ -38,7 +38,7 @@ run: $(READY)  ## run the sample scene
 	@$(BIN)/cagepose run scenes/sample.yaml
 
 test: $(READY)  ## run all tests and the examples in docstrings
-	@echo "Running all tests, about ten minutes; the first ones wait about a minute while Numba compiles the kernels."
+	@echo "Running all tests, ten to twenty minutes; the first ones wait about a minute while Numba compiles the kernels."
 	@$(BIN)/python -m pytest
 
 test-nojit: $(READY)  ## run the kernels' tests as plain Python, without compiling

@@ -113,9 +113,14 @@ def generator_price(
 
 
 @kernel
-def renumber(room: ConeRoom) -> int:
-    """Number the generators in use from zero on, so that the room is never full; return how many there are."""
+def go_on(rows: Rows[ContactRow], n_contacts: int, room: ConeRoom) -> int:
+    """Number the generators in use from zero on, so that the room is never full; return how many there are.
+
+    No contact is rejected any more.
+    """
     passive = room.passive
+    for i in range(n_contacts):
+        rows[i].is_rejected = False
     for k in range(passive.used):
         label = passive.labels[k]
         room.contacts[k] = room.contacts[label]
@@ -198,9 +203,7 @@ def cone_residual(
         all that the contacts can carry.
     """
     passive = room.passive
-    n_generators = renumber(room)
-    for i in range(n_contacts):
-        rows[i].is_rejected = False
+    n_generators = go_on(rows, n_contacts, room)
     while 0 <= n_generators < GENERATOR_LIMIT:
         if (
             friction > 0.0

@@ -11,7 +11,6 @@ It hangs on how Numba keeps its LLVM modules, which is none of its public interf
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from itertools import count
 from typing import Any
 
 import numba
@@ -31,9 +30,6 @@ TRIED = ((0, 68),)
 """Releases of Numba in which all tests passed with this. In others kernels are compiled in Numba's own way, with the
 same results, only more slowly.
 """
-
-
-_PRIVATE = count()
 
 
 def is_tried() -> bool:

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from cagepose.kernels.cone import GENERATOR_LIMIT, ConeRoom, add_generator, renumber, steepest_tangent
+from cagepose.kernels.cone import GENERATOR_LIMIT, ConeRoom, add_generator, go_on, steepest_tangent
 from cagepose.kernels.contact_set import ContactRow
 from cagepose.kernels.jit import kernel
 from cagepose.kernels.least_squares import PRICE, inner, length, rounding_scale
@@ -62,9 +62,7 @@ def moves_surely(rows: Rows[ContactRow], n_contacts: int, friction: float, b: Fl
     """
     passive = room.passive
     charged = bool(np.bool_(False))  # a plain False would compile what is called once more, for the literal
-    number = renumber(room)
-    for i in range(n_contacts):
-        rows[i].is_rejected = False
+    number = go_on(rows, n_contacts, room)
     while 0 <= number < GENERATOR_LIMIT and length(passive.residual, 6) > SURELY * rounding_scale(passive):
         if leaves_cones(rows, n_contacts, friction, PRICE * passive.terms, passive.residual):
             return inner(b, passive.residual, 6) > 0.0
