@@ -13,7 +13,7 @@ import numpy as np
 
 from bench.rail_case import Answer, FloatArray
 from cagepose import Motion, Scene, run
-from cagepose.nouns.pose import Pose
+from cagepose.model.pose import Pose
 
 ALLOWED_DEPTH_M = 1e-13
 """A point goes in once it is deeper than this and than at the start: far below the play, above rounding."""

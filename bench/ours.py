@@ -18,9 +18,9 @@ import numpy as np
 from bench.rail_case import Answer
 from bench.timing import median_cpu_s, median_s
 from cagepose import Scene, Variation, run
-from cagepose.kernels.jit import bound
-from cagepose.kernels.proof import empty_proof_room, prove
-from cagepose.nouns.pose import Pose
+from cagepose.kernels.native.jit import bound
+from cagepose.kernels.stability.proof import empty_proof_room, prove
+from cagepose.model.pose import Pose
 from cagepose.runs.batches import Batch, QuasistaticBatch, StepwiseBatch
 from cagepose.runs.judge import Judge
 from cagepose.runs.stepwise import NO_SLIP_ANGLE_DEFAULT_RAD

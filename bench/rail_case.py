@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose import Scene, load_scene
-from cagepose.studies.planar import play_angle_rad
-from cagepose.studies.rail import PAPER_RAIL
+from cagepose.paper.planar import play_angle_rad
+from cagepose.paper.rail import PAPER_RAIL
 
 FloatArray = NDArray[np.float64]
 

@@ -14,14 +14,14 @@ from sphinx.config import Config
 from sphinx.writers.html5 import HTML5Translator
 
 from cagepose import load_scene, play, run
-from cagepose.faces.play_figure import play_figure
-from cagepose.faces.report import write_report
-from cagepose.faces.style import figure_bytes
-from cagepose.faces.view.film import png_bytes
-from cagepose.faces.view.page import page
-from cagepose.faces.view.playback import playback
 from cagepose.files.scene_file import read_scene_file
-from cagepose.studies.reproduction import METHODS, reproduce
+from cagepose.paper.report import write_report
+from cagepose.paper.reproduction import METHODS, reproduce
+from cagepose.views.play_figure import play_figure
+from cagepose.views.style import figure_bytes
+from cagepose.views.viewer.film import png_bytes
+from cagepose.views.viewer.page import page
+from cagepose.views.viewer.playback import playback
 
 project = "cagepose"
 author = "the cagepose developers"

@@ -12,11 +12,11 @@ import pytest
 from playwright.sync_api import Page
 
 from cagepose import run
-from cagepose.faces.view.page import page as page_text
-from cagepose.faces.view.playback import playback
-from cagepose.faces.view.server import ViewServer, open_server
-from cagepose.faces.view.what_if import WhatIf
 from cagepose.files.scene_file import read_scene_text
+from cagepose.views.viewer.page import page as page_text
+from cagepose.views.viewer.playback import playback
+from cagepose.views.viewer.server import ViewServer, open_server
+from cagepose.views.viewer.what_if import WhatIf
 
 PORT = 18737
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numba
 
-from cagepose.kernels.jit import JIT_IS_OFF
+from cagepose.kernels.native.jit import JIT_IS_OFF
 
 
 def callable_kernel(kernel: Callable[..., Any]) -> Callable[..., Any]:

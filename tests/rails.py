@@ -1,13 +1,13 @@
-"""The rail of `cagepose.studies.rail` for tests: millimetres and degrees, as in the scene files."""
+"""The rail of `cagepose.paper.rail` for tests: millimetres and degrees, as in the scene files."""
 
 from __future__ import annotations
 
 import math
 
 from cagepose import Run, Scene, Tolerances
-from cagepose.studies.planar import play_angle_rad
-from cagepose.studies.rail import PAPER_RAIL, RailDimensions, relative_tilt_rad
-from cagepose.studies.rail import rail_scene as build
+from cagepose.paper.planar import play_angle_rad
+from cagepose.paper.rail import PAPER_RAIL, RailDimensions, relative_tilt_rad
+from cagepose.paper.rail import rail_scene as build
 
 MM = 1e-3
 SIDE_PLAY_MM = (PAPER_RAIL.rail_gap_m - PAPER_RAIL.side_points_apart_m) / MM

@@ -23,15 +23,15 @@ if TYPE_CHECKING:
     from cagepose.files.run_file import load_run as load_run
     from cagepose.files.run_file import save_run as save_run
     from cagepose.files.scene_file import load_scene as load_scene
-    from cagepose.nouns.cage import Cage as Cage
-    from cagepose.nouns.load import Force as Force
-    from cagepose.nouns.load import Load as Load
-    from cagepose.nouns.parts import Box as Box
-    from cagepose.nouns.parts import Object as Object
-    from cagepose.nouns.pose import Pose as Pose
-    from cagepose.nouns.scene import Adjustable as Adjustable
-    from cagepose.nouns.scene import Scene as Scene
-    from cagepose.nouns.tolerances import Tolerances as Tolerances
+    from cagepose.model.cage import Cage as Cage
+    from cagepose.model.load import Force as Force
+    from cagepose.model.load import Load as Load
+    from cagepose.model.parts import Box as Box
+    from cagepose.model.parts import Object as Object
+    from cagepose.model.pose import Pose as Pose
+    from cagepose.model.scene import Adjustable as Adjustable
+    from cagepose.model.scene import Scene as Scene
+    from cagepose.model.tolerances import Tolerances as Tolerances
     from cagepose.runs.critical import with_critical_friction as with_critical_friction
     from cagepose.runs.many import Runs as Runs
     from cagepose.runs.many import run_many as run_many
@@ -63,12 +63,12 @@ _HOMES = {
         "SceneError",
         "SceneFileError",
     ),
-    "cagepose.nouns.cage": ("Cage",),
-    "cagepose.nouns.load": ("Force", "Load"),
-    "cagepose.nouns.parts": ("Box", "Object"),
-    "cagepose.nouns.pose": ("Pose",),
-    "cagepose.nouns.scene": ("Adjustable", "Scene"),
-    "cagepose.nouns.tolerances": ("Tolerances",),
+    "cagepose.model.cage": ("Cage",),
+    "cagepose.model.load": ("Force", "Load"),
+    "cagepose.model.parts": ("Box", "Object"),
+    "cagepose.model.pose": ("Pose",),
+    "cagepose.model.scene": ("Adjustable", "Scene"),
+    "cagepose.model.tolerances": ("Tolerances",),
     "cagepose.runs.critical": ("with_critical_friction",),
     "cagepose.runs.many": ("Runs", "run_many"),
     "cagepose.runs.proof": ("FreeMotion", "Proof"),

@@ -15,9 +15,9 @@ import pytest
 
 from bench.ours import proof_call
 from cagepose import Variation, run
-from cagepose.kernels.jit import bound
-from cagepose.kernels.linear_program import ProgramRoom, program_rows, solve_program
-from cagepose.kernels.record import empty_record
+from cagepose.kernels.algebra.linear_program import ProgramRoom, program_rows, solve_program
+from cagepose.kernels.algebra.record import empty_record
+from cagepose.kernels.native.jit import bound
 from cagepose.runs.batches import QuasistaticBatch, StepwiseBatch
 from jit import JIT_IS_OFF
 from rails import rail_scene

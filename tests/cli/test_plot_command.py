@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from PIL import Image
 
-from cagepose.faces import extra
+from cagepose.views import extra
 
 Command = Callable[..., Any]
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from cagepose.faces.report import report_files
-from cagepose.studies.reproduction import METHODS
+from cagepose.paper.report import report_files
+from cagepose.paper.reproduction import METHODS
 
 Command = Callable[..., Any]
 
@@ -59,7 +59,7 @@ def test_a_folder_that_cannot_be_is_refused_before_the_runs(
 
     (in_folder / "file").write_text("mine", encoding="utf-8")
     (in_folder / "report.md").write_text("mine", encoding="utf-8")
-    monkeypatch.setattr("cagepose.studies.reproduction.reproduce", never)
+    monkeypatch.setattr("cagepose.paper.reproduction.reproduce", never)
     assert command("reproduce", "--out", out) == (2, "", f"--out {out}: {reason}\n")
     assert (in_folder / "report.md").read_text(encoding="utf-8") == "mine"
     assert len(list(in_folder.iterdir())) == 2
@@ -69,8 +69,8 @@ def test_a_disk_that_fills_up_is_told(command: Command, in_folder: Path, monkeyp
     def full_disk(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("cagepose.studies.reproduction.reproduce", lambda *_: None)
-    monkeypatch.setattr("cagepose.faces.report.write_report", full_disk)
+    monkeypatch.setattr("cagepose.paper.reproduction.reproduce", lambda *_: None)
+    monkeypatch.setattr("cagepose.paper.report.write_report", full_disk)
     answer = command("reproduce")
     assert answer.code == 2
     assert answer.err.endswith("--out reproduction: No space left on device\n")

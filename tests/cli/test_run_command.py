@@ -15,7 +15,7 @@ import pytest
 import cagepose.runs.solve
 from cagepose import Run, RunFileError, Scene, load_run, load_scene
 from cagepose.cli import first_run, report
-from cagepose.kernels.jit import Entry
+from cagepose.kernels.native.jit import Entry
 from cagepose.runs.solve import METHODS
 from jit import JIT_IS_OFF
 
@@ -125,7 +125,7 @@ def test_a_run_that_compiles_says_so_on_standard_error(
             assert Entry(lambda number: number)(1.0) == 1.0
         return real(scene, method)
 
-    monkeypatch.setattr("cagepose.kernels.cache.cache_folder", lambda: tmp_path if is_kept else None)
+    monkeypatch.setattr("cagepose.kernels.native.cache.cache_folder", lambda: tmp_path if is_kept else None)
     monkeypatch.setattr(cagepose.runs.solve, "run", compiling)
     answer = command("run", sample)
     assert answer.err == message

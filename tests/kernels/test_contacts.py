@@ -9,8 +9,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cagepose import Box, Cage, Object, Pose
-from cagepose.kernels.contacts import contact_rows, deepest_boxes
-from cagepose.nouns.geometry import object_seams, scene_geometry
+from cagepose.kernels.collision.contacts import contact_rows, deepest_boxes
+from cagepose.model.geometry import object_seams, scene_geometry
 
 TOUCH = 1e-9
 STILL = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from cagepose.kernels.linear_program import (
+from cagepose.kernels.algebra.linear_program import (
     INFEASIBLE,
     OPTIMAL,
     UNBOUNDED,
@@ -15,7 +15,7 @@ from cagepose.kernels.linear_program import (
     program_rows,
     solve_program,
 )
-from cagepose.kernels.record import empty_record
+from cagepose.kernels.algebra.record import empty_record
 from jit import cases
 
 HIGHS = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}

@@ -15,12 +15,12 @@ pytestmark = pytest.mark.skipif(JIT_IS_OFF, reason="nothing is compiled")
 
 PROGRAM = """
 import numpy as np
-from cagepose.kernels import linking
+from cagepose.kernels.native import linking
 {change}
-from cagepose.kernels.contacts import deepest_boxes
-from cagepose.kernels.geometry import Geometry, empty_placement, place_object, row
-from cagepose.kernels.jit import bound
-from cagepose.kernels.pose import moved_pose
+from cagepose.kernels.collision.contacts import deepest_boxes
+from cagepose.kernels.collision.geometry import Geometry, empty_placement, place_object, row
+from cagepose.kernels.native.jit import bound
+from cagepose.kernels.algebra.pose import moved_pose
 
 boxes = np.array([[0.3, 0.2, 0.1], [0.1, 0.1, 0.4]])
 turns = np.array([np.eye(3), [[0, -1, 0], [1, 0, 0], [0, 0, 1.0]]])
@@ -34,8 +34,8 @@ print(type(next(iter(row.dispatcher.overloads.values())).library).__name__)
 
 SHARED = """
 import numba, numpy as np
-from cagepose.kernels.linear_program import ProgramRoom, factorise, program_rows, solve_program
-from cagepose.kernels.record import empty_record
+from cagepose.kernels.algebra.linear_program import ProgramRoom, factorise, program_rows, solve_program
+from cagepose.kernels.algebra.record import empty_record
 
 rows, bounds = program_rows(6)
 rows[:], bounds[:] = np.eye(6), 1.0

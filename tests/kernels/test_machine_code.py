@@ -14,12 +14,12 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from cagepose.kernels import cache
-from cagepose.kernels.cache import cache_folder
-from cagepose.kernels.jit import Entry, bound
-from cagepose.kernels.machine_code import MachineCode
-from cagepose.kernels.object_file import ObjectFile, read_object_file
-from cagepose.kernels.record import FloatArray, IntArray, empty_rows
+from cagepose.kernels.algebra.record import FloatArray, IntArray, empty_rows
+from cagepose.kernels.native import cache
+from cagepose.kernels.native.cache import cache_folder
+from cagepose.kernels.native.jit import Entry, bound
+from cagepose.kernels.native.machine_code import MachineCode
+from cagepose.kernels.native.object_file import ObjectFile, read_object_file
 from jit import JIT_IS_OFF
 
 pytestmark = pytest.mark.skipif(JIT_IS_OFF, reason="nothing is compiled")
@@ -36,7 +36,7 @@ SMALL = """
 import sys
 import weakref
 import numpy as np
-from cagepose.kernels.pose import write_quaternions
+from cagepose.kernels.algebra.pose import write_quaternions
 
 found = np.empty((1, 4))
 write_quaternions(np.zeros((1, 3)), found)
@@ -231,7 +231,7 @@ def test_a_folder_that_can_only_be_read_is_read(tmp_path: Path, monkeypatch: pyt
         assert Entry(refuse)(3) == 3
         assert cache.is_writable()
         monkeypatch.setattr("tempfile.TemporaryFile", refuse_to_write)
-        monkeypatch.setattr("cagepose.kernels.linking.object_file", refuse_to_write)  # nothing is compiled
+        monkeypatch.setattr("cagepose.kernels.native.linking.object_file", refuse_to_write)  # nothing is compiled
         cache_folder.cache_clear()
         assert cache_folder() == kept
         assert Entry(refuse)(4) == 4

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from cagepose.kernels.play_certificate import Certificate, angle_bound
-from cagepose.kernels.play_goal import PITCH, ROLL, YAW, Goal
-from cagepose.kernels.play_remainder import gap_left_out, turning_left_out
-from cagepose.kernels.record import empty_record
+from cagepose.kernels.algebra.record import empty_record
+from cagepose.kernels.play.certificate import Certificate, angle_bound
+from cagepose.kernels.play.goal import PITCH, ROLL, YAW, Goal
+from cagepose.kernels.play.remainder import gap_left_out, turning_left_out
 from jit import callable_kernel, cases
 
 

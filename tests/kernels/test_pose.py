@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from cagepose.kernels import pose
+from cagepose.kernels.algebra import pose
 from jit import callable_kernel, cases
 
 quaternion_about = callable_kernel(pose.quaternion_about)

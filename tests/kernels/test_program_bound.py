@@ -6,9 +6,9 @@ from fractions import Fraction
 
 import numpy as np
 
-from cagepose.kernels.linear_program import OPTIMAL, ProgramRoom, solve_program
-from cagepose.kernels.program_bound import dual_bound
-from cagepose.kernels.record import empty_record
+from cagepose.kernels.algebra.linear_program import OPTIMAL, ProgramRoom, solve_program
+from cagepose.kernels.algebra.program_bound import dual_bound
+from cagepose.kernels.algebra.record import empty_record
 from jit import callable_kernel, cases
 
 

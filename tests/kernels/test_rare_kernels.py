@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cagepose.kernels import cache, jit
-from cagepose.kernels.jit import Kernel, RareEntry
-from cagepose.kernels.record import FloatArray
+from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.native import cache, jit
+from cagepose.kernels.native.jit import Kernel, RareEntry
 from jit import JIT_IS_OFF
 
 pytestmark = pytest.mark.skipif(JIT_IS_OFF, reason="nothing is compiled")

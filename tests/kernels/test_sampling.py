@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from cagepose.kernels.screw import screw_entry
-from cagepose.kernels.travel import travel_entry
-from cagepose.kernels.turn import angle_of_key, turn_entry
+from cagepose.kernels.collision.screw import screw_entry
+from cagepose.kernels.collision.travel import travel_entry
+from cagepose.kernels.collision.turn import angle_of_key, turn_entry
 from jit import callable_kernel, cases
 
 RESOLUTION = 1e-12

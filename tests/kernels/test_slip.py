@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cagepose.kernels.slip import independent_normals
-from cagepose.kernels.touching import load_angle
+from cagepose.kernels.stepwise.slip import independent_normals
+from cagepose.kernels.stepwise.touching import load_angle
 from jit import callable_kernel
 
 _angle = callable_kernel(load_angle)

@@ -9,12 +9,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cagepose import Box, Cage, Object, Pose
-from cagepose.kernels.geometry import empty_placement, place_object
-from cagepose.kernels.support import PointLoad, SupportRules, driven_axis, pairwise_stability
-from cagepose.kernels.tolerances import kernel_tolerances
+from cagepose.kernels.algebra.tolerances import kernel_tolerances
+from cagepose.kernels.collision.geometry import empty_placement, place_object
+from cagepose.kernels.collision.turn import key_of_angle
+from cagepose.kernels.stepwise.support import PointLoad, SupportRules, driven_axis, pairwise_stability
 from cagepose.kernels.trace import NONE, TURN
-from cagepose.kernels.turn import key_of_angle
-from cagepose.nouns.geometry import scene_geometry
+from cagepose.model.geometry import scene_geometry
 from jit import callable_kernel
 
 DOWN = (0.0, 0.0, -1.0)

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from caged_scenes import LOADS, adversarial_scene, caged_scene
 from cagepose import Box, Cage, Object, Play, Scene, SceneError, play
-from cagepose.kernels.contacts import deepest_boxes
+from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.studies.cage_verdict import search_way_out
 from cagepose.studies.play_frame import FREEDOMS, PlayFrame
 from jit import cases

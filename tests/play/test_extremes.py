@@ -10,8 +10,8 @@ from scipy.optimize import linprog, minimize
 
 from caged_scenes import caged_scene
 from cagepose import Box, Cage, Load, Object, Pose, Scene, play
-from cagepose.kernels.linear_program import OPTIMAL, UNBOUNDED, solve_program
-from cagepose.kernels.play_rows import empty_play_room, write_start
+from cagepose.kernels.algebra.linear_program import OPTIMAL, UNBOUNDED, solve_program
+from cagepose.kernels.play.rows import empty_play_room, write_start
 from cagepose.studies.play import FREEDOMS
 from cagepose.studies.play_frame import PlayFrame
 from jit import cases

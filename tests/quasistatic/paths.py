@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from cagepose import Load, PhaseRun, Pose, Run, Scene
-from cagepose.kernels.contacts import deepest_boxes
+from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.runs.weights import weigh
 
 RESTS = ("rests", "may rest")

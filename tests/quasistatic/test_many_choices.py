@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cagepose import Box, Cage, Load, Object, Scene
-from cagepose.kernels.onset import COMBINATIONS_LIMIT
+from cagepose.kernels.contact.onset import COMBINATIONS_LIMIT
 from cagepose.runs.judge import Judge
 
 CORNERS = np.array(list(itertools.product((-0.5, 0.5), repeat=3)))

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
-from cagepose.kernels.contact_set import ContactSet, empty_contact_set
-from cagepose.kernels.coulomb_newton import NewtonRoom
-from cagepose.kernels.least_squares import empty_system
-from cagepose.kernels.record import empty_record
-from cagepose.kernels.stability import StabilityRoom
-from cagepose.kernels.sure_contacts import SureRoom, find_sure, rest_is_sure, write_normals
-from cagepose.kernels.uniqueness import N_COLUMNS, OTHER_FOUND, UNIQUE, ModesRoom, other_onset
+from cagepose.kernels.algebra.least_squares import empty_system
+from cagepose.kernels.algebra.record import empty_record
+from cagepose.kernels.contact.contact_set import ContactSet, empty_contact_set
+from cagepose.kernels.contact.coulomb_newton import NewtonRoom
+from cagepose.kernels.stability.second_order import StabilityRoom
+from cagepose.kernels.stability.sure_contacts import SureRoom, find_sure, rest_is_sure, write_normals
+from cagepose.kernels.stability.uniqueness import N_COLUMNS, OTHER_FOUND, UNIQUE, ModesRoom, other_onset
 from jit import callable_kernel, cases
 
 

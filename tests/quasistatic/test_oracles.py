@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
-from cagepose.kernels.cone import HELD, ConeRoom, clear_cone, cone_residual, write_forces
-from cagepose.kernels.contact_set import ContactRow
-from cagepose.kernels.coulomb import coulomb_onset
-from cagepose.kernels.coulomb_newton import NewtonRoom
-from cagepose.kernels.least_squares import PassiveSet, empty_system, nonnegative_least_squares
-from cagepose.kernels.metric import WRENCH
-from cagepose.kernels.record import empty_record, empty_rows
+from cagepose.kernels.algebra.least_squares import PassiveSet, empty_system, nonnegative_least_squares
+from cagepose.kernels.algebra.record import empty_record, empty_rows
+from cagepose.kernels.contact.cone import HELD, ConeRoom, clear_cone, cone_residual, write_forces
+from cagepose.kernels.contact.contact_set import ContactRow
+from cagepose.kernels.contact.coulomb import coulomb_onset
+from cagepose.kernels.contact.coulomb_newton import NewtonRoom
+from cagepose.kernels.contact.metric import WRENCH
 from jit import callable_kernel, cases
 
 _nnls = callable_kernel(nonnegative_least_squares)

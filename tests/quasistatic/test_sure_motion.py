@@ -9,11 +9,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cagepose.kernels.cone import BALANCED, HELD, ConeRoom, clear_cone, cone_residual
-from cagepose.kernels.least_squares import rounding_scale
-from cagepose.kernels.metric import WRENCH
-from cagepose.kernels.record import empty_record
-from cagepose.kernels.sure_motion import SURELY, WIDER, leaves_cones, moves_surely
+from cagepose.kernels.algebra.least_squares import rounding_scale
+from cagepose.kernels.algebra.record import empty_record
+from cagepose.kernels.contact.cone import BALANCED, HELD, ConeRoom, clear_cone, cone_residual
+from cagepose.kernels.contact.metric import WRENCH
+from cagepose.kernels.contact.sure_motion import SURELY, WIDER, leaves_cones, moves_surely
 from jit import callable_kernel, cases
 from quasistatic.test_only_onset import Held, contacts_of, random_held
 

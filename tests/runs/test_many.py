@@ -11,7 +11,7 @@ import pytest
 
 import cagepose
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, SceneError, Variation, run, run_many
-from cagepose.kernels.stepwise_batch import stepwise_runs
+from cagepose.kernels.batch.stepwise import stepwise_runs
 from cagepose.runs import many
 from jit import JIT_IS_OFF, cases
 from rails import rail_scene

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from cagepose.kernels import uniqueness
+from cagepose.kernels.stability import uniqueness
 from jit import JIT_IS_OFF
 
 

@@ -18,9 +18,9 @@ import pytest
 
 from balance import imbalance
 from cagepose import PhaseRun, Run, Scene
-from cagepose.kernels.contacts import deepest_boxes
-from cagepose.kernels.metric import Body
-from cagepose.kernels.record import empty_record
+from cagepose.kernels.algebra.record import empty_record
+from cagepose.kernels.collision.contacts import deepest_boxes
+from cagepose.kernels.contact.metric import Body
 from jit import JIT_IS_OFF
 from random_scenes import random_scenes
 from stepwise_run import run

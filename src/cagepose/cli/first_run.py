@@ -13,13 +13,13 @@ EVERY_RUN = (
 
 def announce_compilation() -> None:
     """From now on, write a line to standard error when something is compiled for the first time."""
-    from cagepose.kernels import cache
+    from cagepose.kernels.native import cache
 
     cache.before_compiling[:] = [_say_so]
 
 
 def _say_so() -> None:
-    from cagepose.kernels.cache import is_writable
+    from cagepose.kernels.native.cache import is_writable
 
     sys.stderr.write(FIRST_RUN if is_writable() else EVERY_RUN)
     sys.stderr.flush()

@@ -75,7 +75,7 @@ def play_command(
     if json:
         from json import dumps
 
-        from cagepose.cli.play_document import play_document
+        from cagepose.files.play_document import play_document
 
         sys.stdout.write(dumps(play_document(found, rests, scene_file.length_unit), indent=1, allow_nan=False) + "\n")
         return 0

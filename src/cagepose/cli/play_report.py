@@ -10,10 +10,10 @@ from rich.table import Table
 from rich.text import Text
 
 from cagepose.cli.console import print_all
-from cagepose.cli.play_document import LENGTHS
+from cagepose.files.play_document import LENGTHS
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.files.words import short
-from cagepose.nouns.checks import FloatArray
+from cagepose.model.checks import FloatArray
 from cagepose.studies.play import Play, PlayEnd
 from cagepose.studies.play_rest import PlayRest
 

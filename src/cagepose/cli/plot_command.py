@@ -35,8 +35,8 @@ def plot_command(
     """Draw a run into a picture file; a scene is run first."""
     from cagepose.cli.triples import read_triple
     from cagepose.errors import printable
-    from cagepose.faces.extra import require_matplotlib
-    from cagepose.faces.figure_files import check_can_draw, figure_suffix
+    from cagepose.views.extra import require_matplotlib
+    from cagepose.views.figure_files import check_can_draw, figure_suffix
 
     require_matplotlib()
     problems = list[str]()
@@ -65,9 +65,9 @@ def plot_command(
 
 def _run_picture(kind: str, source: RunFile, suffix: str) -> tuple[bytes, str]:
     """Return the picture of a run, and what it shows."""
-    from cagepose.faces.event_figure import event_figure
-    from cagepose.faces.pose_figure import pose_figure
-    from cagepose.faces.style import figure_bytes
+    from cagepose.views.event_figure import event_figure
+    from cagepose.views.pose_figure import pose_figure
+    from cagepose.views.style import figure_bytes
 
     run = source.run
     figure = (pose_figure if kind == "pose" else event_figure)(run, source.length_unit)
@@ -78,12 +78,12 @@ def _play_picture(
     kind: str, source: RunFile | SceneFile, points: list[tuple[float, ...]], suffix: str
 ) -> tuple[bytes, str]:
     """Return the picture of a scene's play, and what it shows."""
-    from cagepose.faces.extreme_figure import extreme_figure
-    from cagepose.faces.play_figure import play_figure
-    from cagepose.faces.style import figure_bytes
     from cagepose.files.run_file import RunFile
     from cagepose.files.units import to_metres
     from cagepose.studies.play import play
+    from cagepose.views.extreme_figure import extreme_figure
+    from cagepose.views.play_figure import play_figure
+    from cagepose.views.style import figure_bytes
 
     announce_compilation()
     found = play(source.run.scene if isinstance(source, RunFile) else source.scene)

@@ -13,7 +13,7 @@ from cagepose.cli.first_run import announce_compilation
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from cagepose.studies.reproduction import Progress, Reproduction
+    from cagepose.paper.reproduction import Progress, Reproduction
 
 
 def reproduce_command(
@@ -21,11 +21,11 @@ def reproduce_command(
 ) -> int:
     """Run the paper's cases, write a report with pictures, and print its numbers beside ours."""
     from cagepose.errors import printable
-    from cagepose.faces.extra import require_matplotlib
+    from cagepose.views.extra import require_matplotlib
 
     require_matplotlib()
-    from cagepose.faces.report import check_report_folder, write_report
-    from cagepose.studies.reproduction import METHODS, reproduce
+    from cagepose.paper.report import check_report_folder, write_report
+    from cagepose.paper.reproduction import METHODS, reproduce
 
     try:
         check_report_folder(out, METHODS)
@@ -59,7 +59,7 @@ def _table(reproduction: Reproduction) -> Table:
     from rich.table import Table
     from rich.text import Text
 
-    from cagepose.faces.comparison_table import cells, headings
+    from cagepose.paper.comparison_table import cells, headings
 
     styles = {"agrees": "green", "differs": "red", "not derivable": "yellow", "measured": "blue"}
     table = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)

@@ -11,8 +11,8 @@ from cagepose.cli.options import SetOption
 from cagepose.cli.run_source import MethodOption, RunOrSceneArgument, read_run_or_scene, run_of
 
 if TYPE_CHECKING:
-    from cagepose.faces.view.playback import Playback
-    from cagepose.faces.view.what_if import WhatIf
+    from cagepose.views.viewer.playback import Playback
+    from cagepose.views.viewer.what_if import WhatIf
 
 PORT_USUAL = 8737
 
@@ -37,8 +37,8 @@ def view_command(
 ) -> int:
     """Show the object in its cage, the timeline, the events and the forces; a scene is run first."""
     from cagepose.errors import printable
-    from cagepose.faces.extra import require_pillow
-    from cagepose.faces.view.export_files import check_can_export, export_suffix
+    from cagepose.views.extra import require_pillow
+    from cagepose.views.viewer.export_files import check_can_export, export_suffix
 
     def check_out() -> None:
         if export is not None:
@@ -55,9 +55,9 @@ def view_command(
         return 2
     run_file = run_of(source, method)
 
-    from cagepose.faces.view.playback import playback
     from cagepose.files.run_file import RunFile
     from cagepose.files.write import write_whole
+    from cagepose.views.viewer.playback import playback
 
     run, shown = run_file.run, playback(run_file.run, run_file.length_unit)
     if export is None:
@@ -75,17 +75,17 @@ def view_command(
 def _content(shown: Playback, suffix: str) -> bytes:
     """Return a file of the kind ``suffix``."""
     if suffix == ".html":
-        from cagepose.faces.view.page import page
+        from cagepose.views.viewer.page import page
 
         return page(shown).encode()
-    from cagepose.faces.view.film import gif_bytes, png_bytes
+    from cagepose.views.viewer.film import gif_bytes, png_bytes
 
     return png_bytes(shown) if suffix == ".png" else gif_bytes(shown.run, shown.length_unit)
 
 
 def _what_if(scene: str, set_values: tuple[str, ...], method: str | None) -> WhatIf:
-    from cagepose.faces.view.what_if import WhatIf
     from cagepose.files.scene_file import read_scene_text
+    from cagepose.views.viewer.what_if import WhatIf
 
     return WhatIf(read_scene_text(scene), set_values, method)
 
@@ -93,8 +93,8 @@ def _what_if(scene: str, set_values: tuple[str, ...], method: str | None) -> Wha
 def _serve(shown: Playback, what_if: WhatIf | None, host: str, port: int) -> int:
     """Serve the page until somebody presses Ctrl-C."""
     from cagepose.errors import printable
-    from cagepose.faces.view.page import page
-    from cagepose.faces.view.server import open_server
+    from cagepose.views.viewer.page import page
+    from cagepose.views.viewer.server import open_server
 
     try:
         server = open_server(page(shown, what_if), what_if, host, port)

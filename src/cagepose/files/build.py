@@ -1,4 +1,4 @@
-"""From a checked scene file to the nouns: lengths to metres, angles to radians, and the problems that nouns find."""
+"""From a checked scene file to the model: lengths to metres, angles to radians, and the problems that it finds."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from cagepose.errors import Key, Problem, SceneError
 from cagepose.files.points_file import PointsTable
 from cagepose.files.schema import BoxModel, ForceModel, LoadModel, PoseModel, SceneModel
 from cagepose.files.units import LengthUnit, to_metres
-from cagepose.nouns.cage import Cage
-from cagepose.nouns.load import Force, Load
-from cagepose.nouns.parts import Box, Object
-from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import Adjustable, Scene
-from cagepose.nouns.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT, Tolerances
+from cagepose.model.cage import Cage
+from cagepose.model.load import Force, Load
+from cagepose.model.parts import Box, Object
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Adjustable, Scene
+from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT, Tolerances
 
 Noun = TypeVar("Noun")
 Given = ParamSpec("Given")
@@ -29,7 +29,7 @@ def build_scene(model: SceneModel, table: PointsTable | None) -> Scene:
     Raises
     ------
     SceneError
-        All that the nouns found wrong, with paths from the root of the scene file.
+        All that the model found wrong, with paths from the root of the scene file.
     """
     builder = _Builder(model.units.length if model.units else "mm")
     held = builder.make(("object",), builder.object, model)

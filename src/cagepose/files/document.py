@@ -6,9 +6,9 @@ import math
 from typing import Any
 
 from cagepose.files.units import LengthUnit, from_metres
-from cagepose.nouns.checks import FloatArray
-from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import Scene
+from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
 from cagepose.runs.proof import FreeMotion, Proof
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
 

@@ -17,7 +17,7 @@ from cagepose.files.scene_record import (
     record_of_scene,
     scene_of_record,
 )
-from cagepose.nouns.checks import FloatArray
+from cagepose.model.checks import FloatArray
 from cagepose.runs.proof import FreeMotion, Proof, ProofVerdict, Stability
 from cagepose.runs.run import Contact, Event, Motion, MotionKind, Note, PhaseRun, Run, Verdict
 

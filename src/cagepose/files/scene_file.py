@@ -20,7 +20,7 @@ from cagepose.files.read import read_text
 from cagepose.files.schema import PointsFileModel, SceneModel
 from cagepose.files.units import LengthUnit
 from cagepose.files.yaml_source import YamlSource, parse_yaml
-from cagepose.nouns.scene import Scene
+from cagepose.model.scene import Scene
 
 
 @dataclass(frozen=True)

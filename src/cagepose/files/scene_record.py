@@ -9,13 +9,13 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from cagepose.nouns.cage import Cage
-from cagepose.nouns.checks import FloatArray
-from cagepose.nouns.load import Force, Load
-from cagepose.nouns.parts import Box, Object
-from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import Adjustable, Metric, Scene
-from cagepose.nouns.tolerances import Tolerances
+from cagepose.model.cage import Cage
+from cagepose.model.checks import FloatArray
+from cagepose.model.load import Force, Load
+from cagepose.model.parts import Box, Object
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Adjustable, Metric, Scene
+from cagepose.model.tolerances import Tolerances
 
 Three = Annotated[list[float], Field(min_length=3, max_length=3)]
 Four = Annotated[list[float], Field(min_length=4, max_length=4)]

@@ -1,7 +1,7 @@
 """The scene file's shape: strict pydantic models, one class for each mapping of the file.
 
 Strict: ``true`` is not a number, ``"10"`` is not a number, unknown keys are errors. What a scene *means* (points
-outside the object, names used once, ...) is checked where the nouns are made, not here.
+outside the object, names used once, ...) is checked where the model is made, not here.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import PydanticCustomError
 
 from cagepose.files.units import LengthUnit
-from cagepose.nouns.tolerances import TOUCH_DEFAULT, TOUCH_GREATEST, TOUCH_LEAST
+from cagepose.model.tolerances import TOUCH_DEFAULT, TOUCH_GREATEST, TOUCH_LEAST
 from cagepose.runs.judge import METRIC_DEFAULT
 from cagepose.runs.solve import DEFAULT_METHOD, METHODS
 from cagepose.runs.stepwise import NO_SLIP_ANGLE_DEFAULT_RAD

@@ -7,7 +7,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cagepose.nouns.checks import FloatArray
+from cagepose.model.checks import FloatArray
 
 LengthUnit = Literal["mm", "m", "in"]
 LENGTH_UNITS: tuple[LengthUnit, ...] = get_args(LengthUnit)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 from cagepose.files.units import LengthUnit, from_metres
-from cagepose.nouns.checks import FloatArray
+from cagepose.model.checks import FloatArray
 from cagepose.runs.run import Motion
 
 

@@ -7,11 +7,11 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.jit import kernel
-from cagepose.kernels.pose import Quaternion, moved_pose
-from cagepose.kernels.record import FloatArray, Rows, empty_rows
-from cagepose.kernels.turn import angle_of_key
-from cagepose.kernels.vector import Vector
+from cagepose.kernels.algebra.pose import Quaternion, moved_pose
+from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
+from cagepose.kernels.algebra.vector import Vector
+from cagepose.kernels.collision.turn import angle_of_key
+from cagepose.kernels.native.jit import kernel
 
 TRAVEL, TURN, SCREW, NONE = 0, 1, 2, 3
 """Codes of motions: the index into `MOTION_NAMES`; NONE has no name."""
@@ -52,7 +52,7 @@ class Step(NamedTuple):
     along, through
         Direction of a travel, or axis of a turn and a point on it.
     amount
-        Travel: distance in metres. Turn: key of the angle, see `cagepose.kernels.turn`. Inf: nothing is hit.
+        Travel: distance in metres. Turn: key of the angle, see `cagepose.kernels.collision.turn`. Inf: nothing is hit.
     hit_point
         Index of the cage point that ends the motion; -1: none.
     note

@@ -7,22 +7,22 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cagepose.kernels.batch import Endings, Starts, empty_endings
-from cagepose.kernels.jit import bound
-from cagepose.kernels.metric import PhaseLoad
-from cagepose.kernels.pose import write_quaternions
-from cagepose.kernels.proof import empty_proof_room
-from cagepose.kernels.quasistatic import QuasistaticRules, empty_quasistatic_workspace
-from cagepose.kernels.quasistatic_batch import quasistatic_runs
-from cagepose.kernels.record import Rows, dtype_of
-from cagepose.kernels.stepwise import PhaseLoads, empty_workspace
-from cagepose.kernels.stepwise_batch import stepwise_runs
-from cagepose.kernels.tolerances import kernel_tolerances
-from cagepose.nouns.checks import FloatArray, as_vector
-from cagepose.nouns.geometry import cage_sizes, object_size
-from cagepose.nouns.load import Force, Load
-from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import FARTHEST_START, Scene
+from cagepose.kernels.algebra.pose import write_quaternions
+from cagepose.kernels.algebra.record import Rows, dtype_of
+from cagepose.kernels.algebra.tolerances import kernel_tolerances
+from cagepose.kernels.batch.quasistatic import quasistatic_runs
+from cagepose.kernels.batch.rows import Endings, Starts, empty_endings
+from cagepose.kernels.batch.stepwise import stepwise_runs
+from cagepose.kernels.contact.metric import PhaseLoad
+from cagepose.kernels.native.jit import bound
+from cagepose.kernels.quasistatic.run import QuasistaticRules, empty_quasistatic_workspace
+from cagepose.kernels.stability.proof import empty_proof_room
+from cagepose.kernels.stepwise.run import PhaseLoads, empty_workspace
+from cagepose.model.checks import FloatArray, as_vector
+from cagepose.model.geometry import cage_sizes, object_size
+from cagepose.model.load import Force, Load
+from cagepose.model.pose import Pose
+from cagepose.model.scene import FARTHEST_START, Scene
 from cagepose.runs.frames import Frames, middle_of_boxes
 from cagepose.runs.judge import body_of
 from cagepose.runs.quasistatic import STEP_LIMIT, TURN_STEP_RAD

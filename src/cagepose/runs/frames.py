@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from cagepose.kernels.geometry import Geometry
-from cagepose.kernels.pose import Quaternion
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.vector import Vector
+from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.trace import Trace
-from cagepose.kernels.vector import Vector
-from cagepose.nouns.checks import FloatArray, as_vector
-from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import Scene
+from cagepose.model.checks import FloatArray, as_vector
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
 
 
 class Frames:

@@ -7,12 +7,15 @@ from functools import cached_property
 
 import numpy as np
 
-from cagepose.kernels.contact_set import ContactSet
-from cagepose.kernels.contacts import contact_rows
-from cagepose.kernels.critical_friction import critical_friction
-from cagepose.kernels.metric import Body
-from cagepose.kernels.pose import Quaternion
-from cagepose.kernels.proof import (
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.record import empty_record
+from cagepose.kernels.algebra.tolerances import kernel_tolerances
+from cagepose.kernels.algebra.vector import Vector
+from cagepose.kernels.collision.contacts import contact_rows
+from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.metric import Body
+from cagepose.kernels.stability.critical_friction import critical_friction
+from cagepose.kernels.stability.proof import (
     OTHER_ONSET,
     PROVEN_MOVES,
     PROVEN_UNIQUE,
@@ -24,14 +27,11 @@ from cagepose.kernels.proof import (
     empty_proof_room,
     prove,
 )
-from cagepose.kernels.proof_search import first_motion, search_onsets
-from cagepose.kernels.record import empty_record
-from cagepose.kernels.stability import STABILITY_NAMES
-from cagepose.kernels.tolerances import kernel_tolerances
-from cagepose.kernels.vector import Vector
-from cagepose.nouns.checks import FloatArray
-from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import Metric, Scene
+from cagepose.kernels.stability.proof_search import first_motion, search_onsets
+from cagepose.kernels.stability.second_order import STABILITY_NAMES
+from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Metric, Scene
 from cagepose.runs.frames import Frames
 from cagepose.runs.proof import FreeMotion, Proof
 from cagepose.runs.run import Contact

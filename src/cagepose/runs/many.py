@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.errors import Problem, SceneError
-from cagepose.kernels.batch import INVALID, NOT_RUN
-from cagepose.kernels.pose import write_euler_zyx
-from cagepose.kernels.proof import OTHER_ONSET, TOO_MANY_CHOICES, UNIQUENESS_NOT_SHOWN
+from cagepose.kernels.algebra.pose import write_euler_zyx
+from cagepose.kernels.batch.rows import INVALID, NOT_RUN
+from cagepose.kernels.stability.proof import OTHER_ONSET, TOO_MANY_CHOICES, UNIQUENESS_NOT_SHOWN
 from cagepose.kernels.trace import RESTS, VERDICT_NAMES
-from cagepose.nouns.checks import FloatArray
-from cagepose.nouns.scene import Scene
+from cagepose.model.checks import FloatArray
+from cagepose.model.scene import Scene
 from cagepose.runs.batches import Batch, QuasistaticBatch, StepwiseBatch
 from cagepose.runs.solve import chosen_method
 from cagepose.runs.variation import Variation

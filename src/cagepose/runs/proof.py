@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from cagepose.nouns.checks import FloatArray
+from cagepose.model.checks import FloatArray
 
 ProofVerdict = Literal["rests", "may rest", "moves"]
 Stability = Literal["stable", "marginal", "unstable"]

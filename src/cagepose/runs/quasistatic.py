@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import time
 
-from cagepose.kernels.jit import bound
-from cagepose.kernels.quasistatic import (
+from cagepose.kernels.native.jit import bound
+from cagepose.kernels.quasistatic.run import (
     RULE_NAMES,
     QuasistaticRules,
     empty_quasistatic_workspace,
     quasistatic_run,
 )
 from cagepose.kernels.trace import LET_GO, NONE, VERDICT_NAMES, Trace
-from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import Scene
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
 from cagepose.runs.frames import Frames, touching_names
 from cagepose.runs.judge import Judge
 from cagepose.runs.remarks import edge_remarks, proof_remarks, seam_remarks, weight_remarks

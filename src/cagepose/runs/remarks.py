@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from cagepose.nouns.scene import Scene
+from cagepose.model.scene import Scene
 from cagepose.runs.run import PhaseRun
 from cagepose.runs.weights import WEIGHT_BESIDE_FORCE, weigh
 

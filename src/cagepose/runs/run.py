@@ -9,10 +9,10 @@ from typing import Literal
 
 import numpy as np
 
-from cagepose.kernels.pose import moved_pose
-from cagepose.nouns.checks import FloatArray, as_vector
-from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import Scene
+from cagepose.kernels.algebra.pose import moved_pose
+from cagepose.model.checks import FloatArray, as_vector
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
 from cagepose.runs.proof import Proof
 
 MotionKind = Literal["travel", "turn", "screw"]

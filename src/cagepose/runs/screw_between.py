@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from cagepose.nouns.pose import Pose
+from cagepose.model.pose import Pose
 from cagepose.runs.run import Motion
 
 HARDLY_TURNS_RAD = 1e-12

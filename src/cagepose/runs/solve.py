@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from cagepose.errors import Problem, SceneError
-from cagepose.nouns.scene import Scene
+from cagepose.model.scene import Scene
 from cagepose.runs.quasistatic import run_quasistatic
 from cagepose.runs.run import Run
 from cagepose.runs.stepwise import run_stepwise

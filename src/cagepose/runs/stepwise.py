@@ -7,15 +7,15 @@ import time
 
 import numpy as np
 
-from cagepose.kernels.jit import bound
-from cagepose.kernels.slip import SlipRules
-from cagepose.kernels.stepwise import RULE_NAMES, PhaseLoads, StepwiseRules, empty_workspace, stepwise_run
-from cagepose.kernels.support import SupportRules
-from cagepose.kernels.tolerances import kernel_tolerances
+from cagepose.kernels.algebra.tolerances import kernel_tolerances
+from cagepose.kernels.collision.turn import key_of_angle
+from cagepose.kernels.native.jit import bound
+from cagepose.kernels.stepwise.run import RULE_NAMES, PhaseLoads, StepwiseRules, empty_workspace, stepwise_run
+from cagepose.kernels.stepwise.slip import SlipRules
+from cagepose.kernels.stepwise.support import SupportRules
 from cagepose.kernels.trace import MOTION_NAMES, NONE, NOTE_NAMES, PLAIN, TRAVEL, VERDICT_NAMES, Trace
-from cagepose.kernels.turn import key_of_angle
-from cagepose.nouns.checks import FloatArray, unit_vector
-from cagepose.nouns.scene import Scene
+from cagepose.model.checks import FloatArray, unit_vector
+from cagepose.model.scene import Scene
 from cagepose.runs.frames import Frames, middle_of_boxes, touching_names
 from cagepose.runs.judge import Judge
 from cagepose.runs.remarks import edge_remarks, proof_remarks, seam_remarks

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from cagepose.errors import SceneError
-from cagepose.nouns.tolerances import TOUCH_GREATEST, TOUCH_LEAST
+from cagepose.model.tolerances import TOUCH_GREATEST, TOUCH_LEAST
 from cagepose.runs import solve
 from cagepose.runs.run import Run
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cagepose.nouns.checks import FloatArray, ProblemList, finite_array
-from cagepose.nouns.scene import Scene
+from cagepose.model.checks import FloatArray, ProblemList, finite_array
+from cagepose.model.scene import Scene
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cagepose.kernels.metric import PhaseLoad
-from cagepose.kernels.record import Rows, empty_rows
-from cagepose.nouns.checks import FloatArray, unit_vector
-from cagepose.nouns.load import Load
-from cagepose.nouns.scene import Scene
+from cagepose.kernels.algebra.record import Rows, empty_rows
+from cagepose.kernels.contact.metric import PhaseLoad
+from cagepose.model.checks import FloatArray, unit_vector
+from cagepose.model.load import Load
+from cagepose.model.scene import Scene
 
 WEIGHT_BESIDE_FORCE = 1e-6
 """Weight of an object beside a force, as a fraction of it, where mass or magnitude is not given: the force dominates,

@@ -9,14 +9,14 @@ from typing import Literal
 
 import numpy as np
 
-from cagepose.kernels.escape import N_RANDOM, Station, grow_tree
-from cagepose.kernels.geometry import empty_placement
-from cagepose.kernels.play_certificate import CAGED, FREE, OFF_EDGE, RAN_OFF, UNSOLVED, CertificateRoom
-from cagepose.kernels.record import Rows, empty_rows
-from cagepose.kernels.tolerances import kernel_tolerances
-from cagepose.nouns.checks import as_vector
-from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import Scene
+from cagepose.kernels.algebra.record import Rows, empty_rows
+from cagepose.kernels.algebra.tolerances import kernel_tolerances
+from cagepose.kernels.collision.geometry import empty_placement
+from cagepose.kernels.play.certificate import CAGED, FREE, OFF_EDGE, RAN_OFF, UNSOLVED, CertificateRoom
+from cagepose.kernels.play.escape import N_RANDOM, Station, grow_tree
+from cagepose.model.checks import as_vector
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
 from cagepose.runs.run import Motion
 from cagepose.studies.play_frame import PlayFrame
 

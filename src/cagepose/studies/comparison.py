@@ -9,9 +9,9 @@ from typing import get_args
 
 import numpy as np
 
-from cagepose.nouns.checks import FloatArray
-from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import Metric, Scene
+from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Metric, Scene
 from cagepose.runs.run import AT_REST, Event, Motion, PhaseRun, Run, Verdict
 from cagepose.runs.solve import run
 from cagepose.runs.stepwise import NO_SLIP_ANGLE_DEFAULT_RAD

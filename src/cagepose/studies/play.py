@@ -12,15 +12,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cagepose.errors import Problem, SceneError
-from cagepose.kernels.jit import bound
-from cagepose.kernels.play import OPEN, REACHED, Extreme, find_play
-from cagepose.kernels.play_certificate import CAGED, CertificateRoom, certify, empty_certificate_room
-from cagepose.kernels.play_goal import PITCH, ROLL, SHIFT, YAW, Goal
-from cagepose.kernels.play_rows import empty_play_room
-from cagepose.kernels.record import Rows, empty_rows
-from cagepose.nouns.checks import FloatArray, finite_array, unit_vector
-from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import FARTHEST_START, Scene, millimetres
+from cagepose.kernels.algebra.record import Rows, empty_rows
+from cagepose.kernels.native.jit import bound
+from cagepose.kernels.play.certificate import CAGED, CertificateRoom, certify, empty_certificate_room
+from cagepose.kernels.play.goal import PITCH, ROLL, SHIFT, YAW, Goal
+from cagepose.kernels.play.rows import empty_play_room
+from cagepose.kernels.play.search import OPEN, REACHED, Extreme, find_play
+from cagepose.model.checks import FloatArray, finite_array, unit_vector
+from cagepose.model.pose import Pose
+from cagepose.model.scene import FARTHEST_START, Scene, millimetres
 from cagepose.studies.cage_verdict import CageVerdict, judge_cage
 from cagepose.studies.play_frame import FREEDOMS, PlayFrame
 from cagepose.studies.play_limits import Clearance, limiting_clearances

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from cagepose.kernels.pose import Quaternion
-from cagepose.kernels.vector import Vector
-from cagepose.nouns.checks import FloatArray
-from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import Scene
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.vector import Vector
+from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
 
 FREEDOMS = ("x", "y", "z", "roll", "pitch", "yaw")
 """Displacement of the object's origin and ZYX angles, both from the start, in the cage's axes."""

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cagepose.kernels.linear_program import OPTIMAL, ProgramRoom, solve_program
-from cagepose.kernels.play_goal import PITCH, ROLL, SHIFT, Goal
-from cagepose.kernels.record import empty_record
-from cagepose.nouns.checks import FloatArray
-from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import Scene
+from cagepose.kernels.algebra.linear_program import OPTIMAL, ProgramRoom, solve_program
+from cagepose.kernels.algebra.record import empty_record
+from cagepose.kernels.play.goal import PITCH, ROLL, SHIFT, Goal
+from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
 from cagepose.studies.play_frame import PlayFrame
 
 TOUCHES = 1e-8

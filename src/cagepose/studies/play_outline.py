@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cagepose.nouns.checks import FloatArray
-from cagepose.nouns.scene import Scene
+from cagepose.model.checks import FloatArray
+from cagepose.model.scene import Scene
 from cagepose.studies.play import PointPlay, play
 from cagepose.studies.support import convex_hull
 

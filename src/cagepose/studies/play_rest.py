@@ -9,14 +9,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cagepose.kernels.linear_program import OPTIMAL, ProgramRoom, solve_program
-from cagepose.kernels.play import REACHED, Extreme, find_play
-from cagepose.kernels.play_goal import SHIFT, Goal
-from cagepose.kernels.play_rows import N_TRUST, empty_play_room, write_start
-from cagepose.kernels.record import Rows, empty_record, empty_rows
-from cagepose.nouns.checks import FloatArray
-from cagepose.nouns.pose import Pose
-from cagepose.nouns.scene import Scene
+from cagepose.kernels.algebra.linear_program import OPTIMAL, ProgramRoom, solve_program
+from cagepose.kernels.algebra.record import Rows, empty_record, empty_rows
+from cagepose.kernels.play.goal import SHIFT, Goal
+from cagepose.kernels.play.rows import N_TRUST, empty_play_room, write_start
+from cagepose.kernels.play.search import REACHED, Extreme, find_play
+from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
 from cagepose.runs.weights import weigh
 from cagepose.studies.play_frame import FREEDOMS, PlayFrame
 

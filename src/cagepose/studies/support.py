@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cagepose.nouns.checks import FloatArray, unit_vector
-from cagepose.nouns.load import Load
-from cagepose.nouns.scene import Scene
+from cagepose.model.checks import FloatArray, unit_vector
+from cagepose.model.load import Load
+from cagepose.model.scene import Scene
 from cagepose.runs.run import Run
 
 

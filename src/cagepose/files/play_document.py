@@ -1,0 +1,141 @@
+"""A `Play` as the document of ``--json``: lengths in the scene's unit, angles in degrees, null for no end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from cagepose.files.document import FORMAT_VERSION
+from cagepose.files.units import LengthUnit, from_metres
+from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
+from cagepose.studies.cage_verdict import PathStep
+from cagepose.studies.play import Play, PlayEnd, PlayRange, PointPlay
+from cagepose.studies.play_rest import PlayRest, PressedPoint
+
+LENGTHS = ("x", "y", "z")
+
+
+def play_document(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> dict[str, Any]:
+    """Return the document: only dict, list, str, int, finite float, bool and None."""
+    cage = play.cage
+    return {
+        "version": FORMAT_VERSION,
+        "scene": play.scene.name,
+        "units": {"length": unit},
+        "freedoms": {name: _ends(ends, name in LENGTHS, unit) for name, ends in play.freedoms.items()},
+        "points": [
+            {
+                "at": _lengths(point.at_object, unit),
+                "direction": _numbers(point.direction_cage),
+                **_ends(point, True, unit),
+            }
+            for point in play.points
+        ],
+        "cage": {
+            "verdict": cage.verdict,
+            "reason": cage.reason,
+            "free_directions": list(cage.free_directions),
+            "leaves_at": _pose(cage.leaves_at, unit),
+            "path": None if cage.path is None else [_step(step, unit) for step in cage.path],
+        },
+        "rests": [_rest(rest, unit) for rest in rests],
+        "timing_s": {"analysis": play.analysis_s, "certificate": play.certificate_s},
+    }
+
+
+def _ends(ends: PlayRange | PointPlay, is_length: bool, unit: LengthUnit) -> dict[str, Any]:
+    linear, exact, certified = (
+        [_shown(end, is_length, unit) for end in pair]
+        for pair in (
+            (ends.low.linear, ends.high.linear),
+            (ends.low.exact, ends.high.exact),
+            (ends.low.certified, ends.high.certified),
+        )
+    )
+    return {
+        "linear": linear,
+        "exact": exact,
+        "certified": None if None in certified else certified,
+        "is_open": [ends.low.is_open, ends.high.is_open],
+        "poses": [_pose(ends.low.pose_world_object, unit), _pose(ends.high.pose_world_object, unit)],
+        "limits": [_limits(ends.low, is_length, unit), _limits(ends.high, is_length, unit)],
+    }
+
+
+def _limits(end: PlayEnd, is_length: bool, unit: LengthUnit) -> list[dict[str, Any]]:
+    """What each unit of gap is worth when it is closed and when it is opened."""
+    return [
+        {
+            "point": clearance.point,
+            "box": clearance.box,
+            "gap": float(from_metres(clearance.gap_m, unit)),
+            "closing": _gain(clearance.closing, is_length, unit),
+            "opening": _gain(clearance.opening, is_length, unit),
+        }
+        for clearance in end.clearances
+    ]
+
+
+def _gain(gain: float, is_length: bool, unit: LengthUnit) -> float | None:
+    """Lengths per length, or degrees per length; None: it is without end (the gap cannot be closed)."""
+    if not math.isfinite(gain):
+        return None
+    return gain if is_length else math.degrees(gain) / float(from_metres(1.0, unit))
+
+
+def _pose(pose: Pose | None, unit: LengthUnit) -> dict[str, Any] | None:
+    if pose is None:
+        return None
+    return {
+        "position": _lengths(pose.position_m, unit),
+        "euler_zyx_deg": [math.degrees(angle) + 0.0 for angle in pose.euler_zyx],
+        "quat_wxyz": _numbers(pose.quaternion_wxyz),
+    }
+
+
+def _rest(rest: PlayRest, unit: LengthUnit) -> dict[str, Any]:
+    return {
+        "phase": rest.phase,
+        "linear_pose": _pose(rest.linear_pose_world_object, unit),
+        "exact_pose": _pose(rest.pose_world_object, unit),
+        "forces": _forces(rest.forces),
+        "exact_forces": _forces(rest.exact_forces),
+        "undetermined": {
+            freedom.name: [_shown(end, freedom.name in LENGTHS, unit) for end in (freedom.low, freedom.high)]
+            for freedom in rest.undetermined
+        },
+    }
+
+
+def _forces(forces: tuple[PressedPoint, ...]) -> list[dict[str, Any]]:
+    return [{"point": force.point, "box": force.box, "force_normal": force.force_n} for force in forces]
+
+
+def _shown(value: float | None, is_length: bool, unit: LengthUnit) -> float | None:
+    if value is None:
+        return None
+    return (float(from_metres(value, unit)) if is_length else math.degrees(value)) + 0.0
+
+
+def _step(step: PathStep, unit: LengthUnit) -> dict[str, Any]:
+    motion = step.motion
+    through = motion.through_world
+    return {
+        "motion": motion.kind,
+        "direction": None if motion.direction_world is None else _numbers(motion.direction_world),
+        "axis": None if motion.axis_world is None else _numbers(motion.axis_world),
+        "through": None if through is None else _lengths(through, unit),
+        "distance": float(from_metres(motion.distance_m, unit)),
+        "angle_deg": math.degrees(motion.angle_rad),
+        "pose": _pose(step.pose_world_object, unit),
+    }
+
+
+def _lengths(lengths_m: FloatArray, unit: LengthUnit) -> list[float]:
+    return _numbers(from_metres(lengths_m, unit))
+
+
+def _numbers(values: FloatArray) -> list[float]:
+    return [float(value) + 0.0 for value in values]

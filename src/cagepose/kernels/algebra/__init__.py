@@ -1,0 +1,1 @@
+"""Vectors, poses, small linear systems and programs, and the one table of tolerances: nothing here knows a contact."""

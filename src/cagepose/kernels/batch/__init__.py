@@ -1,0 +1,1 @@
+"""Many runs of one scene, without Python between them."""

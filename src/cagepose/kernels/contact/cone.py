@@ -1,0 +1,229 @@
+"""Contact forces inside exact friction cones: min |b - A f| with |f_t| <= mu f_n, equations (5.4) to (5.6).
+
+A cone has infinitely many generators n + mu d, d any unit tangent. The active-set method of `least_squares` needs only
+the one that points most along the residual r, and that one is known in closed form: d = r_t / |r_t|. So cones stay
+round, where a pyramid would be off by 1 - cos(pi / k), and at the end either the residual is zero, and the forces are
+the proof of balance, or no generator points along it, and the residual is the proof that there is none.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+from cagepose.kernels.algebra.least_squares import (
+    PRICE,
+    PassiveSet,
+    aim,
+    append_column,
+    clear,
+    exchange_column,
+    inner,
+    label_is_passive,
+    length,
+    rounding_scale,
+    settle,
+)
+from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
+from cagepose.kernels.contact.contact_set import ContactRow
+from cagepose.kernels.contact.metric import ScaledVector
+from cagepose.kernels.native.jit import kernel
+
+BALANCED = 1e-11
+"""In lengths of the terms of the residual. Ten thousand times their rounding: rounding that a nearly dependent set of
+contacts has magnified still counts as balance."""
+HELD = 1e-9
+"""The same at the limit of friction, where round cones leave more: rounding counts by its square root there."""
+STEEPER = 1e-13
+"""In lengths of the residual: a generator that points along it by so little more than one in use is no better."""
+GENERATOR_LIMIT = 400
+N_ROWS = 7
+"""With one more row than a wrench has, the last one adds up the normal forces."""
+
+
+class ConeRoom:
+    """Room for one problem, and its solution; a record.
+
+    Attributes
+    ----------
+    passive
+        The generators in use; their labels index the next two.
+    contacts, directions
+        Contact and tangent d of each generator.
+    column
+        One generator.
+    """
+
+    passive: PassiveSet
+    contacts: Annotated[IntArray, GENERATOR_LIMIT]
+    directions: Annotated[FloatArray, GENERATOR_LIMIT, 2]
+    column: ScaledVector
+
+
+@kernel
+def steepest_tangent(contact: ContactRow, vector: FloatArray) -> tuple[float, float, float]:
+    """Return (length of the tangential part of a scaled twist at a contact, its direction)."""
+    one = inner(contact.columns[1], vector, 6)
+    two = inner(contact.columns[2], vector, 6)
+    size = math.sqrt(one * one + two * two)
+    if size == 0.0:
+        return 0.0, 1.0, 0.0
+    inverse = 1.0 / size
+    return size, inverse * one, inverse * two
+
+
+@kernel
+def write_generator(contact: ContactRow, friction: float, one: float, two: float, out: FloatArray) -> None:
+    for k in range(6):
+        out[k] = contact.columns[0, k] + friction * (one * contact.columns[1, k] + two * contact.columns[2, k])
+
+
+@kernel
+def clear_cone(room: ConeRoom, b: FloatArray, n_rows: int, terms: float) -> None:
+    """Start from no force: b is (6,), or (7,) where a sum of the normal forces is asked for too, of terms so long."""
+    clear(room.passive, n_rows, terms)
+    aim(room.passive, b)
+
+
+@kernel
+def generator_price(
+    rows: Rows[ContactRow], contact: int, friction: float, charged: bool, room: ConeRoom
+) -> tuple[float, bool]:
+    """Return how far the steepest generator of a contact lies along the residual r, and whether the contact has one.
+
+    A generator in use lies across r (but for its charge), so for another of the same contact only the angle between
+    their tangents counts: mu |r_t| (1 - cos), which has its digits however small it is.
+    """
+    passive = room.passive
+    slip, one, two = steepest_tangent(rows[contact], passive.residual)
+    nearest = math.inf
+    for k in range(passive.used):
+        label = passive.labels[k]
+        if room.contacts[label] == contact:
+            across = one * room.directions[label, 1] - two * room.directions[label, 0]
+            along = one * room.directions[label, 0] + two * room.directions[label, 1]
+            apart = across * across / (1.0 + along) if along > 0.0 else 1.0 - along
+            nearest = min(nearest, apart)
+    if nearest < math.inf:
+        return friction * slip * nearest, True
+    price = inner(rows[contact].columns[0], passive.residual, 6) + friction * slip
+    if passive.n_rows == N_ROWS:
+        price += passive.residual[N_ROWS - 1]
+    return (price - friction * rows[contact].slip if charged else price), False
+
+
+@kernel
+def go_on(rows: Rows[ContactRow], n_contacts: int, room: ConeRoom) -> int:
+    """Number the generators in use from zero on, so that the room is never full; return how many there are.
+
+    No contact is rejected any more.
+    """
+    passive = room.passive
+    for i in range(n_contacts):
+        rows[i].is_rejected = False
+    for k in range(passive.used):
+        label = passive.labels[k]
+        room.contacts[k] = room.contacts[label]
+        room.directions[k, 0], room.directions[k, 1] = room.directions[label, 0], room.directions[label, 1]
+        passive.labels[k] = k
+    return int(passive.used)
+
+
+@kernel
+def add_generator(
+    rows: Rows[ContactRow], n_contacts: int, friction: float, b: FloatArray, charged: bool, number: int, room: ConeRoom
+) -> int:
+    """Let the generator in that lies most along the residual, as the one with this number; return the next number.
+
+    -1: none lies along it. Parameters as for `cone_residual`.
+    """
+    passive = room.passive
+    scale = rounding_scale(passive)
+    left = length(passive.residual, passive.n_rows)
+    best, best_price = -1, 0.0
+    for i in range(n_contacts):
+        if not rows[i].chosen or rows[i].is_rejected:
+            continue
+        price, is_steeper = generator_price(rows, i, friction, charged, room)
+        if price <= 0.0:
+            continue
+        size = length(rows[i].columns[0], 6)
+        if price > best_price * size and price > (STEEPER * left if is_steeper else PRICE * scale) * size:
+            best, best_price = i, price / size
+    if best < 0:
+        return -1
+    _, one, two = steepest_tangent(rows[best], passive.residual)
+    if friction == 0.0:  # so that what follows with friction may go on from here
+        one = two = 0.0
+    write_generator(rows[best], friction, one, two, room.column)
+    room.column[N_ROWS - 1] = 1.0
+    room.contacts[number] = best
+    room.directions[number, 0], room.directions[number, 1] = one, two
+    cost = friction * rows[best].slip if charged else 0.0
+    if append_column(passive, room.column, number, cost) or (
+        charged and exchange_column(passive, room.column, number, cost)
+    ):
+        settle(passive, b)
+    if label_is_passive(passive, number):
+        for i in range(n_contacts):
+            rows[i].is_rejected = False
+    else:
+        rows[best].is_rejected = True
+    return number + 1
+
+
+@kernel
+def cone_residual(
+    rows: Rows[ContactRow],
+    n_contacts: int,
+    friction: float,
+    b: FloatArray,
+    charged: bool,
+    room: ConeRoom,
+) -> float:
+    """Return the least |b - sum of contact forces|, going on from the forces in ``room``.
+
+    Parameters
+    ----------
+    rows, n_contacts
+        The contacts: those that are chosen count.
+    friction
+        Coefficient of friction.
+    b
+        Scaled wrench of the load, (at least 6,); see `clear_cone`.
+    charged
+        Whether the contacts' ``slip`` counts; else it is zero.
+    room
+        The solution. Start with `clear_cone`, or with the solution for a smaller coefficient.
+
+    Returns
+    -------
+    float
+        Zero, to rounding: the forces balance the load. Else the residual in ``room.passive`` separates the load from
+        all that the contacts can carry.
+    """
+    passive = room.passive
+    n_generators = go_on(rows, n_contacts, room)
+    while 0 <= n_generators < GENERATOR_LIMIT:
+        if (
+            friction > 0.0
+            and not charged
+            and length(passive.residual, passive.n_rows) <= BALANCED * rounding_scale(passive)
+        ):
+            break
+        n_generators = add_generator(rows, n_contacts, friction, b, charged, n_generators, room)
+    return length(passive.residual, passive.n_rows)
+
+
+@kernel
+def write_forces(room: ConeRoom, friction: float, rows: Rows[ContactRow], n_contacts: int) -> None:
+    """Write normal and tangential forces of all contacts."""
+    for i in range(n_contacts):
+        for k in range(3):
+            rows[i].forces[k] = 0.0
+    for k in range(room.passive.used):
+        label = room.passive.labels[k]
+        contact, x = rows[room.contacts[label]], room.passive.x[k]
+        contact.forces[0] += x
+        contact.forces[1] += x * friction * room.directions[label, 0]
+        contact.forces[2] += x * friction * room.directions[label, 1]

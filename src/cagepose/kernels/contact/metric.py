@@ -1,0 +1,160 @@
+"""The metric D of motion from rest, the loads, and twists and wrenches in its units: equations (5.1) to (5.3).
+
+D is that of a rigid body of mass 1: D = diag(1, 1, 1, K), K the inertia about the centre of gravity. In "scaled"
+coordinates y = D^1/2 nu, along the principal axes of K, the metric is the identity, every component is a length, and
+moments can be compared with forces. A scaled vector is an array of six: three for travel, three for turning.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, NamedTuple
+
+from cagepose.kernels.algebra.pose import Quaternion, quaternion_about, quaternion_product, rotated
+from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.vector import (
+    Matrix,
+    Vector,
+    cross,
+    dot,
+    minus,
+    plus,
+    row,
+    scaled,
+    times,
+    transposed_times,
+)
+from cagepose.kernels.native.jit import kernel
+
+WRENCH = 6
+"""Numbers of a wrench or twist."""
+ScaledVector = Annotated[FloatArray, 7]
+"""A scaled twist or wrench in a record: three numbers for travel, three for turning, and one that only the question
+for self-stress uses (5.16)."""
+
+
+class Body:
+    """The object's inertia for mass 1; a record.
+
+    Attributes
+    ----------
+    axes_object
+        Principal axes of the inertia about the centre of gravity, rows, in the object's frame.
+    radii
+        Radii of gyration about them, metres.
+    reach_m
+        Distance of the farthest corner from the centre of gravity, metres.
+    """
+
+    axes_object: Annotated[FloatArray, 3, 3]
+    radii: Annotated[FloatArray, 3]
+    reach_m: float
+
+
+class PhaseLoad:
+    """The two forces of a phase (of which one may be zero), fixed in direction in the world; a record.
+
+    Attributes
+    ----------
+    forces_world
+        One row each.
+    arms_object
+        Where they act, from the centre of gravity, in the object's frame, metres.
+    """
+
+    forces_world: Annotated[FloatArray, 2, 3]
+    arms_object: Annotated[FloatArray, 2, 3]
+
+
+class Frame(NamedTuple):
+    """The scaled coordinates at one pose: rows are the principal axes in the world."""
+
+    axes: Matrix
+    radii: Vector
+
+
+@kernel
+def frame_at(body: Body, quaternion: Quaternion) -> Frame:
+    axes = (
+        rotated(quaternion, row(body.axes_object, 0)),
+        rotated(quaternion, row(body.axes_object, 1)),
+        rotated(quaternion, row(body.axes_object, 2)),
+    )
+    return Frame(axes, (body.radii[0], body.radii[1], body.radii[2]))
+
+
+@kernel
+def write_scaled_wrench(force: Vector, moment: Vector, frame: Frame, out: FloatArray) -> None:
+    """Write D^-1/2 (force, moment about the centre of gravity) into six numbers."""
+    turning = times(frame.axes, moment)
+    for k in range(3):
+        out[k] = force[k]
+    out[3] = turning[0] / frame.radii[0]
+    out[4] = turning[1] / frame.radii[1]
+    out[5] = turning[2] / frame.radii[2]
+
+
+@kernel
+def twist_of(y: FloatArray, frame: Frame) -> tuple[Vector, Vector]:
+    """Return (velocity of the centre of gravity, angular velocity) of a scaled twist: nu = D^-1/2 y."""
+    turning = (y[3] / frame.radii[0], y[4] / frame.radii[1], y[5] / frame.radii[2])
+    return (y[0], y[1], y[2]), transposed_times(frame.axes, turning)
+
+
+@kernel
+def load_arm(load: PhaseLoad, which: int, quaternion: Quaternion) -> Vector:
+    """Return where a load acts, from the centre of gravity, in the world."""
+    return rotated(quaternion, row(load.arms_object, which))
+
+
+@kernel
+def write_load(load: PhaseLoad, quaternion: Quaternion, frame: Frame, out: FloatArray) -> float:
+    """Write the scaled wrench of a phase's load, D^-1/2 w; return the length of its terms, which may cancel."""
+    terms = 0.0
+    force, moment = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for which in range(2):
+        one = row(load.forces_world, which)
+        turning = cross(load_arm(load, which, quaternion), one)
+        write_scaled_wrench(one, turning, frame, out)
+        terms += math.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2 + out[3] ** 2 + out[4] ** 2 + out[5] ** 2)
+        force, moment = plus(force, one), plus(moment, turning)
+    write_scaled_wrench(force, moment, frame, out)
+    return terms
+
+
+@kernel
+def work_done(load: PhaseLoad, start: Vector, start_turned: Quaternion, end: Vector, end_turned: Quaternion) -> float:
+    """Return the work of a phase's load between two poses of the centre of gravity: what the potential falls (5.2)."""
+    work = 0.0
+    for which in range(2):
+        moved = minus(load_arm(load, which, end_turned), load_arm(load, which, start_turned))
+        work += dot(row(load.forces_world, which), plus(minus(end, start), moved))
+    return work
+
+
+@kernel
+def total_force(load: PhaseLoad) -> Vector:
+    return plus(row(load.forces_world, 0), row(load.forces_world, 1))
+
+
+@kernel
+def moved_along_twist(
+    position: Vector, quaternion: Quaternion, velocity: Vector, spin: Vector, amount: float
+) -> tuple[Vector, Quaternion]:
+    """Move a pose by ``amount`` along a constant twist: an exact screw, equation (2.3), wherever its axis lies.
+
+    With V the velocity of the moving point for each radian and V_perp its part across the axis a, the point moves by
+    V_perp sin s + (V_perp x a)(cos s - 1) + a (a.V) s: nothing here grows with the distance of the axis.
+    """
+    rate = math.sqrt(dot(spin, spin))
+    angle = rate * amount
+    if angle == 0.0:
+        return plus(position, scaled(velocity, amount)), quaternion
+    axis = scaled(spin, 1.0 / rate)
+    per_radian = scaled(velocity, 1.0 / rate)
+    rise = dot(per_radian, axis)
+    across = minus(per_radian, scaled(axis, rise))
+    half_sine = math.sin(0.5 * angle)
+    moved = plus(scaled(across, math.sin(angle)), scaled(cross(across, axis), -2.0 * half_sine * half_sine))
+    turn = quaternion_about(axis, angle)
+    return plus(position, plus(moved, scaled(axis, rise * angle))), quaternion_product(turn, quaternion)

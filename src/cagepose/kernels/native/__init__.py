@@ -1,0 +1,1 @@
+"""How Python calls kernels."""

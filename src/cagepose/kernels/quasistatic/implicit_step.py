@@ -1,0 +1,176 @@
+"""Steps near a balance: the linearly implicit form of the path, equation (5.10).
+
+    (rho 1 + S) delta = b - forces,    rho = 1 / (longest explicit step)
+
+Far from a balance rho is large and delta follows the motion from rest; near a stable one rho falls with the speed and
+delta becomes Newton's step, so that the path ends in the balance to rounding instead of zigzagging towards it. Where
+the balance is unstable, rho is raised until the matrix is positive, and delta leads away from it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, inner, length
+from cagepose.kernels.algebra.record import FloatArray, Rows
+from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
+from cagepose.kernels.contact.curvature import greatest_curvature
+from cagepose.kernels.contact.metric import WRENCH, ScaledVector
+from cagepose.kernels.contact.onset import MOVES, OnsetRoom, onset_with_faces
+from cagepose.kernels.native.jit import kernel
+
+RAISES = 12
+"""How often rho is raised, four times each, before the explicit step is taken after all."""
+LEAST_RHO = 1e-9
+"""In curvatures: freedoms without curvature (a block that slides on a plane) keep the matrix regular by this."""
+
+
+class StiffRoom:
+    """Room for one step; a record.
+
+    Attributes
+    ----------
+    curvature
+        S, and then what `keep_along_faces` makes of it.
+    held
+        Basis of what the contacts that carry hold.
+    factor
+        Cholesky factor, lower.
+    b, delta
+        Load and step in its coordinates, then the step.
+    """
+
+    curvature: Annotated[FloatArray, 6, 6]
+    held: PassiveSet
+    factor: Annotated[FloatArray, 6, 6]
+    b: ScaledVector
+    delta: ScaledVector
+
+
+@kernel
+def curvature_along(curvature: FloatArray, y: FloatArray) -> float:
+    """Return y' S y / y' y."""
+    total = 0.0
+    for j in range(6):
+        total += y[j] * inner(curvature[j], y, 6)
+    return total / inner(y, y, 6)
+
+
+@kernel
+def cholesky(matrix: FloatArray, least_pivot: float) -> bool:
+    """Factor a symmetric (6, 6) matrix in place (lower half); False: a pivot is not above ``least_pivot``."""
+    for j in range(6):
+        pivot = matrix[j, j]
+        for k in range(j):
+            pivot -= matrix[j, k] * matrix[j, k]
+        if not pivot > least_pivot:
+            return False
+        matrix[j, j] = math.sqrt(pivot)
+        for i in range(j + 1, 6):
+            for k in range(j):
+                matrix[i, j] -= matrix[i, k] * matrix[j, k]
+            matrix[i, j] /= matrix[j, j]
+    return True
+
+
+@kernel
+def solve_lower(factor: FloatArray, vector: FloatArray, out: FloatArray) -> None:
+    """Write L^-1 vector."""
+    for j in range(6):
+        out[j] = vector[j]
+        for k in range(j):
+            out[j] -= factor[j, k] * out[k]
+        out[j] /= factor[j, j]
+
+
+@kernel
+def solve_upper(factor: FloatArray, vector: FloatArray) -> None:
+    """Replace a vector by L^-T vector."""
+    for j in range(5, -1, -1):
+        for k in range(j + 1, 6):
+            vector[j] -= factor[k, j] * vector[k]
+        vector[j] /= factor[j, j]
+
+
+@kernel
+def keep_along_faces(contacts: ContactSet, room: StiffRoom) -> float:
+    """Replace what S has across the faces (and, where contacts stick, along them) by the greatest curvature along them.
+
+    Nothing moves there, but it could make the matrix look as if it were not positive, or rounding of the forces as if
+    it moved the object. Return the least rho that stands out from the rounding.
+    """
+    least_rho = LEAST_RHO * greatest_curvature(room.curvature)
+    held, curvature = room.held, room.curvature
+    clear(held, WRENCH, 1.0)
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        if contact.forces[0] > 0.0:
+            for which in range(3 if contact.is_sticking else 1):
+                append_column(held, contact.columns[which], which, 0.0)
+    for place in range(held.used):
+        across = held.basis[place]
+        for j in range(6):  # first every row, then every column
+            part = inner(curvature[j], across, 6)
+            for k in range(6):
+                curvature[j, k] -= part * across[k]
+        for k in range(6):
+            part = 0.0
+            for j in range(6):
+                part += across[j] * curvature[j, k]
+            for j in range(6):
+                curvature[j, k] -= part * across[j]
+    along = greatest_curvature(curvature)
+    for place in range(held.used):
+        across = held.basis[place]
+        for j in range(6):
+            for k in range(6):
+                curvature[j, k] += along * across[j] * across[k]
+    return least_rho
+
+
+@kernel
+def write_matrix(room: StiffRoom, rho: float) -> None:
+    """Write rho 1 + S."""
+    for j in range(6):
+        for k in range(6):
+            room.factor[j, k] = room.curvature[j, k]
+        room.factor[j, j] += rho
+
+
+@kernel
+def stiff_step(
+    contacts: ContactSet,
+    turned: Rows[ContactRow],
+    friction: float,
+    rho: float,
+    room: StiffRoom,
+    solver: OnsetRoom,
+) -> bool:
+    """Write the step into ``room.delta`` and what the contacts carry into their ``step_forces``; False: take the
+    explicit step.
+
+    Given are the explicit motion ``solver.y``, ``room.curvature`` along the faces, and which contacts stick; ``turned``
+    is room for the contacts.
+    """
+    n_contacts = contacts.used[0]
+    size = greatest_curvature(room.curvature)
+    for _ in range(RAISES):
+        write_matrix(room, rho)
+        if cholesky(room.factor, 1e-3 * rho):
+            break
+        rho = max(4.0 * rho, 1e-3 * size)
+    else:
+        return False
+    for i in range(n_contacts):
+        turned[i].chosen = contacts.rows[i].chosen
+        for j in range(3):
+            solve_lower(room.factor, contacts.rows[i].columns[j], turned[i].columns[j])
+    solve_lower(room.factor, solver.load, room.b)
+    terms = solver.load_terms * length(room.b, 6) / length(solver.load, 6)
+    code = onset_with_faces(turned, n_contacts, friction, room.b, terms, room.delta, solver)
+    for i in range(n_contacts):
+        for j in range(3):
+            contacts.rows[i].step_forces[j] = turned[i].forces[j]
+    solve_upper(room.factor, room.delta)
+    return code == MOVES and inner(room.delta, solver.y, 6) > 0.0

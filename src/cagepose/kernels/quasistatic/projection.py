@@ -1,0 +1,137 @@
+"""Contacts that slide are put back on their faces: Newton's method on their gaps, the shortest way in the metric.
+
+A screw leaves a curved constraint by the square of its length. Without this, gaps would open or close with the number
+of steps.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear
+from cagepose.kernels.algebra.pose import Quaternion, rotated
+from cagepose.kernels.algebra.record import Rows, empty_rows
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, row, scaled
+from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.contact.metric import (
+    WRENCH,
+    Body,
+    ScaledVector,
+    frame_at,
+    moved_along_twist,
+    twist_of,
+    write_scaled_wrench,
+)
+from cagepose.kernels.native.jit import kernel
+
+ROUNDS = 12
+ON_FACE = 4e-16
+"""In sizes of the scene: a gap that is rounding."""
+
+
+class Pin:
+    """A coordinate of a cage point, in the frame of a box, that shall have a given value; a record.
+
+    Attributes
+    ----------
+    point, box, axis, side
+        As in `ContactRow`: side * (coordinate of the point along the box's axis) ...
+    target
+        ... is to be this, metres: half the size of the box for a point on its face.
+    value
+        What is missing.
+    """
+
+    point: int
+    box: int
+    axis: int
+    side: float
+    target: float
+    value: float
+
+
+class PullRoom:
+    """How many pins there are, and room for one wrench, a scaled twist and the pins' basis; a record."""
+
+    used: int
+    column: ScaledVector
+    y: ScaledVector
+    basis: PassiveSet
+
+
+class Pins(NamedTuple):
+    """Pins 0 to rooms[0].used - 1 of ``rows`` are to hold."""
+
+    rooms: Rows[PullRoom]
+    rows: Rows[Pin]
+
+
+def empty_pins(n_pins: int) -> Pins:
+    """Return room for ``n_pins`` (plain Python)."""
+    return Pins(empty_rows(PullRoom, 1), empty_rows(Pin, n_pins))
+
+
+@kernel
+def add_pin(pins: Pins, point: int, box: int, axis: int, side: float, target: float) -> bool:
+    """Add a pin; False: there is no room, or it is there already."""
+    n = pins.rooms[0].used
+    if n == len(pins.rows):
+        return False
+    for i in range(n):
+        pin = pins.rows[i]
+        if pin.point == point and pin.box == box and pin.axis == axis:
+            return False
+    pin = pins.rows[n]
+    pin.point, pin.box, pin.axis, pin.side, pin.target = point, box, axis, side, target
+    pins.rooms[0].used = n + 1
+    return True
+
+
+@kernel
+def box_axis(geometry: Geometry, box: int, axis: int) -> Vector:
+    """Return an axis of a box in the object's frame."""
+    r = geometry.box_rotations
+    return (r[box, 0, axis], r[box, 1, axis], r[box, 2, axis])
+
+
+@kernel
+def pull_back(
+    geometry: Geometry, body: Body, position: Vector, quaternion: Quaternion, pins: Pins, size_m: float
+) -> tuple[bool, Vector, Quaternion]:
+    """Move the object so that all pins hold; return (whether they do, position, quaternion).
+
+    Pins that depend on others follow from them: where they do not, that shows as a point inside the object later.
+    """
+    room, rows = pins.rooms[0], pins.rows
+    worst_before = math.inf
+    for _ in range(ROUNDS):
+        frame = frame_at(body, quaternion)
+        back = (quaternion[0], -quaternion[1], -quaternion[2], -quaternion[3])
+        clear(room.basis, WRENCH, 1.0)
+        worst = 0.0
+        for i in range(room.used):
+            pin = rows[i]
+            axis_object = scaled(box_axis(geometry, pin.box, pin.axis), pin.side)
+            arm = minus(row(geometry.points_world, pin.point), position)
+            from_box = minus(rotated(back, arm), row(geometry.box_positions, pin.box))
+            direction = rotated(quaternion, axis_object)
+            write_scaled_wrench(direction, cross(arm, direction), frame, room.column)
+            place = room.basis.used
+            if append_column(room.basis, room.column, i, 0.0):
+                rows[place].value = dot(axis_object, from_box) - pin.target
+                worst = max(worst, abs(rows[place].value))
+        if worst <= ON_FACE * size_m or worst >= worst_before:
+            return worst <= 1e3 * ON_FACE * size_m, position, quaternion
+        worst_before = worst
+        for k in range(6):
+            room.y[k] = 0.0
+        for i in range(room.basis.used):
+            for j in range(i):
+                rows[i].value -= room.basis.triangle[i, j] * rows[j].value
+            rows[i].value *= room.basis.triangle[i, i]
+            for k in range(6):
+                room.y[k] += rows[i].value * room.basis.basis[i, k]
+        velocity, spin = twist_of(room.y, frame)
+        position, quaternion = moved_along_twist(position, quaternion, velocity, spin, 1.0)
+    return False, position, quaternion

@@ -1,0 +1,88 @@
+"""The least friction with which contacts can balance a load at a pose, equation (5.17)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.record import Rows
+from cagepose.kernels.algebra.tolerances import KernelTolerances
+from cagepose.kernels.algebra.vector import Vector
+from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.contact.balance import left_by_friction
+from cagepose.kernels.contact.cone import BALANCED, HELD, write_forces
+from cagepose.kernels.contact.contact_set import ContactRow, choose_next_faces
+from cagepose.kernels.contact.metric import Body, PhaseLoad
+from cagepose.kernels.contact.onset import COMBINATIONS_LIMIT, OnsetRoom
+from cagepose.kernels.contact.sure_motion import step_to_balance
+from cagepose.kernels.native.jit import kernel, rare_kernel
+from cagepose.kernels.stability.proof import ProofRoom, stand_at
+
+FRICTION_GREATEST = 1e4
+"""A coefficient above which a balance counts as none."""
+BISECTIONS = 100
+SURE = 1e-6
+"""In lengths of the terms: a residual small enough for one last step, and large enough to have its digits."""
+
+
+@kernel
+def least_friction(rows: Rows[ContactRow], n_contacts: int, solver: OnsetRoom) -> float:
+    """Return the least coefficient at which one choice of faces balances the load (5.17); inf: none.
+
+    Bisection, and Newton's method where the residual falls straight to zero: there the last step is taken from a
+    residual that is still large enough to be sure of its digits.
+    """
+    low, high = float(np.float64(0.0)), 1.0
+    if left_by_friction(rows, n_contacts, low, solver) <= BALANCED:
+        return 0.0
+    while left_by_friction(rows, n_contacts, high, solver) > HELD:
+        low, high = high, 4.0 * high
+        if high > FRICTION_GREATEST:
+            return math.inf
+    for _ in range(BISECTIONS):
+        left = left_by_friction(rows, n_contacts, low, solver)
+        write_forces(solver.cone, low, rows, n_contacts)
+        following = low + step_to_balance(rows, n_contacts, solver.cone)
+        if left <= SURE:
+            return min(following, high)
+        if not low < following < high:
+            following = 0.5 * (low + high)
+        if following in (low, high):
+            break
+        if left_by_friction(rows, n_contacts, following, solver) <= HELD:
+            high = following
+            following = 0.5 * (low + high)
+            if left_by_friction(rows, n_contacts, following, solver) <= HELD:
+                high = following
+                continue
+        low = following
+    return high
+
+
+@rare_kernel
+def critical_friction(
+    geometry: Geometry,
+    body: Body,
+    position: Vector,
+    quaternion: Quaternion,
+    load: PhaseLoad,
+    tolerances: KernelTolerances,
+    at: ProofRoom,
+) -> float:
+    """Return the least coefficient of friction at which the contacts can balance the load at a pose (5.17); inf: none.
+
+    Parameters as for `cagepose.kernels.stability.proof.prove`.
+    """
+    if not stand_at(geometry, body, position, quaternion, load, tolerances.touch_m, at):
+        return math.nan
+    least = 0.0
+    rows, n_contacts = at.contacts.rows, at.contacts.used[0]
+    every = bool(np.bool_(False))
+    for _ in range(COMBINATIONS_LIMIT):
+        least = max(least, least_friction(rows, n_contacts, at.rooms[0].solver))
+        write_forces(at.rooms[0].solver.cone, least, rows, n_contacts)
+        if least == math.inf or not choose_next_faces(at.contacts, every):
+            return least
+    return math.nan

@@ -1,0 +1,204 @@
+"""The verdict on one pose, with its proof: forces that balance the load, or a twist that none of them resists."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from cagepose.kernels.algebra.least_squares import System, clear, empty_system
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.record import Rows, empty_rows
+from cagepose.kernels.algebra.tolerances import KernelTolerances
+from cagepose.kernels.algebra.vector import Vector
+from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement, place_object
+from cagepose.kernels.contact.balance import balance, balance_with_faces
+from cagepose.kernels.contact.contact_set import (
+    CONTACTS_PER_POINT,
+    ContactSet,
+    choose_next_faces,
+    empty_contact_set,
+    find_contacts,
+    has_one_choice,
+    put_best_faces_back,
+)
+from cagepose.kernels.contact.metric import WRENCH, Body, Frame, PhaseLoad, ScaledVector, frame_at, write_load
+from cagepose.kernels.contact.onset import (
+    COMBINATIONS_LIMIT,
+    HELD_WITHOUT_FRICTION,
+    MOVES,
+    UNSOLVED,
+    OnsetRoom,
+)
+from cagepose.kernels.native.jit import kernel, rare_kernel
+from cagepose.kernels.stability.second_order import (
+    MARGINAL,
+    STABLE_REST,
+    StabilityRoom,
+    find_held,
+    find_shared,
+    stability,
+)
+from cagepose.kernels.stability.sure_contacts import SureRoom, rest_is_sure
+from cagepose.kernels.stability.uniqueness import N_COLUMNS, ModesRoom
+
+PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE, OTHER_ONSET, UNIQUENESS_NOT_SHOWN = 0, 1, 2, 3
+TOO_MANY_CHOICES, PROVEN_MOVES, TOO_MANY_CONTACTS = 4, 5, 6
+"""Codes of a proof."""
+
+
+class JudgeRoom:
+    """Room of fixed size, and the answer; a record.
+
+    Attributes
+    ----------
+    solver
+        ``solver.residual``: what is left of the load; ``solver.y``: motion that begins, see `first_motion`.
+    twist, twist_residual
+        Scaled twist along which the load works and that no contact force resists (5.6), and what is left then.
+    modes
+        ``modes.y``: that of another onset that Coulomb's law allows.
+    sure
+        See there.
+    rest
+        Undetermined freedoms.
+    sum_only
+        A load of nothing but a sum of the normal forces.
+    wedged
+        Whether the contacts can press against each other without a load; asked only by `proof_search`.
+    """
+
+    solver: OnsetRoom
+    twist: ScaledVector
+    twist_residual: float
+    modes: ModesRoom
+    sure: SureRoom
+    rest: StabilityRoom
+    sum_only: ScaledVector
+    wedged: bool
+
+
+class ProofRoom(NamedTuple):
+    """Room for one proof: what is at the pose, where ``contacts`` hold the forces of a rest, one room for all else,
+    and that of a system.
+    """
+
+    placement: Placement
+    contacts: ContactSet
+    rooms: Rows[JudgeRoom]
+    system: System
+
+
+def empty_proof_room(geometry: Geometry) -> ProofRoom:
+    """Return room for one proof (plain Python)."""
+    n_contacts = CONTACTS_PER_POINT * len(geometry.points_world)
+    rooms = empty_rows(JudgeRoom, 1)
+    rooms[0].sum_only[6] = 1.0
+    return ProofRoom(
+        empty_placement(geometry), empty_contact_set(n_contacts), rooms, empty_system(max(N_COLUMNS, n_contacts))
+    )
+
+
+@kernel
+def stand_at(
+    geometry: Geometry,
+    body: Body,
+    position: Vector,
+    quaternion: Quaternion,
+    load: PhaseLoad,
+    touch_m: float,
+    at: ProofRoom,
+) -> bool:
+    """Fill placement, contacts and load at a pose; False: too many contacts."""
+    frame = frame_at(body, quaternion)
+    place_object(geometry, position, quaternion, at.placement)
+    solver = at.rooms[0].solver
+    solver.load_terms = write_load(load, quaternion, frame, solver.load)
+    return find_contacts(geometry, at.placement, position, frame, touch_m, at.contacts)
+
+
+@rare_kernel
+def prove(
+    geometry: Geometry,
+    body: Body,
+    position: Vector,
+    quaternion: Quaternion,
+    load: PhaseLoad,
+    friction: float,
+    size_m: float,
+    tolerances: KernelTolerances,
+    at: ProofRoom,
+) -> tuple[int, int, int]:
+    """Judge a pose; return (code of the proof, code of stability, number of undetermined freedoms).
+
+    What is rare and long has entries of its own, in `proof_search`, for those that want it: where uniqueness
+    is not shown here, `search_onsets` may still show it; where the object moves, `first_motion` says how.
+
+    Parameters
+    ----------
+    geometry, body, load
+        The scene, boxes as seen from the centre of gravity, and the load that acts.
+    position, quaternion
+        Centre of gravity, metres, and unit quaternion (w, x, y, z).
+    friction, size_m, tolerances
+        Coefficient of friction, the scene's size in metres, and what counts as touching.
+    at
+        Filled: the proof.
+    """
+    if not stand_at(geometry, body, position, quaternion, load, tolerances.touch_m, at):
+        return TOO_MANY_CONTACTS, STABLE_REST, 0
+    contacts, room = at.contacts, at.rooms[0]
+    code = balance(contacts, friction, room.solver)
+    if code == MOVES:
+        room.twist_residual = room.solver.residual
+        for k in range(6):
+            room.twist[k] = room.solver.cone.passive.residual[k]
+        return PROVEN_MOVES, STABLE_REST, 0
+    left = room.solver.residual
+    clear(room.rest.ways, WRENCH, 1.0)
+    if code == UNSOLVED:
+        find_held(contacts, friction, room.rest, at.system)
+        find_shared(contacts, room.rest)
+        return TOO_MANY_CHOICES, MARGINAL, 0
+    frame = frame_at(body, quaternion)
+    one_choice = has_one_choice(contacts)
+    proof, steady = judge_faces(at, code, one_choice, friction, load, quaternion, frame, size_m)
+    if not one_choice:
+        put_best_faces_back(contacts)
+        room.solver.residual = left
+        find_held(contacts, friction, room.rest, at.system)
+    find_shared(contacts, room.rest)
+    return proof, steady, room.rest.ways.used
+
+
+@kernel
+def judge_faces(
+    at: ProofRoom,
+    code: int,
+    one_choice: bool,
+    friction: float,
+    load: PhaseLoad,
+    quaternion: Quaternion,
+    frame: Frame,
+    size_m: float,
+) -> tuple[int, int]:
+    """Return (code of the proof, code of stability) of a rest: the least sure of all combinations of faces.
+
+    Where there is one choice of faces only, its balance has this code, and its forces stay.
+    """
+    contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
+    every = bool(np.bool_(True))
+    proof, steady = PROVEN_WITHOUT_FRICTION, STABLE_REST
+    for _ in range(COMBINATIONS_LIMIT):
+        if not one_choice:
+            code = balance_with_faces(contacts.rows, contacts.used[0], friction, solver)
+        with_these = stability(
+            contacts, friction, load, quaternion, frame, solver.load_terms, size_m, room.rest, at.system
+        )
+        steady = max(steady, with_these)
+        if code != HELD_WITHOUT_FRICTION:
+            is_sure = rest_is_sure(contacts, friction, solver.load, solver.load_terms, room.sure, room.rest, at.system)
+            proof = max(proof, PROVEN_UNIQUE if is_sure else UNIQUENESS_NOT_SHOWN)
+        if not choose_next_faces(contacts, every):
+            return proof, steady
+    return (proof if proof == PROVEN_WITHOUT_FRICTION else UNIQUENESS_NOT_SHOWN), max(steady, MARGINAL)

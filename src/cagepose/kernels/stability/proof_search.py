@@ -1,0 +1,103 @@
+"""What a proof leaves open: whether rest is the only onset, by search, and how an object that moves begins to."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cagepose.kernels.algebra.least_squares import rounding_scale
+from cagepose.kernels.contact.balance import balance_with_faces
+from cagepose.kernels.contact.cone import HELD, N_ROWS, clear_cone, cone_residual
+from cagepose.kernels.contact.contact_set import (
+    ContactSet,
+    choose_first_faces,
+    choose_next_faces,
+    keep_faces,
+    put_best_faces_back,
+)
+from cagepose.kernels.contact.onset import COMBINATIONS_LIMIT, HELD_BY_FRICTION, MOVES, onset
+from cagepose.kernels.native.jit import entry_kernel, kernel, rare_kernel
+from cagepose.kernels.stability.proof import OTHER_ONSET, PROVEN_UNIQUE, UNIQUENESS_NOT_SHOWN, JudgeRoom, ProofRoom
+from cagepose.kernels.stability.sure_contacts import rest_is_sure
+from cagepose.kernels.stability.uniqueness import OTHER_FOUND, UNIQUE, other_onset
+
+
+@kernel
+def has_self_stress(contacts: ContactSet, friction: float, room: JudgeRoom) -> bool:
+    """Whether contact forces other than zero, inside their cones, balance each other: a wedge (5.16).
+
+    The sum of their normal forces is asked to be 1, and nothing else.
+    """
+    cone = room.solver.cone
+    clear_cone(cone, room.sum_only, N_ROWS, 1.0)
+    charged = bool(np.bool_(False))
+    left = cone_residual(contacts.rows, contacts.used[0], friction, room.sum_only, charged, cone)
+    return left <= HELD * rounding_scale(cone.passive)
+
+
+@kernel
+def search_faces(friction: float, at: ProofRoom) -> int:
+    """Return the code of the proof, the least sure of all combinations of faces."""
+    contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
+    every = bool(np.bool_(True))
+    proof = PROVEN_UNIQUE
+    choose_first_faces(contacts)
+    for _ in range(COMBINATIONS_LIMIT):
+        code = balance_with_faces(contacts.rows, contacts.used[0], friction, solver)
+        if code == HELD_BY_FRICTION and not rest_is_sure(
+            contacts, friction, solver.load, solver.load_terms, room.sure, room.rest, at.system
+        ):
+            answer = other_onset(contacts, friction, solver.load, room.modes, solver.newton, at.system)
+            if answer == OTHER_FOUND:
+                return OTHER_ONSET
+            proof = proof if answer == UNIQUE else UNIQUENESS_NOT_SHOWN
+        if not choose_next_faces(contacts, every):
+            return proof
+    return UNIQUENESS_NOT_SHOWN
+
+
+@entry_kernel
+def search_onsets(friction: float, at: ProofRoom) -> int:
+    """Try all contact modes (5.13) where `prove` has not shown that rest is the only onset.
+
+    Parameters
+    ----------
+    friction
+        Coefficient of friction.
+    at
+        As left by the proof. Filled: the other onset, if one is found, and whether the contacts are wedged.
+
+    Returns
+    -------
+    int
+        PROVEN_UNIQUE, OTHER_ONSET or UNIQUENESS_NOT_SHOWN.
+    """
+    contacts, room = at.contacts, at.rooms[0]
+    left = room.solver.residual
+    keep_faces(contacts)
+    proof = search_faces(friction, at)
+    put_best_faces_back(contacts)
+    room.solver.residual = left
+    room.wedged = proof != PROVEN_UNIQUE and has_self_stress(contacts, friction, room)
+    return proof
+
+
+@rare_kernel
+def first_motion(friction: float, at: ProofRoom) -> None:
+    """Write into ``at.rooms[0].solver.y`` how an object begins to move that does so by `prove`.
+
+    It is the onset that obeys Coulomb's law (5.7), and the residual is then the least that contact forces leave of the
+    load. Where none is found, it is the twist of the proof (5.6), with the residual of that.
+
+    Parameters
+    ----------
+    friction
+        Coefficient of friction.
+    at
+        As left by the proof.
+    """
+    contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
+    choose_first_faces(contacts)
+    if onset(contacts, friction, solver) != MOVES:
+        solver.residual = room.twist_residual
+        for k in range(6):
+            solver.y[k] = room.twist[k]

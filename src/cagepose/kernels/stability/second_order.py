@@ -1,0 +1,310 @@
+"""What a rest leaves free: freedoms, their curvature, and forces that are not unique, equations (5.14) and (5.15)."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+import numpy as np
+
+from cagepose.kernels.algebra.eigen import symmetric_eigen
+from cagepose.kernels.algebra.least_squares import (
+    ENOUGH_LEFT,
+    PassiveSet,
+    System,
+    append_column,
+    clear,
+    inner,
+    length,
+    nonnegative_least_squares,
+    orthogonalise,
+)
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.record import FloatArray, IntArray
+from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
+from cagepose.kernels.contact.curvature import greatest_curvature, write_curvature
+from cagepose.kernels.contact.metric import WRENCH, Frame, PhaseLoad, ScaledVector
+from cagepose.kernels.native.jit import kernel
+
+STABLE_REST, MARGINAL, UNSTABLE = 0, 1, 2
+"""Codes of stability: the index into `STABILITY_NAMES`."""
+STABILITY_NAMES: tuple[Literal["stable", "marginal", "unstable"], ...] = ("stable", "marginal", "unstable")
+
+AT_LIMIT = 1e-9
+"""A tangential force this near to its cone (relative) is at the limit of friction."""
+IN_SPAN = 1e-9
+"""A wrench whose part outside a span is smaller than this fraction of it lies in it."""
+FLAT = 1e-9
+"""In greatest curvatures (or loads for each size of the scene): a smaller one is rounding."""
+ONE_SIDED_LIMIT = 10
+"""Contacts that may open, of which all sets are asked for; with more, a rest is called marginal at best."""
+
+
+class StabilityRoom:
+    """Room for one rest, and the answer; a record.
+
+    Attributes
+    ----------
+    held, free
+        Basis of what the carrying contacts hold, and then of all; scaled twists that are free, rows.
+    one_sided
+        Contacts that may open and that no others make superfluous.
+    rest
+        Room for one vector.
+    curvature, reduced, vectors
+        S, its part over the free twists, and its eigenvectors.
+    ways
+        Basis of the free twists without curvature.
+    scratch
+        Room.
+    """
+
+    held: PassiveSet
+    free: Annotated[FloatArray, 6, 6]
+    one_sided: Annotated[IntArray, ONE_SIDED_LIMIT]
+    rest: ScaledVector
+    curvature: Annotated[FloatArray, 6, 6]
+    reduced: Annotated[FloatArray, 6, 6]
+    vectors: Annotated[FloatArray, 6, 6]
+    ways: PassiveSet
+    scratch: PassiveSet
+
+
+@kernel
+def write_outside(basis: PassiveSet, column: FloatArray, out: FloatArray) -> bool:
+    """Write the part of a column outside the span of a basis; False: there is none, and zero is written."""
+    if basis.used < WRENCH:
+        for k in range(6):
+            out[k] = column[k]
+        size = inner(column, column, 6)
+        left = size
+        for _ in range(2):
+            before = left
+            for place in range(basis.used):
+                part = inner(basis.basis[place], out, 6)
+                for k in range(6):
+                    out[k] -= part * basis.basis[place, k]
+            left = inner(out, out, 6)
+            if left > ENOUGH_LEFT * before:
+                break
+        if left > IN_SPAN * IN_SPAN * size:
+            return True
+    for k in range(6):
+        out[k] = 0.0
+    return False
+
+
+@kernel
+def hold(basis: PassiveSet, column: FloatArray, room: StabilityRoom) -> None:
+    """Add a column to a basis unless it lies in its span."""
+    if write_outside(basis, column, room.rest):
+        size = length(room.rest, 6)
+        for k in range(6):
+            basis.basis[basis.used, k] = room.rest[k] / size
+        basis.used += 1
+
+
+@kernel
+def find_held(contacts: ContactSet, friction: float, room: StabilityRoom, system: System) -> bool:
+    """Find what the contacts hold; return whether one is at the limit of friction.
+
+    A contact without force holds too if another balance loads it: then it cannot open without work. That is so where
+    -a_j lies in the cone of the others, seen outside the span of those that carry.
+    """
+    at_limit = False
+    clear(room.held, WRENCH, 1.0)
+    n = contacts.used[0]
+    for i in range(n):
+        carried = contacts.rows[i].forces[0]
+        contacts.rows[i].is_equality = contacts.rows[i].chosen and carried > 0.0
+        contacts.rows[i].is_sticking = False
+        if contacts.rows[i].is_equality:
+            hold(room.held, contacts.rows[i].columns[0], room)
+            if friction > 0.0:
+                tangential = math.hypot(contacts.rows[i].forces[1], contacts.rows[i].forces[2])
+                contacts.rows[i].is_sticking = tangential < (1.0 - AT_LIMIT) * friction * carried
+                at_limit = at_limit or not contacts.rows[i].is_sticking
+    for i in range(n):
+        if contacts.rows[i].is_sticking:
+            hold(room.held, contacts.rows[i].columns[1], room)
+            hold(room.held, contacts.rows[i].columns[2], room)
+    found = True
+    while found:
+        found = False
+        for i in range(n):
+            contact = contacts.rows[i]
+            contact.is_rejected = False
+            if contact.chosen and not contact.is_equality and lies_in_cone(contacts, i, -1.0, room, system):
+                contact.is_equality = True
+                hold(room.held, contact.columns[0], room)
+                found = True
+    return at_limit
+
+
+@kernel
+def lies_in_cone(contacts: ContactSet, i: int, sign: float, room: StabilityRoom, system: System) -> bool:
+    """Whether ``sign`` times a contact's wrench lies in the cone of the others that may open, seen outside the span of
+    what is held.
+
+    With -1 no free twist opens it; with +1 no free twist that the others allow closes it.
+    """
+    n_others = int(np.int64(0))
+    for k in range(contacts.used[0]):
+        other = contacts.rows[k]
+        if k != i and other.chosen and not other.is_equality and not other.is_rejected:
+            write_outside(room.held, other.columns[0], system.columns[n_others])
+            n_others += 1
+    if not write_outside(room.held, contacts.rows[i].columns[0], system.right_side):
+        return True
+    for k in range(6):
+        system.right_side[k] *= sign
+    size = length(system.right_side, 6)
+    clear(room.scratch, WRENCH, size)
+    return nonnegative_least_squares(system, n_others, room.scratch) <= IN_SPAN * size
+
+
+@kernel
+def list_one_sided(contacts: ContactSet, room: StabilityRoom, system: System) -> int:
+    """List the contacts that may open and that no others make superfluous; return how many, -1: too many."""
+    n_one_sided = 0
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        if not contact.chosen or contact.is_equality:
+            continue
+        if lies_in_cone(contacts, i, 1.0, room, system):
+            contact.is_rejected = True
+            continue
+        if n_one_sided == ONE_SIDED_LIMIT:
+            return -1
+        room.one_sided[n_one_sided] = i
+        n_one_sided += 1
+    return n_one_sided
+
+
+@kernel
+def is_same_face(one: ContactRow, other: ContactRow) -> bool:
+    """Whether two rows are flush faces of two boxes over one point."""
+    return one.point == other.point and inner(one.normal, other.normal, 3) > 1.0 - IN_SPAN
+
+
+@kernel
+def find_shared(contacts: ContactSet, room: StabilityRoom) -> None:
+    """Mark the contacts whose normal force could be another: their wrench lies in the span of the rest."""
+    rows, n, span = contacts.rows, contacts.used[0], room.scratch
+    clear(span, WRENCH, 1.0)
+    for i in range(n):
+        if rows[i].is_sticking:
+            hold(span, rows[i].columns[1], room)
+            hold(span, rows[i].columns[2], room)
+    n_tangential = span.used
+    for i in range(n):
+        rows[i].is_shared = False
+        if not rows[i].is_equality:
+            continue
+        span.used = n_tangential
+        for k in range(n):
+            if rows[k].is_equality and not is_same_face(rows[k], rows[i]):
+                hold(span, rows[k].columns[0], room)
+        rows[i].is_shared = not write_outside(span, rows[i].columns[0], room.rest)
+
+
+@kernel
+def find_free(room: StabilityRoom) -> int:
+    """Complete the basis of what is held; write what is added into ``free`` and return how many there are."""
+    n_held = int(room.held.used)
+    for place in range(n_held, 6):
+        best, best_size = 0, -1.0
+        for axis in range(6):
+            left = 1.0
+            for k in range(place):
+                left -= room.held.basis[k, axis] * room.held.basis[k, axis]
+            if left > best_size:
+                best, best_size = axis, left
+        for k in range(6):
+            room.held.columns[place, k] = 1.0 if k == best else 0.0
+        orthogonalise(room.held, place)
+        for k in range(6):
+            room.free[place - n_held, k] = room.held.basis[place, k]
+    return 6 - n_held
+
+
+@kernel
+def is_feasible(contacts: ContactSet, n_one_sided: int, twist: FloatArray, sign: float, room: StabilityRoom) -> bool:
+    """Whether a scaled twist closes none of the contacts that may open."""
+    for k in range(n_one_sided):
+        column = contacts.rows[room.one_sided[k]].columns[0]
+        if sign * inner(column, twist, 6) > IN_SPAN * length(column, 6):
+            return False
+    return True
+
+
+@kernel
+def hold_some(contacts: ContactSet, n_one_sided: int, chosen: int, room: StabilityRoom) -> bool:
+    """Hold those of the one-sided contacts whose bit is set, too; False: they depend on each other."""
+    for k in range(n_one_sided):
+        if (chosen >> k) & 1:
+            column = contacts.rows[room.one_sided[k]].columns[0]
+            if not write_outside(room.held, column, room.rest):
+                return False
+            append_column(room.held, column, k, 0.0)
+    return True
+
+
+@kernel
+def stability(
+    contacts: ContactSet,
+    friction: float,
+    load: PhaseLoad,
+    quaternion: Quaternion,
+    frame: Frame,
+    terms: float,
+    size_m: float,
+    room: StabilityRoom,
+    system: System,
+) -> int:
+    """Return the code of stability of a rest with the forces in ``contacts``; free twists without curvature are added
+    to ``room.ways``.
+
+    On the cone of twists that close no contact, the least curvature is an eigenvalue over the span of one of its faces,
+    and its eigenvector lies in that face. So all sets of contacts that may open are held in turn.
+    """
+    at_limit = find_held(contacts, friction, room, system)
+    n_held = room.held.used
+    n_one_sided = list_one_sided(contacts, room, system)
+    code = MARGINAL if at_limit or n_one_sided < 0 else STABLE_REST
+    write_curvature(contacts, load, quaternion, frame, room.curvature)
+    flat = FLAT * max(greatest_curvature(room.curvature), terms / size_m)
+    for chosen in range(1 << max(n_one_sided, 0)):
+        room.held.used = n_held
+        if hold_some(contacts, n_one_sided, chosen, room):
+            code = max(code, least_curvature(contacts, n_one_sided, flat, room))
+    room.held.used = n_held
+    return code
+
+
+@kernel
+def least_curvature(contacts: ContactSet, n_one_sided: int, flat: float, room: StabilityRoom) -> int:
+    """Return the code of stability over the twists that what is held leaves free."""
+    n_free = find_free(room)
+    for i in range(n_free):
+        for j in range(n_free):
+            room.reduced[i, j] = 0.0
+            for k in range(6):
+                room.reduced[i, j] += room.free[i, k] * inner(room.curvature[k], room.free[j], 6)
+    symmetric_eigen(room.reduced, room.vectors, n_free)
+    code = STABLE_REST
+    for e in range(n_free):
+        if room.reduced[e, e] > flat:
+            continue
+        for k in range(6):
+            room.rest[k] = 0.0
+            for i in range(n_free):
+                room.rest[k] += room.vectors[i, e] * room.free[i, k]
+        forward = is_feasible(contacts, n_one_sided, room.rest, 1.0, room)
+        if not forward and not is_feasible(contacts, n_one_sided, room.rest, -1.0, room):
+            continue
+        if room.reduced[e, e] < -flat:
+            return UNSTABLE
+        code = MARGINAL
+        append_column(room.ways, room.rest, e, 0.0)
+    return code

@@ -1,0 +1,1 @@
+"""The paper's method: travels and turns chosen by rules of geometry."""

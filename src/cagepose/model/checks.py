@@ -1,0 +1,90 @@
+"""Casts with a verdict: turn what a caller passed into frozen float64 arrays, or say what is wrong with it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cagepose.errors import Problem, SceneError
+from cagepose.kernels.algebra.vector import Vector
+
+FloatArray = NDArray[np.float64]
+SHOWN = 64
+"""An error shows an array of so many numbers whole; of a longer one it names the first place that is wrong."""
+
+
+def finite_array(value: ArrayLike, shape: tuple[int, ...], key: str) -> FloatArray:
+    """Return a read-only float64 copy of ``value``; -1 in ``shape`` stands for any length of at least one.
+
+    Raises
+    ------
+    SceneError
+        Not numbers, another shape, NaN or infinite.
+    """
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise SceneError([Problem((key,), f"is not made of numbers: {value!r}")]) from None
+    fits = array.ndim == len(shape) and all(
+        found == wanted or (wanted == -1 and found >= 1) for found, wanted in zip(array.shape, shape, strict=True)
+    )
+    if not fits:
+        wanted_text = " x ".join("n" if n == -1 else str(n) for n in shape)
+        raise SceneError([Problem((key,), f"has shape {array.shape}; give {wanted_text} numbers")])
+    if not np.isfinite(array).all():
+        if array.size <= SHOWN:
+            raise SceneError([Problem((key,), f"holds a number that is not finite: {array.tolist()}")])
+        at = [int(index) for index in np.argwhere(~np.isfinite(array))[0]]
+        raise SceneError([Problem((key, *at), f"is {array[tuple(at)]}; give a finite number")])
+    array.setflags(write=False)
+    return array
+
+
+def unit_vector(value: ArrayLike, key: str) -> FloatArray:
+    """Return ``value`` scaled to length one.
+
+    Raises
+    ------
+    SceneError
+        As `finite_array`; also for a vector of length zero, which has no direction.
+    """
+    vector = finite_array(value, (3,), key)
+    largest = float(np.abs(vector).max())
+    if largest == 0.0:
+        raise SceneError([Problem((key,), "is zero, so it has no direction; give a vector of any other length")])
+    scaled = vector / largest  # so that the squares of tiny or huge components neither vanish nor overflow
+    # A vector that is unit to rounding is kept to the last digit, so that saved scenes come back unchanged.
+    is_unit = largest <= 1.0 and abs(float(np.linalg.norm(vector)) - 1.0) < 1e-15
+    unit: FloatArray = vector if is_unit else scaled / np.linalg.norm(scaled)
+    unit.setflags(write=False)
+    return unit
+
+
+def as_vector(array: FloatArray) -> Vector:
+    """Return a (3,) array as the tuple of Python floats that kernels take."""
+    x, y, z = array.tolist()
+    return x, y, z
+
+
+def duplicates(names: Sequence[str]) -> dict[str, list[int]]:
+    """Return each name that occurs more than once, with the indices where it stands."""
+    places: dict[str, list[int]] = {}
+    for index, name in enumerate(names):
+        places.setdefault(name, []).append(index)
+    return {name: indices for name, indices in places.items() if len(indices) > 1}
+
+
+class ProblemList:
+    """Collects the problems of several parts, so that a user sees all of them at once."""
+
+    def __init__(self) -> None:
+        self.problems: list[Problem] = []
+
+    def add(self, path: tuple[str | int, ...], message: str) -> None:
+        self.problems.append(Problem(path, message))
+
+    def raise_if_any(self) -> None:
+        if self.problems:
+            raise SceneError(self.problems)

@@ -1,0 +1,68 @@
+"""Nouns as the arrays that kernels take."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from cagepose.kernels.collision.geometry import Geometry
+from cagepose.model.cage import Cage
+from cagepose.model.checks import FloatArray
+from cagepose.model.parts import Object
+from cagepose.model.seams import PlacedBox, Seams, close_seams
+
+
+def object_seams(held: Object, touch_m: float) -> Seams:
+    """Close the seams between boxes that meet flush within ``touch_m``.
+
+    Those of the last few objects are remembered: what moves from scene to scene of a study or a viewer is the cage, and
+    fifty boxes take longer to compare with each other than the scene to run.
+    """
+    numbers = [np.concatenate([box.half_size, box.position, box.rotation.ravel()]) for box in _placed(held)]
+    return _seams_of(np.array(numbers).tobytes(), touch_m)
+
+
+@lru_cache(maxsize=8)
+def _seams_of(boxes: bytes, touch_m: float) -> Seams:
+    rows = np.frombuffer(boxes).reshape(-1, 15)
+    return close_seams([PlacedBox(row[:3], row[3:6], row[6:].reshape(3, 3)) for row in rows], touch_m)
+
+
+def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox]) -> Geometry:
+    """Return the boxes in the object's frame, its own first and then the bridges, and the cage points in the world."""
+    placed = _placed(held) + bridges
+    return Geometry(
+        half_sizes=np.array([box.half_size for box in placed]),
+        box_positions=np.array([box.position for box in placed]),
+        box_rotations=np.array([box.rotation for box in placed]),
+        n_own_boxes=len(held.boxes),
+        points_world=np.ascontiguousarray(cage.points_world()),
+    )
+
+
+def _placed(held: Object) -> list[PlacedBox]:
+    return [
+        PlacedBox(box.size_m / 2.0, box.pose_object_box.position_m, box.pose_object_box.rotation) for box in held.boxes
+    ]
+
+
+def scene_size(held: Object, cage: Cage) -> float:
+    """The scene's length scale, metres: the diameter of the object or of the cage, whichever is greater.
+
+    Each is measured as twice the greatest distance from the middle, so the size does not depend on any frame.
+    """
+    return max(object_size(held), float(cage_sizes(cage.points_cage)))
+
+
+def object_size(held: Object) -> float:
+    """The object's diameter, metres."""
+    corners = np.concatenate([box.corners_object() for box in held.boxes])
+    return float(cage_sizes(corners))
+
+
+def cage_sizes(points: FloatArray) -> FloatArray:
+    """The diameters of sets of points (..., n, 3), metres."""
+    distances = np.linalg.norm(points - points.mean(axis=-2, keepdims=True), axis=-1)
+    sizes: FloatArray = 2.0 * distances.max(axis=-1)
+    return sizes

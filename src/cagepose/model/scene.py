@@ -1,0 +1,238 @@
+"""The whole question: `Scene`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from cagepose.kernels.collision.contacts import deepest_boxes
+from cagepose.kernels.collision.geometry import Geometry
+from cagepose.model.cage import Cage
+from cagepose.model.checks import ProblemList, duplicates
+from cagepose.model.geometry import object_seams, scene_geometry, scene_size
+from cagepose.model.load import Load
+from cagepose.model.parts import Object
+from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
+
+Metric = Literal["release", "drag"]
+
+FARTHEST_START = 1e4
+"""In sizes of the scene. The rounding of a position 1e4 sizes away is about 2e-12 of the size, near the resolution."""
+
+
+@dataclass(frozen=True)
+class Adjustable:
+    """A number of the scene file that sliders and studies may vary.
+
+    Attributes
+    ----------
+    name
+        Shown beside the slider.
+    key
+        Where the number stands in the scene file, such as ``cage.pose.euler_zyx_deg[1]``.
+    low, high
+        Its range, in the file's own unit.
+    """
+
+    name: str
+    key: str
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Scene:
+    """A part, a cage, and the loads that act one after the other. Checked once, here; it never changes.
+
+    Attributes
+    ----------
+    object, cage, loads
+        What is held, what holds it, what pushes.
+    friction_coefficient
+        None: each method's own default.
+    method, metric
+        How to run it; None: the default.
+    tolerances
+        What counts as touching and as grazing.
+    geometry
+        Boxes, bridges over their seams and cage points as the kernels take them.
+    open_seams
+        Names of pairs of boxes that meet flush with outlines that cross: a point that moves exactly in their common
+        plane would pass between them.
+    size_m
+        The greater of the object's and the cage's diameter (of a sphere about their middle), metres.
+    """
+
+    object: Object
+    cage: Cage
+    loads: tuple[Load, ...]
+    name: str
+    friction_coefficient: float | None
+    method: str | None
+    metric: Metric | None
+    tolerances: Tolerances
+    adjustable: tuple[Adjustable, ...]
+    geometry: Geometry
+    open_seams: tuple[tuple[str, str], ...]
+    size_m: float
+
+    def __init__(
+        self,
+        object: Object,
+        cage: Cage,
+        loads: Iterable[Load],
+        *,
+        name: str = "scene",
+        friction_coefficient: float | None = None,
+        method: str | None = None,
+        metric: Metric | None = None,
+        tolerances: Tolerances | None = None,
+        adjustable: Iterable[Adjustable] = (),
+    ) -> None:
+        """
+        Raises
+        ------
+        SceneError
+            No loads, a phase name used twice, a negative friction coefficient, cage points on top of each other, a cage
+            point inside the object at the start, a start too far from the cage, or a box thinner than what the touch
+            tolerance can tell apart.
+        """
+        tolerances = tolerances or Tolerances()
+        loads = tuple(loads)
+        problems = ProblemList()
+        if not loads:
+            problems.add(("loads",), "is empty; give at least one phase with gravity or a force")
+        for load_name, indices in duplicates([load.name for load in loads]).items():
+            problems.add(
+                ("loads", indices[1], "name"), f"{load_name!r} is already the name of loads[{indices[0]}]; rename one"
+            )
+        if friction_coefficient is not None and not (np.isfinite(friction_coefficient) and friction_coefficient >= 0.0):
+            problems.add(("friction",), f"is {friction_coefficient!r}; give a finite coefficient, zero or above")
+        size_m = scene_size(object, cage)
+        touch_m = tolerances.touch * size_m
+        _check_thickness(object, touch_m, problems)
+        _check_points_apart(cage, touch_m, problems)
+        seams = object_seams(object, touch_m)
+        geometry = scene_geometry(object, cage, seams.bridges)
+        _check_distance(object, cage, size_m, problems)
+        _check_points_outside(object, cage, geometry, touch_m, size_m, problems)
+        problems.raise_if_any()
+        named = object.boxes
+        for field, value in (
+            ("object", object),
+            ("cage", cage),
+            ("loads", loads),
+            ("name", str(name)),
+            ("friction_coefficient", None if friction_coefficient is None else float(friction_coefficient)),
+            ("method", method),
+            ("metric", metric),
+            ("tolerances", tolerances),
+            ("adjustable", tuple(adjustable)),
+            ("geometry", geometry),
+            ("open_seams", tuple((str(named[one].name), str(named[other].name)) for one, other in seams.open_pairs)),
+            ("size_m", size_m),
+        ):
+            _set_field(self, field, value)
+
+    def changed(
+        self,
+        *,
+        friction_coefficient: float | None = None,
+        metric: Metric | None = None,
+        tolerances: Tolerances | None = None,
+    ) -> Scene:
+        """Return the same scene but for what is given.
+
+        Raises
+        ------
+        SceneError
+            As for a new scene.
+        """
+        return Scene(
+            self.object,
+            self.cage,
+            self.loads,
+            name=self.name,
+            friction_coefficient=self.friction_coefficient if friction_coefficient is None else friction_coefficient,
+            method=self.method,
+            metric=self.metric if metric is None else metric,
+            tolerances=self.tolerances if tolerances is None else tolerances,
+            adjustable=self.adjustable,
+        )
+
+    @property
+    def touch_m(self) -> float:
+        """The touch tolerance as a length, metres."""
+        return self.tolerances.touch * self.size_m
+
+
+_set_field = object.__setattr__
+
+
+def _check_thickness(held: Object, touch_m: float, problems: ProblemList) -> None:
+    least_m = 10.0 * touch_m  # so that a point on one face is clear of the opposite one, and of probes from it
+    for index, box in enumerate(held.boxes):
+        for axis, length in enumerate(box.size_m.tolist()):
+            if length < least_m:
+                problems.add(
+                    ("object", "boxes", index, "size", axis),
+                    f"is {millimetres(length)}, too thin to tell its two faces apart (at least {millimetres(least_m)},"
+                    " ten times the touch tolerance); thicken the box or lower tolerances.touch",
+                )
+
+
+def _check_points_apart(cage: Cage, touch_m: float, problems: ProblemList) -> None:
+    """Sort along one axis and compare only neighbours, so that thousands of points stay cheap."""
+    points = cage.points_cage
+    order = np.argsort(points[:, 0], kind="stable")
+    for place, first in enumerate(order):
+        for second in order[place + 1 :]:
+            if points[second, 0] - points[first, 0] > touch_m:
+                break
+            distance = float(np.linalg.norm(points[second] - points[first]))
+            if distance <= touch_m:
+                one, other = sorted((int(first), int(second)))
+                problems.add(
+                    ("cage", "points", cage.names[other]),
+                    f"lies {millimetres(distance)} from {cage.names[one]}, so they are one point; remove or move one",
+                )
+
+
+def _check_distance(held: Object, cage: Cage, size_m: float, problems: ProblemList) -> None:
+    """A start far from the cage leaves too few digits for the contact at the end of the first travel."""
+    middle = held.pose_world_object.transform(held.boxes[0].pose_object_box.position_m)
+    distance = float(np.linalg.norm(middle - cage.points_world().mean(axis=0)))
+    if distance > FARTHEST_START * size_m:
+        problems.add(
+            ("object", "pose", "position"),
+            f"starts {millimetres(distance)} from the cage, more than {FARTHEST_START:g} times the scene's size;"
+            " start nearer",
+        )
+
+
+def _check_points_outside(
+    held: Object, cage: Cage, geometry: Geometry, touch_m: float, size_m: float, problems: ProblemList
+) -> None:
+    depths, boxes = deepest_boxes(geometry, *held.pose_world_object.as_tuples())
+    for point_index in np.nonzero(depths > touch_m)[0].tolist():
+        box = int(boxes[point_index])
+        if box < len(held.boxes):
+            where = f"starts {millimetres(depths[point_index])} inside object.boxes[{box}] ({held.boxes[box].name})"
+        else:
+            where = "starts in the seam between two boxes that meet flush, so inside the object"
+        remedy = "move the point out or move the object's start pose"
+        if depths[point_index] <= TOUCH_GREATEST * size_m:
+            remedy = "move the point out, move the object's start pose, or raise tolerances.touch"
+        problems.add(("cage", "points", cage.names[point_index]), f"{where}; {remedy}")
+
+
+def millimetres(length_m: float) -> str:
+    """A length for an error message.
+
+    >>> millimetres(0.00042)
+    '0.42 mm'
+    """
+    return f"{length_m * 1000.0:.6g} mm"

@@ -1,0 +1,48 @@
+"""The tolerances a user may set, each with its unit and reason."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cagepose.model.checks import ProblemList
+
+TOUCH_DEFAULT = 1e-9
+TOUCH_LEAST = 1e-11
+TOUCH_GREATEST = 1e-4
+GRAZING_BAND_DEFAULT_RAD = float(np.radians(1.0))
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """What counts as touching, and as grazing.
+
+    Attributes
+    ----------
+    touch
+        A cage point within this distance of a face touches it. A fraction of the scene's size (see `Scene.size_m`),
+        so that a scene means the same in millimetres and in metres. The least allowed value stays clear of rounding
+        (about 1e-15 of the size for each step of a run); above the greatest, touching would be visible play.
+    grazing_band_rad
+        A contact whose face is steeper than perpendicular to the load by at most this angle still counts as slipping
+        (rule R5): without it the classification flips with the object's tilt, and a push leaves the rail of docs/theory
+        at the wrong one.
+    """
+
+    touch: float = TOUCH_DEFAULT
+    grazing_band_rad: float = GRAZING_BAND_DEFAULT_RAD
+
+    def __post_init__(self) -> None:
+        problems = ProblemList()
+        if not TOUCH_LEAST <= self.touch <= TOUCH_GREATEST:
+            problems.add(
+                ("touch",),
+                f"is {self.touch!r}; give a fraction of the scene's size, {TOUCH_LEAST:g} to {TOUCH_GREATEST:g}",
+            )
+        if not 0.0 <= self.grazing_band_rad < np.pi / 4.0:
+            problems.add(
+                ("grazing_band_deg",),
+                f"is {np.degrees(self.grazing_band_rad):g} deg; give an angle from 0 to below 45 deg",
+            )
+        problems.raise_if_any()

@@ -1,0 +1,1 @@
+"""The paper beside the program: its cases, its planar theory, and the report that compares both."""

@@ -1,0 +1,199 @@
+"""A run as snapshots: the scene after each event, and where each weight presses, seen from above."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from mpl_toolkits.mplot3d.axes3d import Axes3D
+
+from cagepose.files.units import LengthUnit, from_metres
+from cagepose.model.pose import Pose
+from cagepose.runs.run import Event, Run
+from cagepose.studies.ending import ending
+from cagepose.studies.support import LoadView, convex_hull, load_view
+from cagepose.views.scene_drawing import POINT_LOOKS, SceneDrawing
+from cagepose.views.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    PAGE_WIDTH_IN,
+    PURPLE,
+    SKY,
+    Look,
+    styled,
+)
+
+COLUMNS = 3
+PANEL_IN, FLAT_PANEL_IN = 2.35, 1.85
+"""Height of a panel, and of one for a flat scene."""
+HEAD_IN, FOOT_IN = 0.55, 0.6
+"""Room for the title and for the legend."""
+MOST_SNAPSHOTS = 14
+"""A longer run shows its start, its first events and its last one, and says how many it leaves out."""
+
+RIGHT_OVER = 1e-9
+"""A load's line is on the outline of the contacts within this fraction of its length."""
+
+LENGTH_WORDS: Mapping[LengthUnit, str] = {"mm": "mm", "m": "m", "in": "inches"}
+LONGEST_NAME = 12
+"""Characters of a phase's name in a title."""
+LONGEST_TITLE = 40
+"""Characters that fit above a panel; a longer title takes two lines."""
+
+
+def event_figure(run: Run, length_unit: LengthUnit = "mm") -> Figure:
+    """Draw the scene at the start and after each event, as the paper's Figs. 6 and 7 do.
+
+    Each phase under a weight alone adds a view along it: the polygon of the contacts, and the centre of gravity.
+    """
+    shots, n_left_out = _snapshots(run, length_unit)
+    weights = [index for index in range(len(run.phases)) if run.scene.loads[index].force is None]
+    n_panels = len(shots) + len(weights)
+    rows = math.ceil(n_panels / COLUMNS)
+    with styled():
+        poses = [run.phases[0].start_pose, *(event.pose_world_object for phase in run.phases for event in phase.events)]
+        drawing = SceneDrawing(run.scene, poses, length_unit)
+        grid = _Grid(rows, FLAT_PANEL_IN if drawing.is_flat else PANEL_IN)
+        height = grid.height_in
+        figure = Figure(figsize=(PAGE_WIDTH_IN, height))
+        for place, (phase_index, event, before, title) in enumerate(shots):
+            panel = cast(Axes3D, figure.add_axes(grid.cell(place, (0.02, 0.02, 0.94, 0.85)), projection="3d"))
+            drawing.draw(panel, phase_index, event, before, title)
+        for place, phase_index in enumerate(weights, start=len(shots)):
+            _draw_view(figure.add_axes(grid.cell(place, (0.2, 0.19, 0.72, 0.58))), run, phase_index, length_unit)
+        notes = [f"{run.scene.name}: {ending(run)} ({run.method})", f"x, y and z in {LENGTH_WORDS[length_unit]}"]
+        if scales := drawing.scales():
+            notes[1] += f"; not to one scale: {scales}"
+        if n_left_out:
+            notes[1] += f"; {n_left_out} events before the last are left out"
+        figure.text(0.5, 1.0 - 0.08 / height, notes[0], ha="center", va="top", fontsize=11)
+        figure.text(0.5, 1.0 - 0.32 / height, notes[1], ha="center", va="top", fontsize=8.5)
+        _draw_legend(figure)
+    return figure
+
+
+@dataclass(frozen=True)
+class _Grid:
+    """Where panels lie: laid out by hand, as matplotlib's layouts do not see what sticks out of 3-D panels."""
+
+    n_rows: int
+    panel_in: float
+
+    @property
+    def height_in(self) -> float:
+        return HEAD_IN + self.n_rows * self.panel_in + FOOT_IN
+
+    def cell(self, place: int, part: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+        """Return left, bottom, width and height in the figure; ``part`` gives them within the panel's cell."""
+        row, column = divmod(place, COLUMNS)
+        bottom_in = self.height_in - HEAD_IN - self.panel_in * (row + 1 - part[1])
+        height = part[3] * self.panel_in / self.height_in
+        return (column + part[0]) / COLUMNS, bottom_in / self.height_in, part[2] / COLUMNS, height
+
+
+def _snapshots(run: Run, length_unit: LengthUnit) -> tuple[list[tuple[int, Event | None, Pose, str]], int]:
+    """Return (phase index, event, pose before it, title) of each panel, and how many events have none."""
+    shots: list[tuple[int, Event | None, Pose, str]] = [(0, None, run.phases[0].start_pose, "start")]
+    number = 0
+    for phase_index, phase in enumerate(run.phases):
+        before = phase.start_pose
+        for event in phase.events:
+            number += 1
+            if event.motion is not None:
+                name, amount = f"{number}. {_cut(phase.name)}, {event.rule}:", _amount(event, length_unit)
+                gap = " " if len(name) + len(amount) < LONGEST_TITLE else "\n"
+                shots.append((phase_index, event, before, f"{name}{gap}{amount}"))
+            before = event.pose_world_object
+    if len(shots) <= MOST_SNAPSHOTS:
+        return shots, 0
+    return [*shots[: MOST_SNAPSHOTS - 1], shots[-1]], len(shots) - MOST_SNAPSHOTS
+
+
+def _amount(event: Event, length_unit: LengthUnit) -> str:
+    assert event.motion is not None
+    if not math.isfinite(event.motion.distance_m):
+        return "travel without end"
+    parts = []
+    if event.motion.distance_m:
+        parts.append(f"{float(from_metres(event.motion.distance_m, length_unit)):.4g} {length_unit}")
+    if event.motion.angle_rad:
+        parts.append(f"{math.degrees(event.motion.angle_rad):.4g} deg")
+    return f"{event.motion.kind} {', '.join(parts) or 'of nothing'}"
+
+
+def _cut(name: str) -> str:
+    return name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 1]}…"
+
+
+def _draw_view(panel: Axes, run: Run, phase_index: int, length_unit: LengthUnit) -> None:
+    phase, view = run.phases[phase_index], load_view(run, phase_index)
+    boxes = phase.pose.transform(np.concatenate([box.corners_object() for box in run.scene.object.boxes]))
+    for corners in view.project(boxes).reshape(-1, 8, 2):
+        outline = from_metres(convex_hull(corners), length_unit)
+        panel.fill(*outline.T, facecolor=SKY, edgecolor=BLUE, alpha=0.22, linewidth=0.6)
+    polygon = from_metres(view.polygon, length_unit)
+    panel.fill(*polygon.T, facecolor="none", edgecolor=GREEN, hatch="//", linewidth=1.6)
+    touching = {contact.point for contact in phase.contacts}
+    points = from_metres(view.project(run.scene.cage.points_world()), length_unit)
+    for name, point in zip(run.scene.cage.names, points, strict=True):
+        touches = name in touching
+        panel.plot(*point, "o", zorder=2.0 + touches, **POINT_LOOKS["touching" if touches else "free"])
+        if touches:
+            panel.annotate(name, point, xytext=(3.0, 3.0), textcoords="offset points", fontsize=7.0)
+    panel.plot(*from_metres(view.load_point, length_unit), marker="D", color=BLUE, markersize=5.0)
+    title = f"end of {_cut(phase.name)}, seen along it:\n{_position(view, length_unit)}"
+    panel.set_title(title, fontsize=8.5, pad=8.0)
+    extent = np.ptp(np.concatenate([points, from_metres(view.project(boxes), length_unit)]), axis=0)
+    if extent.min() > 0.3 * extent.max():
+        panel.set_aspect("equal")
+    horizontal, vertical = (_axis_name(axis) for axis in (view.right_world, view.up_world))
+    panel.set_xlabel(f"{horizontal} [{length_unit}]", fontsize=7.5)
+    panel.set_ylabel(f"{vertical} [{length_unit}]", fontsize=7.5)
+    panel.tick_params(labelsize=7.0)
+
+
+def _position(view: LoadView, length_unit: LengthUnit) -> str:
+    if len(view.polygon) == 0:
+        return "no contacts"
+    if abs(view.margin_m) < RIGHT_OVER * float(np.ptp(view.polygon, axis=0).max()):
+        return "CoG right over the contacts' outline"
+    margin = float(from_metres(abs(view.margin_m), length_unit))
+    return f"CoG {margin:.3g} {length_unit} {'inside' if view.margin_m > 0.0 else 'outside'} the contacts"
+
+
+def _axis_name(axis_world: np.ndarray) -> str:
+    """Return the world axis that a picture's axis lies along, or what it is."""
+    for name, component in zip("xyz", axis_world.tolist(), strict=True):
+        if abs(component) > 1.0 - 1e-9:
+            return name if component > 0.0 else f"-{name}"
+    return "across the load"
+
+
+def _draw_legend(figure: Figure) -> None:
+    point: Look = {"marker": "o", "linestyle": "none"}
+    figure.legend(
+        handles=[
+            Line2D([], [], label="reached by this motion", **point, **POINT_LOOKS["reached"]),
+            Line2D([], [], label="touches as well", **point, **POINT_LOOKS["touching"]),
+            Line2D([], [], label="cage point", **point, **POINT_LOOKS["free"]),
+            Line2D([], [], color=BLUE, marker="D", linestyle="none", markersize=4.0, label="centre of gravity (CoG)"),
+            Line2D([], [], color=PURPLE, linestyle="-.", label="axis of turning, or travel"),
+            Line2D([], [], color=BLACK, label="load"),
+            Line2D([], [], color=GREY, linestyle=":", label="before the motion"),
+            Patch(facecolor="none", edgecolor=GREEN, hatch="//", label="polygon of the contacts"),
+        ],
+        loc="lower center",
+        ncols=4,
+        handlelength=2.2,
+        columnspacing=1.2,
+        fontsize=7.5,
+    )

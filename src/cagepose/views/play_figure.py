@@ -1,0 +1,104 @@
+"""Play as a picture: bars for each freedom, and how far points go, seen along the cage's axes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from numpy.typing import ArrayLike
+
+from cagepose.files.units import LengthUnit, from_metres
+from cagepose.studies.play import Play, PlayRange
+from cagepose.studies.play_outline import PointOutline, point_outlines
+from cagepose.views.style import BLUE, GREY, ORANGE, PAGE_WIDTH_IN, PALE, VERMILLION, Look, styled
+
+BARS: dict[str, Look] = {
+    "certified": {"facecolor": PALE, "edgecolor": GREY, "hatch": "////", "linewidth": 0.8},
+    "exact": {"facecolor": BLUE, "edgecolor": BLUE, "linewidth": 0.8},
+    "linear": {"facecolor": ORANGE, "edgecolor": ORANGE, "linewidth": 0.8},
+}
+"""Drawn over each other in this order, each slimmer than the one before."""
+HEIGHTS = {"certified": 0.78, "exact": 0.5, "linear": 0.16}
+LINES: dict[str, Look] = {
+    "certified": {"color": GREY, "linestyle": (0, (4, 2)), "linewidth": 1.0},
+    "linear": {"color": ORANGE, "linestyle": "-", "linewidth": 1.2},
+}
+WORDS = {"certified": "certified: cannot be passed", "exact": "exact", "linear": "linear"}
+
+
+def play_figure(play: Play, at: Sequence[ArrayLike] = (), length_unit: LengthUnit = "mm") -> Figure:
+    """Draw the range of each freedom, and for each point ``at`` of the object (metres, in its frame) how far it goes.
+
+    A bar that ends in an arrow has no end. A point's way is seen along the three axes of the cage.
+    """
+    with styled():
+        rows = 1 + len(at)
+        figure = Figure(figsize=(PAGE_WIDTH_IN, 2.35 + 2.5 * len(at) + 0.75), layout="constrained")
+        parts = figure.subfigures(rows, 1, height_ratios=[2.35] + [2.5] * len(at), squeeze=False)[:, 0]
+        lengths, angles = parts[0].subplots(1, 2)
+        _draw_bars(lengths, play, ("x", "y", "z"), float(from_metres(1.0, length_unit)))
+        lengths.set_xlabel(f"displacement of the object's origin [{length_unit}]")
+        _draw_bars(angles, play, ("roll", "pitch", "yaw"), math.degrees(1.0))
+        angles.set_xlabel("ZYX angle [deg]")
+        for part, point in zip(parts[1:], at, strict=True):
+            place = ", ".join(f"{value:.6g}" for value in from_metres(np.asarray(point, dtype=float), length_unit))
+            part.suptitle(f"the point ({place}) {length_unit} of the object, from where it starts", fontsize=9.5)
+            for panel, outline in zip(part.subplots(1, 3), point_outlines(play.scene, point), strict=True):
+                _draw_outline(panel, outline, length_unit)
+        title = f"{play.scene.name}: play from the start pose ({play.cage.verdict})"
+        figure.suptitle(title, fontsize=11)
+        handles = [Patch(label=WORDS[kind], **look) for kind, look in BARS.items()]
+        lines = [Line2D([], [], label=f"{kind}, of a point", **look) for kind, look in LINES.items()]
+        figure.legend(handles=[*handles, *(lines if at else [])], loc="outside lower center", ncols=5, handlelength=2.0)
+    return figure
+
+
+def _draw_bars(panel: Axes, play: Play, names: tuple[str, ...], unit: float) -> None:
+    largest = max((abs(value) for name in names for value in _all_ends(play.freedoms[name])), default=0.0)
+    reach = 1.12 * unit * (largest or 1.0)
+    for row, name in enumerate(names):
+        ends = play.freedoms[name]
+        for kind, look in BARS.items():
+            low, high = getattr(ends.low, kind), getattr(ends.high, kind)
+            if kind == "certified" and (low is None or high is None):
+                continue
+            left = -reach if low is None else unit * low
+            right = reach if high is None else unit * high
+            panel.barh(row, right - left, left=left, height=HEIGHTS[kind], **look)
+        for end, tip, marker in ((ends.low, -reach, "<"), (ends.high, reach, ">")):
+            if end.exact is None:
+                panel.plot([tip], [row], marker=marker, color=VERMILLION, markersize=7.0, clip_on=False, zorder=5)
+    panel.axvline(0.0, color=GREY, linewidth=0.8)
+    panel.set_xlim(-reach, reach)
+    panel.set_yticks(range(len(names)), names)
+    panel.invert_yaxis()
+    panel.grid(axis="x", color=PALE, linewidth=0.6)
+    panel.set_axisbelow(True)
+
+
+def _all_ends(ends: PlayRange) -> list[float]:
+    values = [getattr(end, kind) for end in (ends.low, ends.high) for kind in BARS]
+    return [value for value in values if value is not None]
+
+
+def _draw_outline(panel: Axes, outline: PointOutline, length_unit: LengthUnit) -> None:
+    if outline.exact is None:
+        panel.text(0.5, 0.7, "no end in some directions", transform=panel.transAxes, ha="center", color=VERMILLION)
+    else:
+        panel.fill(
+            *from_metres(outline.exact, length_unit).T, facecolor=BLUE, edgecolor=BLUE, alpha=0.45, linewidth=1.2
+        )
+    for kind, look in LINES.items():
+        if (polygon := getattr(outline, kind)) is not None:
+            shown = from_metres(polygon, length_unit)
+            panel.plot(*np.concatenate([shown, shown[:1]]).T, **look)
+    panel.plot([0.0], [0.0], marker="+", color=GREY, markersize=6.0)
+    panel.set_xlabel(f"{outline.axes[0]} [{length_unit}]")
+    panel.set_ylabel(f"{outline.axes[1]} [{length_unit}]", labelpad=1.0)
+    panel.grid(color=PALE, linewidth=0.6)
+    panel.set_axisbelow(True)

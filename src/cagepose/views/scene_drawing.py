@@ -1,0 +1,189 @@
+"""The object and its cage in three dimensions: boxes, points, contacts, axes of turning, loads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+from matplotlib.backend_bases import RendererBase
+from matplotlib.patches import FancyArrowPatch
+from matplotlib.ticker import MaxNLocator
+from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+from mpl_toolkits.mplot3d.axes3d import Axes3D
+from mpl_toolkits.mplot3d.proj3d import proj_transform
+
+from cagepose.files.units import LengthUnit, from_metres
+from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
+from cagepose.runs.run import Event, Motion
+from cagepose.studies.support import load_direction_world, load_point_object
+from cagepose.views.style import BLACK, BLUE, GREY, ORANGE, PURPLE, SKY, VERMILLION, Look
+
+SLIMMEST = 0.45
+"""No edge of a picture is shorter than this fraction of its longest; a slimmer scene is stretched, and says so."""
+MOST_NAMED_POINTS = 8
+"""All points of a cage this small are named; of a larger one, those that touch."""
+POINT_LOOKS: Mapping[str, Look] = {
+    "free": {"color": GREY, "markerfacecolor": "white", "markersize": 3.0},
+    "touching": {"color": VERMILLION, "markerfacecolor": ORANGE, "markersize": 5.0},
+    "reached": {"color": VERMILLION, "markersize": 5.0},
+}
+"""Cage points, by what they do at the end of an event; drawn in this order."""
+TOGETHER = 0.04
+"""Points nearer than this fraction of the picture share one label."""
+MARGIN = 0.04
+"""Room around the scene, as a fraction of each edge."""
+ZOOM, ZOOM_FLAT = 0.9, 1.15
+"""Fills a panel with a scene as tall as wide, and a lower panel with a flat one."""
+VIEW_FROM = {"elev": 24.0, "azim": -56.0}
+_FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+_EDGES = ((0, 1), (0, 2), (0, 4), (1, 3), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 6), (5, 7), (6, 7))
+
+
+class SceneDrawing:
+    """Draws a scene at some poses of the object into panels that all show the same part of the world."""
+
+    def __init__(self, scene: Scene, poses: Iterable[Pose], length_unit: LengthUnit) -> None:
+        self.scene = scene
+        self.unit: LengthUnit = length_unit
+        self.points = self._shown(scene.cage.points_world())
+        corners = [self._shown(pose.transform(self._corners_object())) for pose in poses]
+        everything = np.concatenate([self.points, *corners])
+        self.low, self.high = everything.min(axis=0), everything.max(axis=0)
+        self.extents = np.maximum(self.high - self.low, 1e-9 * (self.high - self.low).max())
+        self.aspect = np.maximum(self.extents, SLIMMEST * self.extents.max())
+        self.stretch = self.aspect / self.extents
+        self.is_flat = bool(self.aspect[2] < 0.6 * self.aspect.max())
+
+    def scales(self) -> str:
+        """Say how the picture's scales differ, such as "y stretched 3.2 times"; empty if they do not."""
+        return ", ".join(
+            f"{axis} stretched {factor:.2g} times"
+            for axis, factor in zip("xyz", self.stretch.tolist(), strict=True)
+            if factor > 1.01
+        )
+
+    def draw(self, panel: Axes3D, phase_index: int, event: Event | None, before: Pose, title: str) -> None:
+        """Draw the object after ``event`` (None: at ``before``), and the motion that took it there."""
+        pose = before if event is None else event.pose_world_object
+        self._draw_object(panel, pose)
+        if event is not None and event.motion is not None:
+            self._draw_outline(panel, before)
+            self._draw_motion(panel, event.motion, before)
+        self._draw_points(panel, () if event is None else event.contacts, () if event is None else event.hit)
+        self._draw_load(panel, phase_index, pose)
+        self._frame(panel, title)
+
+    def draw_pose(self, panel: Axes3D, pose: Pose, touching: tuple[str, ...], title: str) -> None:
+        """Draw the object at ``pose``, dotted where it starts, and the points that touch."""
+        self._draw_object(panel, pose)
+        self._draw_outline(panel, self.scene.object.pose_world_object)
+        self._draw_points(panel, touching, ())
+        self._frame(panel, title)
+
+    def _frame(self, panel: Axes3D, title: str) -> None:
+        panel.view_init(**VIEW_FROM)
+        panel.set_box_aspect(tuple(self.aspect.tolist()), zoom=ZOOM_FLAT if self.is_flat else ZOOM)
+        for axis, low, extent in zip("xyz", self.low.tolist(), self.extents.tolist(), strict=True):
+            getattr(panel, f"set_{axis}lim")(low - MARGIN * extent, low + (1.0 + MARGIN) * extent)
+            getattr(panel, f"set_{axis}label")(axis, fontsize=7.5, labelpad=-10.0)
+            getattr(panel, f"{axis}axis").set_major_locator(MaxNLocator(4))
+        panel.tick_params(labelsize=6.5, pad=-3.5)
+        panel.set_title(title, fontsize=8.5, y=1.0, pad=2.0)
+        for artist in (*panel.collections, *panel.lines, *panel.texts, *panel.patches):
+            artist.set_clip_on(False)  # a zoomed scene reaches beyond its panel's square
+
+    def _shown(self, points_m: FloatArray) -> FloatArray:
+        return from_metres(points_m, self.unit)
+
+    def _corners_object(self) -> FloatArray:
+        """All boxes' corners, (8 n, 3)."""
+        return np.concatenate([box.corners_object() for box in self.scene.object.boxes])
+
+    def _draw_object(self, panel: Axes3D, pose: Pose) -> None:
+        boxes = self._shown(pose.transform(self._corners_object())).reshape(-1, 8, 3)
+        faces = [corners[list(face)] for corners in boxes for face in _FACES]
+        panel.add_collection3d(
+            Poly3DCollection(faces, facecolors=SKY, edgecolors=BLUE, linewidths=0.5, alpha=0.22, zorder=1)
+        )
+        center = self._shown(pose.transform(self.scene.object.center_of_gravity_m))
+        panel.plot(*center[:, None], marker="D", color=BLUE, markersize=4.0, linestyle="none", zorder=5)
+
+    def _draw_outline(self, panel: Axes3D, pose: Pose) -> None:
+        boxes = self._shown(pose.transform(self._corners_object())).reshape(-1, 8, 3)
+        edges = [corners[list(edge)] for corners in boxes for edge in _EDGES]
+        panel.add_collection3d(Line3DCollection(edges, colors=GREY, linewidths=0.5, linestyles=":"))
+
+    def _draw_motion(self, panel: Axes3D, motion: Motion, before: Pose) -> None:
+        """An axis of turning as a line through the picture, a travel as an arrow from where the CoG was."""
+        if motion.axis_world is not None and motion.through_world is not None:
+            line = self._across(self._shown(motion.through_world), motion.axis_world)
+            panel.plot(*line.T, color=PURPLE, linestyle="-.", linewidth=1.6, zorder=6)
+        elif motion.direction_world is not None:
+            start = self._shown(before.transform(self.scene.object.center_of_gravity_m))
+            panel.add_artist(_Arrow(start, start + self._length(0.25, motion.direction_world), PURPLE))
+
+    def _draw_points(self, panel: Axes3D, contacts: tuple[str, ...], hit: tuple[str, ...]) -> None:
+        names = self.scene.cage.names
+        labels: list[tuple[FloatArray, list[str], bool]] = []
+        chosen: dict[str, list[FloatArray]] = {look: [] for look in POINT_LOOKS}
+        for name, point in zip(names, self.points, strict=True):
+            touches = name in contacts
+            chosen["reached" if name in hit else "touching" if touches else "free"].append(point)
+            if touches or len(names) <= MOST_NAMED_POINTS:
+                self._add_label(labels, point, name, touches)
+        for look, points in chosen.items():
+            if points:
+                panel.plot(*np.array(points).T, marker="o", linestyle="none", zorder=7, **POINT_LOOKS[look])
+        for point, together, touches in labels:
+            panel.text(*point, f" {' '.join(together)}", fontsize=7.0, color=BLACK if touches else GREY, zorder=8)
+
+    def _add_label(
+        self, labels: list[tuple[FloatArray, list[str], bool]], point: FloatArray, name: str, touches: bool
+    ) -> None:
+        """Name points that lie together in one label, so that no name covers another."""
+        for place, together, does_touch in labels:
+            apart = float(np.linalg.norm((place - point) * self.stretch))
+            if apart < TOGETHER * float(self.aspect.max()) and does_touch == touches:
+                together.append(name)
+                return
+        labels.append((point, [name], touches))
+
+    def _draw_load(self, panel: Axes3D, phase_index: int, pose: Pose) -> None:
+        load = self.scene.loads[phase_index]
+        tip = self._shown(pose.transform(load_point_object(self.scene, load)))
+        tail = tip - self._length(0.3, load_direction_world(load))
+        panel.add_artist(_Arrow(tail, tip, BLACK))
+        panel.text(*tail, f" {load.name}", fontsize=7.0, color=BLACK, zorder=9)
+
+    def _length(self, fraction: float, direction: FloatArray) -> FloatArray:
+        """Return a vector along ``direction`` that looks as long as a fraction of the picture, stretched as it is."""
+        scaled: FloatArray = direction * fraction * self.aspect.max() / np.linalg.norm(direction * self.stretch)
+        return scaled
+
+    def _across(self, through: FloatArray, direction: FloatArray) -> FloatArray:
+        """Return the two ends, (2, 3), of the part of a line that lies in the picture."""
+        low, high = self.low - MARGIN * self.extents, self.high + MARGIN * self.extents
+        with np.errstate(divide="ignore", invalid="ignore"):
+            cuts = np.sort(np.stack([(low - through) / direction, (high - through) / direction]), axis=0)
+        cuts[:, direction == 0.0] = [[-np.inf], [np.inf]]
+        first, last = float(cuts[0].max()), float(cuts[1].min())
+        ends = np.array([[first], [last]]) if first < last else np.zeros((2, 1))
+        line: FloatArray = through + ends * direction
+        return line
+
+
+class _Arrow(FancyArrowPatch):
+    """An arrow between two places of a 3-D panel; its head is drawn flat, so that no stretched scale bends it."""
+
+    def __init__(self, tail: FloatArray, tip: FloatArray, color: str) -> None:
+        super().__init__((0.0, 0.0), (1.0, 1.0), arrowstyle="-|>", mutation_scale=9.0, color=color, linewidth=1.5)
+        self._ends = np.stack([tail, tip])
+        self.set_zorder(9)
+
+    def do_3d_projection(self, _renderer: RendererBase | None = None) -> float:
+        assert isinstance(self.axes, Axes3D)
+        xs, ys, zs = proj_transform(*self._ends.T, self.axes.get_proj())
+        self.set_positions((xs[0], ys[0]), (xs[1], ys[1]))
+        return float(min(zs))

@@ -1,0 +1,1 @@
+"""One scene in motion: a page, live or as one file, pictures and films."""

@@ -1,0 +1,102 @@
+"""What is written on a picture: names of things, what happens, how much it is exaggerated, and a scale."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from PIL import Image, ImageDraw, ImageFont
+
+from cagepose.files.words import LengthWords
+from cagepose.views.viewer.labels import Pair, laid_out
+from cagepose.views.viewer.page_data import verdict_kind
+from cagepose.views.viewer.playback import Playback, Shot
+
+LOUD_INK, QUIET_INK = "#000000", "#777777"
+"""Of names: loads and contacts, and cage points that do not touch."""
+TITLE_INK, SOFT_INK, SCALE_INK = "#1a1a1a", "#5c5c5c", "#333333"
+VERDICT_INK = {"rest": "#00664a", "failure": "#a33b00", "elsewhere": "#a33b00"}
+PAPER, MARK = "#f6f7f9", "#e69f00"
+SMALL, LARGE = 13.0, 17.0
+"""Heights of letters, pixels."""
+SCALE_BAR = 100.0
+"""The scale bar is at most so long, pixels."""
+
+
+class Label(NamedTuple):
+    """The name of a thing.
+
+    Attributes
+    ----------
+    place
+        Where the thing is, pixels, y down.
+    text, ink
+        The name and its colour.
+    """
+
+    place: Pair
+    text: str
+    ink: str
+
+
+class Caption:
+    """Writes on the pictures of one playback."""
+
+    def __init__(self, shown: Playback, exaggeration: int, size: tuple[int, int], units_per_pixel: float) -> None:
+        """``size`` is that of a picture in pixels, ``units_per_pixel`` the length of one in the scene's unit."""
+        self.shown = shown
+        self.exaggeration = exaggeration
+        self.width, self.height = size
+        self.units_per_pixel = units_per_pixel
+        self.small, self.large = (ImageFont.load_default(height) for height in (SMALL, LARGE))
+
+    def write(self, image: Image.Image, shot: Shot, labels: list[Label]) -> None:
+        """Write everything on the picture of one shot."""
+        pen = ImageDraw.Draw(image)
+        self._write_names(pen, labels)
+        run = self.shown.run
+        pen.text((14.0, 10.0), run.scene.name, TITLE_INK, self.large)
+        across = 24.0 + pen.textlength(run.scene.name, self.large)
+        pen.text((across, 10.0), run.verdict, VERDICT_INK[verdict_kind(run.verdict)], self.large)
+        pen.text((14.0, 34.0), self._happening(shot), SOFT_INK, self.small)
+        self._write_exaggeration(pen)
+        self._write_scale(pen)
+
+    def _write_names(self, pen: ImageDraw.ImageDraw, labels: list[Label]) -> None:
+        loud_first = sorted(labels, key=lambda label: label.ink != LOUD_INK)
+        sizes = [(pen.textlength(label.text, self.small), SMALL) for label in loud_first]
+        corners = laid_out([label.place for label in loud_first], sizes)
+        for label, corner in zip(loud_first, corners, strict=True):
+            if corner is not None:
+                self._text(pen, corner, label.text, label.ink)
+
+    def _happening(self, shot: Shot) -> str:
+        if shot.row < 0:
+            return "start"
+        row = self.shown.rows[shot.row]
+        words = LengthWords(self.shown.length_unit, self.shown.run.scene.size_m)
+        motion = row.event.motion
+        what = None if motion is None else f"{motion.kind} {words.amount(motion)}"
+        told = ", ".join(word for word in (row.event.rule, what, row.verdict) if word)
+        return f"{self.shown.run.phases[row.phase].name}, event {shot.row + 1}: {told}"
+
+    def _write_exaggeration(self, pen: ImageDraw.ImageDraw) -> None:
+        if self.exaggeration == 1:
+            pen.text((14.0, self.height - 26.0), "true scale", SOFT_INK, self.small)
+            return
+        text = f"motions and gaps exaggerated x{self.exaggeration}"
+        width = pen.textlength(text, self.small)
+        pen.rectangle((10.0, self.height - 32.0, 22.0 + width, self.height - 8.0), fill=MARK)
+        pen.text((16.0, self.height - 28.0), text, LOUD_INK, self.small)
+
+    def _write_scale(self, pen: ImageDraw.ImageDraw) -> None:
+        rough = SCALE_BAR * self.units_per_pixel
+        power = 10.0 ** math.floor(math.log10(rough))
+        length = next(step * power for step in (5.0, 2.0, 1.0) if step * power <= rough)
+        right, below = self.width - 20.0, self.height - 16.0
+        left = right - length / self.units_per_pixel
+        pen.line((left, below, right, below), fill=SCALE_INK, width=2)
+        self._text(pen, (left, below - 20.0), f"{length:.6g} {self.shown.length_unit}", SCALE_INK)
+
+    def _text(self, pen: ImageDraw.ImageDraw, place: Pair, text: str, ink: str) -> None:
+        pen.text(place, text, ink, self.small, anchor="la", stroke_width=2, stroke_fill=PAPER)

@@ -1,0 +1,171 @@
+"""What a viewer may change of a scene: sliders and choices, each for a value of the scene file."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from cagepose.files.key_path import parse_key_path, resolved, value_at
+from cagepose.files.scene_file import SceneFile, SceneText
+from cagepose.files.units import from_metres
+from cagepose.runs.solve import METHODS, chosen_method
+from cagepose.runs.stepwise import NO_SLIP_ANGLE_DEFAULT_RAD
+from cagepose.views.viewer.surface import nearest_on_object
+
+PLAYS = 2.0
+"""The cage can be moved by this many times the play: the median gap at the start."""
+LEAST_PLAY = 1e-3
+"""In sizes of the scene: what counts as play where most points touch at the start."""
+TURNS_PER_PLAY = 4.0
+"""The cage can be turned so far that its ends, half a size from its middle, move twice as far as it can be moved."""
+MOST_TURN_DEG = 10.0
+REACH = 0.5
+"""In sizes of the scene: where on the object a force can act."""
+MOST_FRICTION = 1.0
+STEPS = 400
+"""Of a slider from end to end."""
+
+
+@dataclass(frozen=True)
+class Control:
+    """One slider, or a choice.
+
+    Attributes
+    ----------
+    group, label, unit
+        Words.
+    key
+        Where the value stands in the scene file.
+    index
+        Which component of a vector this is; None: the value is a single one.
+    value
+        As the file has it, or what it stands for where the file leaves it out: a number, or a word for a choice.
+    low, high, step
+        Of a slider, in the file's unit.
+    choices
+        Words to choose from; empty for a slider.
+    """
+
+    group: str
+    label: str
+    unit: str
+    key: str
+    index: int | None
+    value: float | str
+    low: float = 0.0
+    high: float = 0.0
+    step: float = 0.0
+    choices: tuple[str, ...] = ()
+
+    def document(self) -> dict[str, Any]:
+        """Return it as plain data."""
+        return asdict(self)
+
+
+def controls(scene_text: SceneText) -> list[Control]:
+    """Return the controls of a scene: what it names as adjustable, its cage, its loads, friction and method.
+
+    Raises
+    ------
+    SceneFileError
+        The scene cannot be used, see `load_scene`.
+    """
+    return _Maker(scene_text.yaml.data, scene_text.scene_file()).controls()
+
+
+class _Maker:
+    def __init__(self, data: object, scene_file: SceneFile) -> None:
+        self.data = data
+        self.scene = scene_file.scene
+        self.unit = scene_file.length_unit
+        self.size = float(from_metres(self.scene.size_m, self.unit))
+        points, held = self.scene.cage.points_world(), self.scene.object
+        feet = nearest_on_object(held, held.pose_world_object, points).feet_world
+        play_m = float(np.median(np.linalg.norm(points - feet, axis=1)))
+        self.play = float(from_metres(max(play_m, LEAST_PLAY * self.scene.size_m), self.unit))
+
+    def controls(self) -> list[Control]:
+        return [*self._adjustables(), *self._cage(), *self._loads(), *self._options()]
+
+    def _adjustables(self) -> list[Control]:
+        made = []
+        for entry in self.scene.adjustable:
+            path = resolved(self.data, parse_key_path(entry.key))
+            value = float(value_at(self.data, path))
+            made.append(self._slider("adjustable", entry.name, "", entry.key, None, value, entry.low, entry.high))
+        return made
+
+    def _cage(self) -> list[Control]:
+        pose = self.scene.cage.pose_world_cage
+        angles = value_at(self.data, ("cage", "pose", "euler_zyx_deg"))
+        angles = angles or [math.degrees(angle) for angle in pose.euler_zyx]
+        place = value_at(self.data, ("cage", "pose", "position")) or [0.0, 0.0, 0.0]
+        most = min(_rounded_up(math.degrees(TURNS_PER_PLAY * PLAYS * self.play / self.size)), MOST_TURN_DEG)
+        reach = _rounded_up(PLAYS * self.play)
+        return [
+            *self._vector("cage", ("yaw", "pitch", "roll"), "deg", "cage.pose.euler_zyx_deg", angles, most),
+            *self._vector("cage", ("x", "y", "z"), self.unit, "cage.pose.position", place, reach),
+        ]
+
+    def _loads(self) -> list[Control]:
+        made = []
+        axes = ("x", "y", "z")
+        for index, load in enumerate(self.scene.loads):
+            here = f"loads[{index}]"
+            given = value_at(self.data, ("loads", index))
+            if load.force is None:
+                most = max(abs(value) for value in given["gravity"])
+                names = tuple(f"gravity {axis}" for axis in axes)
+                made += self._vector(load.name, names, "", f"{here}.gravity", given["gravity"], most, about_zero=True)
+                continue
+            direction = given["force"]["direction"]
+            most = max(abs(value) for value in direction)
+            names = tuple(f"direction {axis}" for axis in axes)
+            made += self._vector(load.name, names, "", f"{here}.force.direction", direction, most, about_zero=True)
+            names = tuple(f"acts at {axis}" for axis in axes)
+            made += self._vector(
+                load.name, names, self.unit, f"{here}.force.at", given["force"]["at"], REACH * self.size
+            )
+        return made
+
+    def _options(self) -> list[Control]:
+        chosen, friction = chosen_method(self.scene), self.scene.friction_coefficient
+        if friction is None:
+            friction = round(math.tan(NO_SLIP_ANGLE_DEFAULT_RAD), 6) if chosen == "stepwise" else 0.0
+        most = max(MOST_FRICTION, 2.0 * friction)
+        return [
+            self._slider("contacts", "friction", "", "friction", None, friction, 0.0, most),
+            Control("contacts", "method", "", "method", None, chosen, choices=METHODS),
+        ]
+
+    def _vector(
+        self,
+        group: str,
+        labels: tuple[str, ...],
+        unit: str,
+        key: str,
+        values: list[float],
+        reach: float,
+        *,
+        about_zero: bool = False,
+    ) -> list[Control]:
+        middles = [0.0] * len(values) if about_zero else values
+        return [
+            self._slider(group, label, unit, key, index, value, middle - reach, middle + reach)
+            for index, (label, value, middle) in enumerate(zip(labels, values, middles, strict=True))
+        ]
+
+    def _slider(
+        self, group: str, label: str, unit: str, key: str, index: int | None, value: float, low: float, high: float
+    ) -> Control:
+        step = 10.0 ** math.floor(math.log10((high - low) / STEPS))  # a round number of decimals
+        return Control(group, label, unit, key, index, float(value), low, high, step)
+
+
+def _rounded_up(value: float) -> float:
+    """Return the next number above that is 1, 2 or 5 times a power of ten."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return next((step * power for step in (1.0, 2.0, 5.0) if step * power >= value), 10.0 * power)

@@ -1,0 +1,183 @@
+"""What a page needs to play a run: plain numbers in drawing coordinates, and words."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from cagepose.files.units import from_metres
+from cagepose.files.words import LengthWords
+from cagepose.model.checks import FloatArray
+from cagepose.runs.run import AT_REST, FAILURES
+from cagepose.runs.weights import weigh
+from cagepose.studies.comparison import ENDS, same_pose
+from cagepose.views.viewer.playback import LoadArrow, Playback, Row, Shot, Touches
+from cagepose.views.viewer.stage import EXAGGERATIONS, MOST_ADDED, Stage
+
+AMOUNT_DIGITS = 4
+"""A list beside a picture is for reading; saved runs have all digits."""
+
+
+def page_data(shown: Playback) -> dict[str, Any]:
+    """Return the data of a page: only dict, list, str, int, finite float, bool and None.
+
+    Lengths are in drawing units (see `Stage`), but for the words and for ``origin``, which is in the scene's own unit.
+    Axes, normals, forces and centres are in the object's frame, so that they go along with the object as it is shown.
+    """
+    return _Writer(shown).document()
+
+
+class _Writer:
+    def __init__(self, shown: Playback) -> None:
+        self.shown = shown
+        self.run = shown.run
+        self.stage = Stage(shown)
+        self.words = LengthWords(shown.length_unit, shown.run.scene.size_m)
+        self.touches = list(dict.fromkeys(shot.touches for shot in shown.shots))
+        self.which = {touches: index for index, touches in enumerate(self.touches)}
+
+    def document(self) -> dict[str, Any]:
+        run, stage = self.run, self.stage
+        held = run.scene.object
+        return {
+            "name": run.scene.name,
+            "method": run.method,
+            "solve": f"{run.solve_s * 1000.0:.3g} ms",
+            "verdict": run.verdict,
+            "verdictKind": verdict_kind(run.verdict),
+            "unit": self.shown.length_unit,
+            "unitsPerDrawing": float(from_metres(stage.size_m, self.shown.length_unit)),
+            "radius": stage.radius,
+            "shotsPerMotion": self.shown.shots_per_motion,
+            "mostAdded": MOST_ADDED,
+            "exaggeration": stage.proposed,
+            "exaggerations": list(EXAGGERATIONS),
+            "boxes": [
+                {
+                    "name": box.name,
+                    "size": _numbers(box.size_m / stage.size_m),
+                    "position": _numbers(box.pose_object_box.position_m / stage.size_m),
+                    "quaternion": _numbers(box.pose_object_box.quaternion_wxyz),
+                }
+                for box in held.boxes
+            ],
+            "center": _numbers(held.center_of_gravity_m / stage.size_m),
+            "names": list(run.scene.cage.names),
+            "points": [_numbers(point) for point in stage.place(self.shown.points_world)],
+            "feet": [_numbers(foot) for foot in stage.place(stage.feet_world)],
+            "greatestForce": self._greatest_force(),
+            "forceUnit": self._force_unit(),
+            "phases": [
+                {"name": phase.name, "loads": [self._load(arrow) for arrow in arrows]}
+                for phase, arrows in zip(run.phases, self.shown.loads, strict=True)
+            ],
+            "rows": [self._row(row) for row in self.shown.rows],
+            "touches": [self._touch(touches) for touches in self.touches],
+            "shots": [self._shot(shot) for shot in self.shown.shots],
+            "notes": notes(self.shown),
+        }
+
+    def _shot(self, shot: Shot) -> dict[str, Any]:
+        pose = shot.pose_world_object
+        return {
+            "row": shot.row,
+            "phase": shot.phase,
+            "position": _numbers(self.stage.place(pose.position_m)),
+            "quaternion": _numbers(pose.quaternion_wxyz),
+            "origin": _numbers(from_metres(pose.position_m, self.shown.length_unit)),
+            "angles": [math.degrees(angle) for angle in pose.euler_zyx],
+            "touches": self.which[shot.touches],
+        }
+
+    def _touch(self, touches: Touches) -> dict[str, Any]:
+        forces = touches.forces_object
+        return {
+            "points": touches.points.tolist(),
+            "boxes": list(touches.boxes),
+            "normals": (touches.normals_object + 0.0).tolist(),
+            "forces": None if forces is None else (forces + 0.0).tolist(),
+        }
+
+    def _row(self, row: Row) -> dict[str, Any]:
+        motion = row.event.motion
+        return {
+            "phase": row.phase,
+            "rule": row.event.rule,
+            "motion": "" if motion is None else motion.kind,
+            "amount": "" if motion is None else self.words.amount(motion, AMOUNT_DIGITS),
+            "hit": list(row.event.hit),
+            "contacts": list(row.event.contacts),
+            "verdict": row.verdict,
+            "verdictKind": None if row.verdict is None else verdict_kind(row.verdict),
+            "first": row.first_shot,
+            "last": row.last_shot,
+            "line": self._line(row),
+        }
+
+    def _line(self, row: Row) -> dict[str, Any] | None:
+        motion = row.event.motion
+        if motion is None:
+            return None
+        before = self.shown.shots[row.first_shot - 1].pose_world_object
+        along = motion.direction_world if motion.axis_world is None else motion.axis_world
+        assert along is not None
+        through = before.position_m if motion.through_world is None else motion.through_world
+        return {
+            "turns": motion.axis_world is not None,
+            "through": _numbers(before.inverse_transform(through) / self.stage.size_m),
+            "direction": _numbers(along @ before.rotation),
+        }
+
+    def _load(self, arrow: LoadArrow) -> dict[str, Any]:
+        return {
+            "name": arrow.name,
+            "at": _numbers(arrow.at_object_m / self.stage.size_m),
+            "direction": _numbers(arrow.force_world / np.linalg.norm(arrow.force_world)),
+        }
+
+    def _greatest_force(self) -> float:
+        return self.shown.greatest_force or 1.0
+
+    def _force_unit(self) -> str:
+        loads = self.run.scene.loads[: len(self.run.phases)]
+        return "N" if all(weigh(self.run.scene, load).in_newtons for load in loads) else "parts of the load"
+
+
+def verdict_kind(verdict: str) -> str:
+    """Return "rest", "failure" or "elsewhere", which a page gives colours."""
+    if verdict in AT_REST:
+        return "rest"
+    return "failure" if verdict in FAILURES else "elsewhere"
+
+
+def notes(shown: Playback) -> list[str]:
+    """Return what a careful viewer should know: why each phase ended as it did, and the run's warnings."""
+    run = shown.run
+    ends = []
+    for phase in run.phases:
+        proof = phase.proof
+        if phase.verdict in AT_REST:
+            ends.append(f"{phase.name}: {phase.verdict} ({proof.stability or 'moves'}): {proof.reason}")
+        else:
+            where = f" after event {len(shown.rows)}: {_failing(shown)}" if phase.verdict in FAILURES else ""
+            ends.append(f"{phase.name}: {phase.verdict}{where}")
+    return [*ends, *(f"Warning: {warning}" for warning in run.warnings)]
+
+
+def _failing(shown: Playback) -> str:
+    """Return why the last phase found no end; of a pose that came back, which event had it before."""
+    *before, last = (row for row in shown.rows if row.phase == len(shown.run.phases) - 1)
+    same = [number for number, row in enumerate(shown.rows, 1) if row in before and _ends_alike(shown, row, last)]
+    if shown.run.verdict == "cycling" and same:
+        return f"its pose is that of event {same[-1]}, so it would repeat itself for ever"
+    return ENDS[shown.run.verdict]
+
+
+def _ends_alike(shown: Playback, one: Row, other: Row) -> bool:
+    return one.event.contacts == other.event.contacts and same_pose(shown.run.scene, one.event, other.event)
+
+
+def _numbers(values: FloatArray) -> list[float]:
+    return [float(value) + 0.0 for value in values]

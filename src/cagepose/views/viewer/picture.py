@@ -1,0 +1,206 @@
+"""One shot of a playback as a picture: the same things in the same colours as on the page."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from PIL import Image
+
+from cagepose.files.units import from_metres
+from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
+from cagepose.views.viewer.caption import LOUD_INK, QUIET_INK, Caption, Label
+from cagepose.views.viewer.playback import Shot
+from cagepose.views.viewer.raster import Color, Raster
+from cagepose.views.viewer.stage import Stage
+
+SIZE = (900, 600)
+"""Pixels across and down."""
+FINER = 2
+"""How many times as many are drawn before they are put together."""
+AZIMUTH, ELEVATION = math.radians(-56.0), math.radians(24.0)
+BLUE, SKY, GREY, DARK = (0.0, 0.447, 0.698), (0.337, 0.706, 0.914), (0.6, 0.6, 0.6), (0.45, 0.45, 0.45)
+ORANGE, VERMILLION, PURPLE, BLACK = (0.902, 0.624, 0.0), (0.835, 0.369, 0.0), (0.8, 0.475, 0.655), (0.05, 0.05, 0.05)
+BALL, FREE_BALL, ROD, LONGEST_ARROW, NORMAL = 0.01, 0.007, 0.0045, 0.22, 0.07
+"""In sizes of the scene, as on the page."""
+SEE_THROUGH = 0.3
+FEW_NAMES = 14
+"""Of more contacts than these, only those are named that press or were just reached."""
+LEAST_FORCE = 1e-9
+"""In parts of the greatest one; what is less is rounding."""
+_EDGES = ((0, 1), (0, 2), (0, 4), (1, 3), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 6), (5, 7), (6, 7))
+_FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+
+
+class PictureMaker:
+    """Draws shots of one playback, all from the same place."""
+
+    def __init__(self, stage: Stage, exaggeration: int, size: tuple[int, int] = SIZE) -> None:
+        self.stage = stage
+        self.width, self.height = size
+        self.shown = stage.shown
+        self.exaggeration = exaggeration
+        boxes = self.shown.run.scene.object.boxes
+        self.corners_object = np.concatenate([box.corners_object() for box in boxes])
+        self.points = stage.place(stage.points(exaggeration))
+        sin_a, cos_a, sin_e, cos_e = math.sin(AZIMUTH), math.cos(AZIMUTH), math.sin(ELEVATION), math.cos(ELEVATION)
+        back = np.array([cos_a * cos_e, sin_a * cos_e, sin_e])
+        right = np.array([-sin_a, cos_a, 0.0])
+        self.axes = np.stack([right, np.cross(back, right), back])
+        self.arrow_per_force = LONGEST_ARROW / (self.shown.greatest_force or 1.0)
+        self._fit()
+        center = stage.center_object_m
+        self.way = self._pixels(
+            stage.place(np.stack([self._shown(shot).transform(center) for shot in self.shown.shots]))
+        )
+        self.raster = Raster(self.width * FINER, self.height * FINER)
+        self._draw_standing()
+        units_per_pixel = float(from_metres(stage.size_m, self.shown.length_unit)) * FINER / self.pixels
+        self.caption = Caption(self.shown, exaggeration, size, units_per_pixel)
+
+    def picture(self, shot: Shot) -> Image.Image:
+        """Return one shot as a picture."""
+        self.raster.begin()
+        self.labels: list[Label] = []
+        pose = self.stage.pose(shot.pose_world_object, self.exaggeration)
+        self._draw_points(shot)
+        self._draw_touches(shot, pose)
+        self._draw_loads(shot, pose)
+        self._draw_motion(shot, pose)
+        self._draw_way(shot)
+        self._draw_object(pose)
+        image = self.raster.shrunk(FINER)
+        self.caption.write(image, shot, self.labels)
+        return image
+
+    def _fit(self) -> None:
+        """Choose scale and middle so that the ends of all events, the cage, the loads and the last forces fit."""
+        ends = [self._shown(self.shown.shots[shot]) for shot in (0, *(row.last_shot for row in self.shown.rows))]
+        places = [self.stage.place(pose.transform(self.corners_object)) for pose in ends]
+        for arrow in (arrow for loads in self.shown.loads for arrow in loads):
+            tip = self.stage.place(ends[-1].transform(arrow.at_object_m))
+            places.append((tip - LONGEST_ARROW * arrow.force_world / np.linalg.norm(arrow.force_world))[None])
+        last = self.shown.shots[-1].touches
+        if last.forces_object is not None:
+            places.append(self.points[last.points] - self.arrow_per_force * last.forces_object @ ends[-1].rotation.T)
+        seen = np.concatenate([*places, self.points]) @ self.axes.T
+        low, high = seen.min(axis=0), seen.max(axis=0)
+        self.middle = (low + high) / 2.0
+        half = np.maximum((high - low) / 2.0, 0.05)
+        self.pixels = 0.42 * FINER * min(self.width / half[0], self.height / half[1])
+
+    def _shown(self, shot: Shot) -> Pose:
+        return self.stage.pose(shot.pose_world_object, self.exaggeration)
+
+    def _pixels(self, places: FloatArray) -> FloatArray:
+        """Turn drawing coordinates into those of the raster."""
+        seen = (places @ self.axes.T - self.middle) * self.pixels * np.array([1.0, -1.0, 1.0])
+        pixels: FloatArray = seen + np.array([self.width, self.height, 0.0]) * FINER / 2.0
+        return pixels
+
+    def _rod(self, start: FloatArray, end: FloatArray, radius: float, color: Color) -> None:
+        first, last = self._pixels(np.stack([start, end]))
+        self.raster.rod(first, last, max(radius * self.pixels, 0.5 * FINER), color)
+
+    def _arrow(self, tail: FloatArray, tip: FloatArray, radius: float, color: Color) -> None:
+        length = float(np.linalg.norm(tip - tail))
+        if length < 0.01:
+            return
+        neck = tip - min(5.0 * radius / length, 0.6) * (tip - tail)
+        self._rod(tail, neck, radius, color)
+        first, last = self._pixels(np.stack([neck, tip]))
+        self.raster.rod(first, last, 2.6 * radius * self.pixels, color, 0.0)
+
+    def _ball(self, place: FloatArray, radius: float, color: Color) -> None:
+        self.raster.ball(self._pixels(place), radius * self.pixels, color)
+
+    def _name(self, place: FloatArray, text: str, *, is_loud: bool) -> None:
+        x, y = (self._pixels(place)[:2] / FINER).tolist()
+        self.labels.append(Label((x, y), text, LOUD_INK if is_loud else QUIET_INK))
+
+    def _draw_standing(self) -> None:
+        """Draw what all shots have: where the object started, and the cage; a point that touches covers itself."""
+        self._draw_edges(self.stage.reference, GREY)
+        for point in self.points:
+            self._ball(point, FREE_BALL, DARK)
+        self.raster.keep()
+
+    def _draw_points(self, shot: Shot) -> None:
+        touching = set(shot.touches.points.tolist())
+        row = self.shown.rows[shot.row] if shot.row >= 0 else None
+        is_end = row is not None and self.shown.shots[row.last_shot] is shot
+        pressing = self._pressing(shot)
+        for index, name in enumerate(self.shown.run.scene.cage.names):
+            if is_end and row is not None and name in row.event.hit:
+                color = VERMILLION
+            else:
+                color = ORANGE if index in touching else DARK
+            if color != DARK:
+                self._ball(self.points[index], BALL, color)
+            counts = color == VERMILLION or (color == ORANGE and (len(touching) <= FEW_NAMES or index in pressing))
+            if counts or len(self.points) <= FEW_NAMES:
+                self._name(self.points[index], name, is_loud=color != DARK)
+
+    def _pressing(self, shot: Shot) -> set[int]:
+        """Return the points that bear some of the load in a shot."""
+        if shot.touches.forces_object is None:
+            return set()
+        forces = np.linalg.norm(shot.touches.forces_object, axis=1)
+        return set(shot.touches.points[forces > LEAST_FORCE * self.shown.greatest_force].tolist())
+
+    def _draw_touches(self, shot: Shot, pose: Pose) -> None:
+        places, forces = self.points[shot.touches.points], shot.touches.forces_object
+        for place, normal in zip(places, shot.touches.normals_object @ pose.rotation.T, strict=True):
+            self._rod(place, place + NORMAL * normal, 0.3 * ROD, (0.3, 0.3, 0.3))
+        if forces is not None:
+            for place, arrow in zip(places, self.arrow_per_force * forces @ pose.rotation.T, strict=True):
+                self._arrow(place - arrow, place, ROD, VERMILLION)
+
+    def _draw_loads(self, shot: Shot, pose: Pose) -> None:
+        for arrow in self.shown.loads[shot.phase]:
+            tip = self.stage.place(pose.transform(arrow.at_object_m))
+            tail = tip - LONGEST_ARROW * arrow.force_world / np.linalg.norm(arrow.force_world)
+            self._arrow(tail, tip, 1.3 * ROD, BLACK)
+            self._name(tail, arrow.name, is_loud=True)
+
+    def _draw_motion(self, shot: Shot, pose: Pose) -> None:
+        row = self.shown.rows[shot.row] if shot.row >= 0 else None
+        if row is None or row.event.motion is None:
+            return
+        motion = row.event.motion
+        before = self.shown.shots[row.first_shot - 1]
+        carried = self._shown(before)
+        along = motion.direction_world if motion.axis_world is None else motion.axis_world
+        assert along is not None
+        direction = self.stage.normal(along, before.pose_world_object, carried)
+        if motion.through_world is None:
+            center = self.stage.place(pose.transform(self.stage.center_object_m))
+            self._arrow(center, center + 0.25 * direction, 0.8 * ROD, PURPLE)
+            return
+        through = carried.transform(before.pose_world_object.inverse_transform(motion.through_world))
+        middle = self.stage.place(through)
+        middle = middle - (middle @ direction) * direction
+        half = math.sqrt(max(0.04, self.stage.radius**2 - float(middle @ middle)))
+        self._rod(middle - half * direction, middle + half * direction, 0.5 * ROD, PURPLE)
+
+    def _draw_way(self, shot: Shot) -> None:
+        """Draw the way of the centre of gravity up to a shot."""
+        way = self.way[: self.shown.shots.index(shot) + 1]
+        self.raster.lines(way[:-1], way[1:], BLUE)
+
+    def _draw_object(self, pose: Pose) -> None:
+        self._draw_edges(pose, BLUE)
+        center = self.stage.place(pose.transform(self.stage.center_object_m))
+        self._ball(center, BALL, BLUE)
+        faces = [corners[list(face)] for corners in self._corners(pose) for face in _FACES]
+        for face in sorted(faces, key=lambda corners: float(corners[:, 2].mean())):
+            self.raster.face(face, SKY, SEE_THROUGH)
+
+    def _draw_edges(self, pose: Pose, color: Color) -> None:
+        starts, ends = (self._corners(pose)[:, which].reshape(-1, 3) for which in np.array(_EDGES).T)
+        self.raster.lines(starts, ends, color)
+
+    def _corners(self, pose: Pose) -> FloatArray:
+        """All boxes' corners on the raster, (n_boxes, 8, 3)."""
+        return self._pixels(self.stage.place(pose.transform(self.corners_object))).reshape(-1, 8, 3)

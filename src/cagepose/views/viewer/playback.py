@@ -1,0 +1,251 @@
+"""A run as something to play: shots from the start to the end, and a row of words for each event."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.files.units import LengthUnit
+from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
+from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
+from cagepose.runs.weights import weigh
+from cagepose.views.viewer.surface import nearest_on_object
+
+SHOTS_PER_MOTION = 24
+"""One second of film for each motion."""
+ESCAPE = 0.6
+"""How much of a travel without end is shown, in sizes of the scene; of a turn, in radians."""
+LEAST_ARROW = 0.01
+"""A load or force below this fraction of the greatest of its phase is not drawn; its arrow would be a dot."""
+
+
+@dataclass(frozen=True, eq=False)
+class Touches:
+    """What touches, in the object's frame: so it stays as it is while the object moves.
+
+    Attributes
+    ----------
+    points
+        Indices of n cage points, (n,).
+    boxes
+        Names of the boxes that they touch.
+    normals_object
+        Outward unit normals of the faces, (n, 3).
+    forces_object
+        Forces on the object, (n, 3), newtons or parts of the load; None: not known, as during a motion.
+    """
+
+    points: NDArray[np.int64]
+    boxes: tuple[str, ...]
+    normals_object: FloatArray
+    forces_object: FloatArray | None
+
+    def chosen(self, which: Sequence[bool]) -> Touches:
+        """Return those of which ``which`` says so, without forces."""
+        boxes = tuple(itertools.compress(self.boxes, which))
+        mask = np.array(which, dtype=bool)
+        return Touches(self.points[mask], boxes, self.normals_object[mask], None)
+
+
+@dataclass(frozen=True, eq=False)
+class Shot:
+    """One moment of a run.
+
+    Attributes
+    ----------
+    row
+        Index of the event that is going on; -1 at the start.
+    phase
+        Index of the phase.
+    pose_world_object
+        Where the object is.
+    touches
+        What touches it there; one and the same for all shots on the way of a motion.
+    """
+
+    row: int
+    phase: int
+    pose_world_object: Pose
+    touches: Touches
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """One event, for the list beside the picture.
+
+    Attributes
+    ----------
+    phase
+        Index of the phase.
+    event
+        What happened.
+    verdict
+        How the phase ended, if this was its last event.
+    first_shot, last_shot
+        Where in the playback; the shot before ``first_shot`` is the one where the event began.
+    """
+
+    phase: int
+    event: Event
+    verdict: str | None
+    first_shot: int
+    last_shot: int
+
+
+@dataclass(frozen=True, eq=False)
+class LoadArrow:
+    """A weight or a push.
+
+    Attributes
+    ----------
+    name
+        "weight" or the phase's name.
+    at_object_m
+        Where it acts, in the object's frame, (3,), metres.
+    force_world
+        In newtons or parts of the load, (3,).
+    """
+
+    name: str
+    at_object_m: FloatArray
+    force_world: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Playback:
+    """All that a viewer shows of a run.
+
+    Attributes
+    ----------
+    run, length_unit
+        What is shown, and the unit of lengths on screen.
+    points_world
+        The cage, (n, 3), metres.
+    shots, rows
+        The film and its list of events.
+    shots_per_motion
+        How many shots each motion has.
+    loads
+        For each phase that was run, what pushes.
+    """
+
+    run: Run
+    length_unit: LengthUnit
+    points_world: FloatArray
+    shots: tuple[Shot, ...]
+    rows: tuple[Row, ...]
+    shots_per_motion: int
+    loads: tuple[tuple[LoadArrow, ...], ...]
+
+    @property
+    def greatest_force(self) -> float:
+        """Of all contact forces in all shots, newtons or parts of the load; 0 where none is known."""
+        known = [shot.touches.forces_object for shot in self.shots if shot.touches.forces_object is not None]
+        return max((float(np.linalg.norm(forces, axis=1).max()) for forces in known), default=0.0)
+
+
+def playback(run: Run, length_unit: LengthUnit = "mm", shots_per_motion: int = SHOTS_PER_MOTION) -> Playback:
+    """Turn a run into shots and rows; each motion gets ``shots_per_motion`` of them, each finding one."""
+    camera = _Camera(run, shots_per_motion)
+    for phase_index, phase in enumerate(run.phases):
+        camera.shoot(phase_index, phase)
+    loads = tuple(_load_arrows(run, index) for index in range(len(run.phases)))
+    return Playback(
+        run, length_unit, camera.points_world, tuple(camera.shots), tuple(camera.rows), shots_per_motion, loads
+    )
+
+
+class _Camera:
+    def __init__(self, run: Run, shots_per_motion: int) -> None:
+        self.run = run
+        self.shots_per_motion = shots_per_motion
+        self.points_world = run.scene.cage.points_world()
+        self.names = run.scene.cage.names
+        self.index = {name: index for index, name in enumerate(self.names)}
+        start = run.phases[0].start_pose
+        self.shots: list[Shot] = [Shot(-1, 0, start, self._touches(start, ()))]
+        self.rows: list[Row] = []
+
+    def shoot(self, phase_index: int, phase: PhaseRun) -> None:
+        pose, before = phase.start_pose, frozenset[str]()
+        for event in phase.events:
+            last = event is phase.events[-1]
+            first_shot, row = len(self.shots), len(self.rows)
+            escape = _escape(phase, self.run.scene.size_m) if last else None
+            end = event.pose_world_object if escape is None else escape.pose_at(pose, 1.0)
+            is_held = last and escape is None
+            touches = self._touches(end, event.contacts)
+            kept = touches.chosen([name in before for name in event.contacts])
+            for way in self._way(pose, event, escape):
+                self.shots.append(Shot(row, phase_index, way, kept))
+            self.shots.append(Shot(row, phase_index, end, self._held(end, phase.contacts) if is_held else touches))
+            verdict = phase.verdict if last else None
+            self.rows.append(Row(phase_index, event, verdict, first_shot, len(self.shots) - 1))
+            pose, before = event.pose_world_object, frozenset(event.contacts)
+
+    def _way(self, start: Pose, event: Event, escape: Motion | None) -> list[Pose]:
+        fractions = [step / self.shots_per_motion for step in range(1, self.shots_per_motion)]
+        if escape is not None:
+            return [escape.pose_at(start, fraction) for fraction in fractions]
+        if event.motion is None:
+            return []
+        return [self.run.pose_on_the_way(start, event, fraction) for fraction in fractions]
+
+    def _touches(self, pose: Pose, names: tuple[str, ...]) -> Touches:
+        points = self._indices(names)
+        held = self.run.scene.object
+        nearest = nearest_on_object(held, pose, self.points_world[points])
+        boxes = tuple(str(held.boxes[box].name) for box in nearest.boxes.tolist())
+        return Touches(points, boxes, nearest.normals_world @ pose.rotation, None)
+
+    def _held(self, pose: Pose, contacts: tuple[Contact, ...]) -> Touches:
+        if not contacts:
+            return self._touches(pose, ())
+        forces = [_force(contact) for contact in contacts]
+        return Touches(
+            self._indices(tuple(contact.point for contact in contacts)),
+            tuple(contact.box for contact in contacts),
+            np.array([contact.normal_world for contact in contacts]) @ pose.rotation,
+            None if any(force is None for force in forces) else np.array(forces) @ pose.rotation,
+        )
+
+    def _indices(self, names: tuple[str, ...]) -> NDArray[np.int64]:
+        return np.array([self.index[name] for name in names], dtype=np.int64)
+
+
+def _escape(phase: PhaseRun, size_m: float) -> Motion | None:
+    """Return as much as is shown of the motion by which an object gets away at the end of a phase."""
+    motion = phase.events[-1].motion
+    if phase.verdict != "escapes" or (motion is not None and math.isfinite(motion.distance_m)):
+        return None
+    if motion is not None:
+        return replace(motion, distance_m=ESCAPE * size_m)
+    onset = phase.proof.motion
+    if onset is None:
+        return None
+    way_m, angle = (ESCAPE * size_m, 0.0) if onset.kind == "travel" else (ESCAPE * onset.pitch_m, ESCAPE)
+    return Motion(onset.kind, onset.direction_world, onset.axis_world, onset.through_world, way_m, angle)
+
+
+def _force(contact: Contact) -> FloatArray | None:
+    if contact.force_normal_n is None:
+        return None
+    sideways = np.zeros(3) if contact.force_tangential_n is None else contact.force_tangential_n
+    force: FloatArray = sideways - contact.force_normal_n * contact.normal_world
+    return force
+
+
+def _load_arrows(run: Run, phase: int) -> tuple[LoadArrow, ...]:
+    load = run.scene.loads[phase]
+    weighed = weigh(run.scene, load)
+    arrows = [LoadArrow("weight", run.scene.object.center_of_gravity_m, weighed.gravity)]
+    if load.force is not None:
+        arrows.append(LoadArrow(load.name, load.force.at_object_m, weighed.force))
+    greatest = max(float(np.linalg.norm(arrow.force_world)) for arrow in arrows)
+    return tuple(arrow for arrow in arrows if float(np.linalg.norm(arrow.force_world)) > LEAST_ARROW * greatest)

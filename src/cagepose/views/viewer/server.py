@@ -1,0 +1,130 @@
+"""The live viewer: the page, and a server on this machine that runs the scene again when a slider moves.
+
+The server keeps nothing between two questions, so that windows cannot disturb each other: each sends all of its values.
+It answers only who names it by its own name, and takes values only as JSON, which a page from elsewhere cannot send: no
+other page that is open in the same browser can use it.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import sys
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import Any
+
+from cagepose.errors import CageposeError
+from cagepose.views.viewer.what_if import WhatIf
+
+PORTS_TRIED = 50
+"""From the first one up."""
+MAX_BODY_BYTES = 64 * 1024
+LOOPBACK = ("127.0.0.1", "localhost")
+
+
+class ViewServer(ThreadingHTTPServer):
+    """Serves one page, and answers what its controls ask if there is a scene file to change."""
+
+    daemon_threads = True
+    # Else the port of a viewer that has just ended is taken for a minute, and a page that is still open asks in vain.
+    # On Windows, a port that somebody else listens on would then seem free.
+    allow_reuse_address = os.name != "nt"
+
+    def __init__(self, page: str, what_if: WhatIf | None, host: str, port: int) -> None:
+        self.page = page.encode()
+        self.what_if = what_if
+        super().__init__((host, port), _Answers)
+        self.names = {f"{name}:{self.server_port}" for name in LOOPBACK} if host in LOOPBACK else None
+
+    @property
+    def address(self) -> str:
+        """Where a browser finds it."""
+        return f"http://{self.server_address[0]!s}:{self.server_port}/"
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Tell of what went wrong, but not of a tab that was closed while its answer was on the way."""
+        if not isinstance(sys.exception(), ConnectionError):
+            super().handle_error(request, client_address)
+
+
+def open_server(page: str, what_if: WhatIf | None, host: str, port: int) -> ViewServer:
+    """Return a server that listens on ``port``, or on the next free one; it answers once `serve_forever` is called.
+
+    Raises
+    ------
+    OSError
+        No such host, or no port is free.
+    """
+    for candidate in range(port, min(port + PORTS_TRIED, 2**16)):
+        try:
+            return ViewServer(page, what_if, host, candidate)
+        except OSError as error:
+            if error.errno not in (errno.EADDRINUSE, errno.EACCES):
+                raise
+    raise OSError(f"no port from {port} to {min(port + PORTS_TRIED, 2**16) - 1} is free; name another")
+
+
+class _Answers(BaseHTTPRequestHandler):
+    server: ViewServer
+    protocol_version = "HTTP/1.1"
+    timeout = 60.0
+
+    def do_GET(self) -> None:
+        if not self._is_meant():
+            return
+        if self.path != "/":
+            self._send(HTTPStatus.NOT_FOUND, "text/plain", b"there is one page, at /\n")
+            return
+        self._send(HTTPStatus.OK, "text/html", self.server.page)
+
+    def do_POST(self) -> None:
+        if not self._is_meant():
+            return
+        what_if = self.server.what_if
+        if what_if is None or self.path not in ("/run", "/scene"):
+            self._send(HTTPStatus.NOT_FOUND, "text/plain", b"nothing can be changed here\n")
+            return
+        try:
+            values = self._values()
+            if self.path == "/scene":
+                self._send(HTTPStatus.OK, "application/yaml", what_if.saved(values).encode())
+            else:
+                self._send_json(HTTPStatus.OK, what_if.answer(values))
+        except (CageposeError, ValueError) as error:
+            self._send_json(HTTPStatus.UNPROCESSABLE_ENTITY, {"problems": what_if.problems(error)})
+
+    def _is_meant(self) -> bool:
+        names = self.server.names
+        if names is None or self.headers.get("Host") in names:
+            return True
+        self._send(HTTPStatus.FORBIDDEN, "text/plain", b"this server answers only under its own name\n")
+        return False
+
+    def _values(self) -> object:
+        length = int(self.headers.get("Content-Length") or 0)
+        if not 0 <= length <= MAX_BODY_BYTES:
+            self.close_connection = True  # what was sent is left unread
+            raise ValueError("too much was sent")
+        body = self.rfile.read(length)
+        if self.headers.get_content_type() != "application/json":
+            raise ValueError("values must be sent as JSON")
+        try:
+            return json.loads(body)
+        except RecursionError:
+            raise ValueError("values are nested too deep") from None
+
+    def _send_json(self, status: HTTPStatus, content: dict[str, Any]) -> None:
+        self._send(status, "application/json", json.dumps(content, allow_nan=False, separators=(",", ":")).encode())
+
+    def _send(self, status: HTTPStatus, kind: str, content: bytes) -> None:
+        self.send_response(status)
+        self.send_header("Content-Type", f"{kind}; charset=utf-8")
+        self.send_header("Content-Length", str(len(content)))
+        self.send_header("Cache-Control", "no-store")
+        self.end_headers()
+        self.wfile.write(content)
+
+    def log_message(self, format: str, *arguments: object) -> None:
+        """Print nothing: every slider asks many times."""

@@ -1,0 +1,112 @@
+"""A scene file that a viewer changes and runs again, and again. It keeps nothing between two questions."""
+
+from __future__ import annotations
+
+import json
+from pathlib import PurePath
+from typing import Any
+
+import numpy as np
+
+from cagepose.errors import CageposeError, SceneFileError
+from cagepose.files.key_path import value_at
+from cagepose.files.scene_edit import edited, edited_text
+from cagepose.files.scene_file import SceneText
+from cagepose.runs.solve import run
+from cagepose.views.viewer.controls import Control, controls
+from cagepose.views.viewer.page_data import page_data
+from cagepose.views.viewer.playback import playback
+
+SHOTS_PER_MOTION = 4
+"""Fewer than in an exported page, whose maker need not wait for them; the page fills in what is between."""
+DECIMALS = 10
+"""Of degrees: an orientation that was a quaternion changes by far less than the touch tolerance, and reads well."""
+
+
+class WhatIf:
+    """Runs one scene file with values that somebody asks for.
+
+    Attributes
+    ----------
+    controls
+        What may be asked for.
+    file_name
+        What the file with changed values may be called.
+    """
+
+    def __init__(self, scene_text: SceneText, set_values: tuple[str, ...] = (), method: str | None = None) -> None:
+        """``set_values`` and ``method`` change the file before anybody else does; a cage's quaternion becomes angles.
+
+        Raises
+        ------
+        SceneFileError
+            The scene cannot be used, see `load_scene`.
+        """
+        changes = set_values if method is None else (*set_values, f"method={method}")
+        self._text = _with_angles(edited(scene_text, changes))
+        self.controls: list[Control] = controls(self._text)
+        self.file_name = f"{PurePath(scene_text.yaml.source).stem}-changed.yaml"
+
+    def answer(self, values: object) -> dict[str, Any]:
+        """Return the data of a page for the scene with ``values``, a mapping from keys of controls.
+
+        Raises
+        ------
+        SceneFileError
+            The scene with these values cannot be used; the message says why.
+        ValueError
+            A key that no control has, or a value that is neither a number, a word nor a list of numbers.
+        """
+        scene_file = self._text.scene_file(self._settings(values))
+        return page_data(playback(run(scene_file.scene), scene_file.length_unit, SHOTS_PER_MOTION))
+
+    def saved(self, values: object) -> str:
+        """Return the text of the scene file with ``values``.
+
+        Raises
+        ------
+        SceneFileError, ValueError
+            As `answer`.
+        """
+        return edited_text(self._text, self._settings(values))
+
+    def problems(self, error: CageposeError | ValueError) -> list[str]:
+        """Return what is wrong, in words for people who look at sliders and not at the file."""
+        if isinstance(error, SceneFileError):
+            return [str(problem).split(": ", 1)[-1] for problem in error.problems]
+        return [str(error)]
+
+    def _settings(self, values: object) -> tuple[str, ...]:
+        if not isinstance(values, dict):
+            raise ValueError("the values are no mapping")
+        keys = {control.key for control in self.controls}
+        settings = []
+        for key, value in values.items():
+            if key not in keys:
+                raise ValueError(f"{key} cannot be changed here")
+            if not _is_plain(value):
+                raise ValueError(f"{key} is no number, no word and no list of numbers")
+            given = {"coefficient": value} if key == "friction" else value
+            settings.append(f"{key}={json.dumps(given)}")
+        return tuple(settings)
+
+
+def _with_angles(scene_text: SceneText) -> SceneText:
+    """Write the cage's orientation as angles, for which there are sliders."""
+    pose = value_at(scene_text.yaml.data, ("cage", "pose"))
+    if value_at(pose, ("quat_wxyz",)) is None:
+        return scene_text
+    angles = np.degrees(scene_text.scene_file().scene.cage.pose_world_cage.euler_zyx)
+    kept = {key: value for key, value in pose.items() if key != "quat_wxyz"}
+    anew = {**kept, "euler_zyx_deg": np.round(angles, DECIMALS).tolist()}
+    return edited(scene_text, [f"cage.pose={json.dumps(anew)}"])
+
+
+def _is_plain(value: object) -> bool:
+    if isinstance(value, list):
+        return len(value) < 10 and all(_is_number(item) for item in value)
+    return _is_number(value) or (isinstance(value, str) and value.isalnum())
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)

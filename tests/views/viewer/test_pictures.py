@@ -1,0 +1,102 @@
+"""Pictures and films of runs, drawn without a display."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from cagepose import load_scene, run
+from cagepose.files.write import MADE_BY
+from cagepose.views.viewer.film import END_MS, SHOTS_PER_MOTION, gif_bytes, png_bytes
+from cagepose.views.viewer.picture import SIZE, PictureMaker
+from cagepose.views.viewer.playback import playback
+from cagepose.views.viewer.raster import BACKGROUND, Raster
+from cagepose.views.viewer.stage import Stage
+
+SCENES = Path(__file__).resolve().parents[3] / "scenes"
+
+
+def pixel(raster: Raster, x: int, y: int) -> list[float]:
+    return (raster.colors[y, x] / 255.0).tolist()
+
+
+def test_what_is_nearer_covers_what_is_farther_in_whatever_order_it_is_drawn():
+    for order in ((1, -1), (-1, 1)):
+        raster = Raster(40, 40)
+        for side in order:
+            height = 10.0 * side
+            color = (1.0, 0.0, 0.0) if side > 0 else (0.0, 1.0, 0.0)
+            raster.ball(np.array([20.0, 20.0, height]), 5.0, color)
+        red, green, blue = pixel(raster, 20, 20)
+        assert red > 0.9
+        assert (green, blue) == (0.0, 0.0)
+        assert pixel(raster, 2, 2) == pytest.approx(BACKGROUND, abs=1.0 / 255.0)
+
+
+def test_a_face_tints_what_is_behind_it_and_not_what_is_before():
+    raster = Raster(40, 40)
+    raster.ball(np.array([10.0, 20.0, -10.0]), 4.0, (0.0, 0.0, 0.0))
+    raster.ball(np.array([30.0, 20.0, 10.0]), 4.0, (0.0, 0.0, 0.0))
+    square = np.array([[0.0, 10.0, 0.0], [39.0, 10.0, 0.0], [39.0, 30.0, 0.0], [0.0, 30.0, 0.0]])
+    raster.face(square, (1.0, 1.0, 1.0), 0.25)
+    assert pixel(raster, 10, 20) == pytest.approx([0.25] * 3, abs=0.5 / 255.0)
+    assert pixel(raster, 30, 20) == [0.0] * 3
+
+
+def test_a_slanted_line_is_covered_where_it_passes_behind():
+    raster = Raster(60, 20)
+    raster.ball(np.array([30.0, 10.0, 0.0]), 6.0, (1.0, 1.0, 1.0))
+    line = np.array([[5.0, 10.0, 20.0], [55.0, 10.0, -30.0]])
+    raster.lines(line[:1], line[1:], (0.0, 0.0, 0.0))
+    assert pixel(raster, 10, 10) == [0.0] * 3
+    assert pixel(raster, 50, 10) == [0.0] * 3
+    assert min(pixel(raster, 33, 10)) > 0.5
+
+
+def is_warm(picture: Image.Image, place: np.ndarray) -> bool:
+    """Whether there is yellow or red within a few pixels of a place, seen through blue or not; all else is not."""
+    x, y = place[:2].astype(int)
+    around = np.asarray(picture, dtype=float)[y - 4 : y + 5, x - 4 : x + 5]
+    return bool((around[..., 0] - around[..., 2]).max() > 25.0)
+
+
+def test_contacts_are_drawn_where_they_are_and_everything_fits():
+    shown = playback(run(load_scene(SCENES / "sample.yaml"), "stepwise"))
+    maker = PictureMaker(Stage(shown), 1)
+    picture = maker.picture(shown.shots[-1])
+    places = maker._pixels(maker.points) / 2.0
+    assert ((places[:, :2] > 0.0) & (places[:, :2] < SIZE)).all()
+    touching = set(shown.shots[-1].touches.points.tolist())
+    assert [is_warm(picture, place) for place in places] == [index in touching for index in range(len(places))]
+    assert not any(is_warm(maker.picture(shown.shots[0]), place) for place in places)
+
+
+def test_a_picture_of_any_scene_is_ours_and_the_same_each_time():
+    for scene in ("ladder", "wedge", "v-groove"):
+        shown = playback(run(load_scene(SCENES / f"{scene}.yaml")))
+        content = png_bytes(shown)
+        assert MADE_BY.encode() in content
+        with Image.open(io.BytesIO(content)) as picture:
+            assert picture.size == SIZE
+    assert png_bytes(shown) == content
+
+
+def test_a_film_has_all_shots_rests_where_events_end_and_does_not_stand_still():
+    answer = run(load_scene(SCENES / "slope.yaml"))
+    shown = playback(answer, "mm", SHOTS_PER_MOTION)
+    with Image.open(io.BytesIO(gif_bytes(answer, "mm"))) as film:
+        total = 0
+        last, n_changes = None, 0
+        for index in range(film.n_frames):
+            film.seek(index)
+            total += film.info["duration"]
+            now = np.asarray(film.convert("RGB"))
+            n_changes += last is not None and bool((now != last).any())
+            last = now
+        assert film.info["comment"] == MADE_BY.encode()
+    assert n_changes >= SHOTS_PER_MOTION
+    assert total > END_MS + 80 * (len(shown.shots) - 1)

@@ -1,0 +1,50 @@
+"""Which port the viewer's server takes."""
+
+from __future__ import annotations
+
+import http.client
+import socket
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from cagepose.views.viewer.server import ViewServer, open_server
+
+HOST = "127.0.0.1"
+
+
+@contextmanager
+def serving(port: int) -> Iterator[ViewServer]:
+    with open_server("page", None, HOST, port) as server:
+        thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02})
+        thread.start()
+        try:
+            yield server
+        finally:
+            server.shutdown()
+            thread.join()
+
+
+def free_port() -> int:
+    with socket.create_server((HOST, 0)) as taken:
+        return int(taken.getsockname()[1])
+
+
+def test_a_viewer_that_ended_leaves_its_port_to_the_next_one_while_a_page_is_still_open():
+    port = free_port()
+    with serving(port) as server:
+        page = http.client.HTTPConnection(HOST, server.server_port, timeout=10)
+        page.request("GET", "/")
+        assert page.getresponse().read() == b"page"
+    with serving(port) as server:
+        assert server.server_port == port
+        again = http.client.HTTPConnection(HOST, port, timeout=10)
+        again.request("GET", "/")
+        assert again.getresponse().read() == b"page"
+        again.close()
+    page.close()
+
+
+def test_a_port_on_which_somebody_listens_is_left_alone():
+    with serving(free_port()) as one, serving(one.server_port) as other:
+        assert one.server_port < other.server_port
