@@ -6,6 +6,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 LOCKED := $(VENV)/.locked
 READY := $(VENV)/.ready
+BUILT := $(VENV)/.kernels
 PEERS := $(VENV)/.peers
 UV_VERSION := 0.13.8
 
@@ -30,7 +31,13 @@ $(LOCKED): requirements.lock
 	@$(BIN)/python -m pip install -qq --require-hashes -r requirements.lock
 	@touch $@
 
-$(READY): $(LOCKED) pyproject.toml
+# A kernel's change makes a new library; `pip install` below then finds it built.
+$(BUILT): $(LOCKED) $(shell find src/cagepose/kernels -name '*.py' -not -path '*/native/*') $(wildcard build_kernels/*.*)
+	@echo "Compiling the kernels (about a minute) ..."
+	@PYTHONPATH=src $(BIN)/python -m build_kernels
+	@touch $@
+
+$(READY): $(LOCKED) $(BUILT) pyproject.toml
 	@$(BIN)/python -m pip install -qq --no-deps --no-build-isolation -e .
 	@touch $@
 

@@ -18,7 +18,7 @@ import numpy as np
 from bench.rail_case import Answer
 from bench.timing import median_cpu_s, median_s
 from cagepose import Scene, Variation, run
-from cagepose.kernels.native.jit import bound
+from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.stability.proof import empty_proof_room, prove
 from cagepose.model.pose import Pose
 from cagepose.runs.batches import Batch, QuasistaticBatch, StepwiseBatch
@@ -56,8 +56,7 @@ def proof_call(scene: Scene, method: str, pose: Pose, phase: int) -> Callable[[]
     judge = Judge(scene, default if scene.friction_coefficient is None else scene.friction_coefficient)
     room = empty_proof_room(judge.geometry)
     position, quaternion = judge.frames.inward(pose)
-    return bound(
-        prove,
+    arguments = (
         judge.geometry,
         judge.body,
         position,
@@ -68,3 +67,4 @@ def proof_call(scene: Scene, method: str, pose: Pose, phase: int) -> Callable[[]
         judge.tolerances,
         room,
     )
+    return partial(prove, *[Slots(argument) for argument in arguments])

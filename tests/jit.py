@@ -1,25 +1,17 @@
-"""Running kernels from tests, compiled or not."""
+"""Running kernels from tests, as machine code or not."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-import numba
+from cagepose.kernels.native.library import kernel_library
 
-from cagepose.kernels.native.jit import JIT_IS_OFF
+JIT_IS_OFF = kernel_library() is None
 
 
 def callable_kernel(kernel: Callable[..., Any]) -> Callable[..., Any]:
-    """The machine code of a kernel, which is plain Python when Python calls it."""
-    if JIT_IS_OFF:
-        return kernel
-
-    @numba.njit
-    def call(*arguments):
-        return kernel(*arguments)
-
-    return call
+    return kernel
 
 
 def cases(n_compiled: int) -> int:

@@ -4,7 +4,8 @@
     ├── SceneError           a scene that cannot be right: every problem found, each with its place
     │   └── SceneFileError   the same, found in a scene file: each place has its line and column
     ├── RunFileError         a saved run that cannot be read
-    └── MissingExtraError    a part of cagepose that is not installed
+    ├── MissingExtraError    a part of cagepose that is not installed
+    └── KernelsError         the machine code that is built with cagepose is missing, or does not fit
 
 Anything else that escapes is a bug of ours.
 """
@@ -108,3 +109,7 @@ def printable(text: str) -> str:
     'two\\nlines'
     """
     return "".join(char if char.isprintable() else char.encode("unicode_escape").decode() for char in text)
+
+
+class KernelsError(CageposeError, ImportError):
+    """The machine code that is built with cagepose is missing, older than its sources, or not for this processor."""

@@ -43,10 +43,8 @@ def compare_command(
     if wrong:
         return 2
 
-    from cagepose.cli.first_run import announce_compilation
     from cagepose.studies.comparison import compare
 
-    announce_compilation()
     comparison = compare(scene_file.scene, friction or None)
     if json:
         from json import dumps

@@ -54,11 +54,9 @@ def play_command(
         sys.stderr.write("\n".join(problems) + "\n")
         return 2
 
-    from cagepose.cli.first_run import announce_compilation
     from cagepose.studies.play import play
     from cagepose.studies.play_rest import play_rests
 
-    announce_compilation()
     try:
         found = play(
             scene_file.scene,

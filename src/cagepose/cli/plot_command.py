@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from cagepose.cli.first_run import announce_compilation
 from cagepose.cli.options import AtOption, SetOption
 from cagepose.cli.run_source import MethodOption, RunOrSceneArgument, read_run_or_scene, run_of
 
@@ -85,7 +84,6 @@ def _play_picture(
     from cagepose.views.play_figure import play_figure
     from cagepose.views.style import figure_bytes
 
-    announce_compilation()
     found = play(source.run.scene if isinstance(source, RunFile) else source.scene)
     said = f"{found.scene.name}, {found.cage.verdict}"
     if kind == "extremes":

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from cagepose.cli.first_run import announce_compilation
-
 if TYPE_CHECKING:
     from rich.table import Table
 
@@ -29,7 +27,6 @@ def reproduce_command(
 
     try:
         check_report_folder(out, METHODS)
-        announce_compilation()
         progress = _teller()
         reproduction = reproduce(METHODS, progress)
         written = write_report(out, reproduction, progress)

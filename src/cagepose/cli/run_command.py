@@ -35,12 +35,10 @@ def run_command(
 
     from dataclasses import replace
 
-    from cagepose.cli.first_run import announce_compilation
     from cagepose.runs.critical import with_critical_friction
     from cagepose.runs.solve import run
     from cagepose.runs.tolerance_check import verdict_changes
 
-    announce_compilation()
     result = run(scene_file.scene, method)
     if critical_friction:
         result = with_critical_friction(result)

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from cagepose.cli.first_run import announce_compilation
-
 if TYPE_CHECKING:
     from cagepose.files.run_file import RunFile
     from cagepose.files.scene_file import SceneFile
@@ -63,5 +61,4 @@ def run_of(source: RunFile | SceneFile, method: str | None) -> RunFile:
 
     if isinstance(source, RunFile):
         return source
-    announce_compilation()
     return RunFile(run(source.scene, method), source.length_unit)

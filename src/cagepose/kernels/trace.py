@@ -11,7 +11,7 @@ from cagepose.kernels.algebra.pose import Quaternion, moved_pose
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.turn import angle_of_key
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 TRAVEL, TURN, SCREW, NONE = 0, 1, 2, 3
 """Codes of motions: the index into `MOTION_NAMES`; NONE has no name."""

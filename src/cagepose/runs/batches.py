@@ -14,7 +14,7 @@ from cagepose.kernels.batch.quasistatic import quasistatic_runs
 from cagepose.kernels.batch.rows import Endings, Starts, empty_endings
 from cagepose.kernels.batch.stepwise import stepwise_runs
 from cagepose.kernels.contact.metric import PhaseLoad
-from cagepose.kernels.native.jit import bound
+from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.quasistatic.run import QuasistaticRules, empty_quasistatic_workspace
 from cagepose.kernels.stability.proof import empty_proof_room
 from cagepose.kernels.stepwise.run import PhaseLoads, empty_workspace
@@ -56,10 +56,6 @@ class Batch(ABC):
     def room(self) -> Callable[[int, int], None]:
         """Return a call of the kernel, with room for one thread: it runs the first up to, without, the last."""
 
-    def load(self) -> None:
-        """Compile the kernel, or read it from disk, so that threads need not."""
-        self._idle_rooms.append(self.room())
-
     def run_piece(self, first: int, last: int) -> int:
         """Run ``first`` up to, without, ``last``, in any thread; return how many these are."""
         try:
@@ -86,10 +82,8 @@ class StepwiseBatch(Batch):
 
     def room(self) -> Callable[[int, int], None]:
         geometry = self._frames.geometry(self._scene)
-        return bound(
+        return _prepared(
             stepwise_runs,
-            0,
-            0,
             self._starts,
             self._loads,
             geometry,
@@ -115,10 +109,8 @@ class QuasistaticBatch(Batch):
 
     def room(self) -> Callable[[int, int], None]:
         geometry = self._frames.geometry(self._scene)
-        return bound(
+        return _prepared(
             quasistatic_runs,
-            0,
-            0,
             self._starts,
             self._loads,
             geometry,
@@ -130,6 +122,11 @@ class QuasistaticBatch(Batch):
             empty_proof_room(geometry),
             self.endings,
         )
+
+
+def _prepared(kernel: Callable[..., None], *arguments: object) -> Callable[[int, int], None]:
+    slots = [Slots(argument) for argument in arguments]
+    return lambda first, last: kernel(first, last, *slots)
 
 
 def _starts(scene: Scene, columns: dict[str, FloatArray], frictions: FloatArray) -> Starts:
@@ -151,7 +148,7 @@ def _starts(scene: Scene, columns: dict[str, FloatArray], frictions: FloatArray)
 
 
 def _owned(array: FloatArray) -> FloatArray:
-    """A copy that can be written to, in C order: to Numba any other is of another type, to be compiled for anew."""
+    """A copy in C order, as kernels take arrays."""
     return np.array(array, order="C")
 
 

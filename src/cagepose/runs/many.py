@@ -121,8 +121,6 @@ def run_many(
     batches: list[Batch] = [
         kinds[name](scene, variation or Variation()) for scene, name in zip(all_scenes, methods, strict=True)
     ]
-    for batch in {type(batch): batch for batch in batches}.values():
-        batch.load()
     began = time.perf_counter()
     _run_all(batches, threads or os.cpu_count() or 1, _show_progress if progress is True else progress or None)
     solve_s = time.perf_counter() - began

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 
-from cagepose.kernels.native.jit import bound
 from cagepose.kernels.quasistatic.run import (
     RULE_NAMES,
     QuasistaticRules,
@@ -34,8 +33,8 @@ def run_quasistatic(scene: Scene, turn_step_rad: float = TURN_STEP_RAD) -> Run:
     rules = QuasistaticRules(friction, turn_step_rad, STEP_LIMIT)
     work = empty_quasistatic_workspace(judge.geometry, len(scene.loads), STEP_LIMIT)
     start = frames.inward(scene.object.pose_world_object)
-    run_compiled = bound(
-        quasistatic_run,
+    began = time.perf_counter()
+    n_phases, n_steps = quasistatic_run(
         judge.geometry,
         judge.body,
         *start,
@@ -45,8 +44,6 @@ def run_quasistatic(scene: Scene, turn_step_rad: float = TURN_STEP_RAD) -> Run:
         judge.tolerances,
         work,
     )
-    began = time.perf_counter()
-    n_phases, n_steps = run_compiled()
     solve_s = time.perf_counter() - began
 
     phases = list[PhaseRun]()

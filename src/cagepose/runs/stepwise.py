@@ -9,7 +9,6 @@ import numpy as np
 
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
 from cagepose.kernels.collision.turn import key_of_angle
-from cagepose.kernels.native.jit import bound
 from cagepose.kernels.stepwise.run import RULE_NAMES, PhaseLoads, StepwiseRules, empty_workspace, stepwise_run
 from cagepose.kernels.stepwise.slip import SlipRules
 from cagepose.kernels.stepwise.support import SupportRules
@@ -55,8 +54,8 @@ def run_stepwise(scene: Scene) -> Run:
     loads = phase_loads(scene, frames.middle_object)
     tolerances = kernel_tolerances(scene.size_m, scene.tolerances.touch)
     workspace = empty_workspace(geometry, len(scene.loads), rules)
-    run_compiled = bound(
-        stepwise_run,
+    began = time.perf_counter()
+    n_phases, n_events = stepwise_run(
         geometry,
         *frames.inward(scene.object.pose_world_object),
         loads,
@@ -65,8 +64,6 @@ def run_stepwise(scene: Scene) -> Run:
         tolerances,
         workspace,
     )
-    began = time.perf_counter()
-    n_phases, n_events = run_compiled()
     solve_s = time.perf_counter() - began
 
     friction = scene.friction_coefficient

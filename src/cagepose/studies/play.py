@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike
 
 from cagepose.errors import Problem, SceneError
 from cagepose.kernels.algebra.record import Rows, empty_rows
-from cagepose.kernels.native.jit import bound
 from cagepose.kernels.play.certificate import CAGED, CertificateRoom, certify, empty_certificate_room
 from cagepose.kernels.play.goal import PITCH, ROLL, SHIFT, YAW, Goal
 from cagepose.kernels.play.rows import empty_play_room
@@ -143,12 +142,10 @@ def play(
     work = empty_certificate_room(len(room.faces))
     bounds = np.full(len(goals), np.inf)
     touch_m = scene.tolerances.touch * scene.size_m
-    analyse = bound(find_play, frame.geometry, frame.length_m, goals, extremes, room)
-    certify_ends = bound(certify, frame.geometry, frame.length_m, touch_m, goals, bounds, room, work)
     started = perf_counter()
-    analyse()
+    find_play(frame.geometry, frame.length_m, goals, extremes, room)
     analysed = perf_counter()
-    certify_ends()
+    certify(frame.geometry, frame.length_m, touch_m, goals, bounds, room, work)
     certified = perf_counter()
     writer = _Writer(scene, frame, goals, extremes, bounds, work)
     freedoms = {name: PlayRange(*writer.ends(place)) for place, name in enumerate(FREEDOMS)}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 SWEEPS = 30
 NEGLIGIBLE = 1e-20
@@ -34,7 +34,7 @@ def symmetric_eigen(matrix: FloatArray, vectors: FloatArray, n: int) -> None:
 def rotate(matrix: FloatArray, vectors: FloatArray, n: int, p: int, q: int) -> None:
     """Make entry (p, q) zero."""
     half = 0.5 * (matrix[q, q] - matrix[p, p]) / matrix[p, q]
-    tangent = math.copysign(1.0, half) / (abs(half) + math.hypot(half, 1.0))
+    tangent = math.copysign(1.0, half) / (abs(half) + math.sqrt(half * half + 1.0))
     cosine = 1.0 / math.sqrt(tangent * tangent + 1.0)
     sine = tangent * cosine
     for k in range(n):

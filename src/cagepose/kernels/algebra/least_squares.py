@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 MOST_ROWS = 13
 """Of all systems that are solved with this: those of `cagepose.kernels.stability.uniqueness`."""

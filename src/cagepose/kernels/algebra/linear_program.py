@@ -16,7 +16,7 @@ from typing import Annotated
 import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray
-from cagepose.kernels.native.jit import entry_kernel, kernel
+from cagepose.kernels.native.kernel import entry, kernel
 
 N_UNKNOWNS = 6
 OPTIMAL, UNBOUNDED, INFEASIBLE, FAILED = range(4)
@@ -253,7 +253,7 @@ def leaving_place(rows: FloatArray, room: ProgramRoom, enters: int, takes_first:
     return leaves
 
 
-@entry_kernel
+@entry
 def solve_program(rows: FloatArray, bounds: FloatArray, room: ProgramRoom) -> int:
     """Maximise ``room.objective`` . x subject to rows x <= bounds; the solution is ``room.x_near``.
 
@@ -312,7 +312,7 @@ def come_near(rows: FloatArray, bounds: FloatArray, room: ProgramRoom) -> None:
         room.x_near[k] += amount * room.x_far[k]
 
 
-@entry_kernel
+@entry
 def extents(rows: FloatArray, bounds: FloatArray, room: ProgramRoom, least: FloatArray, greatest: FloatArray) -> int:
     """Write the least and greatest value of each unknown, (6,) each, -inf and inf where there is none.
 

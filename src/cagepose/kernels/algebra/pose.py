@@ -9,7 +9,7 @@ import math
 
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Matrix, Vector, cross, minus, plus, scaled
-from cagepose.kernels.native.jit import entry_kernel, kernel
+from cagepose.kernels.native.kernel import entry, kernel
 
 Quaternion = tuple[float, float, float, float]
 
@@ -66,7 +66,7 @@ def quaternion_from_euler_zyx(yaw_rad: float, pitch_rad: float, roll_rad: float)
     return quaternion_product(about_z, quaternion_product(about_y, about_x))
 
 
-@entry_kernel
+@entry
 def write_quaternions(angles: FloatArray, quaternions: FloatArray) -> None:
     """Write the quaternion (n, 4) of each row of yaw, pitch, roll (n, 3)."""
     for index in range(len(angles)):
@@ -82,14 +82,14 @@ def euler_zyx_from_quaternion(q: Quaternion) -> Vector:
     The pitch comes from atan2 of both its sine and cosine: asin alone loses half of the digits near the pole.
     """
     m = matrix_from_quaternion(q)
-    cos_pitch = math.hypot(m[0][0], m[1][0])
+    cos_pitch = math.sqrt(m[0][0] * m[0][0] + m[1][0] * m[1][0])
     pitch = math.atan2(-m[2][0], cos_pitch)
     if cos_pitch < 1e-12:
         return (math.atan2(-m[0][1], m[1][1]), pitch, 0.0)
     return (math.atan2(m[1][0], m[0][0]), pitch, math.atan2(m[2][1], m[2][2]))
 
 
-@entry_kernel
+@entry
 def write_euler_zyx(quaternions: FloatArray, angles: FloatArray) -> None:
     """Write yaw, pitch, roll (n, 3) of each row of quaternions (n, 4)."""
     for index in range(len(quaternions)):

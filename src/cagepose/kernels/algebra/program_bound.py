@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.linear_program import N_UNKNOWNS, ProgramRoom, coefficient
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 SUM_ROUNDING = 4e-15
 """Of the magnitudes that are summed: twice the rounding of six products and their sum, twice."""

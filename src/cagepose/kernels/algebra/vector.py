@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]

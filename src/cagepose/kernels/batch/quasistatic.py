@@ -20,7 +20,7 @@ from cagepose.kernels.batch.rows import (
 )
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.contact.metric import Body, PhaseLoad
-from cagepose.kernels.native.jit import entry_kernel
+from cagepose.kernels.native.kernel import entry
 from cagepose.kernels.quasistatic.run import QuasistaticRules, QuasistaticWorkspace, phase_run
 from cagepose.kernels.quasistatic.step import Setting
 from cagepose.kernels.stability.proof import PROVEN_MOVES, TOO_MANY_CONTACTS, UNIQUENESS_NOT_SHOWN, ProofRoom, prove
@@ -28,7 +28,7 @@ from cagepose.kernels.stability.proof_search import search_onsets
 from cagepose.kernels.trace import RESTS, STALLED
 
 
-@entry_kernel
+@entry
 def quasistatic_runs(
     first: int,
     last: int,

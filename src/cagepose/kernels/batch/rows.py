@@ -12,7 +12,7 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, row, scaled
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 NOT_RUN = -1
 """Verdict code of a phase that was not reached."""

@@ -18,7 +18,7 @@ from cagepose.kernels.batch.rows import (
     write_ending,
 )
 from cagepose.kernels.collision.geometry import Geometry
-from cagepose.kernels.native.jit import entry_kernel, kernel
+from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.stepwise.run import PhaseLoads, StepwiseRules, Workspace, forget_contacts, phase_run
 from cagepose.kernels.stepwise.slip import SlipRules
 from cagepose.kernels.stepwise.support import SupportRules
@@ -36,7 +36,7 @@ def rules_of_run(of_size: StepwiseRules, no_slip_angle_rad: float, size_m: float
     )
 
 
-@entry_kernel
+@entry
 def stepwise_runs(
     first: int,
     last: int,

@@ -27,7 +27,7 @@ from cagepose.kernels.collision.geometry import (
     place_object,
     point_in_box,
 )
-from cagepose.kernels.native.jit import kernel, rare_kernel
+from cagepose.kernels.native.kernel import entry, kernel
 
 # In touch tolerances. The probe must clear a point that lies a whole tolerance inside (hence more than 1 and more
 # than the margin), and the margin must clear boxes that meet up to a tolerance apart. Scenes refuse boxes thinner
@@ -160,7 +160,7 @@ def steepest_contact(
     return best_cosine > -math.inf, best_normal, is_tie
 
 
-@rare_kernel
+@entry
 def fill_contact_rows(
     geometry: Geometry,
     position: Vector,

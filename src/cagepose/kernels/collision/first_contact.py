@@ -17,7 +17,7 @@ from cagepose.kernels.collision.geometry import Geometry, Placement, box_point, 
 from cagepose.kernels.collision.screw import screw_entry
 from cagepose.kernels.collision.travel import travel_entry
 from cagepose.kernels.collision.turn import turn_entry
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 SAFE = 1.0 + 1e-12
 """So that rounding passes over nothing that is just in reach."""

@@ -9,7 +9,7 @@ import numpy as np
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Matrix, Vector, matrix, minus, plus, row, times, transposed_times
-from cagepose.kernels.native.jit import kernel, rare_kernel
+from cagepose.kernels.native.kernel import entry, kernel
 
 
 class Geometry(NamedTuple):
@@ -87,7 +87,7 @@ def box_gap(point_box: Vector, half_size: Vector) -> float:
     return max(abs(point_box[0]) - half_size[0], abs(point_box[1]) - half_size[1], abs(point_box[2]) - half_size[2])
 
 
-@rare_kernel
+@entry
 def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, placement: Placement) -> None:
     """Fill ``placement`` for the object at the given pose."""
     rotation = matrix_from_quaternion(quaternion)

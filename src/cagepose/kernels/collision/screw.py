@@ -18,7 +18,7 @@ import math
 
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, scaled
 from cagepose.kernels.collision.geometry import box_gap
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 Wave = tuple[float, float, float, float]
 """(gap, A, B, D): signed distance beyond a face, f(s) = gap - 2 A sin^2(s/2) + B sin s + D s."""
@@ -47,7 +47,7 @@ def first_turning_points(wave: Wave) -> tuple[float, float]:
 
     f'(s) = -A sin s + B cos s + D = rho cos(s + phase) + D.
     """
-    rho = math.hypot(wave[1], wave[2])
+    rho = math.sqrt(wave[1] * wave[1] + wave[2] * wave[2])
     if rho <= abs(wave[3]):
         return math.inf, math.inf
     phase = math.atan2(wave[1], wave[2])

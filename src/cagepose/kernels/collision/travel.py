@@ -21,7 +21,7 @@ import math
 
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.geometry import box_gap
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 
 @kernel

@@ -21,7 +21,7 @@ import math
 
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, scaled
 from cagepose.kernels.collision.geometry import box_gap
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 SAFE = 1e-12
 """Of a key: so that rounding passes over nothing that comes first."""

@@ -26,7 +26,7 @@ from cagepose.kernels.contact.onset import (
     is_balance,
 )
 from cagepose.kernels.contact.sure_motion import moves_surely, step_to_balance
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 RESERVE = 1e-6
 """A balance that needs all but this part of the friction is at its limit."""

@@ -27,7 +27,7 @@ from cagepose.kernels.algebra.least_squares import (
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.contact.contact_set import ContactRow
 from cagepose.kernels.contact.metric import ScaledVector
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 BALANCED = 1e-11
 """In lengths of the terms of the residual. Ten thousand times their rounding: rounding that a nearly dependent set of

@@ -17,7 +17,7 @@ from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, row, vec
 from cagepose.kernels.collision.contacts import face_normal, is_hidden, touches_face
 from cagepose.kernels.collision.geometry import Geometry, Placement, box_point
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 SAME_NORMAL = 1e-9
 """Radians. Flush faces of two boxes give one contact."""

@@ -27,7 +27,7 @@ from cagepose.kernels.contact.coulomb_newton import (
     newton_on_modes,
 )
 from cagepose.kernels.contact.metric import WRENCH
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 ROUNDS = 240
 ROUNDS_UNDAMPED = 60
@@ -86,7 +86,7 @@ def coulomb_error(rows: Rows[ContactRow], n_contacts: int, friction: float, y: F
         normal = inner(rows[i].columns[0], y, 6)
         slip, one, two = steepest_tangent(rows[i], y)
         worst = max(worst, normal / size, min(-normal / size, forces[0] * size), -forces[0] * size)
-        tangential = math.hypot(forces[1], forces[2])
+        tangential = math.sqrt(forces[1] * forces[1] + forces[2] * forces[2])
         worst = max(worst, (tangential - friction * forces[0]) * size)
         missing = friction * forces[0] - (forces[1] * one + forces[2] * two)
         worst = max(worst, min(slip / size, missing * size))

@@ -12,7 +12,7 @@ from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.contact.cone import steepest_tangent
 from cagepose.kernels.contact.contact_set import ContactRow
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 CONTACT_LIMIT = 12
 """More contacts than this that carry: left to the sweeps."""

@@ -16,7 +16,7 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, plus, row, scaled, vector_from
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.metric import Frame, PhaseLoad, load_arm
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 
 @kernel

@@ -24,7 +24,7 @@ from cagepose.kernels.algebra.vector import (
     times,
     transposed_times,
 )
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 WRENCH = 6
 """Numbers of a wrench or twist."""

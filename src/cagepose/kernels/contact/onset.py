@@ -35,7 +35,7 @@ from cagepose.kernels.contact.contact_set import (
 from cagepose.kernels.contact.coulomb import allowed_error, coulomb_onset
 from cagepose.kernels.contact.coulomb_newton import NewtonRoom
 from cagepose.kernels.contact.metric import WRENCH, ScaledVector
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 HELD_WITHOUT_FRICTION, HELD_BY_FRICTION, UNSOLVED, MOVES = 0, 1, 2, 3
 """Codes of an onset, from the least to the most that moves."""

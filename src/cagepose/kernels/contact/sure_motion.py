@@ -15,7 +15,7 @@ from cagepose.kernels.algebra.least_squares import PRICE, inner, length, roundin
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.contact.cone import GENERATOR_LIMIT, ConeRoom, add_generator, go_on, steepest_tangent
 from cagepose.kernels.contact.contact_set import ContactRow
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 WIDER = 1.05
 """Times the friction."""

@@ -16,7 +16,7 @@ from cagepose.kernels.algebra.program_bound import dual_bound
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_record
 from cagepose.kernels.algebra.vector import Vector, cross, norm, row, scaled, vector_from
 from cagepose.kernels.collision.geometry import Geometry
-from cagepose.kernels.native.jit import entry_kernel, kernel
+from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.goal import PITCH, SHIFT, YAW, Goal, write_slope
 from cagepose.kernels.play.remainder import gap_left_out, spread, turning_left_out
 from cagepose.kernels.play.rows import PlayRoom, write_start
@@ -285,7 +285,7 @@ def shift_bound(goal: Goal, length_m: float, room: PlayRoom, certificate: Certif
     return length_m * (factor * bound_program(room, certificate) + above + ROUNDING)
 
 
-@entry_kernel
+@entry
 def certify(
     geometry: Geometry,
     length_m: float,

@@ -14,7 +14,7 @@ from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector, norm, plus, row, scaled, vector_from
 from cagepose.kernels.collision.first_contact import first_contact_travel, first_contact_turn
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
-from cagepose.kernels.native.jit import entry_kernel, kernel
+from cagepose.kernels.native.kernel import entry, kernel
 
 N_RANDOM = 12
 """Random numbers for each motion that is tried."""
@@ -82,7 +82,7 @@ def strangeness_of(position: Vector, quaternion: Quaternion, middle: Vector, len
     return norm(away) / length_m + 2.0 * norm((quaternion[1], quaternion[2], quaternion[3]))
 
 
-@entry_kernel
+@entry
 def grow_tree(
     geometry: Geometry,
     length_m: float,

@@ -8,7 +8,7 @@ from typing import Annotated
 from cagepose.kernels.algebra.pose import Quaternion, euler_zyx_from_quaternion, rotated
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, cross, row, scaled
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.play.newton import add_gap, add_product, add_turning
 from cagepose.kernels.play.rows import PlayRoom
 

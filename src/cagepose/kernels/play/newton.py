@@ -12,7 +12,7 @@ from typing import Annotated
 from cagepose.kernels.algebra.linear_program import ProgramRoom
 from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, norm
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 DEPENDENT = 1e-7
 """Rows of length about one: a part outside the span of the others that is shorter says nothing new."""

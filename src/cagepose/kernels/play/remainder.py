@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, scaled
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 
 @kernel

@@ -11,7 +11,7 @@ from cagepose.kernels.algebra.linear_program import OPTIMAL, ProgramRoom, extent
 from cagepose.kernels.algebra.record import FloatArray, IntArray, empty_record
 from cagepose.kernels.algebra.vector import Vector, cross, row
 from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement, place_object
-from cagepose.kernels.native.jit import entry_kernel, kernel
+from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.newton import NewtonRoom
 
 START = (0.0, 0.0, 0.0)
@@ -177,7 +177,7 @@ def choose_faces(geometry: Geometry, length_m: float, room: PlayRoom) -> None:
         room.bounds[pair] = math.inf
 
 
-@entry_kernel
+@entry
 def write_start(geometry: Geometry, length_m: float, room: PlayRoom) -> None:
     """Choose faces and write the rows (7.1) of the start, without a trust region.
 

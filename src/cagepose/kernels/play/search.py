@@ -15,7 +15,7 @@ from cagepose.kernels.algebra.pose import Quaternion, euler_zyx_from_quaternion,
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.algebra.vector import Vector, norm, scaled
 from cagepose.kernels.collision.geometry import Geometry, place_object
-from cagepose.kernels.native.jit import entry_kernel, kernel
+from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.goal import SHIFT, Goal, value_at, write_curvature, write_slope
 from cagepose.kernels.play.newton import (
     find_prices,
@@ -327,7 +327,7 @@ def put_on_faces(
     return position, quaternion
 
 
-@entry_kernel
+@entry
 def find_play(geometry: Geometry, length_m: float, goals: Rows[Goal], extremes: Rows[Extreme], room: PlayRoom) -> None:
     """Find the linear and the exact extreme for each goal.
 

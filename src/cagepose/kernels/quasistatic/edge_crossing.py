@@ -8,7 +8,7 @@ from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plu
 from cagepose.kernels.collision.geometry import Geometry, Placement, box_point, point_in_box, vector_in_box
 from cagepose.kernels.collision.screw import next_below
 from cagepose.kernels.contact.contact_set import ContactSet
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 CLEAR = 2.0
 """In touch tolerances: how far beyond the edge a contact is let go, so that it does not touch the next face too."""

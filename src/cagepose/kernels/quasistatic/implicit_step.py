@@ -18,7 +18,7 @@ from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.curvature import greatest_curvature
 from cagepose.kernels.contact.metric import WRENCH, ScaledVector
 from cagepose.kernels.contact.onset import MOVES, OnsetRoom, onset_with_faces
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 RAISES = 12
 """How often rho is raised, four times each, before the explicit step is taken after all."""

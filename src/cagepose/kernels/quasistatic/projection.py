@@ -23,7 +23,7 @@ from cagepose.kernels.contact.metric import (
     twist_of,
     write_scaled_wrench,
 )
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 ROUNDS = 12
 ON_FACE = 4e-16

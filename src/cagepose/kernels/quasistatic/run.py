@@ -37,7 +37,7 @@ from cagepose.kernels.contact.onset import (
     onset,
     sticks,
 )
-from cagepose.kernels.native.jit import entry_kernel, kernel
+from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.quasistatic.implicit_step import StiffRoom, curvature_along, keep_along_faces, stiff_step
 from cagepose.kernels.quasistatic.projection import ON_FACE
 from cagepose.kernels.quasistatic.step import (
@@ -403,7 +403,7 @@ def phase_run(
     return LIMIT, first_event + step_limit, position, quaternion
 
 
-@entry_kernel
+@entry
 def quasistatic_run(
     geometry: Geometry,
     body: Body,

@@ -15,7 +15,7 @@ from cagepose.kernels.collision.first_contact import allowed_depth, first_contac
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.metric import Body, PhaseLoad, moved_along_twist, total_force, work_done
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.edge_crossing import first_run_off
 from cagepose.kernels.quasistatic.projection import Pins, add_pin, empty_pins, pull_back
 

@@ -17,7 +17,7 @@ from cagepose.kernels.contact.contact_set import ContactRow, choose_next_faces
 from cagepose.kernels.contact.metric import Body, PhaseLoad
 from cagepose.kernels.contact.onset import COMBINATIONS_LIMIT, OnsetRoom
 from cagepose.kernels.contact.sure_motion import step_to_balance
-from cagepose.kernels.native.jit import kernel, rare_kernel
+from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.stability.proof import ProofRoom, stand_at
 
 FRICTION_GREATEST = 1e4
@@ -61,7 +61,7 @@ def least_friction(rows: Rows[ContactRow], n_contacts: int, solver: OnsetRoom) -
     return high
 
 
-@rare_kernel
+@entry
 def critical_friction(
     geometry: Geometry,
     body: Body,

@@ -30,7 +30,7 @@ from cagepose.kernels.contact.onset import (
     UNSOLVED,
     OnsetRoom,
 )
-from cagepose.kernels.native.jit import kernel, rare_kernel
+from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.stability.second_order import (
     MARGINAL,
     STABLE_REST,
@@ -117,7 +117,7 @@ def stand_at(
     return find_contacts(geometry, at.placement, position, frame, touch_m, at.contacts)
 
 
-@rare_kernel
+@entry
 def prove(
     geometry: Geometry,
     body: Body,

@@ -15,7 +15,7 @@ from cagepose.kernels.contact.contact_set import (
     put_best_faces_back,
 )
 from cagepose.kernels.contact.onset import COMBINATIONS_LIMIT, HELD_BY_FRICTION, MOVES, onset
-from cagepose.kernels.native.jit import entry_kernel, kernel, rare_kernel
+from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.stability.proof import OTHER_ONSET, PROVEN_UNIQUE, UNIQUENESS_NOT_SHOWN, JudgeRoom, ProofRoom
 from cagepose.kernels.stability.sure_contacts import rest_is_sure
 from cagepose.kernels.stability.uniqueness import OTHER_FOUND, UNIQUE, other_onset
@@ -55,7 +55,7 @@ def search_faces(friction: float, at: ProofRoom) -> int:
     return UNIQUENESS_NOT_SHOWN
 
 
-@entry_kernel
+@entry
 def search_onsets(friction: float, at: ProofRoom) -> int:
     """Try all contact modes (5.13) where `prove` has not shown that rest is the only onset.
 
@@ -81,7 +81,7 @@ def search_onsets(friction: float, at: ProofRoom) -> int:
     return proof
 
 
-@rare_kernel
+@entry
 def first_motion(friction: float, at: ProofRoom) -> None:
     """Write into ``at.rooms[0].solver.y`` how an object begins to move that does so by `prove`.
 

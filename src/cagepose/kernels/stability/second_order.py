@@ -24,7 +24,7 @@ from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.curvature import greatest_curvature, write_curvature
 from cagepose.kernels.contact.metric import WRENCH, Frame, PhaseLoad, ScaledVector
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 STABLE_REST, MARGINAL, UNSTABLE = 0, 1, 2
 """Codes of stability: the index into `STABILITY_NAMES`."""
@@ -121,7 +121,8 @@ def find_held(contacts: ContactSet, friction: float, room: StabilityRoom, system
         if contacts.rows[i].is_equality:
             hold(room.held, contacts.rows[i].columns[0], room)
             if friction > 0.0:
-                tangential = math.hypot(contacts.rows[i].forces[1], contacts.rows[i].forces[2])
+                one, two = contacts.rows[i].forces[1], contacts.rows[i].forces[2]
+                tangential = math.sqrt(one * one + two * two)
                 contacts.rows[i].is_sticking = tangential < (1.0 - AT_LIMIT) * friction * carried
                 at_limit = at_limit or not contacts.rows[i].is_sticking
     for i in range(n):

@@ -26,7 +26,7 @@ from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.contact.cone import HELD
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.metric import WRENCH, ScaledVector
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.second_order import IN_SPAN, StabilityRoom, find_free, hold, write_outside
 
 SURELY = 1e-6
@@ -68,7 +68,8 @@ def pushing_part(contact: ContactRow, basis: PassiveSet) -> float:
         one += first * first
         two += second * second
         both += first * second
-    return math.sqrt(0.5 * (one + two) + math.hypot(0.5 * (one - two), both))
+    half = 0.5 * (one - two)
+    return math.sqrt(0.5 * (one + two) + math.sqrt(half * half + both * both))
 
 
 @kernel
@@ -186,7 +187,8 @@ def write_shared_friction(
     aim(passive, row)  # from zero, costs alone: the shortest vector g with row_k . g = cost_k
     greatest = 0.0
     for place in range(n_sure):
-        greatest = max(greatest, math.hypot(passive.residual[2 * place], passive.residual[2 * place + 1]))
+        one, two = passive.residual[2 * place], passive.residual[2 * place + 1]
+        greatest = max(greatest, math.sqrt(one * one + two * two))
     return greatest
 
 

@@ -20,7 +20,7 @@ from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.coulomb import coulomb_error, motion_left
 from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS, NewtonRoom, newton_on_modes
 from cagepose.kernels.contact.metric import ScaledVector
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 
 CONTACT_LIMIT = 4
 """More contacts than this: not tried."""

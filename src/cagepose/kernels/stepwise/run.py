@@ -19,7 +19,7 @@ from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector, dot, minus, plus, row, vector_from
 from cagepose.kernels.collision.first_contact import first_contact_travel
 from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement, is_clear_of, place_object
-from cagepose.kernels.native.jit import entry_kernel, kernel
+from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.stepwise.slip import SlipRules, slip_step
 from cagepose.kernels.stepwise.support import (
     PointLoad,
@@ -265,7 +265,7 @@ def empty_workspace(geometry: Geometry, n_phases: int, rules: StepwiseRules) -> 
     )
 
 
-@entry_kernel
+@entry
 def stepwise_run(
     geometry: Geometry,
     start_position: Vector,

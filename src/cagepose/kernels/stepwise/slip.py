@@ -17,7 +17,7 @@ from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, row, scaled
 from cagepose.kernels.collision.first_contact import first_contact_travel, first_contact_turn
 from cagepose.kernels.collision.geometry import Geometry, Placement
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stepwise.support import PointLoad, held, moment_about
 from cagepose.kernels.trace import PLAIN, TRAVEL, TURN, Step
 

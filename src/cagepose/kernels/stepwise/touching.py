@@ -13,7 +13,7 @@ from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector, cross, dot, norm
 from cagepose.kernels.collision.contacts import steepest_contact
 from cagepose.kernels.collision.geometry import Geometry, Placement
-from cagepose.kernels.native.jit import kernel
+from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stepwise.support import PointLoad
 
 

@@ -1,0 +1,109 @@
+"""The library of machine code that is built with the program: finding it, and choosing what fits the processor.
+
+It holds each entry once for each level of the processor family, such as x86-64-v2 and v3 (with AVX2 and FMA), and a
+text that says which, and what each takes and gives. ``build_kernels`` writes both.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import json
+import os
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+from cagepose.errors import KernelsError
+
+VARIABLE = "CAGEPOSE_KERNELS"
+"""The environment variable that chooses: "python" for plain Python, a level such as "x86-64-v2" for its machine code;
+empty or missing: the best that the processor can run."""
+PLAIN_PYTHON = "python"
+KERNELS = Path(__file__).resolve().parent.parent
+FILE_NAME = {"win32": "kernels.dll", "darwin": "kernels.dylib"}.get(sys.platform, "kernels.so")
+LIBRARY = Path(__file__).resolve().parent / FILE_NAME
+REMEDY = f"build it with `make setup` (`pip install` does too), or set {VARIABLE}={PLAIN_PYTHON} for slow plain Python"
+
+
+class Library:
+    """Machine code in this process.
+
+    Attributes
+    ----------
+    signatures
+        For each entry what it takes, as `Slots.kinds`, and what it gives, as letters of `struct`.
+    level
+        Whose machine code is used.
+
+    Raises
+    ------
+    KernelsError
+        There is no such file, it cannot be loaded, or it has no such level.
+    """
+
+    def __init__(self, path: Path, level: str = "") -> None:
+        if not path.exists():
+            raise KernelsError(f"{path}: the library of kernels is missing; {REMEDY}")
+        try:
+            self._library = ctypes.CDLL(str(path))
+        except OSError as error:
+            raise KernelsError(f"{path}: the library of kernels cannot be loaded ({error}); {REMEDY}") from None
+        described = ctypes.c_char_p.in_dll(self._library, "cagepose_description").value or b"{}"
+        description = json.loads(described)
+        levels: list[str] = description["levels"]
+        self.signatures: dict[str, tuple[str, str]] = description["signatures"]
+        self.sources_hash: str = description["sources"]
+        if level and level not in levels:
+            raise KernelsError(f"{VARIABLE}={level} is unknown; choose {PLAIN_PYTHON} or one of {', '.join(levels)}")
+        best = self._library.cagepose_best_level()
+        if best < 0:
+            raise KernelsError(f"this processor is older than {levels[0]}; set {VARIABLE}={PLAIN_PYTHON}")
+        self.level = level or levels[best]
+
+    def function(self, name: str) -> Callable[..., int]:
+        """Return the machine code of an entry: ``int32_t name(int64_t *slots, double *the_same)``."""
+        found: Callable[..., int] = self._library[f"{name}.{self.level}"]
+        return found
+
+
+@cache
+def kernel_library() -> Library | None:
+    """Return the program's own library; None: kernels are plain Python, as the environment asks.
+
+    Raises
+    ------
+    KernelsError
+        As for `Library`, or it was built from other sources than those beside it.
+    """
+    chosen = os.environ.get(VARIABLE, "")
+    if chosen == PLAIN_PYTHON:
+        return None
+    library = Library(LIBRARY, chosen)
+    if is_checkout() and _is_older_than_sources() and library.sources_hash != sources_hash():
+        raise KernelsError(f"{LIBRARY}: kernels have changed since the library was built; {REMEDY}")
+    return library
+
+
+def is_checkout() -> bool:
+    """Whether the program runs from its source tree, where kernels may change."""
+    return (KERNELS.parents[2] / "build_kernels").is_dir()
+
+
+def kernel_sources() -> list[Path]:
+    """Return the files that are compiled."""
+    return sorted(path for path in KERNELS.rglob("*.py") if path.parent != LIBRARY.parent)
+
+
+def sources_hash() -> str:
+    """Return a hash of all that is compiled."""
+    digest = hashlib.sha256()
+    for path in kernel_sources():
+        digest.update(path.relative_to(KERNELS).as_posix().encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()
+
+
+def _is_older_than_sources() -> bool:
+    built = LIBRARY.stat().st_mtime
+    return any(path.stat().st_mtime > built for path in kernel_sources())
