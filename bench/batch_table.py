@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from bench.growth_table import exponent
-from bench.ours import METHODS, engine_name
+from bench.ours import engine_name
 from bench.rail_case import FloatArray, rail_scenes
 from bench.rows import Row
 from bench.timing import timed
 from cagepose import Runs, Scene, Variation, run_many
+from cagepose.model.methods import METHODS
 
 AT_REST = {"stepwise": "stable", "quasistatic": "rests"}
 BATCHES = tuple(10**k for k in range(7))

@@ -11,9 +11,10 @@ import tempfile
 import time
 from collections.abc import Iterator
 
-from bench.ours import METHODS, engine_name
+from bench.ours import engine_name
 from bench.rail_case import SCENES
 from bench.rows import Row
+from cagepose.model.methods import METHODS
 
 SCENE = SCENES / "rail-pitch.yaml"
 CACHED_STARTS = 5

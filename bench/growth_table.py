@@ -10,10 +10,11 @@ from functools import partial
 import numpy as np
 
 from bench.crowd import Kind, crowd_scene
-from bench.ours import METHODS, engine_name
+from bench.ours import engine_name
 from bench.rows import Row
 from bench.timing import collected, peak_bytes
 from cagepose import Scene, run
+from cagepose.model.methods import METHODS
 
 KINDS: tuple[Kind, ...] = ("dense", "spread")
 POINTS = tuple(2**k for k in range(2, 13))

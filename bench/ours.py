@@ -9,7 +9,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import partial
 
@@ -20,12 +19,11 @@ from bench.timing import median_cpu_s, median_s
 from cagepose import Scene, Variation, run
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.stability.proof import empty_proof_room, prove
+from cagepose.model.methods import DEFAULT_FRICTION
 from cagepose.model.pose import Pose
-from cagepose.runs.batches import Batch, QuasistaticBatch, StepwiseBatch
 from cagepose.runs.judge import Judge
-from cagepose.runs.stepwise import NO_SLIP_ANGLE_DEFAULT_RAD
+from cagepose.runs.methods import REGISTRY
 
-METHODS = ("stepwise", "quasistatic")
 PARTS = ("", "-solve", "-call")
 
 
@@ -36,7 +34,7 @@ def engine_name(method: str, part: str = "") -> str:
 def measure(scene: Scene, method: str, budget_s: float) -> tuple[dict[str, tuple[float, float]], Answer]:
     """Return (median wall, median CPU) seconds of each of `PARTS`, and the answer."""
     found = run(scene, method)
-    batch: Batch = (StepwiseBatch if method == "stepwise" else QuasistaticBatch)(scene, Variation())
+    batch = REGISTRY[method].batch(scene, Variation())
     prepared = partial(batch.room(), 0, 1)
     proofs = [proof_call(scene, method, phase.pose, index) for index, phase in enumerate(found.phases)]
     whole = partial(run, scene, method)
@@ -52,8 +50,7 @@ def measure(scene: Scene, method: str, budget_s: float) -> tuple[dict[str, tuple
 
 def proof_call(scene: Scene, method: str, pose: Pose, phase: int) -> Callable[[], object]:
     """Return the compiled proof of a pose, ready to be called, as `cagepose.run` calls it."""
-    default = math.tan(NO_SLIP_ANGLE_DEFAULT_RAD) if method == "stepwise" else 0.0
-    judge = Judge(scene, default if scene.friction_coefficient is None else scene.friction_coefficient)
+    judge = Judge(scene, DEFAULT_FRICTION[method] if scene.friction_coefficient is None else scene.friction_coefficient)
     room = empty_proof_room(judge.geometry)
     position, quaternion = judge.frames.inward(pose)
     arguments = (

@@ -14,6 +14,7 @@ from bench.rows import Row
 from bench.settle import QUIET_PART_OF_PLAY, QUIET_WINDOWS, NotSettledError, run_to_rest
 from bench.timing import median_cpu_s, median_s
 from cagepose import Scene
+from cagepose.model.methods import METHODS
 
 BUDGET_S = 0.4
 """Time for one engine on one scene; a slow engine runs three times, whatever that takes."""
@@ -30,12 +31,12 @@ def rail_rows() -> Iterator[Row]:
             yield _with_ratios(peer_row(scene, engine), slower)
 
 
-REFERENCE = tuple(ours.engine_name(method) for method in ours.METHODS)
+REFERENCE = tuple(ours.engine_name(method) for method in METHODS)
 """Engines of which the slower one is 1 in ``ratio_to_ours``."""
 
 
 def _own_rows(scene: Scene) -> Iterator[Row]:
-    for method in ours.METHODS:
+    for method in METHODS:
         times_s, answer = ours.measure(scene, method, BUDGET_S)
         error = tilt_error(scene, answer.rotations)
         for part in ours.PARTS:

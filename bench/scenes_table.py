@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from bench.ours import METHODS, PARTS, engine_name, measure
+from bench.ours import PARTS, engine_name, measure
 from bench.rail_case import SCENES
 from bench.rows import Row
 from cagepose import load_scene, run
+from cagepose.model.methods import METHODS
 
 BUDGET_S = 0.6
 

@@ -12,7 +12,7 @@ from typing import Any
 from cagepose import Run, run
 from cagepose.files.document import run_document
 from cagepose.files.scene_file import read_scene_file
-from cagepose.runs.solve import METHODS
+from cagepose.model.methods import METHODS
 
 ROOT = Path(__file__).resolve().parent.parent
 GOLDEN = ROOT / "tests" / "golden"

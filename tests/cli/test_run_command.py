@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cagepose.kernels.native.jit import Entry
 
 import cagepose.runs.solve
 from cagepose import Run, RunFileError, Scene, load_run, load_scene
 from cagepose.cli import first_run, report
-from cagepose.kernels.native.jit import Entry
-from cagepose.runs.solve import METHODS
+from cagepose.model.methods import METHODS
 from jit import JIT_IS_OFF
 
 Command = Callable[..., Any]

@@ -12,7 +12,7 @@ from cagepose import Run, run, with_critical_friction
 from cagepose.files.document import run_document
 from cagepose.files.scene_file import parse_scene
 from cagepose.files.units import LENGTH_UNITS, LengthUnit, from_metres, to_metres
-from cagepose.runs.solve import METHODS
+from cagepose.model.methods import METHODS
 
 TOP = ["version", "scene", "units", "method", "verdict", "warnings", "pose", "phases", "timing_s"]
 POSE = ["position", "euler_zyx_deg", "quat_wxyz", "center_of_gravity"]

@@ -16,7 +16,7 @@ from cagepose.files.document import run_document
 from cagepose.files.run_record import run_from_record, run_record
 from cagepose.files.scene_file import parse_scene
 from cagepose.files.scene_record import scene_from_record, scene_record
-from cagepose.runs.solve import METHODS
+from cagepose.model.methods import METHODS
 
 PUSH = "  - {name: push, force: {direction: [1, 0.3, 0.2], at: [1, 2, 3], magnitude: 7}}\n"
 FULL = """

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from cagepose.files.schema import SceneModel, scene_json_schema
 from cagepose.files.yaml_source import parse_yaml
-from cagepose.runs.solve import METHODS
+from cagepose.model.methods import METHODS
 
 
 def test_the_schema_names_its_dialect_and_title_and_is_plain_json() -> None:

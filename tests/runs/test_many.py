@@ -12,11 +12,11 @@ import pytest
 import cagepose
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, SceneError, Variation, run, run_many
 from cagepose.kernels.batch.stepwise import stepwise_runs
+from cagepose.model.methods import METHODS
 from cagepose.runs import many
 from jit import JIT_IS_OFF, cases
 from rails import rail_scene
 
-METHODS = ("stepwise", "quasistatic")
 MM = 1e-3
 
 POSTS = [

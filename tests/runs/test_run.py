@@ -7,7 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cagepose import Box, Cage, Load, Object, Scene, SceneError, load_scene, run
-from cagepose.runs.solve import METHODS
+from cagepose.model.methods import DEFAULT_FRICTION, DEFAULT_METHOD, METHODS
+from cagepose.runs.methods import REGISTRY
 from rails import rail_scene
 from random_scenes import random_scenes
 
@@ -85,3 +86,8 @@ def test_an_endless_travel_has_no_poses_on_its_way():
 def test_an_unknown_method_is_refused_with_the_known_ones():
     with pytest.raises(SceneError, match="known methods: stepwise, quasistatic"):
         run(rail_scene(), method="magic")
+
+
+def test_what_runs_a_method_is_registered_for_each_name():
+    assert tuple(REGISTRY) == METHODS == tuple(DEFAULT_FRICTION)
+    assert DEFAULT_METHOD in METHODS

@@ -11,7 +11,7 @@ def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int
     """Print what the scene holds, or every problem found."""
     from cagepose.files.scene_file import read_scene_file
     from cagepose.files.units import from_metres
-    from cagepose.runs.solve import chosen_method
+    from cagepose.runs.methods import chosen_method
 
     scene_file = read_scene_file(scene, set_values)
     found, unit = scene_file.scene, scene_file.length_unit

@@ -76,7 +76,7 @@ def _read(scene: str, set_values: tuple[str, ...], method: str | None, out: str 
 
     from cagepose.errors import SceneFileError, printable
     from cagepose.files.scene_file import read_scene_file
-    from cagepose.runs.solve import METHODS
+    from cagepose.model.methods import METHODS
 
     problems = []
     scene_file = None

@@ -32,7 +32,7 @@ def read_run_or_scene(
     from cagepose.errors import CageposeError, printable
     from cagepose.files.run_file import looks_like_run, read_run_file
     from cagepose.files.scene_file import read_scene_file
-    from cagepose.runs.solve import METHODS
+    from cagepose.model.methods import METHODS
 
     problems = list(problems_of_others)
     source: RunFile | SceneFile | None = None

@@ -12,9 +12,10 @@ from pydantic import BaseModel, ConfigDict, Field
 from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
 from cagepose.model.load import Force, Load
+from cagepose.model.methods import Metric
 from cagepose.model.parts import Box, Object
 from cagepose.model.pose import Pose
-from cagepose.model.scene import Adjustable, Metric, Scene
+from cagepose.model.scene import Adjustable, Scene
 from cagepose.model.tolerances import Tolerances
 
 Three = Annotated[list[float], Field(min_length=3, max_length=3)]

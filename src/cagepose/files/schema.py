@@ -6,7 +6,7 @@ outside the object, names used once, ...) is checked where the model is made, no
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import (
     AfterValidator,
@@ -23,10 +23,8 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import PydanticCustomError
 
 from cagepose.files.units import LengthUnit
+from cagepose.model.methods import DEFAULT_METHOD, DEFAULT_METRIC, METHODS, NO_SLIP_ANGLE_DEFAULT_RAD, Metric
 from cagepose.model.tolerances import TOUCH_DEFAULT, TOUCH_GREATEST, TOUCH_LEAST
-from cagepose.runs.judge import METRIC_DEFAULT
-from cagepose.runs.solve import DEFAULT_METHOD, METHODS
-from cagepose.runs.stepwise import NO_SLIP_ANGLE_DEFAULT_RAD
 
 LARGEST = 1e12
 """Greatest number in a scene file. The fifth power of a length (a moment of inertia) must stay a finite double."""
@@ -255,10 +253,10 @@ class SceneModel(_Mapping):
         None, description=f"Left out: none for quasistatic, an angle of {NO_SLIP_ANGLE_DEFAULT_RAD:g} rad for stepwise."
     )
     method: Method | None = Field(None, description=f"How to run the scene; left out: {DEFAULT_METHOD}.")
-    metric: Literal["release", "drag"] | None = Field(
+    metric: Metric | None = Field(
         None,
         description="How the object answers a load (quasistatic): released from rest, or dragged slowly; left out:"
-        f" {METRIC_DEFAULT}.",
+        f" {DEFAULT_METRIC}.",
     )
     tolerances: TolerancesModel | None = Field(None, description="Left out: the defaults.")
     adjustable: dict[Name, AdjustableModel] | None = Field(None, description="Named numbers for sliders and studies.")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
@@ -14,10 +13,9 @@ from cagepose.model.cage import Cage
 from cagepose.model.checks import ProblemList, duplicates
 from cagepose.model.geometry import object_seams, scene_geometry, scene_size
 from cagepose.model.load import Load
+from cagepose.model.methods import Metric
 from cagepose.model.parts import Object
 from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
-
-Metric = Literal["release", "drag"]
 
 FARTHEST_START = 1e4
 """In sizes of the scene. The rounding of a position 1e4 sizes away is about 2e-12 of the size, near the resolution."""

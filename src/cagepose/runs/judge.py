@@ -30,14 +30,14 @@ from cagepose.kernels.stability.proof import (
 from cagepose.kernels.stability.proof_search import first_motion, search_onsets
 from cagepose.kernels.stability.second_order import STABILITY_NAMES
 from cagepose.model.checks import FloatArray
+from cagepose.model.methods import DEFAULT_METRIC
 from cagepose.model.pose import Pose
-from cagepose.model.scene import Metric, Scene
+from cagepose.model.scene import Scene
 from cagepose.runs.frames import Frames
 from cagepose.runs.proof import FreeMotion, Proof
 from cagepose.runs.run import Contact
 from cagepose.runs.weights import dead_loads
 
-METRIC_DEFAULT: Metric = "release"
 REASONS = {
     PROVEN_WITHOUT_FRICTION: "the contacts balance the load without friction",
     PROVEN_UNIQUE: "the contacts balance the load with friction, and every other contact mode is ruled out",
@@ -61,7 +61,7 @@ def body_of(scene: Scene) -> Body:
     gyration = scene.object.gyration_m2
     corners = np.concatenate([box.corners_object() for box in scene.object.boxes])
     reach_m = float(np.linalg.norm(corners - scene.object.center_of_gravity_m, axis=1).max())
-    if (scene.metric or METRIC_DEFAULT) == "drag":
+    if (scene.metric or DEFAULT_METRIC) == "drag":
         squares, axes = np.full(3, np.trace(gyration) / 3.0), np.eye(3)
     else:
         squares, axes = np.linalg.eigh(gyration)

@@ -20,8 +20,8 @@ from cagepose.kernels.stability.proof import OTHER_ONSET, TOO_MANY_CHOICES, UNIQ
 from cagepose.kernels.trace import RESTS, VERDICT_NAMES
 from cagepose.model.checks import FloatArray
 from cagepose.model.scene import Scene
-from cagepose.runs.batches import Batch, QuasistaticBatch, StepwiseBatch
-from cagepose.runs.solve import chosen_method
+from cagepose.runs.batches import Batch
+from cagepose.runs.methods import REGISTRY, chosen_method
 from cagepose.runs.variation import Variation
 
 LONGEST_PIECE = 256
@@ -116,10 +116,8 @@ def run_many(
     if threads is not None and threads < 1:
         raise SceneError([Problem(("threads",), f"is {threads}; give 1 or more")])
     methods = [chosen_method(scene, method) for scene in all_scenes]
-    kinds: dict[str, Callable[[Scene, Variation], Batch]]
-    kinds = {"stepwise": StepwiseBatch, "quasistatic": QuasistaticBatch}
-    batches: list[Batch] = [
-        kinds[name](scene, variation or Variation()) for scene, name in zip(all_scenes, methods, strict=True)
+    batches = [
+        REGISTRY[name].batch(scene, variation or Variation()) for scene, name in zip(all_scenes, methods, strict=True)
     ]
     began = time.perf_counter()
     _run_all(batches, threads or os.cpu_count() or 1, _show_progress if progress is True else progress or None)

@@ -14,14 +14,13 @@ from cagepose.kernels.stepwise.slip import SlipRules
 from cagepose.kernels.stepwise.support import SupportRules
 from cagepose.kernels.trace import MOTION_NAMES, NONE, NOTE_NAMES, PLAIN, TRAVEL, VERDICT_NAMES, Trace
 from cagepose.model.checks import FloatArray, unit_vector
+from cagepose.model.methods import NO_SLIP_ANGLE_DEFAULT_RAD
 from cagepose.model.scene import Scene
 from cagepose.runs.frames import Frames, middle_of_boxes, touching_names
 from cagepose.runs.judge import Judge
 from cagepose.runs.remarks import edge_remarks, proof_remarks, seam_remarks
 from cagepose.runs.run import Event, Motion, Note, PhaseRun, Run, Verdict
 
-NO_SLIP_ANGLE_DEFAULT_RAD = 0.1
-"""The paper's threshold, from the friction of metal on metal."""
 BLOCKED_ANGLE_RAD = math.pi / 10000.0
 """A turn that ends within 0.018 deg is blocked (R3)."""
 LEAST_MOMENT = 1e-3

@@ -10,11 +10,11 @@ from typing import get_args
 import numpy as np
 
 from cagepose.model.checks import FloatArray
+from cagepose.model.methods import DEFAULT_FRICTION, Metric
 from cagepose.model.pose import Pose
-from cagepose.model.scene import Metric, Scene
+from cagepose.model.scene import Scene
 from cagepose.runs.run import AT_REST, Event, Motion, PhaseRun, Run, Verdict
 from cagepose.runs.solve import run
-from cagepose.runs.stepwise import NO_SLIP_ANGLE_DEFAULT_RAD
 
 SAME_POSE_OF_SIZE = 1e-6
 """Two poses are one where no corner of a box is farther apart than this fraction of the scene's size."""
@@ -106,7 +106,7 @@ def compare(scene: Scene, frictions: Sequence[float] | None = None) -> Compariso
     SceneError
         A coefficient below zero.
     """
-    own = float(np.tan(NO_SLIP_ANGLE_DEFAULT_RAD)) if scene.friction_coefficient is None else scene.friction_coefficient
+    own = DEFAULT_FRICTION["stepwise"] if scene.friction_coefficient is None else scene.friction_coefficient
     variants = [Variant("stepwise", own, run(scene, "stepwise"))]
     for friction in dict.fromkeys((0.0, own) if frictions is None else frictions):
         for metric in get_args(Metric):

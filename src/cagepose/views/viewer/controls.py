@@ -11,8 +11,8 @@ import numpy as np
 from cagepose.files.key_path import parse_key_path, resolved, value_at
 from cagepose.files.scene_file import SceneFile, SceneText
 from cagepose.files.units import from_metres
-from cagepose.runs.solve import METHODS, chosen_method
-from cagepose.runs.stepwise import NO_SLIP_ANGLE_DEFAULT_RAD
+from cagepose.model.methods import DEFAULT_FRICTION, METHODS
+from cagepose.runs.methods import chosen_method
 from cagepose.views.viewer.surface import nearest_on_object
 
 PLAYS = 2.0
@@ -134,7 +134,7 @@ class _Maker:
     def _options(self) -> list[Control]:
         chosen, friction = chosen_method(self.scene), self.scene.friction_coefficient
         if friction is None:
-            friction = round(math.tan(NO_SLIP_ANGLE_DEFAULT_RAD), 6) if chosen == "stepwise" else 0.0
+            friction = round(DEFAULT_FRICTION[chosen], 6)
         most = max(MOST_FRICTION, 2.0 * friction)
         return [
             self._slider("contacts", "friction", "", "friction", None, friction, 0.0, most),
