@@ -11,13 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from cagepose.kernels.native.jit import Entry
 
 import cagepose.runs.solve
 from cagepose import Run, RunFileError, Scene, load_run, load_scene
-from cagepose.cli import first_run, report
+from cagepose.cli import report
 from cagepose.model.methods import METHODS
-from jit import JIT_IS_OFF
 
 Command = Callable[..., Any]
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
@@ -109,29 +107,7 @@ def test_json_is_one_document_and_nothing_else(command: Command, sample: str) ->
     assert (document["version"], document["scene"]) == (2, "sample")
     assert (document["method"], document["verdict"]) == ("quasistatic", "rests")
     assert answer.code == 0
-    assert answer.err in ("", first_run.FIRST_RUN)
-
-
-@pytest.mark.skipif(JIT_IS_OFF, reason="nothing is compiled")
-@pytest.mark.parametrize(("is_kept", "message"), [(True, first_run.FIRST_RUN), (False, first_run.EVERY_RUN)])
-def test_a_run_that_compiles_says_so_on_standard_error(
-    command: Command, sample: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, is_kept: bool, message: str
-) -> None:
-    command("run", sample)  # loads all that is needed below
-    real = cagepose.runs.solve.run
-
-    def compiling(scene: Scene, method: str | None = None) -> Run:
-        for _ in range(2):
-            assert Entry(lambda number: number)(1.0) == 1.0
-        return real(scene, method)
-
-    monkeypatch.setattr("cagepose.kernels.native.cache.cache_folder", lambda: tmp_path if is_kept else None)
-    monkeypatch.setattr(cagepose.runs.solve, "run", compiling)
-    answer = command("run", sample)
-    assert answer.err == message
-    assert answer.out.startswith("sample: rests")
-    monkeypatch.setattr(cagepose.runs.solve, "run", real)
-    assert command("run", sample).err == ""
+    assert answer.err == ""
 
 
 def test_out_saves_the_run_and_the_table_is_still_printed(command: Command, sample: str) -> None:

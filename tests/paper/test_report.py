@@ -19,7 +19,7 @@ from cagepose.paper.report import check_report_folder, report_files, write_repor
 from cagepose.paper.report_html import html_page
 from cagepose.paper.report_markdown import markdown_text
 from cagepose.paper.reproduction import METHODS, reproduce
-from cagepose.studies import reproduction
+from cagepose.paper import reproduction
 
 VOID = {"meta", "img", "link", "br", "hr", "input"}
 

@@ -10,7 +10,8 @@ import pytest
 
 import cagepose
 from cagepose import Box, Cage, Load, Object, Pose, Scene, SceneError, compare
-from cagepose.kernels import quasistatic, stepwise
+from cagepose.kernels.quasistatic import run as quasistatic
+from cagepose.kernels.stepwise import run as stepwise
 from cagepose.studies.comparison import ENDS, GROUNDS, Variant, parting_of
 from rails import rail_scene
 
