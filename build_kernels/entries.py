@@ -11,22 +11,30 @@ from cagepose.kernels.algebra.linear_program import ProgramRoom, extents, progra
 from cagepose.kernels.algebra.pose import write_euler_zyx, write_quaternions
 from cagepose.kernels.algebra.record import dtype_of, empty_record, empty_rows
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
-from cagepose.kernels.batch.quasistatic import quasistatic_runs
-from cagepose.kernels.batch.rows import Starts, empty_endings
-from cagepose.kernels.batch.stepwise import stepwise_runs
-from cagepose.kernels.collision.contacts import empty_contact_rows, fill_contact_rows
 from cagepose.kernels.collision.geometry import Geometry, empty_placement, place_object
 from cagepose.kernels.contact.metric import Body, PhaseLoad
+from cagepose.kernels.outcome.at_pose import critical_friction, judge_start
+from cagepose.kernels.outcome.cases import Cases, Part
+from cagepose.kernels.outcome.endings import empty_endings
+from cagepose.kernels.outcome.records import empty_outcome
 from cagepose.kernels.play.certificate import certify, empty_certificate_room
 from cagepose.kernels.play.escape import Station, grow_tree
 from cagepose.kernels.play.goal import Goal
 from cagepose.kernels.play.rows import empty_play_room, write_start
 from cagepose.kernels.play.search import Extreme, find_play
-from cagepose.kernels.quasistatic.run import QuasistaticRules, empty_quasistatic_workspace, quasistatic_run
-from cagepose.kernels.stability.critical_friction import critical_friction
-from cagepose.kernels.stability.proof import empty_proof_room, prove
-from cagepose.kernels.stability.proof_search import first_motion, search_onsets
-from cagepose.kernels.stepwise.run import PhaseLoads, StepwiseRules, empty_workspace, stepwise_run
+from cagepose.kernels.quasistatic.run import (
+    QuasistaticRules,
+    empty_quasistatic_workspace,
+    run_quasistatic,
+    run_quasistatic_cases,
+)
+from cagepose.kernels.stability.proof import empty_proof_room
+from cagepose.kernels.stepwise.run import (
+    StepwiseRules,
+    empty_stepwise_workspace,
+    run_stepwise,
+    run_stepwise_cases,
+)
 from cagepose.kernels.stepwise.slip import SlipRules
 from cagepose.kernels.stepwise.support import SupportRules
 
@@ -38,37 +46,29 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     """Yield each entry and its arguments; only their types count."""
     vectors, quaternions, numbers = np.zeros((1, 3)), np.zeros((1, 4)), np.zeros(1)
     geometry = Geometry(vectors, vectors, np.zeros((1, 3, 3)), 1, vectors)
-    body, tolerances = empty_record(Body), kernel_tolerances(1.0, 1e-9)
-    loads = empty_rows(PhaseLoad, 1)
+    tolerances = kernel_tolerances(1.0, 1e-9)
 
     yield write_quaternions, (vectors, quaternions)
     yield write_euler_zyx, (quaternions, vectors)
     yield place_object, (geometry, ORIGIN, UPRIGHT, empty_placement(geometry))
-    yield fill_contact_rows, (geometry, ORIGIN, UPRIGHT, 0.0, empty_placement(geometry), empty_contact_rows(1))
 
-    rules = QuasistaticRules(0.0, 0.0, 1)
-    work, proof = empty_quasistatic_workspace(geometry, 1, 1), empty_proof_room(geometry)
-    yield quasistatic_run, (geometry, body, ORIGIN, UPRIGHT, loads, rules, 0.0, tolerances, work)
-    load = loads[0]
-    yield prove, (geometry, body, ORIGIN, UPRIGHT, load, 0.0, 0.0, tolerances, proof)
-    yield search_onsets, (0.0, proof)
-    yield first_motion, (0.0, proof)
-    yield critical_friction, (geometry, body, ORIGIN, UPRIGHT, load, tolerances, proof)
+    part = Part(vectors, vectors, np.zeros((1, 3, 3)), 1, empty_record(Body), ORIGIN)
+    loads = np.zeros((1, 1), dtype_of(PhaseLoad))
+    points = np.zeros((1, 1, 3))
+    cases = Cases(vectors, quaternions, points, vectors, quaternions, numbers, numbers, loads, tolerances)
+    outcome, endings = empty_outcome(1, 1, 1, 1), empty_endings(1, 1, 1)
+    proof = empty_proof_room(geometry)
+    yield judge_start, (0, part, cases, vectors, proof, outcome)
+    yield critical_friction, (0, part, cases, vectors, proof)
 
-    directions = PhaseLoads(vectors, vectors, np.zeros(1, np.bool_))
+    rules, work = QuasistaticRules(0.0, 1), empty_quasistatic_workspace(geometry, 1)
+    yield run_quasistatic, (part, cases, rules, work, outcome)
+    yield run_quasistatic_cases, (0, 0, part, cases, 0.0, rules, work, endings)
+
     paper = StepwiseRules(SupportRules(0.0, 0.0, 0.0, 0.0), SlipRules(0.0, 0.0, 0.0, 0.0), 1)
-    paper_work = empty_workspace(geometry, 1, paper)
-    yield stepwise_run, (geometry, ORIGIN, UPRIGHT, directions, paper, 0.0, tolerances, paper_work)
-
-    starts = Starts(vectors, quaternions, np.zeros((1, 1, 3)), vectors, quaternions, numbers, numbers, 0.0)
-    endings = empty_endings(1, 1, 1)
-    many_loads = np.zeros((1, 1), dtype_of(PhaseLoad))
-    yield (
-        quasistatic_runs,
-        (0, 0, starts, many_loads, geometry, body, ORIGIN, rules, tolerances, work, proof, endings),
-    )
-    many_directions = PhaseLoads(np.zeros((1, 1, 3)), np.zeros((1, 1, 3)), np.zeros(1, np.bool_))
-    yield stepwise_runs, (0, 0, starts, many_directions, geometry, ORIGIN, paper, tolerances, paper_work, endings)
+    paper_work = empty_stepwise_workspace(geometry, 1)
+    yield run_stepwise, (part, cases, paper, paper_work, outcome)
+    yield run_stepwise_cases, (0, 0, part, cases, 0.0, paper, paper_work, endings)
 
     program, (rows, bounds) = empty_record(ProgramRoom), program_rows(1)
     yield solve_program, (rows, bounds, program)

@@ -21,7 +21,7 @@ def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int
         f"{found.name}: {_count(len(found.object.boxes), 'box', 'boxes')},"
         f" {_count(len(found.cage.names), 'cage point')},"
         f" {_count(len(found.loads), 'load')} ({', '.join(load.name for load in found.loads)}),"
-        f" method {chosen_method(found)}\n"
+        f" method {chosen_method(found).name}\n"
         f"size {size:.6g} {unit}, touch tolerance {touch:.3g} {unit}; no problems found\n"
     )
     return 0

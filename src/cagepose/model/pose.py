@@ -67,6 +67,15 @@ class Pose:
         object.__setattr__(self, "position_m", finite_array(position_m, (3,), "position"))
         object.__setattr__(self, "quaternion_wxyz", quaternion)
 
+    @classmethod
+    def from_unit(cls, position_m: FloatArray, quaternion_wxyz: FloatArray) -> Pose:
+        """Return the pose of arrays that cannot be written to, the quaternion being unit with w >= 0: unchecked, as
+        results have thousands of them.
+        """
+        pose = object.__new__(cls)
+        vars(pose).update(position_m=position_m, quaternion_wxyz=quaternion_wxyz)
+        return pose
+
     @property
     def rotation(self) -> FloatArray:
         """Rotation matrix, (3, 3): the part's axes are its columns."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from cagepose.runs.judge import Judge
-from cagepose.runs.run import AT_REST, Run
+from cagepose.runs.judge import critical_friction_at
+from cagepose.runs.run import AT_REST, PhaseRun, Run
 
 
 def with_critical_friction(run: Run) -> Run:
@@ -14,11 +14,8 @@ def with_critical_friction(run: Run) -> Run:
     It stands in each phase's ``proof.critical_friction``: 0 if the contacts hold without friction, infinite if no
     friction is enough; None for a phase that did not end held.
     """
-    judge = Judge(run.scene, 0.0)
-    phases = tuple(
-        replace(phase, proof=judge.with_critical_friction(phase.proof, phase.pose, number))
-        if phase.verdict in AT_REST
-        else phase
-        for number, phase in enumerate(run.phases)
-    )
-    return replace(run, phases=phases)
+    phases = list[PhaseRun]()
+    for number, phase in enumerate(run.phases):
+        least = critical_friction_at(run.scene, phase.pose, number) if phase.verdict in AT_REST else None
+        phases.append(replace(phase, proof=replace(phase.proof, critical_friction=least)))
+    return Run(run.scene, run.method, tuple(phases), run.warnings, run.solve_s)

@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 
 from cagepose.errors import Problem, SceneError
 from cagepose.kernels.algebra.pose import write_euler_zyx
-from cagepose.kernels.batch.rows import INVALID, NOT_RUN
+from cagepose.kernels.outcome.endings import INVALID, NOT_RUN
+from cagepose.kernels.outcome.trace import RESTS, VERDICT_NAMES
 from cagepose.kernels.stability.proof import OTHER_ONSET, TOO_MANY_CHOICES, UNIQUENESS_NOT_SHOWN
-from cagepose.kernels.trace import RESTS, VERDICT_NAMES
 from cagepose.model.checks import FloatArray
 from cagepose.model.scene import Scene
-from cagepose.runs.batches import Batch
-from cagepose.runs.methods import REGISTRY, chosen_method
+from cagepose.runs.batch import Batch
+from cagepose.runs.methods import chosen_method
 from cagepose.runs.variation import Variation
 
 LONGEST_PIECE = 256
@@ -117,12 +117,12 @@ def run_many(
         raise SceneError([Problem(("threads",), f"is {threads}; give 1 or more")])
     methods = [chosen_method(scene, method) for scene in all_scenes]
     batches = [
-        REGISTRY[name].batch(scene, variation or Variation()) for scene, name in zip(all_scenes, methods, strict=True)
+        Batch(scene, chosen, variation or Variation()) for scene, chosen in zip(all_scenes, methods, strict=True)
     ]
     began = time.perf_counter()
     _run_all(batches, threads or os.cpu_count() or 1, _show_progress if progress is True else progress or None)
     solve_s = time.perf_counter() - began
-    return _columns(methods, batches, solve_s)
+    return _columns([chosen.name for chosen in methods], batches, solve_s)
 
 
 def _run_all(batches: Sequence[Batch], n_threads: int, progress: Callable[[float], None] | None) -> None:

@@ -1,18 +1,21 @@
-"""The one registry of methods: what runs a scene once, and what runs it many times."""
+"""The one registry of methods: what each of them brings to a run."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from cagepose.errors import Problem, SceneError
-from cagepose.model.methods import DEFAULT_METHOD, METHODS
+from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.native.kernel import Entry
+from cagepose.kernels.quasistatic import run as quasistatic_kernels
+from cagepose.kernels.stepwise import run as stepwise_kernels
+from cagepose.model.methods import DEFAULT_FRICTION, DEFAULT_METHOD, METHODS
 from cagepose.model.scene import Scene
-from cagepose.runs.batches import Batch, QuasistaticBatch, StepwiseBatch
-from cagepose.runs.quasistatic import run_quasistatic
-from cagepose.runs.run import Run
-from cagepose.runs.stepwise import run_stepwise
-from cagepose.runs.variation import Variation
+from cagepose.runs.quasistatic import STEP_LIMIT, quasistatic_rules, quasistatic_warnings
+from cagepose.runs.run import PhaseRun
+from cagepose.runs.stepwise import EVENT_LIMIT, stepwise_rules, stepwise_warnings
 
 
 @dataclass(frozen=True)
@@ -21,25 +24,64 @@ class Method:
 
     Attributes
     ----------
-    run
-        Runs a scene once.
-    batch
-        Prepares many runs of a scene with values that vary.
+    name
+        As users write it.
+    rule_names
+        Of its rules, by code.
+    run, run_cases
+        Kernels that run a scene once, and many cases of it.
+    rules
+        The method's numbers for a scene, of size 1.
+    workspace
+        Room for one run at a time.
+    step_limit
+        Greatest number of steps in a phase.
+    warnings
+        What a careful reader should know of a run: from the scene, the phases and the coefficient of friction.
     """
 
-    run: Callable[[Scene], Run]
-    batch: Callable[[Scene, Variation], Batch]
+    name: str
+    rule_names: tuple[str, ...]
+    run: Entry[bool]
+    run_cases: Entry[None]
+    rules: Callable[[Scene], Any]
+    workspace: Callable[[Geometry, int], Any]
+    step_limit: int
+    warnings: Callable[[Scene, Sequence[PhaseRun], float], Iterator[str]]
+
+    def friction(self, scene: Scene) -> float:
+        """Return the coefficient of friction of a scene, or the method's default."""
+        given = scene.friction_coefficient
+        return DEFAULT_FRICTION[self.name] if given is None else given
 
 
-REGISTRY: dict[str, Method] = {
-    "stepwise": Method(run_stepwise, StepwiseBatch),
-    "quasistatic": Method(run_quasistatic, QuasistaticBatch),
+REGISTRY = {
+    "stepwise": Method(
+        "stepwise",
+        stepwise_kernels.RULE_NAMES,
+        stepwise_kernels.run_stepwise,
+        stepwise_kernels.run_stepwise_cases,
+        stepwise_rules,
+        stepwise_kernels.empty_stepwise_workspace,
+        EVENT_LIMIT,
+        stepwise_warnings,
+    ),
+    "quasistatic": Method(
+        "quasistatic",
+        quasistatic_kernels.RULE_NAMES,
+        quasistatic_kernels.run_quasistatic,
+        quasistatic_kernels.run_quasistatic_cases,
+        quasistatic_rules,
+        quasistatic_kernels.empty_quasistatic_workspace,
+        STEP_LIMIT,
+        quasistatic_warnings,
+    ),
 }
 """By name; the names themselves, and their defaults, are in `cagepose.model.methods`."""
 
 
-def chosen_method(scene: Scene, method: str | None = None) -> str:
-    """Return the name of the method that `cagepose.run` uses.
+def chosen_method(scene: Scene, method: str | None = None) -> Method:
+    """Return the method that `cagepose.run` uses.
 
     Raises
     ------
@@ -49,4 +91,4 @@ def chosen_method(scene: Scene, method: str | None = None) -> str:
     chosen = method or scene.method or DEFAULT_METHOD
     if chosen not in REGISTRY:
         raise SceneError([Problem(("method",), f"is {chosen!r}; known methods: {', '.join(METHODS)}")])
-    return chosen
+    return REGISTRY[chosen]

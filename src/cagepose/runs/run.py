@@ -10,6 +10,8 @@ from typing import Literal
 import numpy as np
 
 from cagepose.kernels.algebra.pose import moved_pose
+from cagepose.kernels.outcome import motion as kernel
+from cagepose.kernels.outcome.trace import MOTION_NAMES, NONE, TRAVEL
 from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -268,10 +270,23 @@ class Run:
             raise ValueError(f"the event {event.rule!r} is no motion, so there is no way to be on")
         if not event.path:
             return event.motion.pose_at(start, fraction)
-        from cagepose.runs.screw_between import motion_between  # which needs `Motion` from here
-
         n_done = int(fraction * len(event.path))
         before = event.path[n_done - 1] if n_done else start
-        center, size_m = self.scene.object.center_of_gravity_m, self.scene.size_m
-        step = motion_between(before, event.path[n_done], center, size_m)
+        step = motion_between(before, event.path[n_done], self.scene.object.center_of_gravity_m, self.scene.size_m)
         return before if step is None else step.pose_at(before, fraction * len(event.path) - n_done)
+
+
+def motion_between(start: Pose, end: Pose, center_object_m: FloatArray, size_m: float) -> Motion | None:
+    """Return the one motion from ``start`` to ``end`` (Chasles); None: they are one pose.
+
+    ``center_object_m``: a point of the object, (3,), whose way is measured; it sets what counts as rounding.
+    ``size_m``: how far the object's points are apart at most, or more.
+    """
+    before, after = as_vector(start.transform(center_object_m)), as_vector(end.transform(center_object_m))
+    found = kernel.motion_between(before, start.as_tuples()[1], after, end.as_tuples()[1], size_m)
+    if found.motion == NONE:
+        return None
+    along, through = np.array(found.along), np.array(found.through)
+    if found.motion == TRAVEL:
+        return Motion("travel", along, None, None, found.distance, 0.0)
+    return Motion(MOTION_NAMES[found.motion], None, along, through, found.distance, found.angle)

@@ -1,10 +1,24 @@
-"""The friendly call: `run`."""
+"""The friendly call: `run`. One call of machine code, whose outcome a `Run` reads when it is asked."""
 
 from __future__ import annotations
 
+import threading
+import time
+from collections import OrderedDict
+from typing import Any, NamedTuple
+
+from cagepose.kernels.native.slots import Slots
+from cagepose.kernels.outcome.records import Outcome, empty_outcome
 from cagepose.model.scene import Scene
-from cagepose.runs.methods import REGISTRY, chosen_method
+from cagepose.runs.cases import prepared
+from cagepose.runs.methods import Method, chosen_method
 from cagepose.runs.run import Run
+from cagepose.runs.solved import SolvedRun, written
+
+CONTACTS_PER_POINT = 3
+"""Contacts that an outcome has room for at first, for each point: a corner of a box has three faces."""
+WORKSPACES_KEPT = 8
+"""For each thread: scenes of the same numbers of points, boxes and phases share one."""
 
 
 def run(scene: Scene, method: str | None = None) -> Run:
@@ -22,4 +36,52 @@ def run(scene: Scene, method: str | None = None) -> Run:
     SceneError
         An unknown method.
     """
-    return REGISTRY[chosen_method(scene, method)].run(scene)
+    chosen = chosen_method(scene, method)
+    return run_with(scene, chosen, chosen.rules(scene))
+
+
+def run_with(scene: Scene, method: Method, rules: Any) -> Run:
+    """Run a scene by a method with other numbers than its own."""
+    friction = method.friction(scene)
+    part, cases = prepared(scene, friction)
+    n_contacts = CONTACTS_PER_POINT * len(scene.cage.names)
+    while True:
+        room = _room(scene, method, n_contacts)
+        began = time.perf_counter()
+        fits = method.run(part, cases, rules, room.work, room.outcome_slots)
+        solve_s = time.perf_counter() - began
+        if fits:
+            return SolvedRun(scene, method, friction, written(room.outcome), solve_s)
+        n_contacts *= 2
+
+
+class _Room(NamedTuple):
+    """What one run at a time writes to: both for kernels, and the outcome to read."""
+
+    work: Slots
+    outcome_slots: Slots
+    outcome: Outcome
+
+
+class _Rooms(threading.local):
+    """Of one thread, the last used at the end."""
+
+    def __init__(self) -> None:
+        self.by_size: OrderedDict[tuple[object, ...], _Room] = OrderedDict()
+
+
+_ROOMS = _Rooms()
+
+
+def _room(scene: Scene, method: Method, n_contacts: int) -> _Room:
+    n_phases, n_points = len(scene.loads), len(scene.cage.names)
+    size = (method.name, n_phases, n_points, len(scene.geometry.half_sizes), n_contacts)
+    rooms = _ROOMS.by_size
+    if size in rooms:
+        rooms.move_to_end(size)
+        return rooms[size]
+    if len(rooms) == WORKSPACES_KEPT:
+        rooms.popitem(last=False)
+    outcome = empty_outcome(n_phases, method.step_limit, n_points, n_contacts)
+    rooms[size] = _Room(Slots(method.workspace(scene.geometry, method.step_limit)), Slots(outcome), outcome)
+    return rooms[size]

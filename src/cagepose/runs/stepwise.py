@@ -1,25 +1,17 @@
-"""The stepwise method as seen from a scene: cast, call the compiled state machine, name what it did."""
+"""The stepwise method as seen from a scene: its numbers, and what a careful reader should know of its runs."""
 
 from __future__ import annotations
 
 import math
-import time
+from collections.abc import Iterator, Sequence
 
-import numpy as np
-
-from cagepose.kernels.algebra.tolerances import kernel_tolerances
 from cagepose.kernels.collision.turn import key_of_angle
-from cagepose.kernels.stepwise.run import RULE_NAMES, PhaseLoads, StepwiseRules, empty_workspace, stepwise_run
+from cagepose.kernels.stepwise.run import StepwiseRules
 from cagepose.kernels.stepwise.slip import SlipRules
 from cagepose.kernels.stepwise.support import SupportRules
-from cagepose.kernels.trace import MOTION_NAMES, NONE, NOTE_NAMES, PLAIN, TRAVEL, VERDICT_NAMES, Trace
-from cagepose.model.checks import FloatArray, unit_vector
-from cagepose.model.methods import NO_SLIP_ANGLE_DEFAULT_RAD
 from cagepose.model.scene import Scene
-from cagepose.runs.frames import Frames, middle_of_boxes, touching_names
-from cagepose.runs.judge import Judge
 from cagepose.runs.remarks import edge_remarks, proof_remarks, seam_remarks
-from cagepose.runs.run import Event, Motion, Note, PhaseRun, Run, Verdict
+from cagepose.runs.run import Note, PhaseRun
 
 BLOCKED_ANGLE_RAD = math.pi / 10000.0
 """A turn that ends within 0.018 deg is blocked (R3)."""
@@ -46,122 +38,43 @@ SMALL_POSE_RAD = math.radians(45.0)
 """Assumption E of the paper: the method is meant for smaller angles per axis (R11)."""
 
 
-def run_stepwise(scene: Scene) -> Run:
-    """Run a scene by the paper's rules (docs/theory)."""
-    frames = Frames(scene, middle_of_boxes(scene))
-    geometry, rules = frames.geometry(scene), rules_of_size(scene, scene.size_m)
-    loads = phase_loads(scene, frames.middle_object)
-    tolerances = kernel_tolerances(scene.size_m, scene.tolerances.touch)
-    workspace = empty_workspace(geometry, len(scene.loads), rules)
-    began = time.perf_counter()
-    n_phases, n_events = stepwise_run(
-        geometry,
-        *frames.inward(scene.object.pose_world_object),
-        loads,
-        rules,
-        scene.size_m,
-        tolerances,
-        workspace,
-    )
-    solve_s = time.perf_counter() - began
-
-    friction = scene.friction_coefficient
-    judge = Judge(scene, math.tan(NO_SLIP_ANGLE_DEFAULT_RAD) if friction is None else friction)
-    trace, phases = workspace.trace, list[PhaseRun]()
-    pose = scene.object.pose_world_object
-    for phase in range(n_phases):
-        places = [event for event in range(n_events) if trace.rows[event].phase == phase]
-        events = tuple(_event(scene, trace, event, frames) for event in places)
-        proof, contacts = judge.proof(events[-1].pose_world_object, phase)
-        verdict: Verdict = VERDICT_NAMES[workspace.verdicts[phase]]
-        phases.append(PhaseRun(scene.loads[phase].name, verdict, pose, events, contacts, proof))
-        pose = events[-1].pose_world_object
-    return Run(scene, "stepwise", tuple(phases), tuple(_warnings(scene, phases, judge.friction)), solve_s)
-
-
-def no_slip_angle_rad(scene: Scene) -> float:
-    """Return the angle below which a contact does not slip (R4): the friction angle, or the paper's threshold."""
-    friction = scene.friction_coefficient
-    return NO_SLIP_ANGLE_DEFAULT_RAD if friction is None else math.atan(friction)
-
-
-def rules_of_size(scene: Scene, size_m: float) -> StepwiseRules:
-    """Return the numbers of the method for a scene that is so large."""
-    equal_distance_m = EQUAL_DISTANCE_OF_SIZE * size_m
+def stepwise_rules(scene: Scene) -> StepwiseRules:
+    """Return the numbers of the method for a scene of size 1; the angle of slip is that of each case's friction."""
     return StepwiseRules(
         SupportRules(
-            LEAST_MOMENT, key_of_angle(BLOCKED_ANGLE_RAD), key_of_angle(scene.tolerances.touch), equal_distance_m
+            LEAST_MOMENT,
+            key_of_angle(BLOCKED_ANGLE_RAD),
+            key_of_angle(scene.tolerances.touch),
+            EQUAL_DISTANCE_OF_SIZE,
         ),
         SlipRules(
-            no_slip_angle_rad(scene),
+            0.0,
             math.pi / 2.0 + scene.tolerances.grazing_band_rad,
             PARALLEL_SINE,
-            equal_distance_m,
+            EQUAL_DISTANCE_OF_SIZE,
         ),
         EVENT_LIMIT,
     )
 
 
-def phase_loads(scene: Scene, middle_object: FloatArray) -> PhaseLoads:
-    """Gravity acts at the centre of gravity; beside a force it is ignored (R8b)."""
-    directions, points = [], []
-    for load in scene.loads:
-        if load.force is not None:
-            directions.append(load.force.direction_world)
-            points.append(load.force.at_object_m)
-        else:
-            assert load.gravity_world is not None
-            directions.append(unit_vector(load.gravity_world, "gravity"))
-            points.append(scene.object.center_of_gravity_m)
-    is_push = [load.force is not None for load in scene.loads]
-    return PhaseLoads(np.array(directions), np.array(points) - middle_object, np.array(is_push))
-
-
-def _event(scene: Scene, trace: Trace, event: int, frames: Frames) -> Event:
-    return Event(
-        rule=RULE_NAMES[trace.rows[event].rule],
-        motion=_motion(trace, event, frames.origin_world),
-        hit=touching_names(scene, trace.hit[event]),
-        contacts=touching_names(scene, trace.touching[event]),
-        pose_world_object=frames.outward(trace, event),
-        note=None if trace.rows[event].note == PLAIN else NOTE_NAMES[trace.rows[event].note],
-    )
-
-
-def _motion(trace: Trace, event: int, origin: FloatArray) -> Motion | None:
-    code = trace.rows[event].motion
-    if code == NONE:
-        return None
-    is_travel = code == TRAVEL
-    return Motion(
-        kind=MOTION_NAMES[code],
-        direction_world=trace.rows[event].along.copy() if is_travel else None,
-        axis_world=None if is_travel else trace.rows[event].along.copy(),
-        through_world=None if is_travel else trace.rows[event].through + origin,
-        distance_m=float(trace.rows[event].distance),
-        angle_rad=float(trace.rows[event].angle),
-    )
-
-
-def _warnings(scene: Scene, phases: list[PhaseRun], friction: float) -> list[str]:
+def stepwise_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: float) -> Iterator[str]:
     """What a careful reader should know: ties, conventions, poses beyond the method's range, contacts on edges, and
     where the mechanics contradicts the rules.
     """
-    warnings = list(seam_remarks(scene))
+    yield from seam_remarks(scene)
     largest = 0.0
     start = scene.object.pose_world_object.inverse()
     for phase, load in zip(phases, scene.loads, strict=False):
         if load.force is not None and load.gravity_world is not None:
-            warnings.append(f"{phase.name}: gravity is ignored beside a force (the paper's assumption C)")
+            yield f"{phase.name}: gravity is ignored beside a force (the paper's assumption C)"
         for number, event in enumerate(phase.events, start=1):
             largest = max(largest, *(abs(angle) for angle in (start @ event.pose_world_object).euler_zyx))
             if event.note is not None:
-                warnings.append(f"{phase.name}, event {number} ({event.rule}): {NOTES[event.note]}")
-        warnings.extend(edge_remarks(phase))
+                yield f"{phase.name}, event {number} ({event.rule}): {NOTES[event.note]}"
+        yield from edge_remarks(phase)
     if largest > SMALL_POSE_RAD:
-        warnings.append(
+        yield (
             f"turned by {math.degrees(largest):.1f} deg about one axis from the start; the paper's rules are meant for"
             " at most 45 deg (assumption E)"
         )
-    warnings.extend(proof_remarks(phases, friction))
-    return warnings
+    yield from proof_remarks(phases, friction)

@@ -6,8 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cagepose.kernels.algebra.record import Rows, empty_rows
-from cagepose.kernels.contact.metric import PhaseLoad
 from cagepose.model.checks import FloatArray, unit_vector
 from cagepose.model.load import Load
 from cagepose.model.scene import Scene
@@ -44,14 +42,3 @@ def weigh(scene: Scene, load: Load) -> Weighed:
         return Weighed(mass * load.gravity_world, force, in_newtons=True)
     weight = WEIGHT_BESIDE_FORCE * float(np.linalg.norm(force))
     return Weighed(weight * unit_vector(load.gravity_world, "gravity"), force, in_newtons=False)
-
-
-def dead_loads(scene: Scene) -> Rows[PhaseLoad]:
-    """Return the loads of all phases as the kernels take them."""
-    loads = empty_rows(PhaseLoad, len(scene.loads))
-    for index, load in enumerate(scene.loads):
-        weighed = weigh(scene, load)
-        loads[index].forces_world[:] = weighed.gravity, weighed.force
-        if load.force is not None:
-            loads[index].arms_object[1] = load.force.at_object_m - scene.object.center_of_gravity_m
-    return loads

@@ -1,11 +1,10 @@
-"""Every tolerance of the kernels, with its unit and reason.
-
-Numba freezes module globals into cached code, so kernels take these as an argument.
-"""
+"""The tolerances of lengths, which scale with the scene."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
+
+from cagepose.kernels.native.kernel import kernel
 
 
 class KernelTolerances(NamedTuple):
@@ -45,4 +44,12 @@ def kernel_tolerances(size_m: float, touch: float) -> KernelTolerances:
         resolution_m=RESOLUTION_OF_SIZE * size_m,
         rounding_m=ROUNDING_OF_SIZE * size_m,
         tie=TIE,
+    )
+
+
+@kernel
+def scaled_tolerances(of_size: KernelTolerances, size_m: float) -> KernelTolerances:
+    """Scale tolerances that are given for a scene of size 1."""
+    return KernelTolerances(
+        of_size.touch_m * size_m, of_size.resolution_m * size_m, of_size.rounding_m * size_m, of_size.tie
     )

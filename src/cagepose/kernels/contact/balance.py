@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from cagepose.kernels.algebra.least_squares import length, rounding_scale
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.contact.cone import BALANCED, HELD, clear_cone, cone_residual, write_forces
@@ -43,7 +41,7 @@ def left_by_friction(rows: Rows[ContactRow], n_contacts: int, friction: float, r
 def left_going_on(rows: Rows[ContactRow], n_contacts: int, friction: float, room: OnsetRoom) -> float:
     """Return the same, going on from the solution in ``room``, which is that for less friction."""
     cone = room.cone
-    charged = bool(np.bool_(False))
+    charged = False
     left = cone_residual(rows, n_contacts, friction, room.load, charged, cone)
     scale = rounding_scale(cone.passive)
     return left / scale if scale > 0.0 else 0.0
@@ -97,7 +95,7 @@ def balance(contacts: ContactSet, friction: float, room: OnsetRoom) -> int:
     """
     rows, n_contacts = contacts.rows, contacts.used[0]
     best_code, best_left = -1, 0.0
-    every = bool(np.bool_(False))
+    every = False
     for _ in range(COMBINATIONS_LIMIT):
         code = balance_with_faces(rows, n_contacts, friction, room)
         if code == MOVES:

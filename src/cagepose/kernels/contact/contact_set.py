@@ -22,8 +22,8 @@ from cagepose.kernels.native.kernel import kernel
 SAME_NORMAL = 1e-9
 """Radians. Flush faces of two boxes give one contact."""
 
-CONTACTS_PER_POINT = 6
-"""Faces that one point may touch, flush ones counted once. More: the run stalls, by name."""
+CONTACTS_PER_POINT = 12
+"""Faces that one point may touch. More: the run stalls, by name."""
 
 
 class ContactRow:
@@ -38,7 +38,7 @@ class ContactRow:
     gap
         Distance from the plane of the face, below zero inside, metres.
     group
-        The first row of the same point and box.
+        The first row of the same point and box; -1: flush faces of another box say all that this one does.
     chosen
         Whether this face counts: all but the other faces on an edge.
     has_carried
@@ -160,8 +160,9 @@ def find_contacts(
                 contact.chosen = contacts.used[0] == first
                 contact.has_carried = False
                 append_contact(contacts, placement, point, box, axis, side, arm, frame)
-            if n_new == 0:  # another box's flush faces say all this
-                contacts.used[0] = first
+            if n_new == 0:
+                for i in range(first, contacts.used[0]):
+                    contacts.rows[i].group, contacts.rows[i].chosen = -1, False
     return True
 
 
@@ -204,10 +205,11 @@ def put_best_faces_back(contacts: ContactSet) -> None:
 @kernel
 def has_one_choice(contacts: ContactSet) -> bool:
     """Whether there is no edge, so that all faces count."""
-    n_chosen = 0
+    n_unchosen = 0
     for i in range(contacts.used[0]):
-        n_chosen += 1 if contacts.rows[i].chosen else 0
-    return bool(n_chosen == contacts.used[0])
+        if contacts.rows[i].group >= 0 and not contacts.rows[i].chosen:
+            n_unchosen += 1
+    return bool(n_unchosen == 0)
 
 
 @kernel

@@ -13,8 +13,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.contact.cone import ConeRoom, clear_cone, cone_residual, steepest_tangent, write_forces
@@ -189,7 +187,7 @@ def coulomb_onset(
     newton
         Room.
     """
-    charged = bool(np.bool_(True))
+    charged = True
     terms = cone.passive.terms
     for i in range(n_contacts):
         rows[i].slip = 0.0

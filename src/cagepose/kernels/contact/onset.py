@@ -6,8 +6,6 @@ moves with any of them; then the freest counts, the one with the greatest |y| (t
 
 from __future__ import annotations
 
-import numpy as np
-
 from cagepose.kernels.algebra.least_squares import (
     PassiveSet,
     append_column,
@@ -111,7 +109,7 @@ def onset_with_faces(
 ) -> int:
     """Solve the onset for one choice of faces; return its code. Forces and motion are filled."""
     cone = room.cone
-    charged = bool(np.bool_(False))
+    charged = False
     clear_cone(cone, b, WRENCH, terms)
     left = cone_residual(rows, n_contacts, 0.0, b, charged, cone)
     code = HELD_WITHOUT_FRICTION
@@ -141,7 +139,7 @@ def onset(contacts: ContactSet, friction: float, room: OnsetRoom) -> int:
     """
     rows, n_contacts = contacts.rows, contacts.used[0]
     best_code, best_speed, best_left = -1, -1.0, 0.0
-    every = bool(np.bool_(False))
+    every = False
     for _ in range(COMBINATIONS_LIMIT):
         code = onset_with_faces(rows, n_contacts, friction, room.load, room.load_terms, room.trial, room)
         speed = length(room.trial, 6) if code == MOVES else 0.0
@@ -166,7 +164,7 @@ def is_held(contacts: ContactSet, friction: float, room: OnsetRoom) -> bool:
     Asked more strictly than by `onset`, so that a pose found by halving a step is held when it is looked at again.
     """
     rows, n_contacts = contacts.rows, contacts.used[0]
-    no = bool(np.bool_(False))
+    no = False
     for _ in range(COMBINATIONS_LIMIT):
         clear_cone(room.cone, room.load, WRENCH, room.load_terms)
         left = cone_residual(rows, n_contacts, friction, room.load, no, room.cone)

@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from cagepose.kernels.algebra.least_squares import PRICE, inner, length, rounding_scale
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.contact.cone import GENERATOR_LIMIT, ConeRoom, add_generator, go_on, steepest_tangent
@@ -61,7 +59,7 @@ def moves_surely(rows: Rows[ContactRow], n_contacts: int, friction: float, b: Fl
         Its solution without friction; afterwards ``room.passive.residual`` is the twist.
     """
     passive = room.passive
-    charged = bool(np.bool_(False))  # a plain False would compile what is called once more, for the literal
+    charged = False
     number = go_on(rows, n_contacts, room)
     while 0 <= number < GENERATOR_LIMIT and length(passive.residual, 6) > SURELY * rounding_scale(passive):
         if leaves_cones(rows, n_contacts, friction, PRICE * passive.terms, passive.residual):

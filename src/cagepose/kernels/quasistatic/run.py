@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.pose import Quaternion, turned_by
-from cagepose.kernels.algebra.record import Rows, empty_rows
-from cagepose.kernels.algebra.tolerances import KernelTolerances
+from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import Vector, minus, norm
 from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement, place_object
 from cagepose.kernels.contact.contact_set import (
@@ -26,7 +25,7 @@ from cagepose.kernels.contact.contact_set import (
     find_contacts,
 )
 from cagepose.kernels.contact.curvature import write_curvature
-from cagepose.kernels.contact.metric import Body, Frame, PhaseLoad, frame_at, twist_of, write_load
+from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, write_load
 from cagepose.kernels.contact.onset import (
     HELD_BY_FRICTION,
     HELD_WITHOUT_FRICTION,
@@ -38,6 +37,23 @@ from cagepose.kernels.contact.onset import (
     sticks,
 )
 from cagepose.kernels.native.kernel import entry, kernel
+from cagepose.kernels.outcome.cases import Cases, Part, Start, is_valid, start_of
+from cagepose.kernels.outcome.endings import INVALID, Endings, write_ending
+from cagepose.kernels.outcome.publish import NO_BALANCE, begin, end_phase, judge_end, publish_events
+from cagepose.kernels.outcome.records import Outcome
+from cagepose.kernels.outcome.trace import (
+    ESCAPES,
+    LET_GO,
+    LIMIT,
+    NONE,
+    PLAIN,
+    RESTS,
+    SCREW,
+    STALLED,
+    TRAVEL,
+    Trace,
+    empty_trace,
+)
 from cagepose.kernels.quasistatic.implicit_step import StiffRoom, curvature_along, keep_along_faces, stiff_step
 from cagepose.kernels.quasistatic.projection import ON_FACE
 from cagepose.kernels.quasistatic.step import (
@@ -54,20 +70,7 @@ from cagepose.kernels.quasistatic.step import (
     stepped,
     straightened,
 )
-from cagepose.kernels.trace import (
-    ESCAPES,
-    LET_GO,
-    LIMIT,
-    NONE,
-    PLAIN,
-    RESTS,
-    SCREW,
-    STALLED,
-    TRAVEL,
-    Trace,
-    empty_trace,
-    write_pose,
-)
+from cagepose.kernels.stability.proof import ProofRoom, empty_proof_room
 
 RULE_NAMES = ("free", "slide", "pivot", "held", "stalled")
 FREE, SLIDE, PIVOT, HELD, STUCK = 0, 1, 2, 3, 4
@@ -90,15 +93,12 @@ class QuasistaticRules(NamedTuple):
 
     Attributes
     ----------
-    friction
-        Coefficient of friction.
     turn_step_rad
         Longest turn in one step.
     step_limit
         Greatest number of steps in a phase.
     """
 
-    friction: float
     turn_step_rad: float
     step_limit: int
 
@@ -128,9 +128,11 @@ class QuasistaticWorkspace(NamedTuple):
     touched
         Which points touched before the step, (n_points,).
     trace
-        Steps of all phases, one after the other.
-    verdicts
-        Verdict code of each phase, (n_phases,).
+        Steps of one phase.
+    points_world
+        Cage points of the case that is run, (n_points, 3).
+    proof
+        Room for the proof of a phase's end.
     """
 
     placement: Placement
@@ -141,11 +143,12 @@ class QuasistaticWorkspace(NamedTuple):
     path: PathRoom
     touched: NDArray[np.bool_]
     trace: Trace
-    verdicts: NDArray[np.int64]
+    points_world: FloatArray
+    proof: ProofRoom
 
 
-def empty_quasistatic_workspace(geometry: Geometry, n_phases: int, step_limit: int) -> QuasistaticWorkspace:
-    """Return room for one run (plain Python)."""
+def empty_quasistatic_workspace(geometry: Geometry, step_limit: int) -> QuasistaticWorkspace:
+    """Return room for one run at a time (plain Python)."""
     n_points = len(geometry.points_world)
     n_contacts = CONTACTS_PER_POINT * n_points
     return QuasistaticWorkspace(
@@ -156,8 +159,9 @@ def empty_quasistatic_workspace(geometry: Geometry, n_phases: int, step_limit: i
         empty_rows(RunRoom, 1),
         empty_path_room(n_points),
         np.zeros(n_points, np.bool_),
-        empty_trace(n_phases * step_limit, n_points),
-        np.zeros(n_phases, np.int64),
+        empty_trace(step_limit, n_points),
+        np.zeros((n_points, 3)),
+        empty_proof_room(geometry),
     )
 
 
@@ -211,22 +215,31 @@ def next_twist(
 
 
 @kernel
-def is_held_on_the_way(
-    setting: Setting, position: Vector, quaternion: Quaternion, new_point: int, work: QuasistaticWorkspace
-) -> bool:
-    """Whether friction holds the object at a pose of a step, without the point that the step has just reached."""
+def is_held_on_the_way(setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace) -> bool:
+    """Whether friction holds the object at a pose of a step, by the points that touched the same boxes before it.
+
+    What the step reaches does not count: it touches at the end only, and what it holds is asked there.
+    """
     frame = frame_at(setting.body, quaternion)
     if not find_contacts(setting.geometry, work.placement, position, frame, setting.tolerances.touch_m, work.ahead):
         return False
     kept = 0
-    if new_point >= 0:  # its rows are taken out
-        for i in range(work.ahead.used[0]):
-            if work.ahead.rows[i].point != new_point:
-                copy_contact(work.ahead.rows, i, kept)
-                kept += 1
-        work.ahead.used[0] = kept
+    for i in range(work.ahead.used[0]):
+        if touches_box(work.contacts, work.ahead.rows[i].point, work.ahead.rows[i].box):
+            copy_contact(work.ahead.rows, i, kept)
+            kept += 1
+    work.ahead.used[0] = kept
     work.rooms[0].solver.load_terms = write_load(setting.load, quaternion, frame, work.rooms[0].solver.load)
     return is_held(work.ahead, setting.friction, work.rooms[0].solver)
+
+
+@kernel
+def touches_box(contacts: ContactSet, point: int, box: int) -> bool:
+    """Whether a point touches a box at the pose of the contacts."""
+    found = False
+    for i in range(contacts.used[0]):
+        found = found or (contacts.rows[i].point == point and contacts.rows[i].box == box)
+    return found
 
 
 @kernel
@@ -237,8 +250,9 @@ def copy_contact(rows: Rows[ContactRow], source: int, target: int) -> None:
     old, new = rows[source], rows[target]
     new.point, new.box = old.point, old.box
     same_group = target > 0 and rows[target - 1].point == new.point and rows[target - 1].box == new.box
-    new.group = rows[target - 1].group if same_group else target
-    new.chosen = not same_group
+    counts = old.group >= 0
+    new.group = -1 if not counts else rows[target - 1].group if same_group else target
+    new.chosen = counts and not same_group
     for j in range(3):
         for k in range(6):
             new.columns[j, k] = old.columns[j, k]
@@ -255,7 +269,6 @@ def first_rest(
 ) -> tuple[Vector, Quaternion]:
     """Return the first pose of a step that friction holds; at ``amount`` it does. The placement is that of the pose."""
     low, high = 0.0, amount
-    no_point = int(np.int64(-1))  # a literal would compile its callees again
     best = (position, quaternion)
     for _ in range(HALVES_TO_REST):
         middle = 0.5 * (low + high)
@@ -268,11 +281,11 @@ def first_rest(
             quaternion,
             twist,
             middle,
-            no_point,
-            no_point,
+            -1,
+            -1,
             work.path,
         )
-        if done and is_held_on_the_way(setting, new_position, new_quaternion, no_point, work):
+        if done and is_held_on_the_way(setting, new_position, new_quaternion, work):
             high = middle
             best = (new_position, new_quaternion)
         else:
@@ -310,21 +323,24 @@ def polished(
 
 @kernel
 def write_step(
-    work: QuasistaticWorkspace, event: int, phase: int, rule: int, motion: int, position: Vector, quaternion: Quaternion
+    work: QuasistaticWorkspace, step: int, rule: int, motion: int, position: Vector, quaternion: Quaternion
 ) -> None:
     """Write a step; which points touch, and which were reached, follows from the contacts after it."""
     trace = work.trace
-    happening = trace.rows[event]
-    happening.phase, happening.rule, happening.motion, happening.note = phase, rule, motion, PLAIN
-    write_pose(happening, position, quaternion)
+    record = trace.rows[step]
+    record.rule, record.motion, record.note = rule, motion, PLAIN
+    for k in range(3):
+        record.position[k] = position[k]
+    for k in range(4):
+        record.quaternion[k] = quaternion[k]
     for point in range(len(work.touched)):
-        trace.touching[event, point] = False
+        trace.touching[step, point] = False
     for i in range(work.contacts.used[0]):
-        trace.touching[event, work.contacts.rows[i].point] = True
+        trace.touching[step, work.contacts.rows[i].point] = True
     for point in range(len(work.touched)):
-        trace.hit[event, point] = trace.touching[event, point] and not work.touched[point]
-        if work.touched[point] and not trace.touching[event, point]:
-            happening.note = LET_GO
+        trace.hit[step, point] = trace.touching[step, point] and not work.touched[point]
+        if work.touched[point] and not trace.touching[step, point]:
+            record.note = LET_GO
 
 
 @kernel
@@ -341,20 +357,18 @@ def phase_run(
     setting: Setting,
     position: Vector,
     quaternion: Quaternion,
-    phase: int,
     step_limit: int,
-    first_event: int,
     work: QuasistaticWorkspace,
 ) -> tuple[int, int, Vector, Quaternion]:
-    """Run one phase; return (verdict code, number of steps so far, position, quaternion)."""
+    """Run one phase; return (verdict code, number of steps, position, quaternion)."""
     touch_m = setting.tolerances.touch_m
     place_object(setting.geometry, position, quaternion, work.placement)
     frame = frame_at(setting.body, quaternion)
     fits = find_contacts(setting.geometry, work.placement, position, frame, touch_m, work.contacts)
     turn_step = setting.turn_step_rad
     still, n_polished = 0, 0
-    event = first_event
-    while event < first_event + step_limit:
+    step = 0
+    while step < step_limit:
         note_touching(work)
         work.rooms[0].solver.load_terms = write_load(setting.load, quaternion, frame, work.rooms[0].solver.load)
         code = onset(work.contacts, setting.friction, work.rooms[0].solver) if fits else UNSOLVED
@@ -367,15 +381,15 @@ def phase_run(
             continue
         if code != MOVES:
             rule = STUCK if code == UNSOLVED else HELD
-            write_step(work, event, phase, rule, NONE, position, quaternion)
-            return (STALLED if code == UNSOLVED else RESTS), event + 1, position, quaternion
+            write_step(work, step, rule, NONE, position, quaternion)
+            return (STALLED if code == UNSOLVED else RESTS), step + 1, position, quaternion
         twist = next_twist(setting, quaternion, frame, turn_step, work)
         rule = carried_by(work.contacts)
         motion = TRAVEL if norm(twist.spin) == 0.0 else SCREW
         if rule == FREE and nothing_ahead(setting, position):
-            write_step(work, event, phase, rule, TRAVEL, position, quaternion)
-            return ESCAPES, event + 1, position, quaternion
-        amount, hit_point, as_planned, new_position, new_quaternion = furthest_step(
+            write_step(work, step, rule, TRAVEL, position, quaternion)
+            return ESCAPES, step + 1, position, quaternion
+        amount, as_planned, new_position, new_quaternion = furthest_step(
             setting,
             work.placement,
             work.contacts,
@@ -385,10 +399,10 @@ def phase_run(
             work.path,
         )
         if amount == math.inf:
-            write_step(work, event, phase, rule, TRAVEL, position, quaternion)
-            return ESCAPES, event + 1, position, quaternion
+            write_step(work, step, rule, TRAVEL, position, quaternion)
+            return ESCAPES, step + 1, position, quaternion
         could_rest = setting.friction > 0.0 and rule != FREE and amount > 0.0
-        if could_rest and is_held_on_the_way(setting, new_position, new_quaternion, hit_point, work):
+        if could_rest and is_held_on_the_way(setting, new_position, new_quaternion, work):
             new_position, new_quaternion = first_rest(setting, position, quaternion, twist, amount, work)
         moved = norm(minus(new_position, position)) + setting.body.reach_m * turned_by(quaternion, new_quaternion)
         still = 0 if moved > STILL * setting.size_m else still + 1
@@ -396,49 +410,107 @@ def phase_run(
         position, quaternion = new_position, new_quaternion
         frame = frame_at(setting.body, quaternion)
         fits = find_contacts(setting.geometry, work.placement, position, frame, touch_m, work.contacts)
-        write_step(work, event, phase, rule, motion, position, quaternion)
-        event += 1
+        write_step(work, step, rule, motion, position, quaternion)
+        step += 1
         if still == STILL_STEPS:
-            return STALLED, event, position, quaternion
-    return LIMIT, first_event + step_limit, position, quaternion
+            return STALLED, step, position, quaternion
+    return LIMIT, step_limit, position, quaternion
+
+
+@kernel
+def run_phase(
+    start: Start,
+    part: Part,
+    rules: QuasistaticRules,
+    phase: int,
+    position: Vector,
+    quaternion: Quaternion,
+    work: QuasistaticWorkspace,
+) -> tuple[int, int, Vector, Quaternion]:
+    """Run one phase of a case; see `phase_run`."""
+    setting = Setting(
+        start.geometry,
+        part.body,
+        start.loads[phase],
+        start.size_m,
+        start.friction,
+        rules.turn_step_rad,
+        start.tolerances,
+    )
+    return phase_run(setting, position, quaternion, rules.step_limit, work)
 
 
 @entry
-def quasistatic_run(
-    geometry: Geometry,
-    body: Body,
-    start_position: Vector,
-    start_quaternion: Quaternion,
-    loads: Rows[PhaseLoad],
-    rules: QuasistaticRules,
-    size_m: float,
-    tolerances: KernelTolerances,
-    work: QuasistaticWorkspace,
-) -> tuple[int, int]:
-    """Run the phases one after the other; return how many (phases were run, steps were written).
+def run_quasistatic(
+    part: Part, cases: Cases, rules: QuasistaticRules, work: QuasistaticWorkspace, outcome: Outcome
+) -> bool:
+    """Run the phases of a scene one after the other, and judge where each of them ends.
 
     Parameters
     ----------
-    geometry, body, loads
-        The scene; boxes as seen from the centre of gravity.
-    start_position, start_quaternion
-        Centre of gravity at the start, metres, and the object's unit quaternion (w, x, y, z).
-    rules, tolerances
-        Numbers of the method and of the kernels.
-    size_m
-        The scene's size, metres.
+    part, cases
+        The scene: the first of the cases.
+    rules
+        Numbers of the method.
     work
-        Filled: trace and verdicts.
+        Written over.
+    outcome
+        Filled. A phase that does not end at rest is the last one.
 
-    A phase that does not end at rest is the last one that is run.
+    Returns
+    -------
+    bool
+        False: the outcome has no room for all contacts.
     """
-    position, quaternion = start_position, start_quaternion
-    n_events = int(np.int64(0))  # a plain 0 would compile `phase_run` twice, once for the literal
-    for phase in range(len(work.verdicts)):
-        setting = Setting(geometry, body, loads[phase], size_m, rules.friction, rules.turn_step_rad, tolerances)
-        work.verdicts[phase], n_events, position, quaternion = phase_run(
-            setting, position, quaternion, phase, rules.step_limit, n_events, work
-        )
-        if work.verdicts[phase] != RESTS:
-            return phase + 1, n_events
-    return len(work.verdicts), n_events
+    begin(outcome)
+    start = start_of(0, part, cases, work.points_world)
+    position, quaternion = start.position, start.quaternion
+    for phase in range(len(start.loads)):
+        verdict, n_steps, end, turned = run_phase(start, part, rules, phase, position, quaternion, work)
+        publish_events(work.trace, n_steps, True, position, quaternion, start, part, outcome)
+        verdict, fits = end_phase(verdict, phase, end, turned, start, part, work.proof, outcome)
+        if verdict != RESTS or not fits:
+            return fits
+        position, quaternion = end, turned
+    return True
+
+
+@entry
+def run_quasistatic_cases(
+    first: int,
+    last: int,
+    part: Part,
+    cases: Cases,
+    farthest: float,
+    rules: QuasistaticRules,
+    work: QuasistaticWorkspace,
+    endings: Endings,
+) -> None:
+    """Run the cases ``first`` up to, without, ``last``, and judge where a phase comes to rest.
+
+    Parameters
+    ----------
+    part, cases, rules, work
+        As in `run_quasistatic`.
+    farthest
+        Sizes of the scene from the cage beyond which no start is valid.
+    endings
+        Filled.
+    """
+    for case in range(first, last):
+        start = start_of(case, part, cases, work.points_world)
+        if not is_valid(start, farthest, len(cases.points_cage) > 1, work.placement):
+            endings.verdicts[case, 0] = INVALID
+            continue
+        position, quaternion = start.position, start.quaternion
+        for phase in range(len(start.loads)):
+            verdict, n_steps, position, quaternion = run_phase(start, part, rules, phase, position, quaternion, work)
+            if verdict == RESTS:
+                endings.proofs[case, phase], _, _ = judge_end(phase, position, quaternion, start, part, work.proof)
+                if endings.proofs[case, phase] in NO_BALANCE:
+                    verdict = STALLED
+            write_ending(endings, case, phase, verdict, n_steps, position, quaternion, start, part)
+            for i in range(work.contacts.used[0]):
+                endings.touching[case, phase, work.contacts.rows[i].point] = True
+            if verdict != RESTS:
+                break

@@ -293,11 +293,11 @@ def furthest_step(
     quaternion: Quaternion,
     twist: Twist,
     room: PathRoom,
-) -> tuple[float, int, bool, Vector, Quaternion]:
+) -> tuple[float, bool, Vector, Quaternion]:
     """Go along a twist to its end, the first contact or the edge of a face that carries, or less if need be.
 
-    Return (amount, point hit or -1, whether it went as far as it should, position, quaternion); amount 0: it could
-    not move; inf: nothing is ahead.
+    Return (amount, whether it went as far as it should, position, quaternion); amount 0: it could not move; inf:
+    nothing is ahead.
     """
     allow_depths(placement, setting.tolerances, room)
     amount, hit_point, hit_box = first_contact(setting, placement, position, twist, twist.end)
@@ -316,12 +316,12 @@ def furthest_step(
     if twist.end < amount:
         amount = twist.end
     if amount == math.inf:
-        return amount, -1, True, position, quaternion
+        return amount, True, position, quaternion
     for halving in range(HALVINGS):
         done, new_position, new_quaternion = stepped(
             setting, placement, contacts, position, quaternion, twist, amount, hit_point, hit_box, room
         )
         if done:
-            return amount, hit_point, halving == 0, new_position, new_quaternion
+            return amount, halving == 0, new_position, new_quaternion
         amount, hit_point, hit_box = 0.5 * amount, -1, -1
-    return 0.0, -1, False, position, quaternion
+    return 0.0, False, position, quaternion

@@ -4,21 +4,14 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
-from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import Rows
-from cagepose.kernels.algebra.tolerances import KernelTolerances
-from cagepose.kernels.algebra.vector import Vector
-from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.contact.balance import left_by_friction
 from cagepose.kernels.contact.cone import BALANCED, HELD, write_forces
 from cagepose.kernels.contact.contact_set import ContactRow, choose_next_faces
-from cagepose.kernels.contact.metric import Body, PhaseLoad
 from cagepose.kernels.contact.onset import COMBINATIONS_LIMIT, OnsetRoom
 from cagepose.kernels.contact.sure_motion import step_to_balance
-from cagepose.kernels.native.kernel import entry, kernel
-from cagepose.kernels.stability.proof import ProofRoom, stand_at
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.stability.proof import ProofRoom
 
 FRICTION_GREATEST = 1e4
 """A coefficient above which a balance counts as none."""
@@ -34,7 +27,7 @@ def least_friction(rows: Rows[ContactRow], n_contacts: int, solver: OnsetRoom) -
     Bisection, and Newton's method where the residual falls straight to zero: there the last step is taken from a
     residual that is still large enough to be sure of its digits.
     """
-    low, high = float(np.float64(0.0)), 1.0
+    low, high = 0.0, 1.0
     if left_by_friction(rows, n_contacts, low, solver) <= BALANCED:
         return 0.0
     while left_by_friction(rows, n_contacts, high, solver) > HELD:
@@ -61,25 +54,14 @@ def least_friction(rows: Rows[ContactRow], n_contacts: int, solver: OnsetRoom) -
     return high
 
 
-@entry
-def critical_friction(
-    geometry: Geometry,
-    body: Body,
-    position: Vector,
-    quaternion: Quaternion,
-    load: PhaseLoad,
-    tolerances: KernelTolerances,
-    at: ProofRoom,
-) -> float:
-    """Return the least coefficient of friction at which the contacts can balance the load at a pose (5.17); inf: none.
-
-    Parameters as for `cagepose.kernels.stability.proof.prove`.
+@kernel
+def least_friction_of_faces(at: ProofRoom) -> float:
+    """Return the least coefficient with which the contacts at a pose balance the load, whichever faces count on edges;
+    inf: none; NaN: there are too many choices of faces to ask them all.
     """
-    if not stand_at(geometry, body, position, quaternion, load, tolerances.touch_m, at):
-        return math.nan
     least = 0.0
     rows, n_contacts = at.contacts.rows, at.contacts.used[0]
-    every = bool(np.bool_(False))
+    every = False
     for _ in range(COMBINATIONS_LIMIT):
         least = max(least, least_friction(rows, n_contacts, at.rooms[0].solver))
         write_forces(at.rooms[0].solver.cone, least, rows, n_contacts)

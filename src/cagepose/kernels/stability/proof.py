@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
 from cagepose.kernels.algebra.least_squares import System, clear, empty_system
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import Rows, empty_rows
@@ -30,7 +28,7 @@ from cagepose.kernels.contact.onset import (
     UNSOLVED,
     OnsetRoom,
 )
-from cagepose.kernels.native.kernel import entry, kernel
+from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.second_order import (
     MARGINAL,
     STABLE_REST,
@@ -117,7 +115,7 @@ def stand_at(
     return find_contacts(geometry, at.placement, position, frame, touch_m, at.contacts)
 
 
-@entry
+@kernel
 def prove(
     geometry: Geometry,
     body: Body,
@@ -187,7 +185,7 @@ def judge_faces(
     Where there is one choice of faces only, its balance has this code, and its forces stay.
     """
     contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
-    every = bool(np.bool_(True))
+    every = True
     proof, steady = PROVEN_WITHOUT_FRICTION, STABLE_REST
     for _ in range(COMBINATIONS_LIMIT):
         if not one_choice:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from cagepose.kernels.algebra.least_squares import rounding_scale
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.tolerances import KernelTolerances
+from cagepose.kernels.algebra.vector import Vector
+from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.contact.balance import balance_with_faces
 from cagepose.kernels.contact.cone import HELD, N_ROWS, clear_cone, cone_residual
 from cagepose.kernels.contact.contact_set import (
@@ -14,9 +16,18 @@ from cagepose.kernels.contact.contact_set import (
     keep_faces,
     put_best_faces_back,
 )
+from cagepose.kernels.contact.metric import Body, PhaseLoad
 from cagepose.kernels.contact.onset import COMBINATIONS_LIMIT, HELD_BY_FRICTION, MOVES, onset
-from cagepose.kernels.native.kernel import entry, kernel
-from cagepose.kernels.stability.proof import OTHER_ONSET, PROVEN_UNIQUE, UNIQUENESS_NOT_SHOWN, JudgeRoom, ProofRoom
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.stability.proof import (
+    OTHER_ONSET,
+    PROVEN_MOVES,
+    PROVEN_UNIQUE,
+    UNIQUENESS_NOT_SHOWN,
+    JudgeRoom,
+    ProofRoom,
+    prove,
+)
 from cagepose.kernels.stability.sure_contacts import rest_is_sure
 from cagepose.kernels.stability.uniqueness import OTHER_FOUND, UNIQUE, other_onset
 
@@ -29,7 +40,7 @@ def has_self_stress(contacts: ContactSet, friction: float, room: JudgeRoom) -> b
     """
     cone = room.solver.cone
     clear_cone(cone, room.sum_only, N_ROWS, 1.0)
-    charged = bool(np.bool_(False))
+    charged = False
     left = cone_residual(contacts.rows, contacts.used[0], friction, room.sum_only, charged, cone)
     return left <= HELD * rounding_scale(cone.passive)
 
@@ -38,7 +49,7 @@ def has_self_stress(contacts: ContactSet, friction: float, room: JudgeRoom) -> b
 def search_faces(friction: float, at: ProofRoom) -> int:
     """Return the code of the proof, the least sure of all combinations of faces."""
     contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
-    every = bool(np.bool_(True))
+    every = True
     proof = PROVEN_UNIQUE
     choose_first_faces(contacts)
     for _ in range(COMBINATIONS_LIMIT):
@@ -55,7 +66,7 @@ def search_faces(friction: float, at: ProofRoom) -> int:
     return UNIQUENESS_NOT_SHOWN
 
 
-@entry
+@kernel
 def search_onsets(friction: float, at: ProofRoom) -> int:
     """Try all contact modes (5.13) where `prove` has not shown that rest is the only onset.
 
@@ -81,7 +92,7 @@ def search_onsets(friction: float, at: ProofRoom) -> int:
     return proof
 
 
-@entry
+@kernel
 def first_motion(friction: float, at: ProofRoom) -> None:
     """Write into ``at.rooms[0].solver.y`` how an object begins to move that does so by `prove`.
 
@@ -101,3 +112,28 @@ def first_motion(friction: float, at: ProofRoom) -> None:
         solver.residual = room.twist_residual
         for k in range(6):
             solver.y[k] = room.twist[k]
+
+
+@kernel
+def judge(
+    geometry: Geometry,
+    body: Body,
+    position: Vector,
+    quaternion: Quaternion,
+    load: PhaseLoad,
+    friction: float,
+    size_m: float,
+    tolerances: KernelTolerances,
+    at: ProofRoom,
+) -> tuple[int, int, int]:
+    """Judge a pose, with the long search where it takes one, and the motion that begins where the object moves.
+
+    Parameters and result as for `cagepose.kernels.stability.proof.prove`.
+    """
+    at.rooms[0].wedged = False
+    code, steady, n_undetermined = prove(geometry, body, position, quaternion, load, friction, size_m, tolerances, at)
+    if code == UNIQUENESS_NOT_SHOWN:
+        code = search_onsets(friction, at)
+    elif code == PROVEN_MOVES:
+        first_motion(friction, at)
+    return code, steady, n_undetermined

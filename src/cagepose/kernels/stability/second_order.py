@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal
 
-import numpy as np
-
 from cagepose.kernels.algebra.eigen import symmetric_eigen
 from cagepose.kernels.algebra.least_squares import (
     ENOUGH_LEFT,
@@ -149,7 +147,7 @@ def lies_in_cone(contacts: ContactSet, i: int, sign: float, room: StabilityRoom,
 
     With -1 no free twist opens it; with +1 no free twist that the others allow closes it.
     """
-    n_others = int(np.int64(0))
+    n_others = 0
     for k in range(contacts.used[0]):
         other = contacts.rows[k]
         if k != i and other.chosen and not other.is_equality and not other.is_rejected:

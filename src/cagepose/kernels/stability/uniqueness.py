@@ -12,8 +12,6 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
-import numpy as np
-
 from cagepose.kernels.algebra.least_squares import PassiveSet, System, clear, inner, length, nonnegative_least_squares
 from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.contact.contact_set import ContactSet
@@ -136,7 +134,7 @@ def write_modes(
     """Write the system of the present modes; return the number of columns. Column 0 is the scale of the load."""
     write_velocity(contacts, n_rows, b, b, 1.0, system.columns[0], room)
     room.owners[0] = -1
-    n_columns = int(np.int64(1))
+    n_columns = 1
     around = friction / math.cos(math.pi / GENERATORS)
     for place in range(n_rows):
         mode = room.modes[place]
@@ -257,7 +255,7 @@ def other_onset(
 
     The forces of the contacts are lost.
     """
-    n_rows = int(np.int64(0))  # a plain 0 would compile the whole search twice, once for the literal
+    n_rows = 0
     for i in range(contacts.used[0]):
         if contacts.rows[i].chosen:
             if n_rows == CONTACT_LIMIT:
@@ -267,7 +265,7 @@ def other_onset(
     for place in range(CONTACT_LIMIT):
         room.modes[place] = UNDECIDED
         room.starts[place] = room.widths[place] = 0.0
-    n_waiting = branch(n_rows, int(np.int64(0)), room)
+    n_waiting = branch(n_rows, 0, room)
     for _ in range(SYSTEM_LIMIT):
         if n_waiting == 0:
             return UNIQUE

@@ -11,25 +11,20 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion, rotated
+from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.tolerances import KernelTolerances
-from cagepose.kernels.algebra.vector import Vector, dot, minus, plus, row, vector_from
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, row, scaled, vector_from
 from cagepose.kernels.collision.first_contact import first_contact_travel
 from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement, is_clear_of, place_object
+from cagepose.kernels.contact.metric import PhaseLoad, load_arm
 from cagepose.kernels.native.kernel import entry, kernel
-from cagepose.kernels.stepwise.slip import SlipRules, slip_step
-from cagepose.kernels.stepwise.support import (
-    PointLoad,
-    SupportRules,
-    pairwise_stability,
-    turn_about_one,
-    turn_about_two,
-)
-from cagepose.kernels.stepwise.touching import Touching, choose_below, empty_touching, find_touching, has_face_tie
-from cagepose.kernels.trace import (
+from cagepose.kernels.outcome.cases import Cases, Part, Start, is_valid, start_of
+from cagepose.kernels.outcome.endings import INVALID, Endings, write_ending
+from cagepose.kernels.outcome.publish import begin, end_phase, publish_events
+from cagepose.kernels.outcome.records import Outcome
+from cagepose.kernels.outcome.trace import (
     CYCLING,
     EDGE_TIE,
     ESCAPES,
@@ -39,12 +34,20 @@ from cagepose.kernels.trace import (
     SPINS,
     STABLE,
     TRAVEL,
-    Step,
     Trace,
     empty_trace,
-    pose_during,
-    write_event,
 )
+from cagepose.kernels.stability.proof import ProofRoom, empty_proof_room
+from cagepose.kernels.stepwise.slip import SlipRules, slip_step
+from cagepose.kernels.stepwise.step import Step, pose_during, write_step
+from cagepose.kernels.stepwise.support import (
+    PointLoad,
+    SupportRules,
+    pairwise_stability,
+    turn_about_one,
+    turn_about_two,
+)
+from cagepose.kernels.stepwise.touching import Touching, choose_below, empty_touching, find_touching, has_face_tie
 
 RULE_NAMES = ("A-1", "A-2", "A-3", "A-4", "B-1", "B-2", "B-3", "B-4", "Slp-1", "Slp-2")
 PHASE_A, PHASE_B = 0, 4  # codes of A-1 and B-1; steps 2, 3 and 4 follow
@@ -64,24 +67,6 @@ class StepwiseRules(NamedTuple):
     support: SupportRules
     slip: SlipRules
     event_limit: int
-
-
-class PhaseLoads(NamedTuple):
-    """One row for each phase.
-
-    Attributes
-    ----------
-    directions_world
-        Unit vectors, (n_phases, 3).
-    points_object
-        Application points in the object's frame, (n_phases, 3), metres.
-    is_push
-        True: phase B (a force); False: phase A (gravity alone), (n_phases,).
-    """
-
-    directions_world: FloatArray
-    points_object: FloatArray
-    is_push: NDArray[np.bool_]
 
 
 @kernel
@@ -145,13 +130,13 @@ def next_step(
 
 
 @kernel
-def was_met(trace: Trace, first: int, last: int, size_m: float, resolution_m: float) -> bool:
-    """Whether an event from ``first`` to before ``last`` ended at the pose and with the contacts of ``last`` (R10).
+def was_met(trace: Trace, last: int, size_m: float, resolution_m: float) -> bool:
+    """Whether a step before ``last`` ended at the pose and with the contacts of ``last`` (R10).
 
     The method has no other memory (but for the order of touching, which only tells at a tie), so it would repeat itself
     for ever.
     """
-    for event in range(first, last):
+    for event in range(last):
         then, now = trace.rows[event], trace.rows[last]
         offset = minus(vector_from(then.position), vector_from(now.position))
         if dot(offset, offset) > resolution_m * resolution_m:
@@ -173,58 +158,77 @@ def was_met(trace: Trace, first: int, last: int, size_m: float, resolution_m: fl
 
 
 @kernel
-def load_at(loads: PhaseLoads, phase: int, position: Vector, quaternion: Quaternion) -> PointLoad:
-    """Return the load of a phase on the object at a pose: the direction is the world's, the point the object's."""
-    point = plus(position, rotated(quaternion, row(loads.points_object, phase)))
-    return PointLoad(row(loads.directions_world, phase), point)
+def is_push(load: PhaseLoad) -> bool:
+    """Whether a phase has a force: gravity beside it is ignored then (R8b)."""
+    return norm(row(load.forces_world, 1)) > 0.0
+
+
+@kernel
+def load_at(load: PhaseLoad, position: Vector, quaternion: Quaternion) -> PointLoad:
+    """Return the load on the object at a pose: its direction is the world's, its point the object's (R8b)."""
+    which = 1 if is_push(load) else 0
+    force = row(load.forces_world, which)
+    return PointLoad(scaled(force, 1.0 / norm(force)), plus(position, load_arm(load, which, quaternion)))
 
 
 @kernel
 def phase_run(
-    geometry: Geometry,
-    placement: Placement,
-    touching: Touching,
-    position: Vector,
-    quaternion: Quaternion,
-    loads: PhaseLoads,
-    phase: int,
-    rules: StepwiseRules,
-    size_m: float,
-    tolerances: KernelTolerances,
-    trace: Trace,
-    first_event: int,
+    start: Start, phase: int, position: Vector, quaternion: Quaternion, of_size: StepwiseRules, work: StepwiseWorkspace
 ) -> tuple[int, int, Vector, Quaternion]:
-    """Run one phase from where ``placement`` is; return (verdict code, events so far, position, quaternion)."""
-    load = load_at(loads, phase, position, quaternion)
+    """Run one phase; return (verdict code, number of steps, position, quaternion). ``of_size``: for a scene of size 1.
+
+    The contacts of the phase before keep their order.
+    """
+    geometry, tolerances, phase_load = start.geometry, start.tolerances, start.loads[phase]
+    placement, touching, trace = work.placement, work.touching, work.trace
+    rules = rules_of(of_size, start.friction, start.size_m)
+    pushes = is_push(phase_load)
+    place_object(geometry, position, quaternion, placement)
+    load = load_at(phase_load, position, quaternion)
     find_touching(geometry, placement, load, tolerances, touching)
-    for event in range(first_event, first_event + rules.event_limit):
-        step = next_step(geometry, placement, touching, load, loads.is_push[phase], rules, tolerances)
-        if loads.is_push[phase] and step.note == PLAIN and has_face_tie(touching):
+    for count in range(rules.event_limit):
+        # Decide.
+        step = next_step(geometry, placement, touching, load, pushes, rules, tolerances)
+        if pushes and step.note == PLAIN and has_face_tie(touching):
             step = Step(step.rule, step.motion, step.along, step.through, step.amount, step.hit_point, EDGE_TIE)
         if step.motion == NONE:
-            write_event(trace, event, phase, step, position, quaternion)
+            write_step(trace.rows[count], step, position, quaternion)
             for point in range(len(geometry.points_world)):
-                trace.touching[event, point], trace.hit[event, point] = touching.is_touching[point], False
-            return STABLE, event + 1, position, quaternion
+                trace.touching[count, point], trace.hit[count, point] = touching.is_touching[point], False
+            return STABLE, count + 1, position, quaternion
+        # Move.
         halfway = pose_during(step, position, quaternion, 0.5)
         halfway_rotation = matrix_from_quaternion(halfway[1])
         position, quaternion = pose_during(step, position, quaternion, 1.0)
-        write_event(trace, event, phase, step, position, quaternion)
-        load = load_at(loads, phase, position, quaternion)
+        write_step(trace.rows[count], step, position, quaternion)
+        # Find the contacts there, and which of them the motion has reached.
+        load = load_at(phase_load, position, quaternion)
         place_object(geometry, position, quaternion, placement)
         find_touching(geometry, placement, load, tolerances, touching)
         for point in range(len(geometry.points_world)):
             is_hit = touching.is_touching[point]
-            trace.touching[event, point] = is_hit
+            trace.touching[count, point] = is_hit
             if is_hit and touching.was_touching[point] and point != step.hit_point:
                 # Reached anew, if it did not touch halfway, as in a swing back.
                 is_hit = is_clear_of(geometry, halfway[0], halfway_rotation, point, tolerances.touch_m)
-            trace.hit[event, point] = is_hit
+            trace.hit[count, point] = is_hit
+        # Look for an end.
         if step.amount == math.inf:
-            return (ESCAPES if step.motion == TRAVEL else SPINS), event + 1, position, quaternion
-        if was_met(trace, first_event, event, size_m, tolerances.resolution_m):
-            return CYCLING, event + 1, position, quaternion
-    return LIMIT, first_event + rules.event_limit, position, quaternion
+            return (ESCAPES if step.motion == TRAVEL else SPINS), count + 1, position, quaternion
+        if was_met(trace, count, start.size_m, tolerances.resolution_m):
+            return CYCLING, count + 1, position, quaternion
+    return LIMIT, rules.event_limit, position, quaternion
+
+
+@kernel
+def rules_of(of_size: StepwiseRules, friction: float, size_m: float) -> StepwiseRules:
+    """Scale rules that are given for a scene of size 1; below the angle of friction a contact does not slip (R4)."""
+    support, slip = of_size.support, of_size.slip
+    return StepwiseRules(
+        SupportRules(support.least_moment, support.blocked_key, support.unseen_key, support.equal_distance_m * size_m),
+        SlipRules(math.atan(friction), slip.contactless_angle_rad, slip.parallel_sine, slip.equal_distance_m * size_m),
+        of_size.event_limit,
+    )
 
 
 @kernel
@@ -235,7 +239,7 @@ def forget_contacts(touching: Touching) -> None:
         touching.is_touching[point] = False
 
 
-class Workspace(NamedTuple):
+class StepwiseWorkspace(NamedTuple):
     """All arrays that a run writes to, so that compiled code makes none.
 
     Attributes
@@ -243,76 +247,99 @@ class Workspace(NamedTuple):
     placement, touching
         The state at the present pose.
     trace
-        Events of all phases, one after the other.
-    verdicts
-        Verdict code of each phase, (n_phases,).
+        Steps of one phase.
+    points_world
+        Cage points of the case that is run, (n_points, 3).
+    proof
+        Room for the proof of a phase's end.
     """
 
     placement: Placement
     touching: Touching
     trace: Trace
-    verdicts: NDArray[np.int64]
+    points_world: FloatArray
+    proof: ProofRoom
 
 
-def empty_workspace(geometry: Geometry, n_phases: int, rules: StepwiseRules) -> Workspace:
-    """Return room for one run (plain Python)."""
+def empty_stepwise_workspace(geometry: Geometry, event_limit: int) -> StepwiseWorkspace:
+    """Return room for one run at a time (plain Python)."""
     n_points = len(geometry.points_world)
-    return Workspace(
+    return StepwiseWorkspace(
         empty_placement(geometry),
         empty_touching(n_points),
-        empty_trace(n_phases * rules.event_limit, n_points),
-        np.empty(n_phases, np.int64),
+        empty_trace(event_limit, n_points),
+        np.zeros((n_points, 3)),
+        empty_proof_room(geometry),
     )
 
 
 @entry
-def stepwise_run(
-    geometry: Geometry,
-    start_position: Vector,
-    start_quaternion: Quaternion,
-    loads: PhaseLoads,
-    rules: StepwiseRules,
-    size_m: float,
-    tolerances: KernelTolerances,
-    workspace: Workspace,
-) -> tuple[int, int]:
-    """Run the phases one after the other; return how many (phases were run, events were written).
+def run_stepwise(part: Part, cases: Cases, rules: StepwiseRules, work: StepwiseWorkspace, outcome: Outcome) -> bool:
+    """Run the phases of a scene one after the other, and judge by the mechanics where each of them ends.
 
     Parameters
     ----------
-    geometry, loads
-        The scene.
-    start_position, start_quaternion
-        Pose of the object at the start: metres, unit quaternion (w, x, y, z).
-    rules, tolerances
-        Numbers of the method and of the kernels.
-    size_m
-        The scene's size, metres.
-    workspace
-        Filled: trace and verdicts.
+    part, cases
+        The scene: the first of the cases.
+    rules
+        Numbers of the method, for a scene of size 1; the angle of slip is that of the case's friction.
+    work
+        Written over.
+    outcome
+        Filled. A phase that does not end stable is the last one.
 
-    A phase that does not end stable is the last one that is run.
+    Returns
+    -------
+    bool
+        False: the outcome has no room for all contacts.
     """
-    placement, touching, trace, verdicts = workspace
-    forget_contacts(touching)
-    position, quaternion = start_position, start_quaternion
-    place_object(geometry, position, quaternion, placement)
-    n_events = int(np.int64(0))  # a plain 0 would compile `phase_run` twice, once for the literal
-    for phase in range(len(verdicts)):
-        verdicts[phase], n_events, position, quaternion = phase_run(
-            geometry,
-            placement,
-            touching,
-            position,
-            quaternion,
-            loads,
-            phase,
-            rules,
-            size_m,
-            tolerances,
-            trace,
-            n_events,
-        )
-        if verdicts[phase] != STABLE:
-            return phase + 1, n_events
-    return len(verdicts), n_events
+    begin(outcome)
+    start = start_of(0, part, cases, work.points_world)
+    position, quaternion = start.position, start.quaternion
+    forget_contacts(work.touching)
+    for phase in range(len(start.loads)):
+        verdict, n_steps, end, turned = phase_run(start, phase, position, quaternion, rules, work)
+        publish_events(work.trace, n_steps, False, position, quaternion, start, part, outcome)
+        verdict, fits = end_phase(verdict, phase, end, turned, start, part, work.proof, outcome)
+        if verdict != STABLE or not fits:
+            return fits
+        position, quaternion = end, turned
+    return True
+
+
+@entry
+def run_stepwise_cases(
+    first: int,
+    last: int,
+    part: Part,
+    cases: Cases,
+    farthest: float,
+    rules: StepwiseRules,
+    work: StepwiseWorkspace,
+    endings: Endings,
+) -> None:
+    """Run the cases ``first`` up to, without, ``last``.
+
+    Parameters
+    ----------
+    part, cases, rules, work
+        As in `run_stepwise`.
+    farthest
+        Sizes of the scene from the cage beyond which no start is valid.
+    endings
+        Filled.
+    """
+    for case in range(first, last):
+        start = start_of(case, part, cases, work.points_world)
+        if not is_valid(start, farthest, len(cases.points_cage) > 1, work.placement):
+            endings.verdicts[case, 0] = INVALID
+            continue
+        position, quaternion = start.position, start.quaternion
+        forget_contacts(work.touching)
+        for phase in range(len(start.loads)):
+            verdict, n_steps, position, quaternion = phase_run(start, phase, position, quaternion, rules, work)
+            write_ending(endings, case, phase, verdict, n_steps, position, quaternion, start, part)
+            for point in range(len(work.points_world)):
+                endings.touching[case, phase, point] = work.touching.is_touching[point]
+            if verdict != STABLE:
+                break

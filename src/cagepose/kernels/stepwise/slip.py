@@ -18,8 +18,9 @@ from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, row
 from cagepose.kernels.collision.first_contact import first_contact_travel, first_contact_turn
 from cagepose.kernels.collision.geometry import Geometry, Placement
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.outcome.trace import PLAIN, TRAVEL, TURN
+from cagepose.kernels.stepwise.step import Step
 from cagepose.kernels.stepwise.support import PointLoad, held, moment_about
-from cagepose.kernels.trace import PLAIN, TRAVEL, TURN, Step
 
 SLP_1, SLP_2 = 8, 9
 """Rule codes: after the four of phase A and the four of phase B."""

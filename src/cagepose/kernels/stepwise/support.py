@@ -17,7 +17,8 @@ from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, row
 from cagepose.kernels.collision.first_contact import first_contact_turn, turn_is_blocked_at_once
 from cagepose.kernels.collision.geometry import Geometry, Placement
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.trace import BALANCED, NONE, PLAIN, SMALL_TURN, TIE, TURN, Step
+from cagepose.kernels.outcome.trace import BALANCED, NONE, PLAIN, SMALL_TURN, TIE, TURN
+from cagepose.kernels.stepwise.step import Step
 
 
 class PointLoad(NamedTuple):

@@ -11,7 +11,7 @@ import numpy as np
 from cagepose.files.key_path import parse_key_path, resolved, value_at
 from cagepose.files.scene_file import SceneFile, SceneText
 from cagepose.files.units import from_metres
-from cagepose.model.methods import DEFAULT_FRICTION, METHODS
+from cagepose.model.methods import METHODS
 from cagepose.runs.methods import chosen_method
 from cagepose.views.viewer.surface import nearest_on_object
 
@@ -134,11 +134,11 @@ class _Maker:
     def _options(self) -> list[Control]:
         chosen, friction = chosen_method(self.scene), self.scene.friction_coefficient
         if friction is None:
-            friction = round(DEFAULT_FRICTION[chosen], 6)
+            friction = round(chosen.friction(self.scene), 6)
         most = max(MOST_FRICTION, 2.0 * friction)
         return [
             self._slider("contacts", "friction", "", "friction", None, friction, 0.0, most),
-            Control("contacts", "method", "", "method", None, chosen, choices=METHODS),
+            Control("contacts", "method", "", "method", None, chosen.name, choices=METHODS),
         ]
 
     def _vector(

@@ -1,0 +1,56 @@
+"""Questions about one pose, the start of a case, without a run."""
+
+from __future__ import annotations
+
+import math
+
+from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.native.kernel import entry
+from cagepose.kernels.outcome.cases import Cases, Part, start_of
+from cagepose.kernels.outcome.publish import begin, end_phase
+from cagepose.kernels.outcome.records import Outcome
+from cagepose.kernels.outcome.trace import RESTS
+from cagepose.kernels.stability.critical_friction import least_friction_of_faces
+from cagepose.kernels.stability.proof import ProofRoom, stand_at
+
+
+@entry
+def judge_start(
+    phase: int, part: Part, cases: Cases, points_world: FloatArray, at: ProofRoom, outcome: Outcome
+) -> bool:
+    """Judge the start pose of the first case under the load of a phase.
+
+    Parameters
+    ----------
+    phase
+        Index of the load.
+    part, cases
+        The scene.
+    points_world, at
+        Room.
+    outcome
+        Filled: the phase's record and its contacts.
+
+    Returns
+    -------
+    bool
+        False: the outcome has no room for all contacts.
+    """
+    begin(outcome)
+    start = start_of(0, part, cases, points_world)
+    _, fits = end_phase(RESTS, phase, start.position, start.quaternion, start, part, at, outcome)
+    return fits
+
+
+@entry
+def critical_friction(phase: int, part: Part, cases: Cases, points_world: FloatArray, at: ProofRoom) -> float:
+    """Return the least coefficient of friction at which the contacts can balance the load of a phase at the start pose
+    of the first case (5.17); inf: none; NaN: there are too many contacts, or choices of faces, to tell.
+
+    Parameters as for `judge_start`.
+    """
+    start = start_of(0, part, cases, points_world)
+    touch_m = start.tolerances.touch_m
+    if not stand_at(start.geometry, part.body, start.position, start.quaternion, start.loads[phase], touch_m, at):
+        return math.nan
+    return least_friction_of_faces(at)

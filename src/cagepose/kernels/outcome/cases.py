@@ -1,0 +1,159 @@
+"""What is to be run: one scene, or many that differ in numbers. A scene by itself is a case of one."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from cagepose.kernels.algebra.pose import Quaternion, rotated
+from cagepose.kernels.algebra.record import FloatArray, Rows
+from cagepose.kernels.algebra.tolerances import KernelTolerances, scaled_tolerances
+from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, row, scaled
+from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
+from cagepose.kernels.contact.metric import Body, PhaseLoad
+from cagepose.kernels.native.kernel import kernel
+
+
+class Part(NamedTuple):
+    """The object, the same in all cases.
+
+    Attributes
+    ----------
+    half_sizes, box_positions, box_rotations, n_own_boxes
+        As in `Geometry`, but seen from the centre of gravity.
+    body
+        Its inertia.
+    center_object
+        Centre of gravity in the object's own frame, metres.
+    """
+
+    half_sizes: FloatArray
+    box_positions: FloatArray
+    box_rotations: FloatArray
+    n_own_boxes: int
+    body: Body
+    center_object: Vector
+
+
+class Cases(NamedTuple):
+    """What differs from case to case: each array has one row for each case, or one for all.
+
+    Attributes
+    ----------
+    cage_positions, cage_quaternions
+        The cage's pose in the world, (n, 3) metres and (n, 4).
+    points_cage
+        (n, n_points, 3), metres.
+    object_positions, object_quaternions
+        The object's pose in the world at the start.
+    sizes_m
+        The scene's size, (n,).
+    frictions
+        Coefficient of friction, (n,).
+    loads
+        (n, n_phases).
+    tolerances
+        For a scene of size 1; the same for all.
+    """
+
+    cage_positions: FloatArray
+    cage_quaternions: FloatArray
+    points_cage: FloatArray
+    object_positions: FloatArray
+    object_quaternions: FloatArray
+    sizes_m: FloatArray
+    frictions: FloatArray
+    loads: Rows[Rows[PhaseLoad]]
+    tolerances: KernelTolerances
+
+
+class Start(NamedTuple):
+    """One case, ready to be run. Cage and object are each seen from a middle of their own, so that neither a cage far
+    from the world's origin nor an object drawn far from its own costs digits.
+
+    Attributes
+    ----------
+    geometry
+        Cage points as seen from their middle, boxes as seen from the centre of gravity.
+    position, quaternion
+        Of the centre of gravity, seen from the middle of the cage points, and the object's orientation.
+    origin_world
+        That middle.
+    size_m, friction, tolerances, loads
+        Those of the case.
+    """
+
+    geometry: Geometry
+    position: Vector
+    quaternion: Quaternion
+    origin_world: Vector
+    size_m: float
+    friction: float
+    tolerances: KernelTolerances
+    loads: Rows[PhaseLoad]
+
+
+@kernel
+def row_of(n_rows: int, case: int) -> int:
+    """Return the row of a case in an array with one row for each case, or one for all."""
+    return case if n_rows > 1 else 0
+
+
+@kernel
+def quaternion_row(quaternions: FloatArray, index: int) -> Quaternion:
+    q = quaternions[index]
+    return (q[0], q[1], q[2], q[3])
+
+
+@kernel
+def start_of(case: int, part: Part, cases: Cases, points_world: FloatArray) -> Start:
+    """Return how a case starts; the cage points are written into ``points_world``."""
+    points = cases.points_cage[row_of(len(cases.points_cage), case)]
+    turned = quaternion_row(cases.cage_quaternions, row_of(len(cases.cage_quaternions), case))
+    middle = (0.0, 0.0, 0.0)
+    for point in range(len(points)):
+        middle = plus(middle, row(points, point))
+    middle = scaled(middle, 1.0 / len(points))
+    for point in range(len(points)):
+        placed = rotated(turned, minus(row(points, point), middle))
+        for k in range(3):
+            points_world[point, k] = placed[k]
+    cage_position = row(cases.cage_positions, row_of(len(cases.cage_positions), case))
+    origin = plus(cage_position, rotated(turned, middle))
+    position = row(cases.object_positions, row_of(len(cases.object_positions), case))
+    quaternion = quaternion_row(cases.object_quaternions, row_of(len(cases.object_quaternions), case))
+    size_m = cases.sizes_m[row_of(len(cases.sizes_m), case)]
+    return Start(
+        Geometry(part.half_sizes, part.box_positions, part.box_rotations, part.n_own_boxes, points_world),
+        plus(minus(position, origin), rotated(quaternion, part.center_object)),
+        quaternion,
+        origin,
+        size_m,
+        cases.frictions[row_of(len(cases.frictions), case)],
+        scaled_tolerances(cases.tolerances, size_m),
+        cases.loads[row_of(len(cases.loads), case)],
+    )
+
+
+@kernel
+def is_valid(start: Start, farthest: float, points_vary: bool, placement: Placement) -> bool:
+    """Whether the object starts within ``farthest`` sizes of the cage, no point is inside it, and no two points that
+    vary are one. The placement is that of the start afterwards.
+    """
+    if norm(start.position) > farthest * start.size_m:
+        return False
+    points, touch_m = start.geometry.points_world, start.tolerances.touch_m
+    place_object(start.geometry, start.position, start.quaternion, placement)
+    for point in range(len(points)):
+        if placement.depths[point] > touch_m:
+            return False
+        if points_vary:
+            for other in range(point):
+                if norm(minus(row(points, other), row(points, point))) <= touch_m:
+                    return False
+    return True
+
+
+@kernel
+def object_position(start: Start, part: Part, position: Vector, quaternion: Quaternion) -> Vector:
+    """Return where the object's own origin is in the world, its centre of gravity being at ``position``."""
+    return plus(start.origin_world, minus(position, rotated(quaternion, part.center_object)))

@@ -1,0 +1,76 @@
+"""Where each of many runs ended: `Endings`."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.vector import Vector
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.outcome.cases import Part, Start, object_position
+
+NOT_RUN = -1
+"""Verdict code of a phase that was not reached."""
+INVALID = 100
+"""Verdict code of a first phase that has no valid start; the others are those of `cagepose.kernels.outcome.trace`."""
+
+
+class Endings(NamedTuple):
+    """Where each phase of each run ended.
+
+    Attributes
+    ----------
+    verdicts, n_events
+        Codes, and how many events (stepwise) or steps (quasistatic) it took, (n, n_phases).
+    proofs
+        Code where a quasistatic phase comes to rest, (n, n_phases).
+    positions, quaternions
+        The object's pose in the world, (n, n_phases, 3) metres and (n, n_phases, 4).
+    touching
+        Which cage points touch, (n, n_phases, n_points).
+    """
+
+    verdicts: NDArray[np.int64]
+    proofs: NDArray[np.int64]
+    n_events: NDArray[np.int64]
+    positions: FloatArray
+    quaternions: FloatArray
+    touching: NDArray[np.bool_]
+
+
+def empty_endings(n_runs: int, n_phases: int, n_points: int) -> Endings:
+    """Return room for the ends of many runs (plain Python)."""
+    return Endings(
+        np.full((n_runs, n_phases), NOT_RUN),
+        np.full((n_runs, n_phases), NOT_RUN),
+        np.zeros((n_runs, n_phases), np.int64),
+        np.full((n_runs, n_phases, 3), np.nan),
+        np.full((n_runs, n_phases, 4), np.nan),
+        np.zeros((n_runs, n_phases, n_points), np.bool_),
+    )
+
+
+@kernel
+def write_ending(
+    endings: Endings,
+    case: int,
+    phase: int,
+    verdict: int,
+    n_events: int,
+    position: Vector,
+    quaternion: Quaternion,
+    start: Start,
+    part: Part,
+) -> None:
+    """Write how a phase ended, the pose in the world; `Endings.touching` is left to the method."""
+    placed = object_position(start, part, position, quaternion)
+    endings.verdicts[case, phase] = verdict
+    endings.n_events[case, phase] = n_events
+    for k in range(3):
+        endings.positions[case, phase, k] = placed[k]
+    for k in range(4):
+        endings.quaternions[case, phase, k] = quaternion[k]

@@ -1,0 +1,201 @@
+"""From what a run has noted to its `Outcome`: steps to events, contacts with their forces, and the proof."""
+
+from __future__ import annotations
+
+import math
+
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.vector import Vector, vector_from
+from cagepose.kernels.collision.contacts import is_near_edge
+from cagepose.kernels.contact.metric import frame_at, twist_of
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.outcome.cases import Part, Start, object_position
+from cagepose.kernels.outcome.motion import motion_between, motion_of_twist
+from cagepose.kernels.outcome.records import Outcome, PhaseRecord
+from cagepose.kernels.outcome.trace import LET_GO, NONE, RESTS, SCREW, STALLED, Trace
+from cagepose.kernels.stability.proof import OTHER_ONSET, PROVEN_MOVES, TOO_MANY_CONTACTS, ProofRoom
+from cagepose.kernels.stability.proof_search import judge
+
+PHASES, EVENTS, PATH, CONTACTS = 0, 1, 2, 3
+"""Places in `Outcome.counts`."""
+NO_BALANCE = (PROVEN_MOVES, TOO_MANY_CONTACTS)
+"""Proofs of a pose that is not shown as rest, whatever a run says: the last correction has taken it out of balance."""
+
+
+@kernel
+def begin(outcome: Outcome) -> None:
+    """Start with nothing written."""
+    for place in range(4):
+        outcome.counts[place] = 0
+
+
+@kernel
+def judge_end(
+    phase: int, position: Vector, quaternion: Quaternion, start: Start, part: Part, at: ProofRoom
+) -> tuple[int, int, int]:
+    """Judge the pose at the end of a phase under its load; see `judge`."""
+    return judge(
+        start.geometry,
+        part.body,
+        position,
+        quaternion,
+        start.loads[phase],
+        start.friction,
+        start.size_m,
+        start.tolerances,
+        at,
+    )
+
+
+@kernel
+def end_phase(
+    verdict: int,
+    phase: int,
+    position: Vector,
+    quaternion: Quaternion,
+    start: Start,
+    part: Part,
+    at: ProofRoom,
+    outcome: Outcome,
+) -> tuple[int, bool]:
+    """Judge the end of a phase whose events are published, and write all that is known of it.
+
+    Return (code of the verdict, whether there was room for all contacts).
+    """
+    code, stability, n_undetermined = judge_end(phase, position, quaternion, start, part, at)
+    if verdict == RESTS and code in NO_BALANCE:
+        verdict = STALLED
+    record = outcome.phases[phase]
+    record.verdict = verdict
+    publish_proof(code, stability, n_undetermined, position, quaternion, start, part, at, record)
+    fits = publish_contacts(start, at, outcome)
+    record.n_events, record.n_path, record.n_contacts = (
+        outcome.counts[EVENTS],
+        outcome.counts[PATH],
+        outcome.counts[CONTACTS],
+    )
+    outcome.counts[PHASES] = phase + 1
+    return verdict, fits
+
+
+@kernel
+def goes_on(trace: Trace, step: int) -> bool:
+    """Whether the next step is of the same event: of one kind, with the same contacts."""
+    for point in range(trace.hit.shape[1]):
+        if trace.hit[step, point]:
+            return False
+    return bool(trace.rows[step].rule == trace.rows[step + 1].rule and trace.rows[step].note != LET_GO)
+
+
+@kernel
+def publish_events(
+    trace: Trace,
+    n_steps: int,
+    joins_steps: bool,
+    position: Vector,
+    quaternion: Quaternion,
+    start: Start,
+    part: Part,
+    outcome: Outcome,
+) -> None:
+    """Append the steps of a phase that began at a pose, as events.
+
+    ``joins_steps``: steps of one kind between two changes of the contacts are one event, whose motion leads from its
+    first pose to its last, along a path. Otherwise each step is an event with a motion of its own, and has no path.
+    """
+    first_of_path = outcome.counts[PATH]
+    for step in range(n_steps):
+        record = trace.rows[step]
+        end, turned = (
+            vector_from(record.position),
+            (
+                record.quaternion[0],
+                record.quaternion[1],
+                record.quaternion[2],
+                record.quaternion[3],
+            ),
+        )
+        placed = object_position(start, part, end, turned)
+        sense = math.copysign(1.0, turned[0])
+        if joins_steps:
+            on_path = outcome.path[outcome.counts[PATH]]
+            for k in range(3):
+                on_path[k] = placed[k]
+            for k in range(4):
+                on_path[3 + k] = sense * turned[k]
+            outcome.counts[PATH] += 1
+            if step + 1 < n_steps and goes_on(trace, step):
+                continue
+        event = outcome.events[outcome.counts[EVENTS]]
+        event.rule, event.note, event.motion = record.rule, record.note, record.motion
+        event.n_path = outcome.counts[PATH] - first_of_path
+        first_of_path = outcome.counts[PATH]
+        along, through = vector_from(record.along), vector_from(record.through)
+        event.distance, event.angle = record.distance, record.angle
+        if joins_steps and record.motion != NONE:
+            moved = motion_between(position, quaternion, end, turned, start.size_m)
+            event.motion, along, through = moved.motion, moved.along, moved.through
+            event.distance, event.angle = moved.distance, moved.angle
+        for k in range(3):
+            event.position[k] = placed[k]
+            event.along[k], event.through[k] = along[k], through[k] + start.origin_world[k]
+        for k in range(4):
+            event.quaternion[k] = sense * turned[k]
+        for point in range(trace.hit.shape[1]):
+            outcome.touching[outcome.counts[EVENTS], point] = trace.touching[step, point]
+            outcome.hit[outcome.counts[EVENTS], point] = trace.hit[step, point]
+        outcome.counts[EVENTS] += 1
+        position, quaternion = end, turned
+
+
+@kernel
+def publish_contacts(start: Start, at: ProofRoom, outcome: Outcome) -> bool:
+    """Append the contacts of a proof; False: there is no room for all of them."""
+    for i in range(at.contacts.used[0]):
+        if outcome.counts[CONTACTS] == len(outcome.contacts):
+            return False
+        found, contact = at.contacts.rows[i], outcome.contacts[outcome.counts[CONTACTS]]
+        contact.point, contact.box, contact.gap = found.point, found.box, found.gap
+        contact.near_edge = is_near_edge(
+            start.geometry, at.placement, found.box, found.point, found.axis, start.tolerances.touch_m
+        )
+        contact.force_normal, contact.is_shared = found.forces[0], found.is_shared
+        for k in range(3):
+            contact.normal[k] = found.normal[k]
+            contact.force_tangential[k] = -(
+                found.forces[1] * found.columns[1, k] + found.forces[2] * found.columns[2, k]
+            )
+        outcome.counts[CONTACTS] += 1
+    return True
+
+
+@kernel
+def publish_proof(
+    code: int,
+    stability: int,
+    n_undetermined: int,
+    position: Vector,
+    quaternion: Quaternion,
+    start: Start,
+    part: Part,
+    at: ProofRoom,
+    phase: PhaseRecord,
+) -> None:
+    """Write what a proof says of the pose at the end of a phase."""
+    room = at.rooms[0]
+    phase.proof, phase.stability, phase.wedged = code, stability, room.wedged
+    phase.residual = room.solver.residual
+    phase.n_undetermined = n_undetermined
+    for i in range(n_undetermined):
+        for k in range(6):
+            phase.undetermined[i, k] = room.rest.ways.basis[i, k]
+    phase.motion = NONE
+    if code in (PROVEN_MOVES, OTHER_ONSET):
+        y = room.solver.y if code == PROVEN_MOVES else room.modes.y
+        velocity, spin = twist_of(y, frame_at(part.body, quaternion))
+        radii = part.body.radii
+        begins = motion_of_twist(velocity, spin, position, max(radii[0], radii[1], radii[2]))
+        phase.motion = begins.motion
+        phase.pitch = begins.distance if begins.motion == SCREW else 0.0
+        for k in range(3):
+            phase.along[k], phase.through[k] = begins.along[k], begins.through[k] + start.origin_world[k]

@@ -1,0 +1,139 @@
+"""What is known after a run: `Outcome`, in the world's frame, metres, radians and the load's unit of force."""
+
+from __future__ import annotations
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
+
+
+class PhaseRecord:
+    """One phase; a record.
+
+    Attributes
+    ----------
+    verdict, proof, stability
+        Codes of how it ended, of the proof of its end, and of how stable it is.
+    residual
+        What the contact forces leave of the load, in lengths of the terms.
+    wedged
+        Whether the contacts can press against each other without a load.
+    n_undetermined, undetermined
+        Scaled twists along which the load does not tell poses apart, rows.
+    motion, along, through, pitch
+        The motion that begins, if the object moves or may move.
+    n_events, n_path, n_contacts
+        How many rows of the outcome are written after this phase.
+    """
+
+    verdict: int
+    proof: int
+    stability: int
+    residual: float
+    wedged: bool
+    n_undetermined: int
+    undetermined: Annotated[FloatArray, 6, 6]
+    motion: int
+    along: Annotated[FloatArray, 3]
+    through: Annotated[FloatArray, 3]
+    pitch: float
+    n_events: int
+    n_path: int
+    n_contacts: int
+
+
+class EventRecord:
+    """One event; a record.
+
+    Attributes
+    ----------
+    rule, motion, note
+        Codes.
+    along, through
+        Direction of a travel, or axis of a turn or screw and a point on it.
+    distance, angle
+        Metres and radians.
+    position, quaternion
+        Pose of the object after it, w >= 0.
+    n_path
+        Poses on the way to it, the last of them included.
+    """
+
+    rule: int
+    motion: int
+    note: int
+    along: Annotated[FloatArray, 3]
+    through: Annotated[FloatArray, 3]
+    distance: float
+    angle: float
+    position: Annotated[FloatArray, 3]
+    quaternion: Annotated[FloatArray, 4]
+    n_path: int
+
+
+class ContactRecord:
+    """One cage point on one face at the end of a phase; a record.
+
+    Attributes
+    ----------
+    point, box
+        Indices.
+    normal, gap
+        Outward unit normal of the face, and the distance from it, below zero inside.
+    near_edge
+        Whether the point lies within the touch tolerance of an edge of the union's surface.
+    force_normal, force_tangential
+        Force on the object: its part along -n, and the rest.
+    is_shared
+        Whether its normal force could be another.
+    """
+
+    point: int
+    box: int
+    normal: Annotated[FloatArray, 3]
+    gap: float
+    near_edge: bool
+    force_normal: float
+    force_tangential: Annotated[FloatArray, 3]
+    is_shared: bool
+
+
+class Outcome(NamedTuple):
+    """Everything that a run gives.
+
+    Attributes
+    ----------
+    counts
+        How many phases, events, poses of the path and contacts are written, (4,).
+    phases, events, contacts
+        One after the other, in the order of the phases.
+    touching, hit
+        Which points touch after each event, and which of them it reached, (n_events, n_points).
+    path
+        Position and quaternion of the object on the way, (n_path, 7).
+    """
+
+    counts: NDArray[np.int64]
+    phases: Rows[PhaseRecord]
+    events: Rows[EventRecord]
+    contacts: Rows[ContactRecord]
+    touching: NDArray[np.bool_]
+    hit: NDArray[np.bool_]
+    path: FloatArray
+
+
+def empty_outcome(n_phases: int, n_steps: int, n_points: int, n_contacts: int) -> Outcome:
+    """Return room for one run with at most ``n_steps`` steps and ``n_contacts`` contacts in a phase (plain Python)."""
+    n_events = n_phases * n_steps
+    return Outcome(
+        np.zeros(4, np.int64),
+        empty_rows(PhaseRecord, n_phases),
+        empty_rows(EventRecord, n_events),
+        empty_rows(ContactRecord, n_phases * n_contacts),
+        np.zeros((n_events, n_points), np.bool_),
+        np.zeros((n_events, n_points), np.bool_),
+        np.zeros((n_events, 7)),
+    )

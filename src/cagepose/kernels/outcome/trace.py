@@ -1,0 +1,81 @@
+"""What a method writes down while it runs a phase: one record for each step, and the codes that stand for names."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
+
+TRAVEL, TURN, SCREW, NONE = 0, 1, 2, 3
+"""Codes of motions: the index into `MOTION_NAMES`; NONE has no name."""
+MOTION_NAMES: tuple[Literal["travel", "turn", "screw"], ...] = ("travel", "turn", "screw")
+
+STABLE, ESCAPES, SPINS, CYCLING, LIMIT, RESTS, STALLED = 0, 1, 2, 3, 4, 5, 6
+"""Codes of how a phase ended: the index into `VERDICT_NAMES`."""
+VERDICT_NAMES: tuple[Literal["stable", "escapes", "spins", "cycling", "limit", "rests", "stalled"], ...] = (
+    "stable",
+    "escapes",
+    "spins",
+    "cycling",
+    "limit",
+    "rests",
+    "stalled",
+)
+
+
+TIE, BALANCED, SMALL_TURN, EDGE_TIE, PLAIN, LET_GO = 0, 1, 2, 3, 4, 5
+"""Codes of notes: the index into `NOTE_NAMES`; PLAIN and LET_GO (a contact was lost) have no name."""
+NOTE_NAMES: tuple[Literal["tie", "balanced", "small turn", "edge tie"], ...] = (
+    "tie",
+    "balanced",
+    "small turn",
+    "edge tie",
+)
+
+
+class StepRecord:
+    """One step of a run; a record.
+
+    Attributes
+    ----------
+    rule, motion
+        Codes of the rule and of the motion.
+    along, through
+        Direction of a travel, or axis of a turn and a point on it.
+    distance, angle
+        Metres and radians.
+    position, quaternion
+        Pose after the step: of the object as seen from its centre of gravity, in the frame of the cage's middle.
+    note
+        Code of what a careful reader should know.
+    """
+
+    rule: int
+    motion: int
+    along: Annotated[FloatArray, 3]
+    through: Annotated[FloatArray, 3]
+    distance: float
+    angle: float
+    position: Annotated[FloatArray, 3]
+    quaternion: Annotated[FloatArray, 4]
+    note: int
+
+
+class Trace(NamedTuple):
+    """The steps of one phase; and which points touch after each, and which of them it reached, (n_steps, n_points)."""
+
+    rows: Rows[StepRecord]
+    touching: NDArray[np.bool_]
+    hit: NDArray[np.bool_]
+
+
+def empty_trace(n_steps: int, n_points: int) -> Trace:
+    """Return room for the steps of a phase (plain Python)."""
+    return Trace(
+        empty_rows(StepRecord, n_steps),
+        np.zeros((n_steps, n_points), np.bool_),
+        np.zeros((n_steps, n_points), np.bool_),
+    )

@@ -1,0 +1,126 @@
+"""Many cases of one scene as kernels take them: `Batch`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import cast
+
+import numpy as np
+
+from cagepose.kernels.algebra.pose import write_quaternions
+from cagepose.kernels.algebra.record import Rows
+from cagepose.kernels.contact.metric import PhaseLoad
+from cagepose.kernels.native.slots import Slots
+from cagepose.kernels.outcome.cases import Cases
+from cagepose.kernels.outcome.endings import empty_endings
+from cagepose.model.checks import FloatArray
+from cagepose.model.geometry import cage_sizes, object_size
+from cagepose.model.load import Force, Load
+from cagepose.model.pose import Pose
+from cagepose.model.scene import FARTHEST_START, Scene
+from cagepose.runs.cases import cases_of, dead_loads, part_of
+from cagepose.runs.methods import Method
+from cagepose.runs.variation import Variation
+from cagepose.runs.weights import weigh
+
+
+class Batch:
+    """Runs of one scene by one method.
+
+    Attributes
+    ----------
+    n_runs
+        How many.
+    endings
+        Filled by `run_piece`.
+    """
+
+    def __init__(self, scene: Scene, method: Method, variation: Variation) -> None:
+        self._scene, self._method = scene, method
+        self.n_runs, columns = variation.columns(scene)
+        self.endings = empty_endings(self.n_runs, len(scene.loads), len(scene.cage.names))
+        self._part, self._cases = Slots(part_of(scene)), Slots(_varied(scene, method.friction(scene), columns))
+        self._endings = Slots(self.endings)
+        self._idle_rooms = list[Callable[[int, int], None]]()
+
+    def run_piece(self, first: int, last: int) -> int:
+        """Run ``first`` up to, without, ``last``, in any thread; return how many these are."""
+        try:
+            run = self._idle_rooms.pop()
+        except IndexError:
+            run = self._room()
+        run(first, last)
+        if last < self.n_runs:
+            self._idle_rooms.append(run)
+        return last - first
+
+    def _room(self) -> Callable[[int, int], None]:
+        """Return a call of the kernel with room for one thread."""
+        rules = Slots(self._method.rules(self._scene))
+        work = Slots(self._method.workspace(self._scene.geometry, self._method.step_limit))
+        return partial(_run, self._method, [self._part, self._cases, FARTHEST_START, rules, work, self._endings])
+
+
+def _run(method: Method, arguments: list[object], first: int, last: int) -> None:
+    method.run_cases(first, last, *arguments)
+
+
+def _varied(scene: Scene, friction: float, columns: dict[str, FloatArray]) -> Cases:
+    """Return the cases of a scene in which columns stand in the place of its own values."""
+    base = cases_of(scene, friction)
+    points = _owned(columns.get("points_cage_m", base.points_cage))
+    return Cases(
+        _owned(columns.get("cage_position_m", base.cage_positions)),
+        _quaternions(columns.get("cage_euler_zyx"), scene.cage.pose_world_cage),
+        points,
+        _owned(columns.get("object_position_m", base.object_positions)),
+        _quaternions(columns.get("object_euler_zyx"), scene.object.pose_world_object),
+        np.maximum(object_size(scene.object), cage_sizes(points)) if "points_cage_m" in columns else base.sizes_m,
+        _owned(columns.get("friction_coefficient", base.frictions)),
+        _loads(scene, columns),
+        base.tolerances,
+    )
+
+
+def _owned(array: FloatArray) -> FloatArray:
+    """A copy in C order, as kernels take arrays."""
+    return np.array(array, order="C")
+
+
+def _quaternions(angles: FloatArray | None, pose: Pose) -> FloatArray:
+    if angles is None:
+        return pose.quaternion_wxyz[None]
+    found = np.empty((len(angles), 4))
+    write_quaternions(_owned(angles), found)
+    return found
+
+
+def _loads(scene: Scene, columns: dict[str, FloatArray]) -> Rows[Rows[PhaseLoad]]:
+    varied = [name for name in columns if name.startswith("force_")]
+    n_rows = len(columns[varied[0]]) if varied else 1
+    loads = np.repeat(dead_loads(scene)[None], n_rows, axis=0)
+    if not varied:
+        return cast(Rows[Rows[PhaseLoad]], loads)
+    ((place, load, force),) = [(k, load, load.force) for k, load in enumerate(scene.loads) if load.force is not None]
+    magnitudes = np.ones(n_rows)
+    if "force_magnitude_n" in columns:  # of a force of 1 N: a scene may give none, and count no newtons then
+        magnitudes = columns["force_magnitude_n"]
+        force = Force(force.direction_world, force.at_object_m, 1.0)
+    weighed = weigh(scene, Load(load.name, gravity=load.gravity_world, force=force))
+    pushes = weighed.force[None]
+    if "force_direction_world" in columns:
+        pushes = np.linalg.norm(weighed.force) * _unit_rows(columns["force_direction_world"])
+    # Where newtons do not count, the weight is a part of the force.
+    weights = np.ones(n_rows) if weighed.in_newtons else magnitudes
+    loads["forces_world"][:, place, 0] = weights[:, None] * weighed.gravity
+    loads["forces_world"][:, place, 1] = magnitudes[:, None] * pushes
+    if "force_at_object_m" in columns:
+        loads["arms_object"][:, place, 1] = columns["force_at_object_m"] - scene.object.center_of_gravity_m
+    return cast(Rows[Rows[PhaseLoad]], loads)
+
+
+def _unit_rows(vectors: FloatArray) -> FloatArray:
+    scaled = vectors / np.abs(vectors).max(axis=1, keepdims=True)  # so that squares neither vanish nor overflow
+    unit: FloatArray = scaled / np.linalg.norm(scaled, axis=1, keepdims=True)
+    return unit

@@ -1,0 +1,87 @@
+"""A scene as kernels take it: `Part`, what is held, and `Cases`, everything else, once or many times."""
+
+from __future__ import annotations
+
+from typing import cast
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from cagepose.kernels.algebra.record import Rows, dtype_of, empty_record
+from cagepose.kernels.algebra.tolerances import kernel_tolerances
+from cagepose.kernels.contact.metric import Body, PhaseLoad
+from cagepose.kernels.native.slots import Slots
+from cagepose.kernels.outcome.cases import Cases, Part
+from cagepose.model.checks import as_vector
+from cagepose.model.methods import DEFAULT_METRIC
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
+from cagepose.runs.weights import weigh
+
+
+def part_of(scene: Scene) -> Part:
+    """Return the object as seen from its centre of gravity."""
+    geometry, center = scene.geometry, scene.object.center_of_gravity_m
+    return Part(
+        geometry.half_sizes,
+        geometry.box_positions - center,
+        geometry.box_rotations,
+        geometry.n_own_boxes,
+        body_of(scene),
+        as_vector(center),
+    )
+
+
+def body_of(scene: Scene) -> Body:
+    """Return the metric of a scene: its inertia about the centre of gravity, or the same about every axis ("drag")."""
+    gyration = scene.object.gyration_m2
+    corners = np.concatenate([box.corners_object() for box in scene.object.boxes])
+    reach_m = float(np.linalg.norm(corners - scene.object.center_of_gravity_m, axis=1).max())
+    if (scene.metric or DEFAULT_METRIC) == "drag":
+        squares, axes = np.full(3, np.trace(gyration) / 3.0), np.eye(3)
+    else:
+        squares, axes = np.linalg.eigh(gyration)
+    body = empty_record(Body)
+    body.axes_object[:] = axes.T
+    # A needle's inertia about its own axis may come out as zero: no body is thinner than a box may be.
+    body.radii[:] = np.sqrt(np.maximum(squares, (1e-9 * reach_m) ** 2))
+    body.reach_m = reach_m
+    return body
+
+
+def cases_of(scene: Scene, friction: float, start: Pose | None = None) -> Cases:
+    """Return a scene as a case of one; ``start`` stands in the place of the object's own start pose."""
+    cage, held = scene.cage.pose_world_cage, start or scene.object.pose_world_object
+    return Cases(
+        cage.position_m[None],
+        cage.quaternion_wxyz[None],
+        scene.cage.points_cage[None],
+        held.position_m[None],
+        held.quaternion_wxyz[None],
+        np.array([scene.size_m]),
+        np.array([friction]),
+        cast(Rows[Rows[PhaseLoad]], dead_loads(scene)[None]),
+        kernel_tolerances(1.0, scene.tolerances.touch),
+    )
+
+
+def dead_loads(scene: Scene) -> np.ndarray:
+    """Return the loads of all phases as records, (n_phases,)."""
+    loads = np.zeros(len(scene.loads), dtype_of(PhaseLoad))
+    for index, load in enumerate(scene.loads):
+        weighed = weigh(scene, load)
+        loads["forces_world"][index] = weighed.gravity, weighed.force
+        if load.force is not None:
+            loads["arms_object"][index, 1] = load.force.at_object_m - scene.object.center_of_gravity_m
+    return loads
+
+
+_PREPARED: WeakKeyDictionary[Scene, dict[float, tuple[Slots, Slots]]] = WeakKeyDictionary()
+
+
+def prepared(scene: Scene, friction: float) -> tuple[Slots, Slots]:
+    """Return `Part` and `Cases` of a scene, taken apart; a scene never changes, so that they are made once."""
+    of_scene = _PREPARED.setdefault(scene, {})
+    if friction not in of_scene:
+        of_scene[friction] = Slots(part_of(scene)), Slots(cases_of(scene, friction))
+    return of_scene[friction]

@@ -1,0 +1,91 @@
+"""From what kernels write of a phase's end to its `Proof`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from cagepose.kernels.outcome.trace import MOTION_NAMES, NONE, TRAVEL
+from cagepose.kernels.stability.proof import (
+    OTHER_ONSET,
+    PROVEN_MOVES,
+    PROVEN_UNIQUE,
+    PROVEN_WITHOUT_FRICTION,
+    TOO_MANY_CHOICES,
+    TOO_MANY_CONTACTS,
+)
+from cagepose.kernels.stability.second_order import STABILITY_NAMES
+from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
+from cagepose.runs.cases import body_of
+from cagepose.runs.proof import FreeMotion, Proof
+
+REASONS = {
+    PROVEN_WITHOUT_FRICTION: "the contacts balance the load without friction",
+    PROVEN_UNIQUE: "the contacts balance the load with friction, and every other contact mode is ruled out",
+    OTHER_ONSET: "the contacts can balance the load with friction, but Coulomb's law allows this motion too",
+    PROVEN_MOVES: "no contact forces balance the load",
+    TOO_MANY_CHOICES: "the contacts can balance the load with the first faces at edges that were asked, of too many",
+    TOO_MANY_CONTACTS: "more faces touch at one place than a proof has room for",
+}
+NOT_SHOWN = "the contacts can balance the load with friction, but that the object cannot move was not shown"
+WEDGED = "; the contacts can press against each other without a load, as in a wedge"
+IN_SPAN = 1e-6
+"""Sine of the angle below which a freedom lies in the span of the undetermined ones."""
+
+
+def read_proof(record: Any, scene: Scene, pose: Pose, shared: Sequence[str | None]) -> Proof:
+    """Return the proof of a `PhaseRecord` at a pose.
+
+    ``shared``: for each contact the name of its point, if its normal force could be another, else None.
+    """
+    code, n_undetermined = int(record.proof), int(record.n_undetermined)
+    held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
+    is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
+    return Proof(
+        verdict="moves" if not held else "may rest" if is_open else "rests",
+        reason=REASONS.get(code, NOT_SHOWN) + (WEDGED if is_open and record.wedged else ""),
+        residual=float(record.residual),
+        needs_friction=held and code != PROVEN_WITHOUT_FRICTION,
+        stability=STABILITY_NAMES[record.stability] if held else None,
+        undetermined=_freedoms(scene, pose, record.undetermined[:n_undetermined]) if held and n_undetermined else (),
+        shared=tuple(dict.fromkeys(name for name in shared if name is not None)) if held else (),
+        motion=_free_motion(record),
+    )
+
+
+def _free_motion(record: Any) -> FreeMotion | None:
+    if record.motion == NONE:
+        return None
+    is_travel = record.motion == TRAVEL
+    along, through = record.along, record.through
+    return FreeMotion(
+        MOTION_NAMES[record.motion],
+        along if is_travel else None,
+        None if is_travel else along,
+        None if is_travel else through,
+        float(record.pitch),
+    )
+
+
+def _freedoms(scene: Scene, pose: Pose, undetermined: FloatArray) -> tuple[str, ...]:
+    """Name the freedoms, in the cage's frame, that a set of scaled twists (5.3) holds."""
+    body = body_of(scene)
+    to_cage = scene.cage.pose_world_cage.rotation.T
+    axes_world = body.axes_object @ pose.rotation.T
+    radius = float(body.radii.max())
+    spins = (undetermined[:, 3:] / body.radii) @ axes_world
+    rows = np.hstack([undetermined[:, :3] @ to_cage.T, radius * spins @ to_cage.T])
+    basis = np.linalg.svd(rows, full_matrices=False)[2]
+    found = [name for k, name in enumerate(("x", "y", "z")) if _is_in_span(basis, np.eye(6)[k])]
+    turning = np.linalg.svd(basis[:, 3:], full_matrices=False)
+    turns = turning[2][turning[1] > IN_SPAN]
+    found += [name for k, name in enumerate(("roll", "pitch", "yaw")) if _is_in_span(turns, np.eye(3)[k])]
+    return tuple(found) if len(found) >= len(rows) else (*found, "and others" if found else "others")
+
+
+def _is_in_span(basis: FloatArray, vector: FloatArray) -> bool:
+    return bool(np.linalg.norm(vector - basis.T @ (basis @ vector)) < IN_SPAN) if len(basis) else False
