@@ -73,7 +73,7 @@ class Pose:
         results have thousands of them.
         """
         pose = object.__new__(cls)
-        vars(pose).update(position_m=position_m, quaternion_wxyz=quaternion_wxyz)
+        object.__setattr__(pose, "__dict__", {"position_m": position_m, "quaternion_wxyz": quaternion_wxyz})
         return pose
 
     @property

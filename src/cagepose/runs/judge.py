@@ -10,7 +10,7 @@ from cagepose.model.scene import Scene
 from cagepose.runs.cases import cases_of, part_of
 from cagepose.runs.proof import Proof
 from cagepose.runs.run import Contact
-from cagepose.runs.solved import contacts_and_proof, written
+from cagepose.runs.solved import judged, written
 
 
 def judge_pose(scene: Scene, pose: Pose, phase: int, friction: float) -> tuple[Proof, tuple[Contact, ...]]:
@@ -23,7 +23,8 @@ def judge_pose(scene: Scene, pose: Pose, phase: int, friction: float) -> tuple[P
             phase, part_of(scene), cases_of(scene, friction, pose), points, empty_proof_room(scene.geometry), outcome
         )
         if fits:
-            return contacts_and_proof(scene, written(outcome), phase, pose)
+            contacts, proofs = judged(scene, written(outcome), [pose] * (phase + 1))
+            return proofs[phase], tuple(contacts[phase])
         n_contacts *= 2
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
+from cagepose.kernels.outcome.records import Outcome
 from cagepose.kernels.outcome.trace import MOTION_NAMES, NONE, TRAVEL
 from cagepose.kernels.stability.proof import (
     OTHER_ONSET,
@@ -37,38 +38,55 @@ IN_SPAN = 1e-6
 """Sine of the angle below which a freedom lies in the span of the undetermined ones."""
 
 
-def read_proof(record: Any, scene: Scene, pose: Pose, shared: Sequence[str | None]) -> Proof:
-    """Return the proof of a `PhaseRecord` at a pose.
-
-    ``shared``: for each contact the name of its point, if its normal force could be another, else None.
-    """
-    code, n_undetermined = int(record.proof), int(record.n_undetermined)
-    held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
-    is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
-    return Proof(
-        verdict="moves" if not held else "may rest" if is_open else "rests",
-        reason=REASONS.get(code, NOT_SHOWN) + (WEDGED if is_open and record.wedged else ""),
-        residual=float(record.residual),
-        needs_friction=held and code != PROVEN_WITHOUT_FRICTION,
-        stability=STABILITY_NAMES[record.stability] if held else None,
-        undetermined=_freedoms(scene, pose, record.undetermined[:n_undetermined]) if held and n_undetermined else (),
-        shared=tuple(dict.fromkeys(name for name in shared if name is not None)) if held else (),
-        motion=_free_motion(record),
+def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Sequence[Sequence[str]]) -> list[Proof]:
+    """Return the proof of each phase's end, given the poses there and the names of contacts that share forces."""
+    phases: Any = outcome.phases
+    columns = zip(
+        phases["proof"].tolist(),
+        phases["stability"].tolist(),
+        phases["residual"].tolist(),
+        phases["wedged"].tolist(),
+        phases["n_undetermined"].tolist(),
+        phases["undetermined"],
+        _free_motions(phases),
+        ends,
+        shared,
+        strict=True,
     )
+    found = list[Proof]()
+    for code, stability, residual, wedged, n_undetermined, undetermined, motion, end, names in columns:
+        held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
+        is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
+        found.append(
+            Proof(
+                verdict="moves" if not held else "may rest" if is_open else "rests",
+                reason=REASONS.get(code, NOT_SHOWN) + (WEDGED if is_open and wedged else ""),
+                residual=residual,
+                needs_friction=held and code != PROVEN_WITHOUT_FRICTION,
+                stability=STABILITY_NAMES[stability] if held else None,
+                undetermined=_freedoms(scene, end, undetermined[:n_undetermined]) if held and n_undetermined else (),
+                shared=tuple(names) if held else (),
+                motion=motion,
+            )
+        )
+    return found
 
 
-def _free_motion(record: Any) -> FreeMotion | None:
-    if record.motion == NONE:
-        return None
-    is_travel = record.motion == TRAVEL
-    along, through = record.along, record.through
-    return FreeMotion(
-        MOTION_NAMES[record.motion],
-        along if is_travel else None,
-        None if is_travel else along,
-        None if is_travel else through,
-        float(record.pitch),
-    )
+def _free_motions(phases: Any) -> Iterator[FreeMotion | None]:
+    columns = zip(phases["motion"].tolist(), phases["along"], phases["through"], phases["pitch"].tolist(), strict=True)
+    for code, along, through, pitch in columns:
+        is_travel = code == TRAVEL
+        yield (
+            None
+            if code == NONE
+            else FreeMotion(
+                MOTION_NAMES[code],
+                along if is_travel else None,
+                None if is_travel else along,
+                None if is_travel else through,
+                pitch,
+            )
+        )
 
 
 def _freedoms(scene: Scene, pose: Pose, undetermined: FloatArray) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import compress
@@ -14,7 +14,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.methods import Method
 from cagepose.runs.proof import Proof
-from cagepose.runs.read_proof import read_proof
+from cagepose.runs.read_proof import read_proofs
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run, Verdict
 
 T = TypeVar("T")
@@ -33,7 +33,7 @@ class SolvedRun(Run):
 
     @cached_property
     def phases(self) -> tuple[PhaseRun, ...]:
-        return _Reader(self.scene, self._method, self._outcome).phases()
+        return _Reader(self.scene, self._method.rule_names, self._outcome).phases()
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
@@ -54,41 +54,36 @@ def written(outcome: Outcome) -> Outcome:
 class _Reader:
     """Reads one outcome, field by field: a list of Python numbers takes a tenth of the time of one after the other."""
 
-    def __init__(self, scene: Scene, method: Method, outcome: Outcome) -> None:
-        self.scene, self.rule_names, self.outcome = scene, method.rule_names, outcome
+    def __init__(self, scene: Scene, rule_names: Sequence[str], outcome: Outcome) -> None:
+        self.scene, self.rule_names, self.outcome = scene, rule_names, outcome
         self.point_names = scene.cage.names
 
     def phases(self) -> tuple[PhaseRun, ...]:
         phases: Any = self.outcome.phases
-        events = self._events()
-        contacts, shared = _contacts(self.scene, self.outcome), _shared(self.scene, self.outcome)
+        codes = phases["verdict"].tolist()
+        events = _divided(self._events(), phases["n_events"].tolist())
+        ends = [of_phase[-1].pose_world_object for of_phase in events]
+        contacts, proofs = judged(self.scene, self.outcome, ends)
+        starts = [self.scene.object.pose_world_object, *ends]
         found = list[PhaseRun]()
-        pose = self.scene.object.pose_world_object
-        event = contact = 0
-        for index, code in enumerate(phases["verdict"].tolist()):
-            last_event, last_contact = int(phases["n_events"][index]), int(phases["n_contacts"][index])
-            of_phase = tuple(events[event:last_event])
-            end = of_phase[-1].pose_world_object if of_phase else pose
-            rows = slice(contact, last_contact)
-            proof, touches = _judged(phases[index], self.scene, end, contacts[rows], shared[rows])
+        for index, (code, proof) in enumerate(zip(codes, proofs, strict=True)):
             verdict: Verdict = VERDICT_NAMES[code]
             found.append(
                 _made(
                     PhaseRun,
                     name=self.scene.loads[index].name,
                     verdict=proof.verdict if verdict == "rests" else verdict,
-                    start_pose=pose,
-                    events=of_phase,
-                    contacts=touches,
+                    start_pose=starts[index],
+                    events=tuple(events[index]),
+                    contacts=tuple(contacts[index]),
                     proof=proof,
                 )
             )
-            event, contact, pose = last_event, last_contact, end
         return tuple(found)
 
     def _events(self) -> list[Event]:
         events: Any = self.outcome.events
-        path = [Pose.from_unit(row[:3], row[3:]) for row in self.outcome.path]
+        path = list(map(Pose.from_unit, self.outcome.path[:, :3], self.outcome.path[:, 3:]))
         poses = map(Pose.from_unit, events["position"], events["quaternion"])
         columns = zip(
             events["rule"].tolist(),
@@ -172,31 +167,36 @@ def _contacts(scene: Scene, outcome: Outcome) -> list[Contact]:
     ]
 
 
-def _shared(scene: Scene, outcome: Outcome) -> list[str | None]:
-    """For each contact the name of its point, if its normal force is one of many."""
-    contacts: Any = outcome.contacts
-    marks = zip(contacts["is_shared"].tolist(), contacts["point"].tolist(), strict=True)
-    return [scene.cage.names[point] if is_shared else None for is_shared, point in marks]
+def judged(scene: Scene, outcome: Outcome, ends: Sequence[Pose]) -> tuple[list[list[Contact]], list[Proof]]:
+    """Return the contacts and the proof at the end of each phase, given the poses there.
+
+    Contacts have forces only if these balance the load.
+    """
+    phases: Any = outcome.phases
+    records: Any = outcome.contacts
+    last_contacts = phases["n_contacts"].tolist()
+    contacts = _divided(_contacts(scene, outcome), last_contacts)
+    is_shared = _divided(records["is_shared"].tolist(), last_contacts)
+    shared = [
+        list(dict.fromkeys(contact.point for contact in compress(of_phase, marks)))
+        for of_phase, marks in zip(contacts, is_shared, strict=True)
+    ]
+    proofs = read_proofs(outcome, scene, ends, shared)
+    for index, proof in enumerate(proofs):
+        if proof.verdict == "moves":
+            contacts[index] = [
+                replace(contact, force_normal_n=None, force_tangential_n=None) for contact in contacts[index]
+            ]
+    return contacts, proofs
 
 
-def contacts_and_proof(scene: Scene, outcome: Outcome, phase: int, pose: Pose) -> tuple[Proof, tuple[Contact, ...]]:
-    """Return what an outcome of nothing but a judgement says of a pose."""
-    record: Any = outcome.phases[phase]
-    return _judged(record, scene, pose, _contacts(scene, outcome), _shared(scene, outcome))
-
-
-def _judged(
-    record: Any, scene: Scene, pose: Pose, contacts: list[Contact], shared: list[str | None]
-) -> tuple[Proof, tuple[Contact, ...]]:
-    """Return the proof of a phase's end and its contacts, which have forces only if these balance the load."""
-    proof = read_proof(record, scene, pose, shared)
-    if proof.verdict == "moves":
-        contacts = [replace(contact, force_normal_n=None, force_tangential_n=None) for contact in contacts]
-    return proof, tuple(contacts)
+def _divided(rows: list[T], lasts: list[int]) -> list[list[T]]:
+    """Divide rows by the place where each phase's end."""
+    return [rows[first:last] for first, last in zip([0, *lasts], lasts, strict=False)]
 
 
 def _made(cls: type[T], **fields: object) -> T:
     """Make a frozen result of fields that are right: its own ``__init__`` takes five times as long."""
     instance = object.__new__(cls)
-    vars(instance).update(fields)
+    object.__setattr__(instance, "__dict__", fields)
     return instance
