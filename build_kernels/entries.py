@@ -24,14 +24,16 @@ from cagepose.kernels.play.rows import empty_play_room, write_start
 from cagepose.kernels.play.search import Extreme, find_play
 from cagepose.kernels.quasistatic.run import (
     QuasistaticRules,
-    empty_quasistatic_workspace,
+    repeat_quasistatic,
     run_quasistatic,
     run_quasistatic_cases,
 )
+from cagepose.kernels.quasistatic.workspace import empty_quasistatic_workspace
 from cagepose.kernels.stability.proof import empty_proof_room
 from cagepose.kernels.stepwise.run import (
     StepwiseRules,
     empty_stepwise_workspace,
+    repeat_stepwise,
     run_stepwise,
     run_stepwise_cases,
 )
@@ -63,11 +65,13 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
 
     rules, work = QuasistaticRules(0.0, 1), empty_quasistatic_workspace(geometry, 1)
     yield run_quasistatic, (part, cases, rules, work, outcome)
+    yield repeat_quasistatic, (0, outcome.steps, outcome.order[0], 1, part, cases, rules, work, outcome)
     yield run_quasistatic_cases, (0, 0, part, cases, 0.0, rules, work, endings)
 
     paper = StepwiseRules(SupportRules(0.0, 0.0, 0.0, 0.0), SlipRules(0.0, 0.0, 0.0, 0.0), 1)
     paper_work = empty_stepwise_workspace(geometry, 1)
     yield run_stepwise, (part, cases, paper, paper_work, outcome)
+    yield repeat_stepwise, (0, outcome.steps, outcome.order[0], 1, part, cases, paper, paper_work, outcome)
     yield run_stepwise_cases, (0, 0, part, cases, 0.0, paper, paper_work, endings)
 
     program, (rows, bounds) = empty_record(ProgramRoom), program_rows(1)

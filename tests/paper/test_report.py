@@ -12,14 +12,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cagepose.paper import comparison_table
+from cagepose.paper import comparison_table, reproduction
 from cagepose.paper.blocks import Bullets, Heading, Paragraph, Table
 from cagepose.paper.printed import Printed, Row
 from cagepose.paper.report import check_report_folder, report_files, write_report
 from cagepose.paper.report_html import html_page
 from cagepose.paper.report_markdown import markdown_text
 from cagepose.paper.reproduction import METHODS, reproduce
-from cagepose.paper import reproduction
 
 VOID = {"meta", "img", "link", "br", "hr", "input"}
 

@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
+from cagepose.paper import reproduction
 from cagepose.paper.planar import zero_is_within_reach
 from cagepose.paper.rail import relative_tilt_rad
 from cagepose.paper.range_study import permitted, range_study
 from cagepose.paper.reproduction import METHODS, reproduce
-from cagepose.paper import reproduction
 
 DEG = math.pi / 180.0
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cagepose.kernels.batch.stepwise import stepwise_runs
 
 import cagepose
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, SceneError, Variation, run, run_many
-from cagepose.kernels.batch.stepwise import stepwise_runs
 from cagepose.model.methods import METHODS
 from cagepose.runs import many
 from jit import JIT_IS_OFF, cases

@@ -10,6 +10,8 @@ from cagepose.errors import Problem, SceneError
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.native.kernel import Entry
 from cagepose.kernels.quasistatic import run as quasistatic_kernels
+from cagepose.kernels.quasistatic.step import RULE_NAMES
+from cagepose.kernels.quasistatic.workspace import empty_quasistatic_workspace
 from cagepose.kernels.stepwise import run as stepwise_kernels
 from cagepose.model.methods import DEFAULT_FRICTION, DEFAULT_METHOD, METHODS
 from cagepose.model.scene import Scene
@@ -28,8 +30,10 @@ class Method:
         As users write it.
     rule_names
         Of its rules, by code.
-    run, run_cases
-        Kernels that run a scene once, and many cases of it.
+    joins_steps
+        Whether steps of one kind are one event, with a path.
+    run, run_cases, repeat
+        Kernels that run a scene once, many cases of it, and some steps of a run again.
     rules
         The method's numbers for a scene, of size 1.
     workspace
@@ -42,8 +46,10 @@ class Method:
 
     name: str
     rule_names: tuple[str, ...]
+    joins_steps: bool
     run: Entry[bool]
     run_cases: Entry[None]
+    repeat: Entry[None]
     rules: Callable[[Scene], Any]
     workspace: Callable[[Geometry, int], Any]
     step_limit: int
@@ -59,8 +65,10 @@ REGISTRY = {
     "stepwise": Method(
         "stepwise",
         stepwise_kernels.RULE_NAMES,
+        False,
         stepwise_kernels.run_stepwise,
         stepwise_kernels.run_stepwise_cases,
+        stepwise_kernels.repeat_stepwise,
         stepwise_rules,
         stepwise_kernels.empty_stepwise_workspace,
         EVENT_LIMIT,
@@ -68,11 +76,13 @@ REGISTRY = {
     ),
     "quasistatic": Method(
         "quasistatic",
-        quasistatic_kernels.RULE_NAMES,
+        RULE_NAMES,
+        True,
         quasistatic_kernels.run_quasistatic,
         quasistatic_kernels.run_quasistatic_cases,
+        quasistatic_kernels.repeat_quasistatic,
         quasistatic_rules,
-        quasistatic_kernels.empty_quasistatic_workspace,
+        empty_quasistatic_workspace,
         STEP_LIMIT,
         quasistatic_warnings,
     ),

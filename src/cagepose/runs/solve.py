@@ -51,7 +51,7 @@ def run_with(scene: Scene, method: Method, rules: Any) -> Run:
         fits = method.run(part, cases, rules, room.work, room.outcome_slots)
         solve_s = time.perf_counter() - began
         if fits:
-            return SolvedRun(scene, method, friction, written(room.outcome), solve_s)
+            return SolvedRun(scene, method, rules, friction, written(room.outcome), solve_s)
         n_contacts *= 2
 
 

@@ -23,27 +23,47 @@ T = TypeVar("T")
 class SolvedRun(Run):
     """A run that reads its phases from an outcome when they are first asked for."""
 
-    _method: Method
-    _friction: float
-    _outcome: Outcome
+    solved_by: Method
+    rules: Any
+    friction: float
+    outcome: Outcome
 
-    def __init__(self, scene: Scene, method: Method, friction: float, outcome: Outcome, solve_s: float) -> None:
+    def __init__(
+        self, scene: Scene, method: Method, rules: Any, friction: float, outcome: Outcome, solve_s: float
+    ) -> None:
         vars(self).update(scene=scene, method=method.name, solve_s=solve_s)
-        vars(self).update(_method=method, _friction=friction, _outcome=outcome)
+        vars(self).update(solved_by=method, rules=rules, friction=friction, outcome=outcome)
 
     @cached_property
     def phases(self) -> tuple[PhaseRun, ...]:
-        return _Reader(self.scene, self._method.rule_names, self._outcome).phases()
+        return _read_phases(self.scene, self.solved_by, self.outcome)
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        return tuple(self._method.warnings(self.scene, self.phases, self._friction))
+        return tuple(self.solved_by.warnings(self.scene, self.phases, self.friction))
+
+    def steps_of(self, phase: int, event: int) -> tuple[int, int]:
+        """Return the first step of an event, and how many it is made of.
+
+        Raises
+        ------
+        IndexError
+            There is no such phase or event.
+        """
+        records: Any = self.outcome.phases
+        lasts = [0, *records["n_events"].tolist()]
+        if not (0 <= phase < len(records) and 0 <= event < lasts[phase + 1] - lasts[phase]):
+            raise IndexError(f"there is no event {event} in phase {phase} of this run")
+        events: Any = self.outcome.events
+        n_steps = events["n_steps"].tolist()
+        place = lasts[phase] + event
+        return sum(n_steps[:place]), n_steps[place]
 
 
 def written(outcome: Outcome) -> Outcome:
     """Return a copy of what is written of an outcome, whose room is used again."""
-    n_phases, n_events, n_path, n_contacts = outcome.counts.tolist()
-    used = (4, n_phases, n_events, n_contacts, n_events, n_events, n_path)
+    n_phases, n_events, n_steps, n_contacts = outcome.counts.tolist()
+    used = (4, n_phases, n_events, n_contacts, n_events, n_events, n_steps, n_steps, n_steps)
     arrays: tuple[Any, ...] = outcome
     copies = [array[:n].copy() for array, n in zip(arrays, used, strict=True)]
     for array in copies:
@@ -51,92 +71,93 @@ def written(outcome: Outcome) -> Outcome:
     return Outcome(*copies)
 
 
-class _Reader:
-    """Reads one outcome, field by field: a list of Python numbers takes a tenth of the time of one after the other."""
-
-    def __init__(self, scene: Scene, rule_names: Sequence[str], outcome: Outcome) -> None:
-        self.scene, self.rule_names, self.outcome = scene, rule_names, outcome
-        self.point_names = scene.cage.names
-
-    def phases(self) -> tuple[PhaseRun, ...]:
-        phases: Any = self.outcome.phases
-        codes = phases["verdict"].tolist()
-        events = _divided(self._events(), phases["n_events"].tolist())
-        ends = [of_phase[-1].pose_world_object for of_phase in events]
-        contacts, proofs = judged(self.scene, self.outcome, ends)
-        starts = [self.scene.object.pose_world_object, *ends]
-        found = list[PhaseRun]()
-        for index, (code, proof) in enumerate(zip(codes, proofs, strict=True)):
-            verdict: Verdict = VERDICT_NAMES[code]
-            found.append(
-                _made(
-                    PhaseRun,
-                    name=self.scene.loads[index].name,
-                    verdict=proof.verdict if verdict == "rests" else verdict,
-                    start_pose=starts[index],
-                    events=tuple(events[index]),
-                    contacts=tuple(contacts[index]),
-                    proof=proof,
-                )
+def _read_phases(scene: Scene, method: Method, outcome: Outcome) -> tuple[PhaseRun, ...]:
+    phases: Any = outcome.phases
+    codes = phases["verdict"].tolist()
+    events = _divided(read_events(scene, method, outcome), phases["n_events"].tolist())
+    ends = [of_phase[-1].pose_world_object for of_phase in events]
+    contacts, proofs = judged(scene, outcome, ends)
+    starts = [scene.object.pose_world_object, *ends]
+    found = list[PhaseRun]()
+    for index, (code, proof) in enumerate(zip(codes, proofs, strict=True)):
+        verdict: Verdict = VERDICT_NAMES[code]
+        found.append(
+            _made(
+                PhaseRun,
+                name=scene.loads[index].name,
+                verdict=proof.verdict if verdict == "rests" else verdict,
+                start_pose=starts[index],
+                events=tuple(events[index]),
+                contacts=tuple(contacts[index]),
+                proof=proof,
             )
-        return tuple(found)
-
-    def _events(self) -> list[Event]:
-        events: Any = self.outcome.events
-        path = list(map(Pose.from_unit, self.outcome.path[:, :3], self.outcome.path[:, 3:]))
-        poses = map(Pose.from_unit, events["position"], events["quaternion"])
-        columns = zip(
-            events["rule"].tolist(),
-            events["note"].tolist(),
-            self._motions(),
-            self.outcome.hit.tolist(),
-            self.outcome.touching.tolist(),
-            poses,
-            events["n_path"].tolist(),
-            strict=True,
         )
-        found, first = list[Event](), 0
-        for rule, note, motion, hit, touching, pose, n_path in columns:
-            found.append(
-                _made(
-                    Event,
-                    rule=self.rule_names[rule],
-                    motion=motion,
-                    hit=tuple(compress(self.point_names, hit)),
-                    contacts=tuple(compress(self.point_names, touching)),
-                    pose_world_object=pose,
-                    note=NOTE_NAMES[note] if note < len(NOTE_NAMES) else None,
-                    path=tuple(path[first : first + n_path]),
-                )
-            )
-            first += n_path
-        return found
+    return tuple(found)
 
-    def _motions(self) -> Iterator[Motion | None]:
-        events: Any = self.outcome.events
-        columns = zip(
-            events["motion"].tolist(),
-            events["along"],
-            events["through"],
-            events["distance"].tolist(),
-            events["angle"].tolist(),
-            strict=True,
-        )
-        for motion, along, through, distance, angle in columns:
-            is_travel = motion == TRAVEL
-            yield (
-                None
-                if motion == NONE
-                else _made(
-                    Motion,
-                    kind=MOTION_NAMES[motion],
-                    direction_world=along if is_travel else None,
-                    axis_world=None if is_travel else along,
-                    through_world=None if is_travel else through,
-                    distance_m=distance,
-                    angle_rad=angle,
-                )
+
+def read_events(scene: Scene, method: Method, outcome: Outcome) -> list[Event]:
+    """Return the events of an outcome.
+
+    Fields are read one after the other: a list of Python numbers takes a tenth of the time of its numbers one by one.
+    """
+    events: Any = outcome.events
+    path = list[Pose]()
+    if method.joins_steps:
+        path = list(map(Pose.from_unit, outcome.path[:, :3], outcome.path[:, 3:]))
+    poses = map(Pose.from_unit, events["position"], events["quaternion"])
+    columns = zip(
+        events["rule"].tolist(),
+        events["note"].tolist(),
+        _motions(outcome),
+        outcome.hit.tolist(),
+        outcome.touching.tolist(),
+        poses,
+        events["n_steps"].tolist(),
+        strict=True,
+    )
+    found, first = list[Event](), 0
+    for rule, note, motion, hit, touching, pose, n_steps in columns:
+        found.append(
+            _made(
+                Event,
+                rule=method.rule_names[rule],
+                motion=motion,
+                hit=tuple(compress(scene.cage.names, hit)),
+                contacts=tuple(compress(scene.cage.names, touching)),
+                pose_world_object=pose,
+                note=NOTE_NAMES[note] if note < len(NOTE_NAMES) else None,
+                path=tuple(path[first : first + n_steps]),
             )
+        )
+        first += n_steps
+    return found
+
+
+def _motions(outcome: Outcome) -> Iterator[Motion | None]:
+    events: Any = outcome.events
+    columns = zip(
+        events["motion"].tolist(),
+        events["along"],
+        events["through"],
+        events["distance"].tolist(),
+        events["angle"].tolist(),
+        strict=True,
+    )
+    for motion, along, through, distance, angle in columns:
+        is_travel = motion == TRAVEL
+        yield (
+            None
+            if motion == NONE
+            else _made(
+                Motion,
+                kind=MOTION_NAMES[motion],
+                direction_world=along if is_travel else None,
+                axis_world=None if is_travel else along,
+                through_world=None if is_travel else through,
+                distance_m=distance,
+                angle_rad=angle,
+            )
+        )
 
 
 def _contacts(scene: Scene, outcome: Outcome) -> list[Contact]:

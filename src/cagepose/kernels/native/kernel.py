@@ -31,7 +31,8 @@ class Entry(Generic[R]):
 
     def __init__(self, function: Callable[..., R]) -> None:
         update_wrapper(self, function)
-        self._function = function
+        self.python = function
+        """The kernel as plain Python."""
         self.name = function.__name__
         self.library: Library | None = kernel_library()
         """Where its machine code is; None: it is plain Python."""
@@ -44,7 +45,7 @@ class Entry(Generic[R]):
 
     def __call__(self, *arguments: Any) -> R:
         if self.library is None:
-            return self._function(*[part.value if type(part) is Slots else part for part in arguments])
+            return self.python(*[part.value if type(part) is Slots else part for part in arguments])
         function, takes, gives = self._native
         taken = [part if type(part) is Slots else Slots(part) for part in arguments]
         kinds = "".join([part.kinds for part in taken])

@@ -16,7 +16,7 @@ from cagepose.kernels.outcome.trace import LET_GO, NONE, RESTS, SCREW, STALLED, 
 from cagepose.kernels.stability.proof import OTHER_ONSET, PROVEN_MOVES, TOO_MANY_CONTACTS, ProofRoom
 from cagepose.kernels.stability.proof_search import judge
 
-PHASES, EVENTS, PATH, CONTACTS = 0, 1, 2, 3
+PHASES, EVENTS, STEPS, CONTACTS = 0, 1, 2, 3
 """Places in `Outcome.counts`."""
 NO_BALANCE = (PROVEN_MOVES, TOO_MANY_CONTACTS)
 """Proofs of a pose that is not shown as rest, whatever a run says: the last correction has taken it out of balance."""
@@ -69,9 +69,9 @@ def end_phase(
     record.verdict = verdict
     publish_proof(code, stability, n_undetermined, position, quaternion, start, part, at, record)
     fits = publish_contacts(start, at, outcome)
-    record.n_events, record.n_path, record.n_contacts = (
+    record.n_events, record.n_steps, record.n_contacts = (
         outcome.counts[EVENTS],
-        outcome.counts[PATH],
+        outcome.counts[STEPS],
         outcome.counts[CONTACTS],
     )
     outcome.counts[PHASES] = phase + 1
@@ -101,9 +101,9 @@ def publish_events(
     """Append the steps of a phase that began at a pose, as events.
 
     ``joins_steps``: steps of one kind between two changes of the contacts are one event, whose motion leads from its
-    first pose to its last, along a path. Otherwise each step is an event with a motion of its own, and has no path.
+    first pose to its last. Otherwise each step is an event with a motion of its own.
     """
-    first_of_path = outcome.counts[PATH]
+    first_step = outcome.counts[STEPS]
     for step in range(n_steps):
         record = trace.rows[step]
         end, turned = (
@@ -117,19 +117,21 @@ def publish_events(
         )
         placed = object_position(start, part, end, turned)
         sense = math.copysign(1.0, turned[0])
-        if joins_steps:
-            on_path = outcome.path[outcome.counts[PATH]]
-            for k in range(3):
-                on_path[k] = placed[k]
-            for k in range(4):
-                on_path[3 + k] = sense * turned[k]
-            outcome.counts[PATH] += 1
-            if step + 1 < n_steps and goes_on(trace, step):
-                continue
+        place = outcome.counts[STEPS]
+        outcome.counts[STEPS] += 1
+        outcome.steps[place] = record  # type: ignore[index]
+        for point in range(trace.order.shape[1]):
+            outcome.order[place, point] = trace.order[step, point]
+        for k in range(3):
+            outcome.path[place, k] = placed[k]
+        for k in range(4):
+            outcome.path[place, 3 + k] = sense * turned[k]
+        if joins_steps and step + 1 < n_steps and goes_on(trace, step):
+            continue
         event = outcome.events[outcome.counts[EVENTS]]
         event.rule, event.note, event.motion = record.rule, record.note, record.motion
-        event.n_path = outcome.counts[PATH] - first_of_path
-        first_of_path = outcome.counts[PATH]
+        event.n_steps = outcome.counts[STEPS] - first_step
+        first_step = outcome.counts[STEPS]
         along, through = vector_from(record.along), vector_from(record.through)
         event.distance, event.angle = record.distance, record.angle
         if joins_steps and record.motion != NONE:

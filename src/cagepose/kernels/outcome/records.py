@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
+from cagepose.kernels.outcome.trace import StepRecord
 
 
 class PhaseRecord:
@@ -25,7 +26,7 @@ class PhaseRecord:
         Scaled twists along which the load does not tell poses apart, rows.
     motion, along, through, pitch
         The motion that begins, if the object moves or may move.
-    n_events, n_path, n_contacts
+    n_events, n_steps, n_contacts
         How many rows of the outcome are written after this phase.
     """
 
@@ -41,7 +42,7 @@ class PhaseRecord:
     through: Annotated[FloatArray, 3]
     pitch: float
     n_events: int
-    n_path: int
+    n_steps: int
     n_contacts: int
 
 
@@ -58,8 +59,8 @@ class EventRecord:
         Metres and radians.
     position, quaternion
         Pose of the object after it, w >= 0.
-    n_path
-        Poses on the way to it, the last of them included.
+    n_steps
+        Of which it is made.
     """
 
     rule: int
@@ -71,7 +72,7 @@ class EventRecord:
     angle: float
     position: Annotated[FloatArray, 3]
     quaternion: Annotated[FloatArray, 4]
-    n_path: int
+    n_steps: int
 
 
 class ContactRecord:
@@ -107,13 +108,15 @@ class Outcome(NamedTuple):
     Attributes
     ----------
     counts
-        How many phases, events, poses of the path and contacts are written, (4,).
+        How many phases, events, steps and contacts are written, (4,).
     phases, events, contacts
         One after the other, in the order of the phases.
     touching, hit
         Which points touch after each event, and which of them it reached, (n_events, n_points).
     path
-        Position and quaternion of the object on the way, (n_path, 7).
+        Position and quaternion of the object after each step, (n_steps, 7).
+    steps, order
+        Every step as the method has noted it, from which it can be made again; see `Trace`.
     """
 
     counts: NDArray[np.int64]
@@ -123,6 +126,8 @@ class Outcome(NamedTuple):
     touching: NDArray[np.bool_]
     hit: NDArray[np.bool_]
     path: FloatArray
+    steps: Rows[StepRecord]
+    order: NDArray[np.int64]
 
 
 def empty_outcome(n_phases: int, n_steps: int, n_points: int, n_contacts: int) -> Outcome:
@@ -136,4 +141,6 @@ def empty_outcome(n_phases: int, n_steps: int, n_points: int, n_contacts: int) -
         np.zeros((n_events, n_points), np.bool_),
         np.zeros((n_events, n_points), np.bool_),
         np.zeros((n_events, 7)),
+        empty_rows(StepRecord, n_events),
+        np.zeros((n_events, n_points), np.int64),
     )

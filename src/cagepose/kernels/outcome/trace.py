@@ -51,6 +51,10 @@ class StepRecord:
         Pose after the step: of the object as seen from its centre of gravity, in the frame of the cage's middle.
     note
         Code of what a careful reader should know.
+    start_position, start_quaternion
+        Pose before the step.
+    turn_step, n_still, n_polished
+        What else a quasistatic step began from, see `cagepose.kernels.quasistatic.step.State`.
     """
 
     rule: int
@@ -62,14 +66,22 @@ class StepRecord:
     position: Annotated[FloatArray, 3]
     quaternion: Annotated[FloatArray, 4]
     note: int
+    start_position: Annotated[FloatArray, 3]
+    start_quaternion: Annotated[FloatArray, 4]
+    turn_step: float
+    n_still: int
+    n_polished: int
 
 
 class Trace(NamedTuple):
-    """The steps of one phase; and which points touch after each, and which of them it reached, (n_steps, n_points)."""
+    """The steps of one phase; which points touch after each, and which of them it reached, (n_steps, n_points); and the
+    points that touched before it, longest first, then -1, where a method asks for that order.
+    """
 
     rows: Rows[StepRecord]
     touching: NDArray[np.bool_]
     hit: NDArray[np.bool_]
+    order: NDArray[np.int64]
 
 
 def empty_trace(n_steps: int, n_points: int) -> Trace:
@@ -78,4 +90,5 @@ def empty_trace(n_steps: int, n_points: int) -> Trace:
         empty_rows(StepRecord, n_steps),
         np.zeros((n_steps, n_points), np.bool_),
         np.zeros((n_steps, n_points), np.bool_),
+        np.zeros((n_steps, n_points), np.int64),
     )

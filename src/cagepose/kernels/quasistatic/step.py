@@ -1,327 +1,310 @@
-"""One step of the quasistatic path: how far along a twist, to which contact, and back on the faces."""
+"""One step of the quasistatic method: from a state to the next, along the motion that the mechanics gives.
+
+At a pose: find the contacts and solve the onset of motion. Held: the end. Else move along its twist, an exact screw,
+up to the first contact, to the edge of a face that carries, or as far as the motion keeps its direction; put the
+sliding contacts back on their faces. The loads do work in every step, so no pose comes twice.
+
+A step depends on its state alone, so that any step of a run can be made again.
+"""
 
 from __future__ import annotations
 
 import math
 from typing import NamedTuple
 
-import numpy as np
-
-from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.algebra.tolerances import KernelTolerances
-from cagepose.kernels.algebra.vector import Vector, norm, row, scaled
-from cagepose.kernels.collision.first_contact import allowed_depth, first_contact_screw, first_contact_travel
-from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
-from cagepose.kernels.contact.contact_set import ContactSet
-from cagepose.kernels.contact.metric import Body, PhaseLoad, moved_along_twist, total_force, work_done
+from cagepose.kernels.algebra.pose import Quaternion, turned_by
+from cagepose.kernels.algebra.vector import Vector, minus, norm, vector_from
+from cagepose.kernels.collision.geometry import place_object
+from cagepose.kernels.contact.contact_set import (
+    ContactSet,
+    find_contacts,
+)
+from cagepose.kernels.contact.curvature import write_curvature
+from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, write_load
+from cagepose.kernels.contact.onset import (
+    HELD_BY_FRICTION,
+    HELD_WITHOUT_FRICTION,
+    MOVES,
+    UNSOLVED,
+    onset,
+    sticks,
+)
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.edge_crossing import first_run_off
-from cagepose.kernels.quasistatic.projection import Pins, add_pin, empty_pins, pull_back
+from cagepose.kernels.outcome.trace import (
+    ESCAPES,
+    LET_GO,
+    NONE,
+    PLAIN,
+    RESTS,
+    SCREW,
+    STALLED,
+    TRAVEL,
+    StepRecord,
+)
+from cagepose.kernels.quasistatic.along_twist import (
+    Setting,
+    Twist,
+    allow_depths,
+    furthest_step,
+    longest_step,
+    nothing_ahead,
+    pin_contacts,
+    pushed_out,
+    straightened,
+)
+from cagepose.kernels.quasistatic.implicit_step import curvature_along, keep_along_faces, stiff_step
+from cagepose.kernels.quasistatic.projection import ON_FACE
+from cagepose.kernels.quasistatic.rest_on_the_way import first_rest, is_held_on_the_way
+from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
-HALVINGS = 40
-"""How often a step is halved that a contact, or the potential, does not let end."""
-POINTS_PUSHED = 8
-"""Points that may be pushed out of the object after a step."""
-ROUNDING = 1e-15
-"""In lengths of the terms of a load: a slower motion may be no motion."""
-STRAIGHT = 1e-14
-"""Radians for each length of the object: a motion that turns by less is a travel."""
+RULE_NAMES = ("free", "slide", "pivot", "held", "stalled")
+FREE, SLIDE, PIVOT, HELD, STUCK = 0, 1, 2, 3, 4
+"""No contact carries; those that carry slide; one of them sticks; the contacts hold the object; nothing was found."""
+
+STIFF = 0.25
+"""Curvature times step above which the explicit step would no longer follow the path: then it is made implicit."""
+STILL = 1e-14
+"""In sizes of the scene: a shorter step is no progress."""
+STILL_STEPS = 6
+"""Steps without progress after which the run has stalled."""
+POLISHES = 3
+"""How often, in a phase, a rest is put on its faces and looked at again: what balanced before may not quite, then."""
+
+GOES_ON = -1
+"""Instead of the code of a verdict: the phase goes on."""
 
 
-class Setting(NamedTuple):
-    """What does not change during a phase.
+class State(NamedTuple):
+    """What a step begins from.
 
     Attributes
     ----------
-    geometry, body, load
-        The scene, with its cage points and boxes as seen from the centre of gravity, and the load of the phase.
-    size_m
-        The scene's size, metres.
-    friction
-        Coefficient of friction.
+    position, quaternion
+        Pose of the object, as seen from its centre of gravity.
     turn_step_rad
-        Longest turn in one step.
-    tolerances
+        How far this step may turn: less after one that did not get as far as it should.
+    n_still
+        Steps without progress before it.
+    n_polished
+        How often a rest has been put on its faces in this phase.
+    """
+
+    position: Vector
+    quaternion: Quaternion
+    turn_step_rad: float
+    n_still: int
+    n_polished: int
+
+
+@kernel
+def carried_by(contacts: ContactSet) -> int:
+    """Return the rule of a motion: FREE, SLIDE or PIVOT."""
+    rule = FREE
+    for i in range(contacts.used[0]):
+        if contacts.rows[i].step_forces[0] > 0.0:
+            rule = max(rule, PIVOT if contacts.rows[i].is_sticking else SLIDE)
+    return rule
+
+
+@kernel
+def carry_as_at_onset(contacts: ContactSet) -> None:
+    """Take the forces of the onset for the step."""
+    for i in range(contacts.used[0]):
+        for j in range(3):
+            contacts.rows[i].step_forces[j] = contacts.rows[i].forces[j]
+
+
+@kernel
+def next_twist(
+    setting: Setting, quaternion: Quaternion, frame: Frame, turn_step_rad: float, work: QuasistaticWorkspace
+) -> Twist:
+    """Return the twist to follow from a pose that moves; the contacts' ``step_forces`` belong to it."""
+    contacts, room = work.contacts, work.rooms[0]
+    y = room.solver.y
+    carries = False
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        contact.is_sticking = sticks(contact, setting.friction, room.solver.load_terms, y)
+        carries = carries or contact.forces[0] > 0.0
+    carry_as_at_onset(contacts)
+    velocity, spin = twist_of(y, frame)
+    spin = straightened(velocity, spin, setting.body.reach_m, room.solver.load_terms)
+    end = longest_step(velocity, spin, carries, turn_step_rad, setting.size_m)
+    if end < math.inf:
+        write_curvature(contacts, setting.load, quaternion, frame, room.stiff.curvature)
+        rho = max(keep_along_faces(contacts, room.stiff), 1.0 / end)
+        if abs(curvature_along(room.stiff.curvature, y)) * end > STIFF:
+            if stiff_step(contacts, work.turned, setting.friction, rho, room.stiff, room.solver):
+                velocity, spin = twist_of(room.stiff.delta, frame)
+                end = min(1.0, longest_step(velocity, spin, carries, turn_step_rad, setting.size_m))
+                for i in range(contacts.used[0]):
+                    contact = contacts.rows[i]
+                    contact.is_sticking = contact.is_sticking and contact.step_forces[0] > 0.0
+            else:
+                carry_as_at_onset(contacts)
+    return Twist(velocity, spin, end)
+
+
+@kernel
+def gap_left(contacts: ContactSet) -> float:
+    """Return the greatest distance, to either side, of a contact that carries from its face."""
+    greatest = 0.0
+    for i in range(contacts.used[0]):
+        if contacts.rows[i].forces[0] > 0.0:
+            greatest = max(greatest, abs(contacts.rows[i].gap))
+    return greatest
+
+
+@kernel
+def polished(
+    setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace
+) -> tuple[Vector, Quaternion]:
+    """Close the gaps, within the touch tolerance, of the contacts that carry (5.12)."""
+    carry_as_at_onset(work.contacts)
+    for i in range(work.contacts.used[0]):
+        work.contacts.rows[i].is_sticking = False
+    allow_depths(work.placement, setting.tolerances, work.path)
+    pin_contacts(setting.geometry, work.placement, work.contacts, work.path.pins)
+    done, new_position, new_quaternion = pushed_out(setting, work.placement, position, quaternion, work.path)
+    if done:
+        return new_position, new_quaternion
+    place_object(setting.geometry, position, quaternion, work.placement)
+    return position, quaternion
+
+
+@kernel
+def note_touching(work: QuasistaticWorkspace) -> None:
+    """Remember which points touch before a step."""
+    for point in range(len(work.touched)):
+        work.touched[point] = False
+    for i in range(work.contacts.used[0]):
+        work.touched[work.contacts.rows[i].point] = True
+
+
+@kernel
+def write_step(
+    work: QuasistaticWorkspace, step: int, rule: int, motion: int, position: Vector, quaternion: Quaternion
+) -> None:
+    """Write a step; which points touch, and which were reached, follows from the contacts after it."""
+    trace = work.trace
+    record = trace.rows[step]
+    record.rule, record.motion, record.note = rule, motion, PLAIN
+    for k in range(3):
+        record.position[k] = position[k]
+    for k in range(4):
+        record.quaternion[k] = quaternion[k]
+    for point in range(len(work.touched)):
+        trace.touching[step, point] = False
+    for i in range(work.contacts.used[0]):
+        trace.touching[step, work.contacts.rows[i].point] = True
+    for point in range(len(work.touched)):
+        trace.hit[step, point] = trace.touching[step, point] and not work.touched[point]
+        if work.touched[point] and not trace.touching[step, point]:
+            record.note = LET_GO
+
+
+@kernel
+def stand_at(setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace) -> bool:
+    """Place the object at a pose and find its contacts there; False: there are more than a workspace has room for."""
+    place_object(setting.geometry, position, quaternion, work.placement)
+    return find_placed_contacts(setting, position, quaternion, work)
+
+
+@kernel
+def find_placed_contacts(
+    setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace
+) -> bool:
+    """Find the contacts where the object is placed already; see `stand_at`."""
+    frame = frame_at(setting.body, quaternion)
+    return find_contacts(setting.geometry, work.placement, position, frame, setting.tolerances.touch_m, work.contacts)
+
+
+@kernel
+def next_step(
+    setting: Setting, state: State, fits: bool, step: int, work: QuasistaticWorkspace
+) -> tuple[int, State, bool]:
+    """Make one step; return (GOES_ON or the code of the verdict, state after it, whether its contacts fit).
+
+    Parameters
+    ----------
+    setting
+        What does not change during the phase.
+    state, fits
+        Where it begins, and what `stand_at` said there. The workspace is that of this pose before, and of the next
+        pose after.
+    step
+        Place in the trace to write it to.
+    work
         See there.
     """
+    solver = work.rooms[0].solver
+    position, quaternion, n_polished = state.position, state.quaternion, state.n_polished
+    write_state(work.trace.rows[step], state)
 
-    geometry: Geometry
-    body: Body
-    load: PhaseLoad
-    size_m: float
-    friction: float
-    turn_step_rad: float
-    tolerances: KernelTolerances
-
-
-class PathRoom(NamedTuple):
-    """Room for one step: contacts to keep, and the depth allowed to each point, (n_points,), metres."""
-
-    pins: Pins
-    allowed: FloatArray
-
-
-def empty_path_room(n_points: int) -> PathRoom:
-    """Return room for ``n_points`` cage points (plain Python)."""
-    return PathRoom(empty_pins(3 * n_points + POINTS_PUSHED), np.zeros(n_points))
-
-
-class Twist(NamedTuple):
-    """A motion at constant twist.
-
-    Attributes
-    ----------
-    velocity, spin
-        Of the centre of gravity, and angular, for each unit of the amount.
-    end
-        The greatest amount; inf: a travel with no end of its own.
-    """
-
-    velocity: Vector
-    spin: Vector
-    end: float
-
-
-@kernel
-def straightened(velocity: Vector, spin: Vector, reach_m: float, terms: float) -> Vector:
-    """Return the spin, or zero where it is rounding, of the motion or of the terms of the load that it is left of."""
-    if norm(spin) * reach_m <= max(STRAIGHT * norm(velocity), ROUNDING * terms):
-        return (0.0, 0.0, 0.0)
-    return spin
-
-
-@kernel
-def longest_step(velocity: Vector, spin: Vector, slides: bool, turn_step_rad: float, size_m: float) -> float:
-    """Return how much of a twist keeps its direction: its turn, and how far sliding contacts leave their faces, stay
-    small (5.11).
-    """
-    rate = norm(spin)
-    if rate == 0.0:
-        return math.inf
-    amount = turn_step_rad / rate
-    speed = norm(velocity)
-    if slides and speed > 0.0:
-        amount = min(amount, turn_step_rad * math.sqrt(0.5 * size_m / (rate * speed)))
-    return amount
-
-
-@kernel
-def first_contact(
-    setting: Setting, placement: Placement, position: Vector, twist: Twist, end: float
-) -> tuple[float, int, int]:
-    """Return (amount, point, box) of the first contact along a twist, but for what touches already."""
-    touch_m = setting.tolerances.touch_m
-    rate = norm(twist.spin)
-    if rate == 0.0:
-        speed = norm(twist.velocity)
-        distance, point, box = first_contact_travel(
-            setting.geometry, placement, scaled(twist.velocity, 1.0 / speed), touch_m, setting.tolerances
-        )
-        amount = distance / speed
-    else:
-        angle, point, box = first_contact_screw(
-            setting.geometry,
-            placement,
-            position,
-            scaled(twist.velocity, 1.0 / rate),
-            scaled(twist.spin, 1.0 / rate),
-            end * rate,
-            touch_m,
-            setting.tolerances,
-        )
-        amount = angle / rate
-    if amount > end:
-        return math.inf, -1, -1
-    return amount, point, box
-
-
-@kernel
-def shallowest_face(geometry: Geometry, placement: Placement, point: int, box: int) -> tuple[int, float]:
-    """Return (axis, side) of the face of ``box`` that the point is nearest to from inside, or farthest beyond."""
-    best_axis, best_gap = 0, -math.inf
-    for axis in range(3):
-        gap = abs(placement.points_box[box, axis, point]) - geometry.half_sizes[box, axis]
-        if gap > best_gap:
-            best_axis, best_gap = axis, gap
-    return best_axis, math.copysign(1.0, placement.points_box[box, best_axis, point])
-
-
-@kernel
-def pin_face(geometry: Geometry, placement: Placement, point: int, box: int, pins: Pins) -> bool:
-    """Pin a point to the face of a box that it has reached."""
-    axis, side = shallowest_face(geometry, placement, point, box)
-    return add_pin(pins, point, box, axis, side, geometry.half_sizes[box, axis])
-
-
-@kernel
-def pin_contacts(geometry: Geometry, placement: Placement, contacts: ContactSet, pins: Pins) -> None:
-    """Pin the contacts that carry in this step: to their faces, and where they stick also in the face."""
-    pins.rooms[0].used = 0
-    for i in range(contacts.used[0]):
-        contact = contacts.rows[i]
-        if contact.step_forces[0] > 0.0:
-            at = geometry.half_sizes[contact.box, contact.axis]
-            add_pin(pins, contact.point, contact.box, contact.axis, contact.side, at)
-    for i in range(contacts.used[0]):
-        contact = contacts.rows[i]
-        if contact.step_forces[0] > 0.0 and contact.is_sticking:
-            for turn in range(1, 3):
-                axis = (contact.axis + turn) % 3
-                at = placement.points_box[contact.box, axis, contact.point]
-                add_pin(pins, contact.point, contact.box, axis, 1.0, at)
-
-
-@kernel
-def deepest_offender(placement: Placement, allowed: FloatArray) -> int:
-    """Return the point that is farthest deeper than it may; -1: none."""
-    worst_point, worst = -1, 0.0
-    for point in range(len(allowed)):
-        excess = placement.depths[point] - allowed[point]
-        if excess > worst:
-            worst_point, worst = point, excess
-    return worst_point
-
-
-@kernel
-def box_around(geometry: Geometry, placement: Placement, point: int) -> int:
-    """Return the box that the point lies deepest in."""
-    best_box, best_gap = 0, math.inf
-    for box in range(len(geometry.half_sizes)):
-        gap = placement.gaps[box, point]
-        if gap < best_gap:
-            best_box, best_gap = box, gap
-    return best_box
-
-
-@kernel
-def pushed_out(
-    setting: Setting, placement: Placement, position: Vector, quaternion: Quaternion, room: PathRoom
-) -> tuple[bool, Vector, Quaternion]:
-    """Make all pins hold, and push points out of the object that this has brought in; placement is filled."""
-    geometry = setting.geometry
-    holds = True
-    for _ in range(POINTS_PUSHED):
-        if room.pins.rooms[0].used > 0:
-            holds, position, quaternion = pull_back(
-                geometry, setting.body, position, quaternion, room.pins, setting.size_m
-            )
-        place_object(geometry, position, quaternion, placement)
-        point = deepest_offender(placement, room.allowed)
-        if point < 0 or not holds:
+    # What happens from rest at this pose? A rest is put on its faces, and looked at again.
+    code = UNSOLVED
+    for _ in range(POLISHES + 1):
+        note_touching(work)
+        solver.load_terms = write_load(setting.load, quaternion, frame_at(setting.body, quaternion), solver.load)
+        code = onset(work.contacts, setting.friction, solver) if fits else UNSOLVED
+        is_rest = code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
+        if not is_rest or n_polished == POLISHES or gap_left(work.contacts) <= ON_FACE * setting.size_m:
             break
-        if not pin_face(geometry, placement, point, box_around(geometry, placement, point), room.pins):
-            return False, position, quaternion
-    return holds and deepest_offender(placement, room.allowed) < 0, position, quaternion
+        position, quaternion = polished(setting, position, quaternion, work)
+        fits = find_placed_contacts(setting, position, quaternion, work)
+        n_polished += 1
+    here = State(position, quaternion, state.turn_step_rad, state.n_still, n_polished)
+    if code != MOVES:
+        write_step(work, step, STUCK if code == UNSOLVED else HELD, NONE, position, quaternion)
+        return (STALLED if code == UNSOLVED else RESTS), here, fits
 
-
-@kernel
-def stepped(
-    setting: Setting,
-    placement: Placement,
-    contacts: ContactSet,
-    position: Vector,
-    quaternion: Quaternion,
-    twist: Twist,
-    amount: float,
-    hit_point: int,
-    hit_box: int,
-    room: PathRoom,
-) -> tuple[bool, Vector, Quaternion]:
-    """Move by ``amount`` and put the contacts that carry, and the one that is hit, on their faces.
-
-    False: a point would be inside, a contact would not stay on its face, or the loads would do negative work. The
-    placement is that of the new pose, or of the old one.
-    """
-    geometry = setting.geometry
-    pin_contacts(geometry, placement, contacts, room.pins)
-    moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
-    if hit_point >= 0:
-        place_object(geometry, moved[0], moved[1], placement)
-        pin_face(geometry, placement, hit_point, hit_box, room.pins)
-    done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], room)
-    if done:
-        work = work_done(setting.load, position, quaternion, new_position, new_quaternion)
-        rounding = setting.tolerances.resolution_m * total_load(setting.load)
-        done = work >= -rounding
-    if done:
-        return True, new_position, new_quaternion
-    place_object(geometry, position, quaternion, placement)
-    return False, position, quaternion
-
-
-@kernel
-def total_load(load: PhaseLoad) -> float:
-    """Return the sum of the magnitudes of a phase's forces."""
-    return norm(row(load.forces_world, 0)) + norm(row(load.forces_world, 1))
-
-
-@kernel
-def nothing_ahead(setting: Setting, position: Vector) -> bool:
-    """Whether no cage point can ever be met in free flight: the centre of gravity goes straight along the force."""
-    force = total_force(setting.load)
-    size = norm(force)
-    if size == 0.0:
-        return False
-    along = scaled(force, 1.0 / size)
-    for point in range(len(setting.geometry.points_world)):
-        ahead = 0.0
-        distance = 0.0
-        for k in range(3):
-            ahead += (setting.geometry.points_world[point, k] - position[k]) * along[k]
-        for k in range(3):
-            away = setting.geometry.points_world[point, k] - position[k] - max(ahead, 0.0) * along[k]
-            distance += away * away
-        if math.sqrt(distance) <= setting.body.reach_m:
-            return False
-    return True
-
-
-@kernel
-def allow_depths(placement: Placement, tolerances: KernelTolerances, room: PathRoom) -> None:
-    """Write how deep each point may be after the step: no deeper than it is."""
-    for point in range(len(room.allowed)):
-        room.allowed[point] = allowed_depth(placement.depths[point], tolerances)
-
-
-@kernel
-def furthest_step(
-    setting: Setting,
-    placement: Placement,
-    contacts: ContactSet,
-    position: Vector,
-    quaternion: Quaternion,
-    twist: Twist,
-    room: PathRoom,
-) -> tuple[float, bool, Vector, Quaternion]:
-    """Go along a twist to its end, the first contact or the edge of a face that carries, or less if need be.
-
-    Return (amount, whether it went as far as it should, position, quaternion); amount 0: it could not move; inf:
-    nothing is ahead.
-    """
-    allow_depths(placement, setting.tolerances, room)
-    amount, hit_point, hit_box = first_contact(setting, placement, position, twist, twist.end)
-    run_off = first_run_off(
-        setting.geometry,
-        placement,
-        contacts,
-        position,
-        twist.velocity,
-        twist.spin,
-        twist.end,
-        setting.tolerances.touch_m,
+    # Which way, and how far?
+    twist = next_twist(setting, quaternion, frame_at(setting.body, quaternion), state.turn_step_rad, work)
+    rule = carried_by(work.contacts)
+    motion = TRAVEL if norm(twist.spin) == 0.0 else SCREW
+    if rule == FREE and nothing_ahead(setting, position):
+        write_step(work, step, rule, TRAVEL, position, quaternion)
+        return ESCAPES, here, fits
+    amount, as_planned, end, turned = furthest_step(
+        setting, work.placement, work.contacts, position, quaternion, twist, work.path
     )
-    if run_off < amount:
-        amount, hit_point, hit_box = run_off, -1, -1
-    if twist.end < amount:
-        amount = twist.end
     if amount == math.inf:
-        return amount, True, position, quaternion
-    for halving in range(HALVINGS):
-        done, new_position, new_quaternion = stepped(
-            setting, placement, contacts, position, quaternion, twist, amount, hit_point, hit_box, room
-        )
-        if done:
-            return amount, halving == 0, new_position, new_quaternion
-        amount, hit_point, hit_box = 0.5 * amount, -1, -1
-    return 0.0, False, position, quaternion
+        write_step(work, step, rule, TRAVEL, position, quaternion)
+        return ESCAPES, here, fits
+    could_rest = setting.friction > 0.0 and rule != FREE and amount > 0.0
+    if could_rest and is_held_on_the_way(setting, end, turned, work):
+        end, turned = first_rest(setting, position, quaternion, twist, amount, work)
+
+    # Go there.
+    moved = norm(minus(end, position)) + setting.body.reach_m * turned_by(quaternion, turned)
+    n_still = 0 if moved > STILL * setting.size_m else state.n_still + 1
+    turn_step = 0.25 * state.turn_step_rad
+    if as_planned:
+        turn_step = min(2.0 * state.turn_step_rad, setting.turn_step_rad)
+    fits = find_placed_contacts(setting, end, turned, work)
+    write_step(work, step, rule, motion, end, turned)
+    there = State(end, turned, turn_step, n_still, n_polished)
+    return (STALLED if n_still == STILL_STEPS else GOES_ON), there, fits
+
+
+@kernel
+def write_state(record: StepRecord, state: State) -> None:
+    """Write what a step began from."""
+    record.turn_step, record.n_still, record.n_polished = state.turn_step_rad, state.n_still, state.n_polished
+    for k in range(3):
+        record.start_position[k] = state.position[k]
+    for k in range(4):
+        record.start_quaternion[k] = state.quaternion[k]
+
+
+@kernel
+def state_of(record: StepRecord) -> State:
+    """Return what a step began from, as `write_state` has it."""
+    q = record.start_quaternion
+    return State(
+        vector_from(record.start_position),
+        (q[0], q[1], q[2], q[3]),
+        record.turn_step,
+        record.n_still,
+        record.n_polished,
+    )

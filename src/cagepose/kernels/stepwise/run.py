@@ -11,9 +11,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
-from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, row, scaled, vector_from
 from cagepose.kernels.collision.first_contact import first_contact_travel
@@ -34,6 +35,7 @@ from cagepose.kernels.outcome.trace import (
     SPINS,
     STABLE,
     TRAVEL,
+    StepRecord,
     Trace,
     empty_trace,
 )
@@ -173,11 +175,18 @@ def load_at(load: PhaseLoad, position: Vector, quaternion: Quaternion) -> PointL
 
 @kernel
 def phase_run(
-    start: Start, phase: int, position: Vector, quaternion: Quaternion, of_size: StepwiseRules, work: StepwiseWorkspace
+    start: Start,
+    phase: int,
+    position: Vector,
+    quaternion: Quaternion,
+    of_size: StepwiseRules,
+    step_limit: int,
+    work: StepwiseWorkspace,
 ) -> tuple[int, int, Vector, Quaternion]:
     """Run one phase; return (verdict code, number of steps, position, quaternion). ``of_size``: for a scene of size 1.
 
-    The contacts of the phase before keep their order.
+    The contacts of the phase before keep their order. A step depends on the pose and on that order alone, so that any
+    step of a run can be made again.
     """
     geometry, tolerances, phase_load = start.geometry, start.tolerances, start.loads[phase]
     placement, touching, trace = work.placement, work.touching, work.trace
@@ -186,8 +195,9 @@ def phase_run(
     place_object(geometry, position, quaternion, placement)
     load = load_at(phase_load, position, quaternion)
     find_touching(geometry, placement, load, tolerances, touching)
-    for count in range(rules.event_limit):
+    for count in range(step_limit):
         # Decide.
+        write_start(trace, count, position, quaternion, touching)
         step = next_step(geometry, placement, touching, load, pushes, rules, tolerances)
         if pushes and step.note == PLAIN and has_face_tie(touching):
             step = Step(step.rule, step.motion, step.along, step.through, step.amount, step.hit_point, EDGE_TIE)
@@ -217,7 +227,7 @@ def phase_run(
             return (ESCAPES if step.motion == TRAVEL else SPINS), count + 1, position, quaternion
         if was_met(trace, count, start.size_m, tolerances.resolution_m):
             return CYCLING, count + 1, position, quaternion
-    return LIMIT, rules.event_limit, position, quaternion
+    return LIMIT, step_limit, position, quaternion
 
 
 @kernel
@@ -229,6 +239,18 @@ def rules_of(of_size: StepwiseRules, friction: float, size_m: float) -> Stepwise
         SlipRules(math.atan(friction), slip.contactless_angle_rad, slip.parallel_sine, slip.equal_distance_m * size_m),
         of_size.event_limit,
     )
+
+
+@kernel
+def write_start(trace: Trace, step: int, position: Vector, quaternion: Quaternion, touching: Touching) -> None:
+    """Write what a step begins from."""
+    record = trace.rows[step]
+    for k in range(3):
+        record.start_position[k] = position[k]
+    for k in range(4):
+        record.start_quaternion[k] = quaternion[k]
+    for place in range(trace.order.shape[1]):
+        trace.order[step, place] = touching.order[place] if place < touching.n_touching[0] else -1
 
 
 @kernel
@@ -298,7 +320,7 @@ def run_stepwise(part: Part, cases: Cases, rules: StepwiseRules, work: StepwiseW
     position, quaternion = start.position, start.quaternion
     forget_contacts(work.touching)
     for phase in range(len(start.loads)):
-        verdict, n_steps, end, turned = phase_run(start, phase, position, quaternion, rules, work)
+        verdict, n_steps, end, turned = phase_run(start, phase, position, quaternion, rules, rules.event_limit, work)
         publish_events(work.trace, n_steps, False, position, quaternion, start, part, outcome)
         verdict, fits = end_phase(verdict, phase, end, turned, start, part, work.proof, outcome)
         if verdict != STABLE or not fits:
@@ -337,9 +359,49 @@ def run_stepwise_cases(
         position, quaternion = start.position, start.quaternion
         forget_contacts(work.touching)
         for phase in range(len(start.loads)):
-            verdict, n_steps, position, quaternion = phase_run(start, phase, position, quaternion, rules, work)
+            verdict, n_steps, position, quaternion = phase_run(
+                start, phase, position, quaternion, rules, rules.event_limit, work
+            )
             write_ending(endings, case, phase, verdict, n_steps, position, quaternion, start, part)
             for point in range(len(work.points_world)):
                 endings.touching[case, phase, point] = work.touching.is_touching[point]
             if verdict != STABLE:
                 break
+
+
+@entry
+def repeat_stepwise(
+    phase: int,
+    first: Rows[StepRecord],
+    order: NDArray[np.int64],
+    n_steps: int,
+    part: Part,
+    cases: Cases,
+    rules: StepwiseRules,
+    work: StepwiseWorkspace,
+    outcome: Outcome,
+) -> None:
+    """Make steps of a run again, from what the record of their first one holds.
+
+    Parameters
+    ----------
+    phase, first, order, n_steps
+        Index of the phase, the record (one row), the points in the order of touching before it, (n_points,), and how
+        many steps.
+    part, cases, rules, work
+        As in `run_stepwise`.
+    outcome
+        Filled: the events that these steps are.
+    """
+    begin(outcome)
+    start, q = start_of(0, part, cases, work.points_world), first[0].start_quaternion
+    position, quaternion = vector_from(first[0].start_position), (q[0], q[1], q[2], q[3])
+    touching = work.touching
+    forget_contacts(touching)
+    for place in range(len(order)):
+        if order[place] >= 0:
+            touching.order[place] = order[place]
+            touching.is_touching[order[place]] = True
+            touching.n_touching[0] = place + 1
+    phase_run(start, phase, position, quaternion, rules, n_steps, work)
+    publish_events(work.trace, n_steps, False, position, quaternion, start, part, outcome)

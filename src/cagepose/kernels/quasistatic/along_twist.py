@@ -1,0 +1,327 @@
+"""One step of the quasistatic path: how far along a twist, to which contact, and back on the faces."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.tolerances import KernelTolerances
+from cagepose.kernels.algebra.vector import Vector, norm, row, scaled
+from cagepose.kernels.collision.first_contact import allowed_depth, first_contact_screw, first_contact_travel
+from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
+from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.metric import Body, PhaseLoad, moved_along_twist, total_force, work_done
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.quasistatic.edge_crossing import first_run_off
+from cagepose.kernels.quasistatic.projection import Pins, add_pin, empty_pins, pull_back
+
+HALVINGS = 40
+"""How often a step is halved that a contact, or the potential, does not let end."""
+POINTS_PUSHED = 8
+"""Points that may be pushed out of the object after a step."""
+ROUNDING = 1e-15
+"""In lengths of the terms of a load: a slower motion may be no motion."""
+STRAIGHT = 1e-14
+"""Radians for each length of the object: a motion that turns by less is a travel."""
+
+
+class Setting(NamedTuple):
+    """What does not change during a phase.
+
+    Attributes
+    ----------
+    geometry, body, load
+        The scene, with its cage points and boxes as seen from the centre of gravity, and the load of the phase.
+    size_m
+        The scene's size, metres.
+    friction
+        Coefficient of friction.
+    turn_step_rad
+        Longest turn in one step.
+    tolerances
+        See there.
+    """
+
+    geometry: Geometry
+    body: Body
+    load: PhaseLoad
+    size_m: float
+    friction: float
+    turn_step_rad: float
+    tolerances: KernelTolerances
+
+
+class PathRoom(NamedTuple):
+    """Room for one step: contacts to keep, and the depth allowed to each point, (n_points,), metres."""
+
+    pins: Pins
+    allowed: FloatArray
+
+
+def empty_path_room(n_points: int) -> PathRoom:
+    """Return room for ``n_points`` cage points (plain Python)."""
+    return PathRoom(empty_pins(3 * n_points + POINTS_PUSHED), np.zeros(n_points))
+
+
+class Twist(NamedTuple):
+    """A motion at constant twist.
+
+    Attributes
+    ----------
+    velocity, spin
+        Of the centre of gravity, and angular, for each unit of the amount.
+    end
+        The greatest amount; inf: a travel with no end of its own.
+    """
+
+    velocity: Vector
+    spin: Vector
+    end: float
+
+
+@kernel
+def straightened(velocity: Vector, spin: Vector, reach_m: float, terms: float) -> Vector:
+    """Return the spin, or zero where it is rounding, of the motion or of the terms of the load that it is left of."""
+    if norm(spin) * reach_m <= max(STRAIGHT * norm(velocity), ROUNDING * terms):
+        return (0.0, 0.0, 0.0)
+    return spin
+
+
+@kernel
+def longest_step(velocity: Vector, spin: Vector, slides: bool, turn_step_rad: float, size_m: float) -> float:
+    """Return how much of a twist keeps its direction: its turn, and how far sliding contacts leave their faces, stay
+    small (5.11).
+    """
+    rate = norm(spin)
+    if rate == 0.0:
+        return math.inf
+    amount = turn_step_rad / rate
+    speed = norm(velocity)
+    if slides and speed > 0.0:
+        amount = min(amount, turn_step_rad * math.sqrt(0.5 * size_m / (rate * speed)))
+    return amount
+
+
+@kernel
+def first_contact(
+    setting: Setting, placement: Placement, position: Vector, twist: Twist, end: float
+) -> tuple[float, int, int]:
+    """Return (amount, point, box) of the first contact along a twist, but for what touches already."""
+    touch_m = setting.tolerances.touch_m
+    rate = norm(twist.spin)
+    if rate == 0.0:
+        speed = norm(twist.velocity)
+        distance, point, box = first_contact_travel(
+            setting.geometry, placement, scaled(twist.velocity, 1.0 / speed), touch_m, setting.tolerances
+        )
+        amount = distance / speed
+    else:
+        angle, point, box = first_contact_screw(
+            setting.geometry,
+            placement,
+            position,
+            scaled(twist.velocity, 1.0 / rate),
+            scaled(twist.spin, 1.0 / rate),
+            end * rate,
+            touch_m,
+            setting.tolerances,
+        )
+        amount = angle / rate
+    if amount > end:
+        return math.inf, -1, -1
+    return amount, point, box
+
+
+@kernel
+def shallowest_face(geometry: Geometry, placement: Placement, point: int, box: int) -> tuple[int, float]:
+    """Return (axis, side) of the face of ``box`` that the point is nearest to from inside, or farthest beyond."""
+    best_axis, best_gap = 0, -math.inf
+    for axis in range(3):
+        gap = abs(placement.points_box[box, axis, point]) - geometry.half_sizes[box, axis]
+        if gap > best_gap:
+            best_axis, best_gap = axis, gap
+    return best_axis, math.copysign(1.0, placement.points_box[box, best_axis, point])
+
+
+@kernel
+def pin_face(geometry: Geometry, placement: Placement, point: int, box: int, pins: Pins) -> bool:
+    """Pin a point to the face of a box that it has reached."""
+    axis, side = shallowest_face(geometry, placement, point, box)
+    return add_pin(pins, point, box, axis, side, geometry.half_sizes[box, axis])
+
+
+@kernel
+def pin_contacts(geometry: Geometry, placement: Placement, contacts: ContactSet, pins: Pins) -> None:
+    """Pin the contacts that carry in this step: to their faces, and where they stick also in the face."""
+    pins.rooms[0].used = 0
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        if contact.step_forces[0] > 0.0:
+            at = geometry.half_sizes[contact.box, contact.axis]
+            add_pin(pins, contact.point, contact.box, contact.axis, contact.side, at)
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        if contact.step_forces[0] > 0.0 and contact.is_sticking:
+            for turn in range(1, 3):
+                axis = (contact.axis + turn) % 3
+                at = placement.points_box[contact.box, axis, contact.point]
+                add_pin(pins, contact.point, contact.box, axis, 1.0, at)
+
+
+@kernel
+def deepest_offender(placement: Placement, allowed: FloatArray) -> int:
+    """Return the point that is farthest deeper than it may; -1: none."""
+    worst_point, worst = -1, 0.0
+    for point in range(len(allowed)):
+        excess = placement.depths[point] - allowed[point]
+        if excess > worst:
+            worst_point, worst = point, excess
+    return worst_point
+
+
+@kernel
+def box_around(geometry: Geometry, placement: Placement, point: int) -> int:
+    """Return the box that the point lies deepest in."""
+    best_box, best_gap = 0, math.inf
+    for box in range(len(geometry.half_sizes)):
+        gap = placement.gaps[box, point]
+        if gap < best_gap:
+            best_box, best_gap = box, gap
+    return best_box
+
+
+@kernel
+def pushed_out(
+    setting: Setting, placement: Placement, position: Vector, quaternion: Quaternion, room: PathRoom
+) -> tuple[bool, Vector, Quaternion]:
+    """Make all pins hold, and push points out of the object that this has brought in; placement is filled."""
+    geometry = setting.geometry
+    holds = True
+    for _ in range(POINTS_PUSHED):
+        if room.pins.rooms[0].used > 0:
+            holds, position, quaternion = pull_back(
+                geometry, setting.body, position, quaternion, room.pins, setting.size_m
+            )
+        place_object(geometry, position, quaternion, placement)
+        point = deepest_offender(placement, room.allowed)
+        if point < 0 or not holds:
+            break
+        if not pin_face(geometry, placement, point, box_around(geometry, placement, point), room.pins):
+            return False, position, quaternion
+    return holds and deepest_offender(placement, room.allowed) < 0, position, quaternion
+
+
+@kernel
+def stepped(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    amount: float,
+    hit_point: int,
+    hit_box: int,
+    room: PathRoom,
+) -> tuple[bool, Vector, Quaternion]:
+    """Move by ``amount`` and put the contacts that carry, and the one that is hit, on their faces.
+
+    False: a point would be inside, a contact would not stay on its face, or the loads would do negative work. The
+    placement is that of the new pose, or of the old one.
+    """
+    geometry = setting.geometry
+    pin_contacts(geometry, placement, contacts, room.pins)
+    moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
+    if hit_point >= 0:
+        place_object(geometry, moved[0], moved[1], placement)
+        pin_face(geometry, placement, hit_point, hit_box, room.pins)
+    done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], room)
+    if done:
+        work = work_done(setting.load, position, quaternion, new_position, new_quaternion)
+        rounding = setting.tolerances.resolution_m * total_load(setting.load)
+        done = work >= -rounding
+    if done:
+        return True, new_position, new_quaternion
+    place_object(geometry, position, quaternion, placement)
+    return False, position, quaternion
+
+
+@kernel
+def total_load(load: PhaseLoad) -> float:
+    """Return the sum of the magnitudes of a phase's forces."""
+    return norm(row(load.forces_world, 0)) + norm(row(load.forces_world, 1))
+
+
+@kernel
+def nothing_ahead(setting: Setting, position: Vector) -> bool:
+    """Whether no cage point can ever be met in free flight: the centre of gravity goes straight along the force."""
+    force = total_force(setting.load)
+    size = norm(force)
+    if size == 0.0:
+        return False
+    along = scaled(force, 1.0 / size)
+    for point in range(len(setting.geometry.points_world)):
+        ahead = 0.0
+        distance = 0.0
+        for k in range(3):
+            ahead += (setting.geometry.points_world[point, k] - position[k]) * along[k]
+        for k in range(3):
+            away = setting.geometry.points_world[point, k] - position[k] - max(ahead, 0.0) * along[k]
+            distance += away * away
+        if math.sqrt(distance) <= setting.body.reach_m:
+            return False
+    return True
+
+
+@kernel
+def allow_depths(placement: Placement, tolerances: KernelTolerances, room: PathRoom) -> None:
+    """Write how deep each point may be after the step: no deeper than it is."""
+    for point in range(len(room.allowed)):
+        room.allowed[point] = allowed_depth(placement.depths[point], tolerances)
+
+
+@kernel
+def furthest_step(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    room: PathRoom,
+) -> tuple[float, bool, Vector, Quaternion]:
+    """Go along a twist to its end, the first contact or the edge of a face that carries, or less if need be.
+
+    Return (amount, whether it went as far as it should, position, quaternion); amount 0: it could not move; inf:
+    nothing is ahead.
+    """
+    allow_depths(placement, setting.tolerances, room)
+    amount, hit_point, hit_box = first_contact(setting, placement, position, twist, twist.end)
+    run_off = first_run_off(
+        setting.geometry,
+        placement,
+        contacts,
+        position,
+        twist.velocity,
+        twist.spin,
+        twist.end,
+        setting.tolerances.touch_m,
+    )
+    if run_off < amount:
+        amount, hit_point, hit_box = run_off, -1, -1
+    if twist.end < amount:
+        amount = twist.end
+    if amount == math.inf:
+        return amount, True, position, quaternion
+    for halving in range(HALVINGS):
+        done, new_position, new_quaternion = stepped(
+            setting, placement, contacts, position, quaternion, twist, amount, hit_point, hit_box, room
+        )
+        if done:
+            return amount, halving == 0, new_position, new_quaternion
+        amount, hit_point, hit_box = 0.5 * amount, -1, -1
+    return 0.0, False, position, quaternion

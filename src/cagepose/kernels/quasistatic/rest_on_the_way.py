@@ -1,0 +1,107 @@
+"""Friction can bring the object to rest within a step: the first pose that it holds."""
+
+from __future__ import annotations
+
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.record import Rows
+from cagepose.kernels.algebra.vector import Vector
+from cagepose.kernels.collision.geometry import place_object
+from cagepose.kernels.contact.contact_set import (
+    ContactRow,
+    ContactSet,
+    find_contacts,
+)
+from cagepose.kernels.contact.metric import frame_at, write_load
+from cagepose.kernels.contact.onset import (
+    is_held,
+)
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.quasistatic.along_twist import (
+    Setting,
+    Twist,
+    stepped,
+)
+from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
+
+HALVES_TO_REST = 45
+"""Halvings of a step in which friction brings the object to rest: to rounding."""
+
+
+@kernel
+def is_held_on_the_way(setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace) -> bool:
+    """Whether friction holds the object at a pose of a step, by the points that touched the same boxes before it.
+
+    What the step reaches does not count: it touches at the end only, and what it holds is asked there.
+    """
+    frame = frame_at(setting.body, quaternion)
+    if not find_contacts(setting.geometry, work.placement, position, frame, setting.tolerances.touch_m, work.ahead):
+        return False
+    kept = 0
+    for i in range(work.ahead.used[0]):
+        if touches_box(work.contacts, work.ahead.rows[i].point, work.ahead.rows[i].box):
+            copy_contact(work.ahead.rows, i, kept)
+            kept += 1
+    work.ahead.used[0] = kept
+    work.rooms[0].solver.load_terms = write_load(setting.load, quaternion, frame, work.rooms[0].solver.load)
+    return is_held(work.ahead, setting.friction, work.rooms[0].solver)
+
+
+@kernel
+def touches_box(contacts: ContactSet, point: int, box: int) -> bool:
+    """Whether a point touches a box at the pose of the contacts."""
+    found = False
+    for i in range(contacts.used[0]):
+        found = found or (contacts.rows[i].point == point and contacts.rows[i].box == box)
+    return found
+
+
+@kernel
+def copy_contact(rows: Rows[ContactRow], source: int, target: int) -> None:
+    """Move what an onset needs of one row to another (groups begin anew at the target)."""
+    if source == target:
+        return
+    old, new = rows[source], rows[target]
+    new.point, new.box = old.point, old.box
+    same_group = target > 0 and rows[target - 1].point == new.point and rows[target - 1].box == new.box
+    counts = old.group >= 0
+    new.group = -1 if not counts else rows[target - 1].group if same_group else target
+    new.chosen = counts and not same_group
+    for j in range(3):
+        for k in range(6):
+            new.columns[j, k] = old.columns[j, k]
+
+
+@kernel
+def first_rest(
+    setting: Setting,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    amount: float,
+    work: QuasistaticWorkspace,
+) -> tuple[Vector, Quaternion]:
+    """Return the first pose of a step that friction holds; at ``amount`` it does. The placement is that of the pose."""
+    low, high = 0.0, amount
+    best = (position, quaternion)
+    for _ in range(HALVES_TO_REST):
+        middle = 0.5 * (low + high)
+        place_object(setting.geometry, position, quaternion, work.placement)
+        done, new_position, new_quaternion = stepped(
+            setting,
+            work.placement,
+            work.contacts,
+            position,
+            quaternion,
+            twist,
+            middle,
+            -1,
+            -1,
+            work.path,
+        )
+        if done and is_held_on_the_way(setting, new_position, new_quaternion, work):
+            high = middle
+            best = (new_position, new_quaternion)
+        else:
+            low = middle
+    place_object(setting.geometry, best[0], best[1], work.placement)
+    return best

@@ -1,0 +1,92 @@
+"""Everything that a quasistatic run writes to."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
+from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement
+from cagepose.kernels.contact.contact_set import (
+    CONTACTS_PER_POINT,
+    ContactRow,
+    ContactSet,
+    empty_contact_set,
+)
+from cagepose.kernels.contact.onset import (
+    OnsetRoom,
+)
+from cagepose.kernels.outcome.trace import (
+    Trace,
+    empty_trace,
+)
+from cagepose.kernels.quasistatic.along_twist import (
+    PathRoom,
+    empty_path_room,
+)
+from cagepose.kernels.quasistatic.implicit_step import StiffRoom
+from cagepose.kernels.stability.proof import ProofRoom, empty_proof_room
+
+
+class RunRoom:
+    """Room of fixed size: what the solvers need; a record."""
+
+    solver: OnsetRoom
+    stiff: StiffRoom
+
+
+class QuasistaticWorkspace(NamedTuple):
+    """All arrays that a run writes to, so that compiled code makes none.
+
+    Attributes
+    ----------
+    placement, contacts
+        The state at the present pose.
+    ahead
+        Room for contacts at a pose that is tried.
+    turned
+        Room for the contacts in the coordinates of an implicit step.
+    rooms
+        One room of fixed size.
+    path
+        Room of the steps.
+    touched
+        Which points touched before the step, (n_points,).
+    trace
+        Steps of one phase.
+    points_world
+        Cage points of the case that is run, (n_points, 3).
+    proof
+        Room for the proof of a phase's end.
+    """
+
+    placement: Placement
+    contacts: ContactSet
+    ahead: ContactSet
+    turned: Rows[ContactRow]
+    rooms: Rows[RunRoom]
+    path: PathRoom
+    touched: NDArray[np.bool_]
+    trace: Trace
+    points_world: FloatArray
+    proof: ProofRoom
+
+
+def empty_quasistatic_workspace(geometry: Geometry, step_limit: int) -> QuasistaticWorkspace:
+    """Return room for one run at a time (plain Python)."""
+    n_points = len(geometry.points_world)
+    n_contacts = CONTACTS_PER_POINT * n_points
+    return QuasistaticWorkspace(
+        empty_placement(geometry),
+        empty_contact_set(n_contacts),
+        empty_contact_set(n_contacts),
+        empty_rows(ContactRow, n_contacts),
+        empty_rows(RunRoom, 1),
+        empty_path_room(n_points),
+        np.zeros(n_points, np.bool_),
+        empty_trace(step_limit, n_points),
+        np.zeros((n_points, 3)),
+        empty_proof_room(geometry),
+    )

@@ -1,0 +1,54 @@
+"""Any event of a run made again, from the state that it began with: `replay_event`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cagepose.errors import CageposeError
+from cagepose.kernels.outcome.records import empty_outcome
+from cagepose.runs.cases import cases_of, part_of
+from cagepose.runs.run import Event, Run
+from cagepose.runs.solved import SolvedRun, read_events, written
+
+
+def replay_event(run: Run, phase: int, event: int, *, in_python: bool = False) -> Event:
+    """Make one event of a run again.
+
+    A step of a method depends on nothing but the state before it, so this is the same event to the last digit.
+
+    Parameters
+    ----------
+    run
+        What `cagepose.run` has returned.
+    phase, event
+        Which, counted from 0.
+    in_python
+        Run the kernels as plain Python, to step through them in a debugger.
+
+    Raises
+    ------
+    CageposeError
+        The run was loaded from a file, which keeps no states.
+    IndexError
+        There is no such phase or event.
+    """
+    if not isinstance(run, SolvedRun):
+        raise CageposeError("this run was loaded from a file, which keeps no states; run its scene again")
+    scene, outcome = run.scene, run.outcome
+    first_step, n_steps = run.steps_of(phase, event)
+    steps: Any = outcome.steps
+    method, repeated = run.solved_by, empty_outcome(1, n_steps, len(scene.cage.names), 1)
+    kernel = method.repeat.python if in_python else method.repeat
+    kernel(
+        phase,
+        steps[first_step : first_step + 1],
+        outcome.order[first_step],
+        n_steps,
+        part_of(scene),
+        cases_of(scene, run.friction),
+        run.rules,
+        method.workspace(scene.geometry, n_steps),
+        repeated,
+    )
+    (found,) = read_events(scene, method, written(repeated))
+    return found
