@@ -5,19 +5,21 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
+from dataclasses import make_dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from cagepose import Run, RunFileError, Scene, load_run, run, save_run, with_critical_friction
+from cagepose import Contact, Run, RunFileError, Scene, load_run, run, save_run, with_critical_friction
 from cagepose.files.document import run_document
-from cagepose.files.run_record import run_from_record, run_record
+from cagepose.files.record import from_record, record_of
 from cagepose.files.scene_file import parse_scene
-from cagepose.files.scene_record import scene_from_record, scene_record
+from cagepose.model.checks import FloatArray
 from cagepose.model.methods import METHODS
 
+SAVED = sorted((Path(__file__).parent / "saved_runs").glob("*.json"))
 PUSH = "  - {name: push, force: {direction: [1, 0.3, 0.2], at: [1, 2, 3], magnitude: 7}}\n"
 FULL = """
 friction: {angle_deg: 7}
@@ -37,9 +39,9 @@ def full_scene(sample_text: str) -> Scene:
 
 
 def test_a_scene_is_the_same_after_a_record_and_back(full_scene: Scene) -> None:
-    record = json.loads(json.dumps(scene_record(full_scene)))
-    again = scene_from_record(record)
-    assert scene_record(again) == record
+    record = json.loads(json.dumps(record_of(full_scene)))
+    again = from_record(Scene, record)
+    assert record_of(again) == record
     assert again.size_m == full_scene.size_m
     assert np.array_equal(again.object.inertia_kg_m2, full_scene.object.inertia_kg_m2)  # type: ignore[arg-type]
 
@@ -55,7 +57,7 @@ def test_records_of_many_directions_and_turns_come_back_to_the_last_digit(sample
             f"cage.pose.euler_zyx_deg={angles}",
         ]
         scene = parse_scene(sample_text, set_values=changes)
-        assert scene_record(scene_from_record(scene_record(scene))) == scene_record(scene)
+        assert record_of(from_record(Scene, record_of(scene))) == record_of(scene)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -63,7 +65,7 @@ def test_a_run_is_the_same_after_saving_and_loading(full_scene: Scene, tmp_path:
     before = with_critical_friction(run(full_scene, method))
     save_run(before, tmp_path / "run.json")
     after = load_run(tmp_path / "run.json")
-    assert run_record(after) == run_record(before)
+    assert record_of(after) == record_of(before)
     assert (after.verdict, after.warnings, after.solve_s) == (before.verdict, before.warnings, before.solve_s)
     assert np.array_equal(after.pose.position_m, before.pose.position_m)
     assert [event.note for phase in after.phases for event in phase.events] == [
@@ -77,8 +79,34 @@ def test_a_run_is_the_same_after_saving_and_loading(full_scene: Scene, tmp_path:
 def test_a_loaded_run_can_be_run_again_with_the_same_result(sample_text: str, tmp_path: Path, method: str) -> None:
     save_run(run(parse_scene(sample_text), method), tmp_path / "run.json")
     loaded = load_run(tmp_path / "run.json")
-    again, first = run_record(run(loaded.scene, loaded.method)), run_record(loaded)
+    again, first = record_of(run(loaded.scene, loaded.method)), record_of(loaded)
     assert {**again, "solve_s": 0.0} == {**first, "solve_s": 0.0}
+
+
+@pytest.mark.parametrize("path", SAVED, ids=[path.stem for path in SAVED])
+def test_a_run_that_an_earlier_version_saved_is_read_without_loss(path: Path) -> None:
+    """They were written when each class had a record of its own: every key and number of theirs comes back."""
+    assert record_of(load_run(path)) == json.loads(path.read_text(encoding="utf-8"))["exact"]
+
+
+def test_a_field_that_is_added_to_a_class_is_saved_and_read_as_well() -> None:
+    new_fields: list[Any] = [
+        ("slack_m", float, 0.0),
+        ("axis_world", FloatArray | None, None),
+        ("partners", tuple[Contact, ...], ()),
+        ("cell", tuple[int, int], (0, 0)),
+    ]
+    later: Any = make_dataclass("Later", new_fields, bases=(Contact,), frozen=True, eq=False)
+    contact = Contact("C1", "box1", np.array([0.0, 0.0, -1.0]), 0.0, False)
+    before = later("C2", "box1", np.array([0.0, 0.6, 0.8]), 1e-12, True, slack_m=math.inf,
+                   axis_world=np.array([1.0, 0.0, 0.0]), partners=(contact, contact), cell=(3, 4))  # fmt: skip
+    record = json.loads(json.dumps(record_of(before), allow_nan=False))
+    after = from_record(later, record)
+    assert (after.slack_m, after.cell, after.axis_world.tolist()) == (math.inf, (3, 4), [1.0, 0.0, 0.0])
+    assert [partner.point for partner in after.partners] == ["C1", "C1"]
+    assert record_of(after) == record
+    older = from_record(later, record_of(contact))
+    assert (older.point, older.slack_m, older.axis_world, older.partners) == ("C1", 0.0, None, ())
 
 
 def test_the_way_of_a_sliding_contact_survives(sample_text: str, tmp_path: Path) -> None:
@@ -142,8 +170,8 @@ def test_a_critical_friction_without_bound_survives(sample_text: str, tmp_path: 
 def test_an_escape_without_end_survives(sample_text: str, method: str) -> None:
     away = run(parse_scene(sample_text, set_values=["loads[0].gravity=[0, 0, 1]"]), method)
     assert away.verdict == "escapes"
-    again = run_from_record(json.loads(json.dumps(run_record(away), allow_nan=False)))
-    assert run_record(again) == run_record(away)
+    again = from_record(Run, json.loads(json.dumps(record_of(away), allow_nan=False)))
+    assert record_of(again) == record_of(away)
     json.dumps(run_document(away), allow_nan=False)
     distances = [event.motion.distance_m for event in again.phases[0].events if event.motion is not None]
     assert distances in ([], [math.inf])
@@ -273,10 +301,10 @@ def test_what_cannot_be_read_is_refused_by_name(tmp_path: Path, content: bytes |
 
 def test_loading_checks_the_type_of_every_number(sample_text: str) -> None:
     result: Run = run(parse_scene(sample_text))
-    record = run_record(result)
+    record = record_of(result)
     record["solve_s"] = "0.1"
     with pytest.raises(ValueError, match="solve_s"):
-        run_from_record(record)
+        from_record(Run, record)
 
 
 def test_a_file_that_holds_something_else_is_not_replaced(full_scene: Scene, tmp_path: Path) -> None:

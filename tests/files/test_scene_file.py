@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from cagepose import Scene, SceneFileError, load_scene
+from cagepose.files.record import record_of
 from cagepose.files.scene_file import parse_scene, read_scene_file
-from cagepose.files.scene_record import scene_record
 
 
 def test_lengths_are_metres_inside_to_the_last_digit(sample_text: str) -> None:
@@ -94,7 +94,7 @@ adjustable: {height: {key: object.pose.position.2, range: [5, 15]}}
 
 def test_a_key_left_empty_is_as_if_left_out(sample_text: str) -> None:
     scene = parse_scene(sample_text.replace("cage:\n", "cage:\n  pose:\n") + "friction:\nmethod: null\n")
-    assert scene_record(scene) == scene_record(parse_scene(sample_text))
+    assert record_of(scene) == record_of(parse_scene(sample_text))
 
 
 def test_json_scenes_are_read(tmp_path: Path) -> None:
@@ -205,12 +205,12 @@ def test_points_come_from_a_csv_file_beside_the_scene(tmp_path: Path, sample_tex
     (tmp_path / "sub").mkdir()
     points = tmp_path / "sub" / "points.csv"
     points.write_text("4,4,0\n4,-4,0\n-4,-4,0\n-4,4,0\n", encoding="utf-8")
-    expected = scene_record(parse_scene(sample_text))
-    assert scene_record(load_scene(tmp_path / "scene.yaml")) == expected
+    expected = record_of(parse_scene(sample_text))
+    assert record_of(load_scene(tmp_path / "scene.yaml")) == expected
     points.write_text(
         'Name, X, Y, Z\n# corners\nC1, 4, 4, 0\n\nC2,4,-4,0\nC3,-4,-4,0\n"C4",-4,4.0e0,0\n', encoding="utf-8"
     )
-    assert scene_record(load_scene(tmp_path / "scene.yaml")) == expected
+    assert record_of(load_scene(tmp_path / "scene.yaml")) == expected
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from cagepose.errors import RunFileError, SceneError, key_path, printable
 from cagepose.files.document import FORMAT_VERSION, run_document
-from cagepose.files.run_record import run_from_record, run_record
+from cagepose.files.record import from_record, record_of
 from cagepose.files.units import LENGTH_UNITS, LengthUnit
 from cagepose.files.write import check_can_write, write_whole
 from cagepose.runs.run import Run
@@ -27,7 +27,7 @@ def save_run(run: Run, path: str | os.PathLike[str], length_unit: LengthUnit = "
         The file cannot be written.
     """
     check_can_save(path)
-    content = {**run_document(run, length_unit), "exact": run_record(run)}
+    content = {**run_document(run, length_unit), "exact": record_of(run)}
     write_whole(path, (json.dumps(content, indent=1, allow_nan=False) + "\n").encode())
 
 
@@ -104,13 +104,17 @@ def read_run_file(path: str | os.PathLike[str]) -> RunFile:
     if unit not in LENGTH_UNITS:
         refuse(f"is damaged: units.length is {unit!r}; run the scene again")
     try:
-        return RunFile(run_from_record(content["exact"]), unit)
+        run = from_record(Run, content["exact"])
     except ValidationError as error:
         first = error.errors()[0]
+        reason = first.get("ctx", {}).get("error")
+        if isinstance(reason, SceneError):
+            refuse(f"is damaged: its scene cannot be right ({reason.problems[0]}); run the scene again")
         place = key_path(("exact", *first["loc"]))
         refuse(f"is damaged: {place}: {first['msg'].lower()}; run the scene again")
-    except SceneError as error:
-        refuse(f"is damaged: its scene cannot be right ({error.problems[0]}); run the scene again")
+    if not run.phases:
+        refuse("is damaged: exact.phases: is empty; run the scene again")
+    return RunFile(run, unit)
 
 
 def _read_json(source: str, refuse: Any) -> object:

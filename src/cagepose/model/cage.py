@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 from numpy.typing import ArrayLike
 
@@ -25,7 +26,7 @@ class Cage:
         Moves all points at once: the misaligned mechanism.
     """
 
-    points_cage: FloatArray
+    points_cage: Annotated[FloatArray, (-1, 3)]
     names: tuple[str, ...]
     pose_world_cage: Pose
 

@@ -11,6 +11,7 @@ from cagepose.errors import Problem, SceneError
 from cagepose.kernels.algebra.vector import Vector
 
 FloatArray = NDArray[np.float64]
+"""As a field of a class: three numbers, unless it is annotated with another shape, as `finite_array` takes it."""
 SHOWN = 64
 """An error shows an array of so many numbers whole; of a longer one it names the first place that is wrong."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -78,7 +79,7 @@ class Object:
     boxes: tuple[Box, ...]
     center_of_gravity_m: FloatArray
     mass_kg: float | None
-    inertia_kg_m2: FloatArray | None
+    inertia_kg_m2: Annotated[FloatArray, (3, 3)] | None
     pose_world_object: Pose
 
     def __init__(

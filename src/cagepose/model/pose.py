@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,7 +30,7 @@ class Pose:
     """
 
     position_m: FloatArray
-    quaternion_wxyz: FloatArray
+    quaternion_wxyz: Annotated[FloatArray, (4,)]
 
     def __init__(
         self,

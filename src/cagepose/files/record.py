@@ -1,0 +1,187 @@
+"""Runs and scenes as plain data without loss: SI units, every float to its last digit.
+
+One rule serves all classes: what the constructor takes is saved, from the attribute of the same name, or of that name
+with a frame (``pose`` from ``pose_world_object``). A field that is added to a class is so saved and read as well; one
+with a default may be missing from a file, which then is older than the field.
+
+Reading is strict, and a damaged file is refused by the place of the damage: each class becomes a pydantic model.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from functools import cache, partial, reduce
+from inspect import Parameter, signature
+from operator import or_
+from types import UnionType
+from typing import Annotated, Any, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, TypeAdapter, WrapValidator, create_model
+
+from cagepose.model.cage import Cage
+from cagepose.model.parts import Object
+from cagepose.model.tolerances import Tolerances
+from cagepose.runs.proof import FreeMotion
+from cagepose.runs.run import Motion
+
+Kind = TypeVar("Kind")
+
+FRAME = re.compile("_(world|object|cage|box)")
+PARTS_OF_A_SCENE = (Object, Cage, Tolerances)
+"""Their fields stand among those of the scene."""
+KEYS = {
+    "through_world": "through_m",
+    "names": "point_names",
+    "points_cage": "points_m",
+    "pose_world_cage": "cage_pose",
+}
+"""Of the attributes whose key is another than their name without its frame."""
+INFINITE: dict[str, str | None] = {"distance_m": None}
+"""What stands for an infinite number, which JSON has not, in some attributes; in all others, `NO_NUMBER`."""
+NO_NUMBER = "none"
+
+
+def record_of(thing: object) -> dict[str, Any]:
+    """Return a run, a scene or a part of either as plain data: only dict, list, str, int, finite float, bool, None."""
+    record: dict[str, Any] = {}
+    kind: type = type(thing)
+    for field in _fields(kind):
+        value = getattr(thing, field.attribute)
+        if field.kind in PARTS_OF_A_SCENE:
+            record |= record_of(value)
+        else:
+            record[field.key] = _plain(value, field.attribute)
+    return record
+
+
+def from_record(kind: type[Kind], record: object) -> Kind:
+    """Return the object that `record_of` was given.
+
+    Raises
+    ------
+    pydantic.ValidationError
+        Not such a record; or one of a scene that cannot be right, with the `SceneError` in its context.
+    """
+    plain_kind: type = kind  # mypy thinks that a type[Kind] cannot be hashed
+    found: Kind = _reader(plain_kind).validate_python(record)
+    return found
+
+
+@cache
+def _reader(kind: type) -> TypeAdapter[Any]:
+    return TypeAdapter(_readable_class(kind))
+
+
+class _Field(NamedTuple):
+    """What is saved of an object: where it stands in the record and in the object, and what it is."""
+
+    key: str
+    argument: str
+    attribute: str
+    kind: Any
+    is_required: bool
+
+
+@cache
+def _fields(kind: type) -> list[_Field]:
+    kinds = get_type_hints(kind, include_extras=True)
+    attributes = {**{FRAME.sub("", name): name for name in kinds}, **{name: name for name in kinds}}
+    return [
+        _Field(
+            key=KEYS.get(attributes[argument], FRAME.sub("", attributes[argument])),
+            argument=argument,
+            attribute=attributes[argument],
+            kind=kinds[attributes[argument]],
+            is_required=parameter.default is Parameter.empty,
+        )
+        for argument, parameter in signature(kind).parameters.items()
+        if argument in attributes
+    ]
+
+
+def _is_ours(kind: object) -> bool:
+    return isinstance(kind, type) and kind.__module__.startswith("cagepose.")
+
+
+def _plain(value: Any, attribute: str) -> Any:
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, tuple):
+        return [_plain(item, attribute) for item in value]
+    if isinstance(value, float) and math.isinf(value):
+        return INFINITE.get(attribute, NO_NUMBER)
+    return record_of(value) if _is_ours(type(value)) else value
+
+
+class _Record(BaseModel):
+    """Nothing missing, nothing more, no text for a number, no number that is not finite."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True, defer_build=True)
+
+
+@cache
+def _readable_class(kind: type) -> Any:
+    model = create_model(kind.__name__, __base__=_Record, **_columns(kind))
+    return Annotated[model, AfterValidator(partial(_built, kind))]
+
+
+def _columns(kind: type) -> dict[str, Any]:
+    columns: dict[str, Any] = {}
+    for field in _fields(kind):
+        if field.kind in PARTS_OF_A_SCENE:
+            columns |= _columns(field.kind)
+        else:
+            columns[field.key] = (_readable(field.kind, field.attribute), ... if field.is_required else None)
+    return columns
+
+
+def _built(kind: type, record: _Record) -> Any:
+    """Construct what a record describes; what the file leaves out is left to the constructor."""
+    arguments = {}
+    for field in _fields(kind):
+        if field.kind in PARTS_OF_A_SCENE:
+            arguments[field.argument] = _built(field.kind, record)
+        elif field.key in record.model_fields_set:
+            arguments[field.argument] = getattr(record, field.key)
+    made = kind(**arguments)
+    if isinstance(made, Motion | FreeMotion):
+        _check_line(made)
+    return made
+
+
+def _check_line(motion: Motion | FreeMotion) -> None:
+    line = (motion.direction_world,) if motion.kind == "travel" else (motion.axis_world, motion.through_world)
+    if any(part is None for part in line):
+        raise ValueError(f"a {motion.kind} without its line")
+
+
+def _readable(kind: Any, attribute: str) -> Any:
+    """Return the type that pydantic reads a kind of value by."""
+    origin, parts = get_origin(kind), get_args(kind)
+    if origin is Annotated:
+        return _array(parts[1])
+    if origin is np.ndarray:
+        return _array((3,))
+    if origin is tuple:
+        items = tuple.__class_getitem__(tuple(_readable(part, attribute) for part in parts))
+        return Annotated[items, Strict(False)]  # else pydantic makes no tuple of a list
+    if origin in (Union, UnionType):
+        return reduce(or_, (_readable(part, attribute) for part in parts))
+    if kind is float:
+        return Annotated[float, WrapValidator(partial(_number, INFINITE.get(attribute, NO_NUMBER)))]
+    return _readable_class(kind) if _is_ours(kind) else kind
+
+
+def _array(shape: tuple[int, ...]) -> Any:
+    """Return the type of nested lists of numbers that become an array; -1 in ``shape`` stands for any length."""
+    rows: Any = float
+    for length in reversed(shape):
+        rows = list[rows] if length < 0 else Annotated[list[rows], Field(min_length=length, max_length=length)]
+    return Annotated[rows, AfterValidator(partial(np.array, dtype=np.float64))]
+
+
+def _number(infinite: str | None, value: object, read: Callable[[object], float]) -> float:
+    return math.inf if value == infinite else read(value)
