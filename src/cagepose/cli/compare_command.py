@@ -47,33 +47,10 @@ def compare_command(
 
     comparison = compare(scene_file.scene, friction or None)
     if json:
-        from json import dumps
+        from cagepose.files.comparison_document import comparison_document
+        from cagepose.files.write import json_text
 
-        from cagepose.files.document import run_document
-
-        document = {
-            "scene": scene_file.scene.name,
-            "variants": [
-                {
-                    "label": variant.label,
-                    "friction": variant.friction,
-                    "metric": None if variant.run.method == "stepwise" else variant.run.scene.metric,
-                    **run_document(variant.run, scene_file.length_unit),
-                }
-                for variant in comparison.variants
-            ],
-            "partings": [
-                {
-                    "label": parting.label,
-                    "phase": parting.phase,
-                    "event": parting.number,
-                    "stepwise_event": parting.first_number,
-                    "reason": parting.reason,
-                }
-                for parting in comparison.partings
-            ],
-        }
-        sys.stdout.write(dumps(document, indent=1, allow_nan=False) + "\n")
+        sys.stdout.write(json_text(comparison_document(comparison, scene_file.length_unit)))
         return _exit_code(comparison)
 
     from cagepose.cli.comparison_report import print_comparison

@@ -71,11 +71,10 @@ def play_command(
         sys.stderr.write(ERASE_LINE)
     rests = play_rests(scene_file.scene)
     if json:
-        from json import dumps
-
         from cagepose.files.play_document import play_document
+        from cagepose.files.write import json_text
 
-        sys.stdout.write(dumps(play_document(found, rests, scene_file.length_unit), indent=1, allow_nan=False) + "\n")
+        sys.stdout.write(json_text(play_document(found, rests, scene_file.length_unit)))
         return 0
     from cagepose.cli.play_report import print_play
 

@@ -58,11 +58,10 @@ def run_command(
             sys.stderr.write(_cannot_write(out, error))
             code = 2
     if json:
-        from json import dumps
-
         from cagepose.files.document import run_document
+        from cagepose.files.write import json_text
 
-        sys.stdout.write(dumps(run_document(result, scene_file.length_unit), indent=1, allow_nan=False) + "\n")
+        sys.stdout.write(json_text(run_document(result, scene_file.length_unit)))
     else:
         from cagepose.cli.report import print_report
 

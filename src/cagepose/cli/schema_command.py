@@ -7,9 +7,8 @@ import sys
 
 def schema_command() -> int:
     """Print the JSON Schema of scene files, for editors: cagepose schema > scene.schema.json"""
-    from json import dumps
-
     from cagepose.files.schema import scene_json_schema
+    from cagepose.files.write import json_text
 
-    sys.stdout.write(dumps(scene_json_schema(), indent=1) + "\n")
+    sys.stdout.write(json_text(scene_json_schema()))
     return 0

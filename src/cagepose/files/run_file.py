@@ -14,7 +14,7 @@ from cagepose.errors import RunFileError, SceneError, key_path, printable
 from cagepose.files.document import FORMAT_VERSION, run_document
 from cagepose.files.record import from_record, record_of
 from cagepose.files.units import LENGTH_UNITS, LengthUnit
-from cagepose.files.write import check_can_write, write_whole
+from cagepose.files.write import check_can_write, json_text, write_whole
 from cagepose.runs.run import Run
 
 
@@ -28,7 +28,7 @@ def save_run(run: Run, path: str | os.PathLike[str], length_unit: LengthUnit = "
     """
     check_can_save(path)
     content = {**run_document(run, length_unit), "exact": record_of(run)}
-    write_whole(path, (json.dumps(content, indent=1, allow_nan=False) + "\n").encode())
+    write_whole(path, json_text(content).encode())
 
 
 def check_can_save(path: str | os.PathLike[str]) -> None:

@@ -3,13 +3,44 @@
 from __future__ import annotations
 
 import io
+import json
 from collections.abc import Sequence
 
+import numpy as np
 from ruamel.yaml import YAML
 
-from cagepose.files.key_path import parse_key_path, set_value
+from cagepose.files.key_path import parse_key_path, set_value, value_at
 from cagepose.files.scene_file import SceneText
 from cagepose.files.yaml_source import parse_yaml
+
+ANGLE_DECIMALS = 10
+"""Of degrees: an orientation that was a quaternion changes by far less than the touch tolerance, and reads well."""
+
+
+def setting(key: str, value: object) -> str:
+    """Return the change of one value as ``--set`` takes it; ``value`` is plain data.
+
+    >>> setting("cage.pose.position", [0, 0, 2.5])
+    'cage.pose.position=[0, 0, 2.5]'
+    """
+    return f"{key}={json.dumps(value)}"
+
+
+def with_cage_angles(scene_text: SceneText) -> SceneText:
+    """Return the file with the cage's orientation as angles, if it is a quaternion there: angles can have sliders.
+
+    Raises
+    ------
+    SceneFileError
+        The scene cannot be used, see `load_scene`.
+    """
+    pose = value_at(scene_text.yaml.data, ("cage", "pose"))
+    if value_at(pose, ("quat_wxyz",)) is None:
+        return scene_text
+    angles = np.degrees(scene_text.scene_file().scene.cage.pose_world_cage.euler_zyx)
+    kept = {key: value for key, value in pose.items() if key != "quat_wxyz"}
+    anew = {**kept, "euler_zyx_deg": np.round(angles, ANGLE_DECIMALS).tolist()}
+    return edited(scene_text, [setting("cage.pose", anew)])
 
 
 def edited(scene_text: SceneText, set_values: Sequence[str]) -> SceneText:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 MADE_BY = "made by cagepose"
 """Stands in every picture and report that we write, so that the next one may replace it."""
@@ -30,6 +32,11 @@ def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
         partial.replace(target)
     finally:
         partial.unlink(missing_ok=True)
+
+
+def json_text(document: dict[str, Any]) -> str:
+    """Return a document as the text that is printed and saved."""
+    return json.dumps(document, indent=1, allow_nan=False) + "\n"
 
 
 def check_can_write(path: str | os.PathLike[str], may_replace: Callable[[Path], bool], what: str) -> None:

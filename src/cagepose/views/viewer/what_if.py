@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import PurePath
 from typing import Any
 
-import numpy as np
-
 from cagepose.errors import CageposeError, SceneFileError
-from cagepose.files.key_path import value_at
-from cagepose.files.scene_edit import edited, edited_text
+from cagepose.files.scene_edit import edited, edited_text, setting, with_cage_angles
 from cagepose.files.scene_file import SceneText
 from cagepose.runs.solve import run
 from cagepose.views.viewer.controls import Control, controls
@@ -19,8 +15,6 @@ from cagepose.views.viewer.playback import playback
 
 SHOTS_PER_MOTION = 4
 """Fewer than in an exported page, whose maker need not wait for them; the page fills in what is between."""
-DECIMALS = 10
-"""Of degrees: an orientation that was a quaternion changes by far less than the touch tolerance, and reads well."""
 
 
 class WhatIf:
@@ -43,7 +37,7 @@ class WhatIf:
             The scene cannot be used, see `load_scene`.
         """
         changes = set_values if method is None else (*set_values, f"method={method}")
-        self._text = _with_angles(edited(scene_text, changes))
+        self._text = with_cage_angles(edited(scene_text, changes))
         self.controls: list[Control] = controls(self._text)
         self.file_name = f"{PurePath(scene_text.yaml.source).stem}-changed.yaml"
 
@@ -87,19 +81,8 @@ class WhatIf:
             if not _is_plain(value):
                 raise ValueError(f"{key} is no number, no word and no list of numbers")
             given = {"coefficient": value} if key == "friction" else value
-            settings.append(f"{key}={json.dumps(given)}")
+            settings.append(setting(key, given))
         return tuple(settings)
-
-
-def _with_angles(scene_text: SceneText) -> SceneText:
-    """Write the cage's orientation as angles, for which there are sliders."""
-    pose = value_at(scene_text.yaml.data, ("cage", "pose"))
-    if value_at(pose, ("quat_wxyz",)) is None:
-        return scene_text
-    angles = np.degrees(scene_text.scene_file().scene.cage.pose_world_cage.euler_zyx)
-    kept = {key: value for key, value in pose.items() if key != "quat_wxyz"}
-    anew = {**kept, "euler_zyx_deg": np.round(angles, DECIMALS).tolist()}
-    return edited(scene_text, [f"cage.pose={json.dumps(anew)}"])
 
 
 def _is_plain(value: object) -> bool:
