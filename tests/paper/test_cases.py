@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cagepose import Pose, Scene, load_scene
-from cagepose.paper.reproduction import case_scenes
+from cagepose.paper.cases import case_scenes
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 FILES = ["sample.yaml", "rail-yaw.yaml", "rail-pitch.yaml", "rail-roll.yaml"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -12,12 +13,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cagepose.paper import comparison_table, reproduction
-from cagepose.paper.blocks import Bullets, Heading, Paragraph, Table
-from cagepose.paper.printed import Printed, Row
-from cagepose.paper.report import check_report_folder, report_files, write_report
-from cagepose.paper.report_html import html_page
-from cagepose.paper.report_markdown import markdown_text
+from cagepose.paper import cases, comparison, reproduction
+from cagepose.paper.comparison import Printed, Row
+from cagepose.paper.figures import FIGURES, Picture
+from cagepose.paper.report import check_report_folder, report_files, report_text, write_report
 from cagepose.paper.reproduction import METHODS, reproduce
 
 VOID = {"meta", "img", "link", "br", "hr", "input"}
@@ -58,7 +57,7 @@ class Page(HTMLParser):
 @pytest.fixture(scope="module")
 def result():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(reproduction, "TIMED_RUNS", 1)
+        patch.setattr(cases, "TIMED_RUNS", 1)
         patch.setattr(reproduction, "RANGE_RAD", np.radians([-0.5, 0.0, 0.5]))
         return reproduce(METHODS, lambda _: None)
 
@@ -112,15 +111,15 @@ def test_the_markdown_shows_pictures_that_lie_beside_it(written):
 def test_page_and_markdown_hold_every_row(result, written, page):
     markdown = written[1].read_text(encoding="utf-8").replace("\\", "")
     for row in result.rows:
-        cells = comparison_table.cells(row)
+        cells = comparison.cells(row)
         place = page.cells.index(cells[1])
         assert page.cells[place - 1 : place + len(cells) - 1] == cells
         assert "| " + " | ".join(cells) + " |" in markdown
 
 
 def test_numbers_are_shown_in_the_papers_units_with_three_more_digits(result):
-    cells = {row.quantity: comparison_table.cells(row) for row in result.rows}
-    assert comparison_table.headings(METHODS) == [
+    cells = {row.quantity: comparison.cells(row) for row in result.rows}
+    assert comparison.headings(METHODS) == [
         "section", "quantity", "paper", "stepwise", "quasistatic", "closed form", "difference", "explanation",
     ]  # fmt: skip
     assert cells["A-2: turn"][2:7] == ["28.96 deg", "28.95502 deg", "-", "28.95502 deg", "-0.00498 deg"]
@@ -133,29 +132,31 @@ def test_numbers_are_shown_in_the_papers_units_with_three_more_digits(result):
 
 def test_a_method_without_such_a_thing_gets_a_dash():
     row = Row("I", "angle", Printed("0.5", "rad"), {"stepwise": 0.6, "other": None}, 0.7, "differs", "Why.")
-    assert comparison_table.cells(row) == [
+    assert comparison.cells(row) == [
         "I", "angle", "0.5 rad", "0.6000 rad", "-", "0.7000 rad", "+0.1000 rad", "Differs. Why.",
     ]  # fmt: skip
-    assert comparison_table.error_cells(row) == ["angle", "-1.0e-01 rad", "-"]
+    assert comparison.error_cells(row) == ["angle", "-1.0e-01 rad", "-"]
 
 
-def test_markup_in_texts_is_shown_and_not_obeyed():
-    blocks = [Heading("<h> & |"), Paragraph("a <b> & 'c'"), Bullets(["*x*"]), Table("<t>", ["|a|"], [["<td>"]])]
-    page = html_page("<title>", blocks)
-    assert "<title>&lt;title&gt;</title>" in page
-    assert Page(page).cells == ["|a|", "<td>"]
-    assert "a &lt;b&gt; &amp; &#x27;c&#x27;" in page
-    text = markdown_text(blocks)
-    assert r"\*x\*" in text
-    assert r"| \|a\| |" in text
-    assert r"\<td\>" in text
+def test_markup_in_texts_is_shown_and_not_obeyed(result):
+    found = {"stepwise": 0.6, "quasistatic": None}
+    odd = Row("<td>", "|a|", Printed("*x*"), found, "<td>", "differs", "a <b> & 'c'")
+    picture = Picture(b"", b"")
+    pictures = {f"{method}-{name}": picture for method in METHODS for name in FIGURES}
+    page, text = (report_text(form, replace(result, rows=(odd,)), pictures) for form in ("html", "markdown"))
+    cells = Page(page).cells
+    assert cells[len(comparison.headings(METHODS)) :][:3] == ["<td>", "|a|", "*x*"]
+    assert "a &lt;b&gt; &amp; &#39;c&#39;" in page
+    assert r"| \<td\> | \|a\| | \*x\* |" in text
+    assert r"Differs. a \<b\> & 'c' |" in text
 
 
 def test_a_report_may_replace_an_earlier_one_and_leaves_other_files_alone(result, written, monkeypatch, tmp_path: Path):
     for path in written:
         (tmp_path / path.name).write_bytes(path.read_bytes())
     (tmp_path / "notes.txt").write_text("mine", encoding="utf-8")
-    monkeypatch.setattr("cagepose.paper.report.report_blocks", lambda *_: [Heading("Short", 1)])
+    monkeypatch.setattr("cagepose.paper.report.draw_pictures", lambda *_: {})
+    monkeypatch.setattr("cagepose.paper.report.report_text", lambda *_: "<h1>Short</h1>")
     write_report(tmp_path, result, lambda _: None)
     assert (tmp_path / "notes.txt").read_text(encoding="utf-8") == "mine"
     assert "<h1>Short</h1>" in (tmp_path / "report.html").read_text(encoding="utf-8")

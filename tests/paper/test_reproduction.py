@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from cagepose.paper import reproduction
+from cagepose.paper import cases, reproduction
 from cagepose.paper.planar import zero_is_within_reach
 from cagepose.paper.rail import relative_tilt_rad
 from cagepose.paper.range_study import permitted, range_study
@@ -24,7 +24,7 @@ def steps() -> list[str]:
 @pytest.fixture(scope="module")
 def result(steps):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(reproduction, "TIMED_RUNS", 3)
+        patch.setattr(cases, "TIMED_RUNS", 3)
         patch.setattr(reproduction, "RANGE_RAD", np.radians([-0.5, -0.25, 0.0, 0.25, 0.5]))
         return reproduce(METHODS, steps.append)
 
@@ -129,7 +129,7 @@ def test_a_method_with_other_rules_leaves_gaps_and_no_error(result):
     """A method that knows no rule A-2 has nothing to say about its turn; its column shows a gap."""
     from dataclasses import replace
 
-    from cagepose.paper.paper_rows import questions
+    from cagepose.paper.numbers import questions
 
     def renamed(run):
         phases = [

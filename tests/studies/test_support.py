@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cagepose import Box, Cage, Load, Object, Pose, Scene, run
-from cagepose.paper.sample import sample_scene
+from cagepose.paper.cases import sample_scene
 from cagepose.studies.support import convex_hull, load_view
 
 

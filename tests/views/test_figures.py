@@ -13,10 +13,10 @@ from PIL import Image
 
 from cagepose import Load, Object, Scene, load_scene, run
 from cagepose.files.write import MADE_BY
+from cagepose.paper.cases import sample_scene
+from cagepose.paper.figures import range_figure
 from cagepose.paper.rail import rail_scene
-from cagepose.paper.range_figure import range_figure
 from cagepose.paper.range_study import range_study
-from cagepose.paper.sample import sample_scene
 from cagepose.views.event_figure import MOST_SNAPSHOTS, event_figure
 from cagepose.views.pose_figure import pose_figure
 from cagepose.views.style import figure_bytes

@@ -11,7 +11,8 @@ from cyclopts import Parameter
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from cagepose.paper.reproduction import Progress, Reproduction
+    from cagepose.paper.cases import Progress
+    from cagepose.paper.reproduction import Reproduction
 
 
 def reproduce_command(
@@ -56,7 +57,7 @@ def _table(reproduction: Reproduction) -> Table:
     from rich.table import Table
     from rich.text import Text
 
-    from cagepose.paper.comparison_table import cells, headings
+    from cagepose.paper.comparison import cells, headings
 
     styles = {"agrees": "green", "differs": "red", "not derivable": "yellow", "measured": "blue"}
     table = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -17,6 +18,10 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.model.tolerances import Tolerances
 from cagepose.runs.run import Run
+
+Angle = Literal["yaw", "pitch", "roll"]
+ANGLES: tuple[Angle, ...] = ("yaw", "pitch", "roll")
+"""In the order of ZYX Euler angles."""
 
 RAIL_LENGTH_M = 1.200
 GUIDE_WIDTH_M = 0.004
@@ -95,6 +100,12 @@ def rail_scene(
         name=name,
         tolerances=tolerances,
     )
+
+
+def misalignment(angle: Angle, value_rad: float) -> tuple[float, float, float]:
+    """Return yaw, pitch and roll of rollers that are out of line in one angle alone."""
+    yaw, pitch, roll = (value_rad if name == angle else 0.0 for name in ANGLES)
+    return yaw, pitch, roll
 
 
 def relative_tilt_rad(run: Run, phase_index: int) -> float:

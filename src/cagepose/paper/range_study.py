@@ -3,29 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from cagepose.model.checks import FloatArray
 from cagepose.paper.planar import play_angle_rad
-from cagepose.paper.rail import PAPER_RAIL, RailDimensions, rail_scene
-from cagepose.runs.run import Run, Verdict
-from cagepose.runs.solve import run
+from cagepose.paper.rail import ANGLES, PAPER_RAIL, Angle, RailDimensions, misalignment, rail_scene
+from cagepose.runs.many import run_many
+from cagepose.runs.variation import Variation
 
-Angle = Literal["yaw", "pitch", "roll"]
-ANGLES: tuple[Angle, ...] = ("yaw", "pitch", "roll")
-"""In the order of ZYX Euler angles."""
 LEAST_CHANGE_RAD = float(np.radians(0.001))
 """A rail that only yaws changes its other ZYX angles by up to 0.0009 deg; what is less than this counts as none."""
-
-
 ROUNDING_RAD = 1e-9
 """An angle below this is zero."""
-N_THREADS = 2
-"""Runs at a time: the compiled part of a run leaves the interpreter free."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +44,7 @@ class RangeStudy:
     misalignments_rad: FloatArray
     after_weight_rad: FloatArray
     after_push_rad: FloatArray
-    verdicts: tuple[Verdict, ...]
+    verdicts: tuple[str, ...]
     permitted_rad: float | None
 
     def improved(self) -> np.ndarray:
@@ -80,24 +71,15 @@ def range_study(
     method: str,
     rail: RailDimensions = PAPER_RAIL,
 ) -> RangeStudy:
-    """Run the rail at each misalignment in one angle, pushed at the pin at ``pin_y_m``; two runs at a time."""
-    column = ANGLES.index(misaligned)
+    """Run the rail at each misalignment in one angle, pushed at the pin at ``pin_y_m``."""
     values = np.asarray(misalignments_rad, dtype=np.float64)
-    ends = np.full((2, len(values), 3), np.nan)
-
-    def misaligned_by(value: float) -> Run:
-        angles = [0.0, 0.0, 0.0]
-        angles[column] = value
-        return run(rail_scene(rail, misalignment_zyx=(angles[0], angles[1], angles[2]), pin_y_m=pin_y_m), method)
-
-    with ThreadPoolExecutor(N_THREADS) as threads:
-        results = list(threads.map(misaligned_by, values.tolist()))
-    for row, result in enumerate(results):
-        for phase_index, phase in enumerate(result.phases):
-            ends[phase_index, row] = phase.pose.euler_zyx
-    verdicts = [result.verdict for result in results]
+    angles = [misalignment(misaligned, value) for value in values.tolist()]
+    variation = Variation(cage_euler_zyx=angles, object_euler_zyx=angles)
+    runs = run_many(rail_scene(rail, pin_y_m=pin_y_m), variation, method=method)
+    after_weight, after_push = runs.euler_zyx[:, 0], runs.euler_zyx[:, 1]
+    verdicts = tuple(runs.verdict.tolist())
     limit = permitted(misaligned, rail)
-    return RangeStudy(method, misaligned, pin_y_m, values, ends[0], ends[1], tuple(verdicts), limit)
+    return RangeStudy(method, misaligned, pin_y_m, values, after_weight, after_push, verdicts, limit)
 
 
 def permitted(misaligned: Angle, rail: RailDimensions = PAPER_RAIL) -> float | None:

@@ -1,27 +1,103 @@
-"""The files of the report of the paper's cases."""
+"""The report of the paper's cases: `templates/report.jinja`, filled in once as HTML and once as Markdown."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+import platform
+import re
+from base64 import b64encode
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Literal
 
-from cagepose.files.write import check_can_write, is_made_by_us, write_whole
-from cagepose.paper.blocks import Picture
-from cagepose.paper.report_content import TITLE, report_blocks
-from cagepose.paper.report_html import html_page
-from cagepose.paper.report_markdown import markdown_text
-from cagepose.paper.reproduction import Progress, Reproduction
+import numpy as np
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
 
-HTML_NAME, MARKDOWN_NAME = "report.html", "report.md"
-FIGURES = ("sample-events", "sample-pose", "rail-events", "rail-pitch", "rail-yaw", "rail-roll", "range")
-"""Stems of each method's pictures; the method's name stands before them."""
+import cagepose
+from cagepose.files.write import MADE_BY, check_can_write, is_made_by_us, write_whole
+from cagepose.paper import cases
+from cagepose.paper.cases import Progress
+from cagepose.paper.comparison import cells, error_cells, headings
+from cagepose.paper.figures import FIGURES, Picture, draw_pictures
+from cagepose.paper.range_study import RangeStudy
+from cagepose.paper.reproduction import Reproduction
+from cagepose.paper.tables import end_rows, planar_rows
+
+Form = Literal["html", "markdown"]
+NAMES: dict[Form, str] = {"html": "report.html", "markdown": "report.md"}
+
+
+def report_text(form: Form, reproduction: Reproduction, pictures: Mapping[str, Picture]) -> str:
+    """Return the whole report. As HTML it has its pictures within; as Markdown it names their files."""
+    templates = Environment(
+        loader=PackageLoader("cagepose.paper"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        finalize=_escaped_for_markdown if form == "markdown" else None,
+    )
+    templates.filters |= {"cells": cells, "flowing": _flowing, "items": _items, "base64": _base64}
+    methods, rows = reproduction.methods, reproduction.rows
+    text = templates.get_template("report.jinja").render(
+        form=f"{form}.jinja",
+        made_by=MADE_BY,
+        version=cagepose.__version__,
+        machine=f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}",
+        timed_runs=cases.TIMED_RUNS,
+        reproduction=reproduction,
+        pictures=pictures,
+        counts=Counter(row.status for row in rows),
+        headings=headings(methods),
+        error_rows=[
+            error_cells(row)
+            for row in rows
+            if row.status != "not derivable" and any(row.error(method) is not None for method in methods)
+        ],
+        end_rows=end_rows(reproduction.runs),
+        planar_rows=planar_rows(),
+        where=_where,
+        ends=lambda study: ", ".join(f"{count} {verdict}" for verdict, count in Counter(study.verdicts).items()),
+    )
+    return re.sub(r"\n{3,}", "\n\n", text).strip() + "\n"
+
+
+def _escaped_for_markdown(value: object) -> Markup:
+    r"""Escape what Markdown would take for markup, unless a template wrote it: Jinja itself escapes for HTML alone.
+
+    >>> str(_escaped_for_markdown("|a| < 5 *deg*"))
+    '\\|a\\| \\< 5 \\*deg\\*'
+    """
+    return value if isinstance(value, Markup) else Markup(re.sub(r"([\\|*_<>`\[\]#])", r"\\\1", str(value)))
+
+
+def _flowing(text: Markup) -> Markup:
+    """Return a text of several lines on one."""
+    return Markup(" ").join(text.split())
+
+
+def _items(text: Markup) -> list[Markup]:
+    """Return the parts of a text that blank lines set apart."""
+    return [_flowing(part) for part in text.split("\n\n") if part.strip()]
+
+
+def _base64(content: bytes) -> str:
+    return b64encode(content).decode()
+
+
+def _where(study: RangeStudy, chosen: np.ndarray) -> str:
+    if not chosen.any():
+        return "at no misalignment"
+    angles = np.degrees(study.misalignments_rad[chosen])
+    return f"at {chosen.sum()} of {len(chosen)} misalignments ({angles[0]:+.3f} to {angles[-1]:+.3f} deg)"
 
 
 def report_files(methods: Sequence[str]) -> list[str]:
     """Return the names of all files that `write_report` writes."""
     figures = [f"{method}-{figure}{suffix}" for method in methods for figure in FIGURES for suffix in (".png", ".svg")]
-    return [HTML_NAME, MARKDOWN_NAME, *figures]
+    return [*NAMES.values(), *figures]
 
 
 def check_report_folder(folder: str | os.PathLike[str], methods: Sequence[str]) -> None:
@@ -64,14 +140,10 @@ def write_report(folder: str | os.PathLike[str], reproduction: Reproduction, pro
         See `check_report_folder`; or the disk is full.
     """
     check_report_folder(folder, reproduction.methods)
-    blocks = list(report_blocks(reproduction, progress))
-    contents = {
-        HTML_NAME: html_page(TITLE, blocks).encode(),
-        MARKDOWN_NAME: markdown_text(blocks).encode(),
-    }
-    for block in blocks:
-        if isinstance(block, Picture):
-            contents |= {f"{block.stem}.png": block.png, f"{block.stem}.svg": block.svg}
+    pictures = draw_pictures(reproduction, progress)
+    contents = {name: report_text(form, reproduction, pictures).encode() for form, name in NAMES.items()}
+    for name, picture in pictures.items():
+        contents |= {f"{name}.png": picture.png, f"{name}.svg": picture.svg}
     target = Path(folder)
     target.mkdir(exist_ok=True)
     for name, content in contents.items():

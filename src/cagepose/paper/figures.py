@@ -1,24 +1,71 @@
-"""The range study as curves: where the rail comes to rest, against the misalignment of its rollers."""
+"""The pictures of the report: the paper's cases event by event and as curves, and the range of misalignments."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cagepose.paper.range_study import ANGLES, Angle, RangeStudy
-from cagepose.views.style import BLACK, BLUE, GREY, PAGE_WIDTH_IN, PALE, SKY, VERMILLION, Look, styled
+from cagepose.paper.cases import CaseRuns, Progress
+from cagepose.paper.rail import ANGLES, Angle
+from cagepose.paper.range_study import RangeStudy
+from cagepose.paper.reproduction import Reproduction
+from cagepose.views.event_figure import event_figure
+from cagepose.views.pose_figure import pose_figure
+from cagepose.views.style import BLACK, BLUE, GREY, PAGE_WIDTH_IN, PALE, SKY, VERMILLION, Look, figure_bytes, styled
 
+ORDER: tuple[Angle, ...] = ("pitch", "yaw", "roll")
+"""Of pictures, rows and columns: the paper's."""
 PIN_LOOKS: tuple[Look, ...] = (
     {"color": BLUE, "linestyle": "-", "marker": "o"},
     {"color": VERMILLION, "linestyle": "--", "marker": "s"},
 )
-ORDER: tuple[Angle, ...] = ("pitch", "yaw", "roll")
-"""Of rows and columns: the paper's."""
 HALF_HEIGHT_DEG = 0.9
 """All nine panels reach from minus to plus this: 0.5 deg of misalignment and 0.33 deg of play."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure as the content of two files: for the screen, and for print."""
+
+    png: bytes
+    svg: bytes
+
+
+def _misaligned(angle: Angle) -> Callable[[CaseRuns], Figure]:
+    return lambda runs: pose_figure(getattr(runs, angle))
+
+
+CASE_FIGURES: dict[str, dict[str, Callable[[CaseRuns], Figure]]] = {
+    "pictures of the sample": {
+        "sample-events": lambda runs: event_figure(runs.sample),
+        "sample-pose": lambda runs: pose_figure(runs.sample),
+    },
+    "pictures of the rail's events": {"rail-events": lambda runs: event_figure(runs.pitch)},
+    **{f"picture of the rail out of line in {angle}": {f"rail-{angle}": _misaligned(angle)} for angle in ORDER},
+}
+"""What begins, then the names of the figures and how they are drawn."""
+FIGURES = (*(name for figures in CASE_FIGURES.values() for name in figures), "range")
+"""Of each method; in the names of files, the method's name stands before them."""
+
+
+def draw_pictures(reproduction: Reproduction, progress: Progress) -> dict[str, Picture]:
+    """Return all pictures by name, such as "stepwise-rail-events"."""
+    pictures = dict[str, Picture]()
+    for method, runs in reproduction.runs.items():
+        for beginning, figures in CASE_FIGURES.items():
+            progress(f"{method}: {beginning}")
+            pictures |= {f"{method}-{name}": _picture(draw(runs)) for name, draw in figures.items()}
+        progress(f"{method}: picture of the range of misalignments")
+        pictures[f"{method}-range"] = _picture(range_figure(reproduction.ranges[method]))
+    return pictures
+
+
+def _picture(figure: Figure) -> Picture:
+    return Picture(figure_bytes(figure, ".png"), figure_bytes(figure, ".svg"))
 
 
 def range_figure(studies: Sequence[RangeStudy]) -> Figure:

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from cagepose.paper.printed import Printed, Row, compared
+from cagepose.paper.comparison import Printed, Row, compared
 
 
 @pytest.mark.parametrize(
