@@ -12,6 +12,7 @@ import pytest
 
 from cagepose.paper.report import report_files
 from cagepose.paper.reproduction import METHODS
+from cagepose.views import extra
 
 Command = Callable[..., Any]
 
@@ -63,6 +64,23 @@ def test_a_folder_that_cannot_be_is_refused_before_the_runs(
     assert command("reproduce", "--out", out) == (2, "", f"--out {out}: {reason}\n")
     assert (in_folder / "report.md").read_text(encoding="utf-8") == "mine"
     assert len(list(in_folder.iterdir())) == 2
+
+
+@pytest.mark.parametrize(
+    ("module", "need"),
+    [
+        ("matplotlib", "pictures need matplotlib"),
+        ("jinja2", "the report needs Jinja2"),
+        ("markdown_it", "the report needs markdown-it-py"),
+    ],
+)
+def test_a_missing_library_is_named_with_its_install_line(
+    command: Command, in_folder: Path, monkeypatch: pytest.MonkeyPatch, module: str, need: str
+) -> None:
+    monkeypatch.setattr(extra, "find_spec", lambda name: None if name == module else object())
+    message = f"{need}, which is not installed; install the plot extra: pip install 'cagepose[plot]'\n"
+    assert command("reproduce") == (2, "", message)
+    assert list(in_folder.iterdir()) == []
 
 
 def test_a_disk_that_fills_up_is_told(command: Command, in_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

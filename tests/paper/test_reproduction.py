@@ -129,7 +129,7 @@ def test_a_method_with_other_rules_leaves_gaps_and_no_error(result):
     """A method that knows no rule A-2 has nothing to say about its turn; its column shows a gap."""
     from dataclasses import replace
 
-    from cagepose.paper.numbers import questions
+    from cagepose.paper.numbers import number_rows
 
     def renamed(run):
         phases = [
@@ -139,7 +139,7 @@ def test_a_method_with_other_rules_leaves_gaps_and_no_error(result):
 
     runs = result.runs["stepwise"]
     other = replace(runs, **{name: renamed(getattr(runs, name)) for name in ("sample", "pitch", "yaw", "roll")})
-    values = {question.quantity: question.measure(other) for question in questions()}
+    values = {row.quantity: row.found["other"] for row in number_rows({"stepwise": runs, "other": other})}
     assert values["A-2: turn"] is None
     assert values["A-1: first contact"] is None
     assert values["A-3: axis"] is None

@@ -20,9 +20,9 @@ def reproduce_command(
 ) -> int:
     """Run the paper's cases, write a report with pictures, and print its numbers beside ours."""
     from cagepose.errors import printable
-    from cagepose.views.extra import require_matplotlib
+    from cagepose.views.extra import require_report
 
-    require_matplotlib()
+    require_report()
     from cagepose.paper.report import check_report_folder, write_report
     from cagepose.paper.reproduction import METHODS, reproduce
 

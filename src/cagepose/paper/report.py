@@ -9,10 +9,11 @@ from base64 import b64encode
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from markdown_it import MarkdownIt
 from markupsafe import Markup
 
 import cagepose
@@ -29,8 +30,11 @@ Form = Literal["html", "markdown"]
 NAMES: dict[Form, str] = {"html": "report.html", "markdown": "report.md"}
 
 
+TITLE = "The paper, reproduced"
+
+
 def report_text(form: Form, reproduction: Reproduction, pictures: Mapping[str, Picture]) -> str:
-    """Return the whole report. As HTML it has its pictures within; as Markdown it names their files."""
+    """Return the whole report: as Markdown that names the files of its pictures, or as a page that holds them."""
     templates = Environment(
         loader=PackageLoader("cagepose.paper"),
         autoescape=True,
@@ -39,29 +43,37 @@ def report_text(form: Form, reproduction: Reproduction, pictures: Mapping[str, P
         lstrip_blocks=True,
         finalize=_escaped_for_markdown if form == "markdown" else None,
     )
-    templates.filters |= {"cells": cells, "flowing": _flowing, "items": _items, "base64": _base64}
+    templates.globals |= {"title": TITLE, "made_by": MADE_BY}
+    text = templates.get_template("report.jinja").render(form=f"{form}.jinja", **_content(reproduction))
+    text = re.sub(r"\n{3,}", "\n\n", text).strip() + "\n"
+    if form == "markdown":
+        return text
+    body = Markup(MarkdownIt("commonmark", {"html": True}).render(text))
+    page = templates.get_template("page.jinja").render(body=body)
+    return re.sub(r'src="([\w-]+)\.png"', lambda source: _embedded(pictures[source[1]]), page)
+
+
+def _content(reproduction: Reproduction) -> dict[str, Any]:
     methods, rows = reproduction.methods, reproduction.rows
-    text = templates.get_template("report.jinja").render(
-        form=f"{form}.jinja",
-        made_by=MADE_BY,
-        version=cagepose.__version__,
-        machine=f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}",
-        timed_runs=cases.TIMED_RUNS,
-        reproduction=reproduction,
-        pictures=pictures,
-        counts=Counter(row.status for row in rows),
-        headings=headings(methods),
-        error_rows=[
+    return {
+        "version": cagepose.__version__,
+        "machine": f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}",
+        "timed_runs": cases.TIMED_RUNS,
+        "methods": methods,
+        "headings": headings(methods),
+        "number_rows": [cells(row) for row in rows],
+        "statuses": [row.status for row in rows],
+        "error_rows": [
             error_cells(row)
             for row in rows
             if row.status != "not derivable" and any(row.error(method) is not None for method in methods)
         ],
-        end_rows=end_rows(reproduction.runs),
-        planar_rows=planar_rows(),
-        where=_where,
-        ends=lambda study: ", ".join(f"{count} {verdict}" for verdict, count in Counter(study.verdicts).items()),
-    )
-    return re.sub(r"\n{3,}", "\n\n", text).strip() + "\n"
+        "end_rows": end_rows(reproduction.runs),
+        "planar_rows": planar_rows(),
+        "ranges": reproduction.ranges,
+        "where": _where,
+        "ends": lambda study: ", ".join(f"{count} {verdict}" for verdict, count in Counter(study.verdicts).items()),
+    }
 
 
 def _escaped_for_markdown(value: object) -> Markup:
@@ -73,18 +85,8 @@ def _escaped_for_markdown(value: object) -> Markup:
     return value if isinstance(value, Markup) else Markup(re.sub(r"([\\|*_<>`\[\]#])", r"\\\1", str(value)))
 
 
-def _flowing(text: Markup) -> Markup:
-    """Return a text of several lines on one."""
-    return Markup(" ").join(text.split())
-
-
-def _items(text: Markup) -> list[Markup]:
-    """Return the parts of a text that blank lines set apart."""
-    return [_flowing(part) for part in text.split("\n\n") if part.strip()]
-
-
-def _base64(content: bytes) -> str:
-    return b64encode(content).decode()
+def _embedded(picture: Picture) -> str:
+    return f'src="data:image/png;base64,{b64encode(picture.png).decode()}"'
 
 
 def _where(study: RangeStudy, chosen: np.ndarray) -> str:

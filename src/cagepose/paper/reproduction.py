@@ -9,7 +9,7 @@ import numpy as np
 
 from cagepose.paper.cases import CaseRuns, Progress, run_cases
 from cagepose.paper.comparison import PAPER_METHOD, Row
-from cagepose.paper.numbers import questions
+from cagepose.paper.numbers import number_rows
 from cagepose.paper.rail import ANGLES, PAPER_RAIL
 from cagepose.paper.range_study import RangeStudy, range_study
 
@@ -44,7 +44,7 @@ class Reproduction:
 
 def reproduce(methods: Sequence[str], progress: Progress) -> Reproduction:
     """Run the paper's cases and its range of misalignments by each of ``methods``."""
-    runs, ranges = {}, {}
+    runs, ranges = dict[str, CaseRuns](), {}
     half = PAPER_RAIL.pin_spacing_m / 2.0
     for method in methods:
         runs[method] = run_cases(method, progress)
@@ -52,4 +52,4 @@ def reproduce(methods: Sequence[str], progress: Progress) -> Reproduction:
         ranges[method] = tuple(
             range_study(angle, RANGE_RAD, pin_y_m, method) for angle in ANGLES for pin_y_m in (half, -half)
         )
-    return Reproduction(runs, tuple(question.answered(runs) for question in questions()), ranges)
+    return Reproduction(runs, tuple(number_rows(runs)), ranges)

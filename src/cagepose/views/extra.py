@@ -1,4 +1,4 @@
-"""Is an extra there? Asked before anything is run, so that nobody waits for a picture that cannot be drawn."""
+"""Is an extra there? Asked before anything is run, so that nobody waits for what cannot be made."""
 
 from __future__ import annotations
 
@@ -15,10 +15,7 @@ def require_pillow() -> None:
     MissingExtraError
         It is not; the message says how to install it.
     """
-    if find_spec("PIL") is None:
-        raise MissingExtraError(
-            "pictures need Pillow, which is not installed; install the view extra: pip install 'cagepose[view]'"
-        )
+    _require("PIL", "pictures need Pillow", "view")
 
 
 def require_matplotlib() -> None:
@@ -27,9 +24,26 @@ def require_matplotlib() -> None:
     Raises
     ------
     MissingExtraError
-        It is not; the message says how to install it.
+        As `require_pillow`.
     """
-    if find_spec("matplotlib") is None:
+    _require("matplotlib", "pictures need matplotlib", "plot")
+
+
+def require_report() -> None:
+    """Do nothing if all is installed that the paper's report needs.
+
+    Raises
+    ------
+    MissingExtraError
+        As `require_pillow`.
+    """
+    require_matplotlib()
+    _require("jinja2", "the report needs Jinja2", "plot")
+    _require("markdown_it", "the report needs markdown-it-py", "plot")
+
+
+def _require(module: str, need: str, extra: str) -> None:
+    if find_spec(module) is None:
         raise MissingExtraError(
-            "pictures need matplotlib, which is not installed; install the plot extra: pip install 'cagepose[plot]'"
+            f"{need}, which is not installed; install the {extra} extra: pip install 'cagepose[{extra}]'"
         )
