@@ -9,11 +9,13 @@ READY := $(VENV)/.ready
 BUILT := $(VENV)/.kernels
 PEERS := $(VENV)/.peers
 UV_VERSION := 0.13.8
+ON_ALL_CORES := --numprocesses auto --dist worksteal
+N ?= 20000
 
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test test-nojit lint format golden bench docs lock clean
+.PHONY: help setup run test test-deep test-python lint format golden bench docs lock clean
 
 help:  ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -45,11 +47,14 @@ run: $(READY)  ## run the sample scene
 	@$(BIN)/cagepose run scenes/sample.yaml
 
 test: $(READY)  ## run all tests and the examples in docstrings
-	@echo "Running all tests, ten to twenty minutes; the first ones wait about a minute while Numba compiles the kernels."
-	@$(BIN)/python -m pytest
+	@echo "Running all tests, one to three minutes ..."
+	@$(BIN)/python -m pytest $(ON_ALL_CORES)
 
-test-nojit: $(READY)  ## run the kernels' tests as plain Python, without compiling
-	@NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest tests/kernels tests/stepwise
+test-deep: $(READY)  ## run the tests that draw random cases with many of them, minutes (N=20000: scenes of the largest)
+	@$(BIN)/python -m pytest $(ON_ALL_CORES) --scenes $(N)
+
+test-python: $(READY)  ## run the tests of kernels and of stepwise runs with kernels as plain Python
+	@CAGEPOSE_KERNELS=python $(BIN)/python -m pytest $(ON_ALL_CORES) tests/kernels tests/stepwise
 
 lint: $(READY)  ## check style, types and the floors' import contract
 	@$(BIN)/ruff check

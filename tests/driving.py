@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
+import os
+import socket
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +21,18 @@ from cagepose.views.viewer.playback import playback
 from cagepose.views.viewer.server import ViewServer, open_server
 from cagepose.views.viewer.what_if import WhatIf
 
-PORT = 18737
+HOST = "127.0.0.1"
+_WORKER = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
+_PORTS = itertools.count(20_000 + 250 * _WORKER)
+"""Below those that the system hands out, and of this process alone, so that tests side by side do not meet."""
+
+
+def free_port() -> int:
+    """A port that nobody listens on."""
+    for port in _PORTS:
+        with suppress(OSError), socket.create_server((HOST, port)):
+            return port
+    raise AssertionError("no port is free")
 
 
 @contextmanager
@@ -28,7 +42,7 @@ def served(scene_path: Path, *, can_change: bool = True) -> Iterator[ViewServer]
     scene_file = text.scene_file()
     what_if = WhatIf(text) if can_change else None
     film = playback(run(scene_file.scene), scene_file.length_unit)
-    with open_server(page_text(film, what_if), what_if, "127.0.0.1", PORT) as server:
+    with open_server(page_text(film, what_if), what_if, HOST, free_port()) as server:
         threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02}, daemon=True).start()
         yield server
         server.shutdown()

@@ -13,30 +13,24 @@ import pytest
 from cagepose.kernels.collision.screw import screw_entry
 from cagepose.kernels.collision.travel import travel_entry
 from cagepose.kernels.collision.turn import angle_of_key, turn_entry
-from jit import callable_kernel
 
 RESOLUTION = 1e-12
 CUBE = (1.0, 1.0, 1.0)
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
-_travel = callable_kernel(travel_entry)
-_turn = callable_kernel(turn_entry)
-_screw = callable_kernel(screw_entry)
-_angle = callable_kernel(angle_of_key)
-
 
 def travel(point, direction, half=CUBE, depth=RESOLUTION):
-    return _travel(point, direction, half, depth, RESOLUTION)
+    return travel_entry(point, direction, half, depth, RESOLUTION)
 
 
 def turn(point, through, axis, half=CUBE, depth=RESOLUTION):
-    key = _turn(point, through, axis, half, depth, RESOLUTION, math.inf)
-    return math.inf if key == math.inf else _angle(key)
+    key = turn_entry(point, through, axis, half, depth, RESOLUTION, math.inf)
+    return math.inf if key == math.inf else angle_of_key(key)
 
 
 def screw(point, through, axis, pitch, end=2.0 * math.pi, half=CUBE, depth=RESOLUTION):
     velocity = np.cross(axis, np.subtract(point, through)) + pitch * np.array(axis)
-    return _screw(point, tuple(velocity.tolist()), axis, end, half, depth, RESOLUTION)
+    return screw_entry(point, tuple(velocity.tolist()), axis, end, half, depth, RESOLUTION)
 
 
 def negated(vector):
@@ -189,7 +183,7 @@ def test_angles_do_not_depend_on_scale(scale):
     point, through = (1.7, 0.4, -0.2), (-0.5, 1.5, 0.3)
     axis = (0.48, -0.6, 0.64)
     small = turn(point, through, axis)
-    large = _turn(
+    large = turn_entry(
         tuple(scale * v for v in point),
         tuple(scale * v for v in through),
         axis,
@@ -199,7 +193,7 @@ def test_angles_do_not_depend_on_scale(scale):
         math.inf,
     )
     assert small < math.inf
-    assert _angle(large) == pytest.approx(small, rel=1e-13)
+    assert angle_of_key(large) == pytest.approx(small, rel=1e-13)
 
 
 @pytest.mark.parametrize("mirror", [0, 1, 2])

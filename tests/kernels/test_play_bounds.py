@@ -10,7 +10,6 @@ from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.play.certificate import Certificate, angle_bound
 from cagepose.kernels.play.goal import PITCH, ROLL, YAW, Goal
 from cagepose.kernels.play.remainder import gap_left_out, turning_left_out
-from jit import callable_kernel, cases
 
 
 def samples(rng: np.random.Generator, size: np.ndarray, n: int) -> np.ndarray:
@@ -26,14 +25,13 @@ def unit(rng: np.random.Generator) -> np.ndarray:
 
 
 @pytest.mark.parametrize("largest_turn", [0.01, 0.5])
-def test_no_gap_differs_from_the_linear_one_by_more_than_its_bound(largest_turn):
-    bound_of = callable_kernel(gap_left_out)
+def test_no_gap_differs_from_the_linear_one_by_more_than_its_bound(largest_turn, cases):
     rng = np.random.default_rng(1)
     shares = []
-    for _ in range(cases(400)):
+    for _ in range(cases(100, 400)):
         n, arm = unit(rng), rng.uniform(-1, 1, 3)
         travel, turn = rng.uniform(0, 0.3, 3) * rng.integers(0, 2, 3), rng.uniform(0, largest_turn, 3)
-        above, size = bound_of(tuple(n), tuple(arm), tuple(travel), tuple(turn))
+        above, size = gap_left_out(tuple(n), tuple(arm), tuple(travel), tuple(turn))
         t, w = samples(rng, travel, 200), samples(rng, turn, 200)
         exact = Rotation.from_rotvec(w).inv().apply(arm - t) @ n - n @ arm
         linear = -(t @ n + w @ np.cross(arm, n))
@@ -44,13 +42,12 @@ def test_no_gap_differs_from_the_linear_one_by_more_than_its_bound(largest_turn)
 
 
 @pytest.mark.parametrize("largest_turn", [0.01, 0.5])
-def test_no_point_goes_farther_than_its_linear_way_by_more_than_its_bound(largest_turn):
-    bound_of = callable_kernel(turning_left_out)
+def test_no_point_goes_farther_than_its_linear_way_by_more_than_its_bound(largest_turn, cases):
     rng = np.random.default_rng(2)
     shares = []
-    for _ in range(cases(400)):
+    for _ in range(cases(100, 400)):
         a, arm, turn = unit(rng), rng.uniform(-1, 1, 3), rng.uniform(0, largest_turn, 3)
-        above, size = bound_of(tuple(a), tuple(arm), tuple(turn))
+        above, size = turning_left_out(tuple(a), tuple(arm), tuple(turn))
         w = samples(rng, turn, 200)
         left_out = (Rotation.from_rotvec(w).apply(arm) - arm - np.cross(w, arm)) @ a
         assert left_out.max() <= above
@@ -59,12 +56,11 @@ def test_no_point_goes_farther_than_its_linear_way_by_more_than_its_bound(larges
     assert max(shares) > 0.8
 
 
-def test_no_rotation_vector_within_the_extents_has_a_larger_angle():
-    bound_of = callable_kernel(angle_bound)
+def test_no_rotation_vector_within_the_extents_has_a_larger_angle(cases):
     rng = np.random.default_rng(3)
     certificate, goal = empty_record(Certificate), empty_record(Goal)
     shares = []
-    for _ in range(cases(400)):
+    for _ in range(cases(100, 400)):
         low, high = -rng.uniform(0, 0.5, 3), rng.uniform(0, 0.5, 3)
         certificate.least[3:], certificate.greatest[3:] = low, high
         certificate.turn[:] = np.maximum(-low, high)
@@ -73,7 +69,7 @@ def test_no_rotation_vector_within_the_extents_has_a_larger_angle():
         for kind, column in ((YAW, 0), (PITCH, 1), (ROLL, 2)):
             for sign in (-1.0, 1.0):
                 goal.kind, goal.sign = kind, sign
-                bound = bound_of(goal, certificate)
+                bound = angle_bound(goal, certificate)
                 assert (sign * angles[:, column]).max() <= bound
                 shares.append((sign * angles[:, column]).max() / bound)
     assert max(shares) > 0.8

@@ -16,16 +16,10 @@ from scipy.spatial.transform import Rotation
 from cagepose.kernels.collision.screw import screw_entry
 from cagepose.kernels.collision.travel import travel_entry
 from cagepose.kernels.collision.turn import angle_of_key, turn_entry
-from jit import callable_kernel, cases
 
 RESOLUTION = 1e-12
 TOUCH = 1e-9
 N_SAMPLES = 4000
-
-_travel = callable_kernel(travel_entry)
-_turn = callable_kernel(turn_entry)
-_screw = callable_kernel(screw_entry)
-_angle = callable_kernel(angle_of_key)
 
 
 def random_unit(rng):
@@ -62,7 +56,7 @@ class Travel:
         return point - moments[:, None] * self.direction
 
     def entry(self, point, half, depth):
-        return _travel(tuple(point), tuple(self.direction), tuple(half), depth, RESOLUTION)
+        return travel_entry(tuple(point), tuple(self.direction), tuple(half), depth, RESOLUTION)
 
 
 class Turn:
@@ -80,10 +74,10 @@ class Turn:
 
     def entry(self, point, half, depth):
         key = self.key(point, half, depth, math.inf)
-        return math.inf if key == math.inf else _angle(key)
+        return math.inf if key == math.inf else angle_of_key(key)
 
     def key(self, point, half, depth, least):
-        return _turn(tuple(point), tuple(self.through), tuple(self.axis), tuple(half), depth, RESOLUTION, least)
+        return turn_entry(tuple(point), tuple(self.through), tuple(self.axis), tuple(half), depth, RESOLUTION, least)
 
 
 class Screw(Turn):
@@ -95,14 +89,14 @@ class Screw(Turn):
 
     def entry(self, point, half, depth):
         velocity = np.cross(self.axis, point - self.through) + self.pitch * self.axis
-        return _screw(tuple(point), tuple(velocity), tuple(self.axis), self.end, tuple(half), depth, RESOLUTION)
+        return screw_entry(tuple(point), tuple(velocity), tuple(self.axis), self.end, tuple(half), depth, RESOLUTION)
 
 
 @pytest.mark.parametrize("motion_kind", [Travel, Turn, Screw])
-def test_first_contact_is_neither_late_nor_early(motion_kind):
+def test_first_contact_is_neither_late_nor_early(motion_kind, cases):
     rng = np.random.default_rng(20261121)
     n_met = n_blocked = 0
-    for case in range(cases(3000)):
+    for case in range(cases(400, 3000)):
         half = rng.uniform(0.1, 1.0, 3)
         point = random_start(rng, half)
         motion = motion_kind(rng)
@@ -126,10 +120,10 @@ def test_first_contact_is_neither_late_nor_early(motion_kind):
     assert n_blocked > 0
 
 
-def test_a_turn_is_cut_short_only_where_nothing_is_met_before():
+def test_a_turn_is_cut_short_only_where_nothing_is_met_before(cases):
     rng = np.random.default_rng(8)
     n_cut = n_blocked = 0
-    for _ in range(cases(3000)):
+    for _ in range(cases(400, 3000)):
         half = rng.uniform(0.1, 1.0, 3)
         point = random_start(rng, half)
         motion = Turn(rng)
@@ -146,10 +140,10 @@ def test_a_turn_is_cut_short_only_where_nothing_is_met_before():
 
 
 @pytest.mark.parametrize("motion_kind", [Travel, Turn, Screw])
-def test_a_point_that_starts_inside_the_tolerance_is_never_pushed_deeper(motion_kind):
+def test_a_point_that_starts_inside_the_tolerance_is_never_pushed_deeper(motion_kind, cases):
     rng = np.random.default_rng(7)
     n_free = 0
-    for case in range(cases(1500)):
+    for case in range(cases(200, 1500)):
         half = rng.uniform(0.1, 1.0, 3)
         point = rng.uniform(-1.0, 1.0, 3) * half
         axis = rng.integers(3)

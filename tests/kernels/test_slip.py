@@ -10,21 +10,17 @@ from numpy.testing import assert_allclose
 
 from cagepose.kernels.stepwise.slip import independent_normals
 from cagepose.kernels.stepwise.touching import load_angle
-from jit import callable_kernel
-
-_angle = callable_kernel(load_angle)
-_independent = callable_kernel(independent_normals)
 
 
 def independent(normals):
     n = len(normals)
-    return _independent(np.arange(n), n, np.array(normals, dtype=float), 1e-6)
+    return independent_normals(np.arange(n), n, np.array(normals, dtype=float), 1e-6)
 
 
 @pytest.mark.parametrize("angle_rad", [0.0, 1e-9, 0.1, math.pi / 2, math.pi - 1e-9, math.pi])
 def test_the_angle_to_the_load_keeps_its_digits_at_both_ends(angle_rad):
     """acos of the dot product would lose half of the digits near 0 and pi."""
-    found = _angle((math.cos(angle_rad), math.sin(angle_rad), 0.0), (1.0, 0.0, 0.0))
+    found = load_angle((math.cos(angle_rad), math.sin(angle_rad), 0.0), (1.0, 0.0, 0.0))
     assert found == pytest.approx(angle_rad, abs=1e-15)
 
 

@@ -14,7 +14,6 @@ from cagepose import Box, Cage, Object, Play, Scene, SceneError, play
 from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.studies.cage_verdict import search_way_out
 from cagepose.studies.play_frame import FREEDOMS, PlayFrame
-from jit import cases
 from rails import exact_tilt_deg, rail_scene
 
 MM = 1e-3
@@ -186,13 +185,13 @@ def test_a_hundred_thousand_collision_free_motions_of_the_rail_stay_within_the_c
     """The tree ends at 100,000 stations; ten such walks with other seeds were run by hand."""
     scene = rail_scene()
     found = play(scene, [np.array([-600, 20, -60.747]) * MM])
-    assert walk(scene, found, 60.0) > cases(99_000)
+    assert walk(scene, found, 60.0) > 99_000
 
 
-def test_random_walks_in_random_caged_scenes_stay_within_the_certified_bounds():
+def test_random_walks_in_random_caged_scenes_stay_within_the_certified_bounds(cases):
     rng = np.random.default_rng(9)
     n_proven = 0
-    for _ in range(cases(20)):
+    for _ in range(cases(20, 100)):
         scene = caged_scene(rng)
         found = play(scene, [rng.uniform(-50, 50, 3) * MM], [rng.normal(size=3)], search_s=0.0)
         if found.cage.verdict == "caged":
@@ -200,10 +199,10 @@ def test_random_walks_in_random_caged_scenes_stay_within_the_certified_bounds():
     assert n_proven > 3
 
 
-def test_random_walks_in_adversarial_scenes_stay_within_the_certified_bounds():
+def test_random_walks_in_adversarial_scenes_stay_within_the_certified_bounds(cases):
     rng = np.random.default_rng(11)
-    n_proven, n_asked = 0, 0
-    while n_asked < cases(120):
+    n_proven, n_asked, n_scenes = 0, 0, cases(40, 120)
+    while n_asked < n_scenes:
         try:
             scene = adversarial_scene(rng)
         except SceneError:  # a point of one box starts inside another
@@ -216,16 +215,16 @@ def test_random_walks_in_adversarial_scenes_stay_within_the_certified_bounds():
             for ends in (*found.freedoms.values(), *found.points):
                 for end in (ends.low, ends.high):
                     assert end.exact is None or abs(end.exact) <= abs(end.certified)
-    assert n_proven > cases(120) // 12
+    assert n_proven > n_scenes // 12
 
 
-def test_no_certified_scene_is_escaped_and_no_extreme_passes_its_bound():
+def test_no_certified_scene_is_escaped_and_no_extreme_passes_its_bound(cases):
     rng = np.random.default_rng(10)
-    n_proven = 0
-    for _ in range(cases(100)):
+    n_proven, n_scenes = 0, cases(40, 100)
+    for _ in range(n_scenes):
         found = play(caged_scene(rng), search_s=0.0)
         if found.cage.verdict == "caged":
             n_proven += 1
             for ends in found.freedoms.values():
                 assert ends.low.certified <= ends.low.exact <= ends.high.exact <= ends.high.certified
-    assert n_proven > cases(100) // 3
+    assert n_proven > n_scenes // 3

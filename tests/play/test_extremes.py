@@ -14,7 +14,6 @@ from cagepose.kernels.algebra.linear_program import OPTIMAL, UNBOUNDED, solve_pr
 from cagepose.kernels.play.rows import empty_play_room, write_start
 from cagepose.studies.play import FREEDOMS
 from cagepose.studies.play_frame import PlayFrame
-from jit import cases
 from rails import rail_scene
 
 MM = 1e-3
@@ -45,10 +44,10 @@ def value_of(scene: Scene, pose: Pose, name: str) -> float:
     return dict(zip(FREEDOMS, (*shift, roll, pitch, yaw), strict=True))[name]
 
 
-def test_all_twelve_programs_of_random_caged_scenes_agree_with_highs():
+def test_all_twelve_programs_of_random_caged_scenes_agree_with_highs(cases):
     rng = np.random.default_rng(5)
-    n_bounded = 0
-    for _ in range(cases(250)):
+    n_bounded, n_scenes = 0, cases(40, 250)
+    for _ in range(n_scenes):
         frame = PlayFrame(caged_scene(rng))
         room = empty_play_room(frame.geometry)
         write_start(frame.geometry, frame.length_m, room)
@@ -70,12 +69,12 @@ def test_all_twelve_programs_of_random_caged_scenes_agree_with_highs():
             if outcome == UNBOUNDED:
                 continue
             assert float(objective @ room.program.x_near) == pytest.approx(-known.fun, abs=1e-9)
-    assert n_bounded >= 11 * cases(250)
+    assert n_bounded >= 11 * n_scenes
 
 
-def test_every_extreme_is_a_pose_outside_that_has_the_value():
+def test_every_extreme_is_a_pose_outside_that_has_the_value(cases):
     rng = np.random.default_rng(6)
-    for _ in range(cases(100)):
+    for _ in range(cases(25, 100)):
         scene = caged_scene(rng)
         found = play(scene, search_s=0.0)
         for name, ends in found.freedoms.items():
@@ -105,10 +104,10 @@ def clamped_cube(rng: np.random.Generator, least_apart: float) -> tuple[Scene, P
     return Scene(Object([Box((10 * MM,) * 3)], pose=turn), Cage(turn.transform(np.array(points) * MM)), [load]), turn
 
 
-def test_a_part_that_is_clamped_without_gap_has_every_end():
+def test_a_part_that_is_clamped_without_gap_has_every_end(cases):
     """By rounding, the points start some 1e-18 m inside or outside."""
     rng = np.random.default_rng(12)
-    for _ in range(cases(40)):
+    for _ in range(cases(20, 40)):
         scene, turn = clamped_cube(rng, 1.0)
         found = play(scene, [(0, 0, 0)], list(turn.rotation.T), search_s=0.0)
         for ends in found.freedoms.values():
@@ -152,14 +151,14 @@ def best_near(scene: Scene, pose: Pose, name: str) -> float | None:
         method="SLSQP",
         options={"ftol": 1e-14, "maxiter": 200},
     )
-    is_outside = gaps_to_faces(scene, nudged(pose, answer.x), pose).min() > -1e-11
+    is_outside = gaps_to_faces(scene, nudged(pose, answer.x), pose).min() > -5e-12  # 7 mm off, that is 7e-10 rad
     return -answer.fun * 1e-3 if is_outside else None
 
 
-def test_no_extreme_can_be_bettered_nearby():
+def test_no_extreme_can_be_bettered_nearby(cases):
     rng = np.random.default_rng(7)
-    n_compared = 0
-    for _ in range(cases(40)):
+    n_compared, n_scenes = 0, cases(20, 40)
+    for _ in range(n_scenes):
         scene = caged_scene(rng)
         name = FREEDOMS[rng.integers(6)]
         end = play(scene, search_s=0.0).freedoms[name].high
@@ -169,7 +168,7 @@ def test_no_extreme_can_be_bettered_nearby():
         if best is not None:
             assert best <= end.exact + 1e-9
             n_compared += 1
-    assert n_compared >= cases(40) // 2
+    assert n_compared >= n_scenes // 2
 
 
 def with_gap_wider(scene: Scene, point: str, by_m: float) -> Scene:
@@ -187,7 +186,7 @@ def test_closing_and_opening_each_gap_moves_the_extreme_as_said():
     """One-sided differences over 20 nm: the two differ where several points limit an extreme."""
     rng = np.random.default_rng(8)
     deviations = []
-    for _ in range(cases(20)):
+    for _ in range(20):
         scene = caged_scene(rng)
         if len(scene.object.boxes) > 1:
             continue

@@ -9,12 +9,9 @@ import pytest
 from scipy.optimize import linprog, minimize
 
 from cagepose import Pose, run
-from jit import cases
 from quasistatic.paths import again, distance, path_of, potential, rows_at
 from rails import rail_scene
 from random_scenes import random_scenes
-
-N_SCENES = 600
 
 
 def moved(scene, pose, xi):
@@ -83,14 +80,14 @@ def descended(scene, load, end, start_xi):
     return pose, potential(scene, load, pose), float(faces.gaps(pose).min() / size)
 
 
-def test_slsqp_comes_back_to_our_rests(capsys):
+def test_slsqp_comes_back_to_our_rests(capsys, cases):
     """From our pose disturbed by 1e-3 of the size, under the same gaps: no pose nearby has less potential (1e-9), and
     SLSQP ends at ours, as well as it can (1e-6 of the size).
     """
     rng = np.random.default_rng(7)
     n_compared = n_gave_up = 0
     worst_pose, worst_potential = 0.0, 0.0
-    for number, plain in enumerate(random_scenes(cases(N_SCENES), seed=77)):
+    for number, plain in enumerate(random_scenes(cases(80, 600), seed=77)):
         result = run(again(plain), method="quasistatic")
         if not is_isolated(result):
             continue

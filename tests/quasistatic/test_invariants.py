@@ -8,11 +8,9 @@ import numpy as np
 import pytest
 
 from cagepose import run
-from jit import cases
 from quasistatic.paths import VERDICTS, again, depth, path_of, potential
 from random_scenes import random_scenes
 
-N_FRICTIONLESS, N_FRICTION = 1500, 400
 SEED = 20261121
 RISE = 1e-12
 """Of total force times size: what a potential may rise by, its rounding over some thousand metres of sums. A rest is
@@ -50,11 +48,11 @@ def checked(scene, number, verdicts):
 
 
 @pytest.mark.parametrize(
-    ("friction", "n_scenes", "nameless_share"), [(None, N_FRICTIONLESS, 0.001), (0.3, N_FRICTION, 0.02)]
+    ("friction", "few", "many", "nameless_share"), [(None, 200, 1500, 0.001), (0.3, 100, 400, 0.02)]
 )
-def test_random_scenes_end_by_name_downhill_and_outside(friction, n_scenes, nameless_share, capsys):
+def test_random_scenes_end_by_name_downhill_and_outside(friction, few, many, nameless_share, capsys, cases):
     """``nameless_share``: runs that end "stalled" or "limit", no answer, at most; measured, see the printed line."""
-    n_scenes = cases(n_scenes)
+    n_scenes = cases(few, many)
     verdicts: collections.Counter[str] = collections.Counter()
     rises, depths = [], []
     for number, scene in enumerate(random_scenes(n_scenes, SEED)):

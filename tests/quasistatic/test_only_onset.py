@@ -19,7 +19,7 @@ from cagepose.kernels.contact.coulomb_newton import NewtonRoom
 from cagepose.kernels.stability.second_order import StabilityRoom
 from cagepose.kernels.stability.sure_contacts import SureRoom, find_sure, rest_is_sure, write_normals
 from cagepose.kernels.stability.uniqueness import N_COLUMNS, OTHER_FOUND, UNIQUE, ModesRoom, other_onset
-from jit import callable_kernel, cases
+from inner_kernels import as_machine_code
 
 
 class Held(NamedTuple):
@@ -85,15 +85,14 @@ class Prover:
     """Both proofs of uniqueness, and the least forces behind the short one."""
 
     def __init__(self) -> None:
-        self._is_sure, self._search = callable_kernel(rest_is_sure), callable_kernel(other_onset)
-        self._write, self._find = callable_kernel(write_normals), callable_kernel(find_sure)
+        self._search = as_machine_code(other_onset)
         self._sure, self._rest = empty_record(SureRoom), empty_record(StabilityRoom)
         self._modes, self._newton = empty_record(ModesRoom), empty_record(NewtonRoom)
         self._system = empty_system(N_COLUMNS)
 
     def is_sure(self, held: Held) -> bool:
         at = contacts_of(held)
-        return bool(self._is_sure(at, held.friction, held.load, 1.0, self._sure, self._rest, self._system))
+        return bool(rest_is_sure(at, held.friction, held.load, 1.0, self._sure, self._rest, self._system))
 
     def search(self, held: Held) -> int:
         at = contacts_of(held)
@@ -106,8 +105,8 @@ class Prover:
         rank = int((sizes > 1e-10 * sizes[0]).sum())
         self._rest.held.basis[:rank, :6] = axes[:rank]
         self._rest.held.used = rank
-        self._write(at, held.friction, self._rest.held, self._system)
-        n = self._find(at, held.friction, held.load, self._sure, self._system)
+        write_normals(at, held.friction, self._rest.held, self._system)
+        n = find_sure(at, held.friction, held.load, self._sure, self._system)
         return {int(self._sure.contacts[k]): self._sure.limits[k] / held.friction for k in range(n)}
 
 
@@ -116,16 +115,16 @@ def prover() -> Prover:
     return Prover()
 
 
-def test_the_search_finds_no_other_onset_where_rest_is_sure(prover):
-    random = np.random.default_rng(20)
-    answers = [prover.search(held) for held in (random_held(random) for _ in range(cases(800))) if prover.is_sure(held)]
-    assert answers.count(UNIQUE) == len(answers) > cases(800) // 4
+def test_the_search_finds_no_other_onset_where_rest_is_sure(prover, cases):
+    random, n = np.random.default_rng(20), cases(100, 800)
+    answers = [prover.search(held) for held in (random_held(random) for _ in range(n)) if prover.is_sure(held)]
+    assert answers.count(UNIQUE) == len(answers) > n // 4
 
 
-def test_rest_is_never_sure_where_the_search_finds_another_onset(prover):
-    random = np.random.default_rng(21)
-    others = [held for held in (random_held(random) for _ in range(cases(800))) if prover.search(held) == OTHER_FOUND]
-    assert len(others) > cases(800) // 100
+def test_rest_is_never_sure_where_the_search_finds_another_onset(prover, cases):
+    random, n = np.random.default_rng(21), cases(100, 800)
+    others = [held for held in (random_held(random) for _ in range(n)) if prover.search(held) == OTHER_FOUND]
+    assert len(others) > n // 100
     assert not any(prover.is_sure(held) for held in others)
 
 
@@ -153,15 +152,15 @@ def forces_under_friction(random: np.random.Generator, held: Held) -> np.ndarray
     return None
 
 
-def test_contacts_carry_no_less_than_is_said_whatever_the_friction(prover):
-    random = np.random.default_rng(22)
+def test_contacts_carry_no_less_than_is_said_whatever_the_friction(prover, cases):
+    random, n = np.random.default_rng(22), cases(50, 400)
     spare = []
-    for held in (random_held(random) for _ in range(cases(400))):
+    for held in (random_held(random) for _ in range(n)):
         least = prover.least_forces(held)
         for forces in (forces_under_friction(random, held) for _ in range(40 if least else 0)):
             if forces is not None:
                 spare += [forces[i] - force for i, force in least.items()]
-    assert len(spare) > 20 * cases(400)
+    assert len(spare) > 20 * n
     assert min(spare) > -1e-9
 
 

@@ -13,14 +13,7 @@ from cagepose.kernels.contact.contact_set import ContactRow
 from cagepose.kernels.contact.coulomb import coulomb_onset
 from cagepose.kernels.contact.coulomb_newton import NewtonRoom
 from cagepose.kernels.contact.metric import WRENCH
-from jit import callable_kernel, cases
-
-_nnls = callable_kernel(nonnegative_least_squares)
-_residual = callable_kernel(cone_residual)
-_onset = callable_kernel(coulomb_onset)
-
-N_PROBLEMS = 10_000
-N_ONSETS = 2_000
+from inner_kernels import as_machine_code
 
 
 def least_squares_problem(rng, number):
@@ -64,17 +57,17 @@ def solved(columns, b, passive):
     system = empty_system(n_columns)
     system.columns[:, :n_rows] = columns
     system.right_side[:n_rows] = b
-    left = _nnls(system, n_columns, passive)
+    left = nonnegative_least_squares(system, n_columns, passive)
     x = np.zeros(n_columns)
     x[passive.labels[: passive.used]] = passive.x[: passive.used]
     return left, x
 
 
-def test_nonnegative_least_squares_agrees_with_scipy():
+def test_nonnegative_least_squares_agrees_with_scipy(cases):
     """Residuals, in lengths of b and of the terms A x, to 1e-12; x itself need not be unique."""
     rng = np.random.default_rng(1)
     worst = 0.0
-    for number in range(cases(N_PROBLEMS)):
+    for number in range(cases(1000, 10_000)):
         columns, b = least_squares_problem(rng, number)
         left, x = solved(columns, b, passive_set(columns.shape[1]))
         _, expected = nnls(columns.T, b, maxiter=1000)
@@ -86,10 +79,10 @@ def test_nonnegative_least_squares_agrees_with_scipy():
     assert worst < 1e-12
 
 
-def test_a_warm_start_ends_at_the_same_residual():
+def test_a_warm_start_ends_at_the_same_residual(cases):
     """As in a run: the same columns and a load that changes a little, or altogether."""
     rng = np.random.default_rng(2)
-    for number in range(cases(N_PROBLEMS // 10)):
+    for number in range(cases(100, 1000)):
         columns, b = least_squares_problem(rng, number)
         warm = passive_set(columns.shape[1])
         for _ in range(5):
@@ -117,19 +110,17 @@ def contact_columns(rng, n_contacts):
     return np.concatenate([frames, turning], axis=2)
 
 
-def test_the_frictionless_onset_obeys_the_optimality_conditions():
+def test_the_frictionless_onset_obeys_the_optimality_conditions(cases):
     """y = b - A f with f >= 0, A' y <= 0 and f A' y = 0: the unique y of least |y|, compared with scipy's too."""
-    rng = np.random.default_rng(3)
-    write = callable_kernel(write_forces)
-    clear = callable_kernel(clear_cone)
-    for number in range(cases(N_ONSETS)):
+    rng, residual = np.random.default_rng(3), as_machine_code(cone_residual)
+    for number in range(cases(200, 2000)):
         n = int(rng.integers(1, 13))
         columns, b = contact_columns(rng, n), rng.normal(size=6)
         room = empty_record(ConeRoom)
         rows, forces = contacts_with(columns)
-        clear(room, b, WRENCH, np.linalg.norm(b))
-        left = _residual(rows, n, 0.0, b, False, room)
-        write(room, 0.0, rows, n)
+        clear_cone(room, b, WRENCH, np.linalg.norm(b))
+        left = residual(rows, n, 0.0, b, False, room)
+        write_forces(room, 0.0, rows, n)
         normals = columns[:, 0]
         y = b - normals.T @ forces[:, 0]
         scale = np.linalg.norm(b) + forces[:, 0] @ np.linalg.norm(normals, axis=1)
@@ -162,23 +153,22 @@ def coulomb_violation(columns, friction, b, forces):
     return worst / size
 
 
-def test_the_onset_with_friction_obeys_coulombs_law(capsys):
-    """2,000 random sets of 1 to 8 contacts, mu from 0.05 to 1: where nothing balances the load, forces and motion are
+def test_the_onset_with_friction_obeys_coulombs_law(capsys, cases):
+    """Random sets of 1 to 8 contacts, mu from 0.05 to 1: where nothing balances the load, forces and motion are
     found for all but a share that is named ("stalled" in a run), and obey the law to 1e-8 of the load.
     """
     rng = np.random.default_rng(4)
-    write = callable_kernel(write_forces)
-    clear = callable_kernel(clear_cone)
+    residual, onset = as_machine_code(cone_residual), as_machine_code(coulomb_onset)
     n_moves = n_unsolved = 0
     worst = 0.0
-    for _ in range(cases(N_ONSETS)):
+    for _ in range(cases(200, 2000)):
         n, friction = int(rng.integers(1, 9)), float(rng.uniform(0.05, 1.0))
         columns, b = contact_columns(rng, n), rng.normal(size=6)
         cone, y = empty_record(ConeRoom), np.zeros(6)
         rows, forces = contacts_with(columns)
-        clear(cone, b, WRENCH, np.linalg.norm(b))
-        left = _residual(rows, n, friction, b, False, cone)
-        write(cone, friction, rows, n)
+        clear_cone(cone, b, WRENCH, np.linalg.norm(b))
+        left = residual(rows, n, friction, b, False, cone)
+        write_forces(cone, friction, rows, n)
         scale = np.linalg.norm(b) + forces[:, 0] @ np.linalg.norm(columns[:, 0], axis=1)
         if left <= HELD * scale:
             balance = np.einsum("ijk,ij->k", columns, forces)
@@ -186,7 +176,7 @@ def test_the_onset_with_friction_obeys_coulombs_law(capsys):
             assert (np.linalg.norm(forces[:, 1:], axis=1) <= friction * forces[:, 0] * (1.0 + 1e-12)).all()
             continue
         n_moves += 1
-        if not _onset(rows, n, friction, b, cone, y, empty_record(NewtonRoom)):
+        if not onset(rows, n, friction, b, cone, y, empty_record(NewtonRoom)):
             n_unsolved += 1
             continue
         worst = max(worst, coulomb_violation(columns, friction, b, forces))

@@ -6,12 +6,9 @@ import numpy as np
 import pytest
 
 from cagepose.runs.quasistatic import TURN_STEP_RAD, run_quasistatic
-from jit import cases
 from quasistatic.paths import again, distance, rows_at
 from rails import rail_scene
 from random_scenes import random_scenes
-
-N_SCENES = 1500
 
 
 @pytest.mark.parametrize("metric", ["release", "drag"])
@@ -54,11 +51,11 @@ def compared(friction, wanted, seed, n_scenes):
     return np.array(distances), n_other
 
 
-def test_isolated_rests_do_not_depend_on_the_steps(capsys):
+def test_isolated_rests_do_not_depend_on_the_steps(capsys, cases):
     """Frictionless rests on six independent contacts. A run that takes another way at a fork of its path ends at
     another rest: then nothing small is expected, and the share of these is told.
     """
-    distances, n_other = compared(None, is_vertex, 5, cases(N_SCENES))
+    distances, n_other = compared(None, is_vertex, 5, cases(300, 1500))
     same = distances[distances < SAME_REST]
     with capsys.disabled():
         print(
@@ -74,9 +71,9 @@ SAME_REST = 1e-4
 """Of the size: two rests farther apart are different ones."""
 
 
-def test_what_friction_leaves_to_the_path_depends_little_on_the_steps(capsys):
+def test_what_friction_leaves_to_the_path_depends_little_on_the_steps(capsys, cases):
     """With friction an object stops where its path leads, and the path is wrong by about the step."""
-    distances, n_other = compared(0.3, lambda _: True, 6, cases(N_SCENES // 5))
+    distances, n_other = compared(0.3, lambda _: True, 6, cases(40, 300))
     with capsys.disabled():
         print(
             f"\n{len(distances)} rests with friction: with steps a quarter as long {n_other} end otherwise, half move"

@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, run
-from jit import cases
 from quasistatic.paths import RESTS, again
 from rails import rail_scene
 from random_scenes import random_scenes
 
-N_FRICTIONLESS, N_FRICTION = 300, 80
 KINDS = ["turned", "small", "large", "mirrored", "renumbered", "far"]
 
 
@@ -108,13 +106,14 @@ def is_undecided(scene, expected, rng):
     return False
 
 
-@pytest.fixture(scope="module", params=[(None, N_FRICTIONLESS), (0.3, N_FRICTION)], ids=["frictionless", "friction"])
-def decided(request):
+@pytest.fixture(scope="module", params=[(None, 60, 300), (0.3, 25, 80)], ids=["frictionless", "friction"])
+def decided(request, cases):
     """Scenes that are no ties, with their runs; and how many were ties."""
     rng = np.random.default_rng(9)
+    friction, few, many = request.param
     kept, n_ties = [], 0
-    for number, plain in enumerate(random_scenes(cases(request.param[1]), seed=21)):
-        scene = again(plain, friction=request.param[0], metric=("release", "drag")[number % 2])
+    for number, plain in enumerate(random_scenes(cases(few, many), seed=21)):
+        scene = again(plain, friction=friction, metric=("release", "drag")[number % 2])
         expected = run(scene, method="quasistatic")
         if is_undecided(scene, expected, rng):
             n_ties += 1

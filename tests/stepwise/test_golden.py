@@ -12,8 +12,8 @@ import math
 import pytest
 
 from balance import imbalance
+from cagepose.kernels.native.library import kernel_library
 from golden_runs import CASES, GOLDEN, current, golden, golden_path
-from jit import JIT_IS_OFF
 
 FORCES = ("force_normal", "force_tangential")
 IDS = [f"{path.stem}, {method}" for path, method in CASES]
@@ -65,7 +65,7 @@ SLOW = ("rail", "ladder")
 
 @pytest.mark.parametrize(("scene_path", "method"), CASES, ids=IDS)
 def test_the_scene_still_runs_as_written_down(scene_path, method):
-    if JIT_IS_OFF and scene_path.stem.startswith(SLOW):
+    if kernel_library() is None and scene_path.stem.startswith(SLOW):
         pytest.skip("takes a minute as plain Python")
     result, document = current(scene_path, method)
     found, solved = without_solved(document)

@@ -1,4 +1,4 @@
-"""Twenty thousand seeded random scenes: every run ends with a name, and nobody is ever inside.
+"""Seeded random scenes: every run ends with a name, and nobody is ever inside.
 
 The method is a heuristic: its turns run on through the balance point of the load, so many scenes end by name as
 "spins" (a full turn) or "cycling" (a swing between poses). That is the method's limit, not a numerical one, and the
@@ -21,11 +21,9 @@ from cagepose import PhaseRun, Run, Scene
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.kernels.contact.metric import Body
-from jit import JIT_IS_OFF
 from random_scenes import random_scenes
 from stepwise_run import run
 
-N_SCENES = 20_000
 VERDICTS = {"stable", "escapes", "spins", "cycling", "limit"}
 
 
@@ -73,10 +71,10 @@ def ball(scene: Scene) -> Body:
     return body
 
 
-def test_random_scenes_end_by_name_and_nobody_is_ever_inside(capsys, monkeypatch):
+def test_random_scenes_end_by_name_and_nobody_is_ever_inside(capsys, monkeypatch, cases):
     # The inertia of a union of boxes takes longer than its run, and no balance hangs on it.
     monkeypatch.setattr("cagepose.runs.judge.body_of", ball)
-    n_scenes = 60 if JIT_IS_OFF else N_SCENES  # with their proofs
+    n_scenes = cases(1000, 20_000)
     verdicts: collections.Counter[str] = collections.Counter()
     worst, most_events = 0.0, 0
     for number, scene in enumerate(random_scenes(n_scenes, seed=20261121)):

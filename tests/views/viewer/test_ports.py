@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import http.client
-import socket
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 from cagepose.views.viewer.server import ViewServer, open_server
-
-HOST = "127.0.0.1"
+from driving import HOST, free_port
 
 
 @contextmanager
@@ -23,11 +21,6 @@ def serving(port: int) -> Iterator[ViewServer]:
         finally:
             server.shutdown()
             thread.join()
-
-
-def free_port() -> int:
-    with socket.create_server((HOST, 0)) as taken:
-        return int(taken.getsockname()[1])
 
 
 def test_a_viewer_that_ended_leaves_its_port_to_the_next_one_while_a_page_is_still_open():

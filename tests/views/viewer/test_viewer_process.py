@@ -17,10 +17,9 @@ from urllib.request import urlopen
 import pytest
 
 from cagepose.views.viewer.server import open_server
-from driving import wait_until
+from driving import HOST, free_port, wait_until
 
 RAIL = Path(__file__).resolve().parents[3] / "scenes" / "rail-pitch.yaml"
-HOST = "127.0.0.1"
 ENDED = (0, "\nended\n", "")
 """Exit code, and what a viewer says after its address until Ctrl-C has ended it."""
 
@@ -53,11 +52,6 @@ def viewer(*options: str) -> Iterator[Viewer]:
         process.communicate()
 
 
-def free_port() -> int:
-    with socket.create_server((HOST, 0)) as server:
-        return server.getsockname()[1]
-
-
 def post_and_hang_up(address: str) -> None:
     """Ask for a run and reset the connection at once, as a tab does that is closed while its slider moves."""
     port = int(address.rstrip("/").rsplit(":", 1)[1])
@@ -70,7 +64,7 @@ def post_and_hang_up(address: str) -> None:
 
 
 def test_a_taken_port_gives_the_next_free_one_and_says_so():
-    with socket.create_server((HOST, 0)) as taken:
+    with socket.create_server((HOST, free_port())) as taken:
         port = taken.getsockname()[1]
         with viewer("--port", str(port)) as shown:
             assert shown.said[0] == f"port {port} is taken; using {shown.address.rstrip('/').rsplit(':', 1)[1]}\n"
@@ -100,7 +94,7 @@ def test_a_closed_tab_leaves_the_viewer_running_and_ctrl_c_ends_it_cleanly(watch
 
 def test_where_no_port_is_free_the_ports_tried_are_named(monkeypatch):
     monkeypatch.setattr("cagepose.views.viewer.server.PORTS_TRIED", 1)
-    with socket.create_server((HOST, 0)) as taken:
+    with socket.create_server((HOST, free_port())) as taken:
         port = taken.getsockname()[1]
         with pytest.raises(OSError, match=f"no port from {port} to {port} is free; name another"):
             open_server("", None, HOST, port)

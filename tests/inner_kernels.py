@@ -1,0 +1,82 @@
+"""Inner kernels as machine code, for tests that ask them thousands of times: as plain Python the search for another
+onset takes seconds, and Coulomb's law up to two.
+
+They come from a library of their own, which is built once for each state of the kernels and kept in ``build/``; that
+takes some 15 s of one processor. As a program, ``inner_kernels.py PATH`` builds it.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from cagepose.kernels.native import kernel
+from cagepose.kernels.native.library import LIBRARY, Library, kernel_library, sources_hash
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
+    """Yield each kernel and arguments of the types that tests call it with."""
+    import numpy as np
+
+    from cagepose.kernels.algebra.least_squares import empty_system
+    from cagepose.kernels.algebra.record import empty_record
+    from cagepose.kernels.contact.cone import ConeRoom, cone_residual
+    from cagepose.kernels.contact.contact_set import empty_contact_set
+    from cagepose.kernels.contact.coulomb import coulomb_onset
+    from cagepose.kernels.contact.coulomb_newton import NewtonRoom
+    from cagepose.kernels.stability.uniqueness import N_COLUMNS, ModesRoom, other_onset
+
+    contacts, load = empty_contact_set(1), np.zeros(7)
+    cone, newton, modes = empty_record(ConeRoom), empty_record(NewtonRoom), empty_record(ModesRoom)
+    yield cone_residual, (contacts.rows, 1, 0.0, load, False, cone)
+    yield coulomb_onset, (contacts.rows, 1, 0.0, load, cone, load, newton)
+    yield other_onset, (contacts, 0.0, load, modes, newton, empty_system(N_COLUMNS))
+
+
+def as_machine_code(inner: Any) -> Any:
+    """A kernel of `entries` as machine code; as plain Python where all kernels are."""
+    called = kernel.Entry(inner)
+    called.library = _library()
+    return called
+
+
+@cache
+def _library() -> Library | None:
+    native = kernel_library()
+    if native is None:
+        return None
+    digest = hashlib.sha256(sources_hash().encode() + native.level.encode())
+    for source in (Path(__file__), *sorted((ROOT / "build_kernels").glob("*.*"))):
+        digest.update(source.read_bytes())
+    path = ROOT / "build" / "inner_kernels" / f"{digest.hexdigest()[:16]}{LIBRARY.suffix}"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # tests run in several processes
+        if not path.exists():
+            environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])}
+            subprocess.run([sys.executable, __file__, str(path), native.level], env=environment, check=True)
+    return Library(path, native.level)
+
+
+def _build(target: Path, level: str) -> None:
+    """Build as `build_kernels.build.build` does, other entries and one level of processors."""
+    os.environ.update(NUMBA_OPT="0", NUMBA_DISABLE_INTEL_SVML="1")
+    from build_kernels import link
+    from build_kernels.compile import compile_kernel, module_of
+
+    kernel.compiler = compile_kernel
+    link.LEVELS = (level,)
+    link.link(module_of(entries()), sources_hash(), target)
+
+
+if __name__ == "__main__":
+    _build(Path(sys.argv[1]), sys.argv[2])
