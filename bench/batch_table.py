@@ -30,7 +30,6 @@ def batch_rows() -> Iterator[Row]:
     """Measure `cagepose.run_many` over growing batches, on one thread and on two in turn."""
     scene = rail_scenes()[0]
     for method in METHODS:
-        run_batch(scene, method, misalignments(8), 1)  # compiles
         sizes = [size for size in BATCHES if size <= MOST_RUNS[method]]
         times_s: dict[int, list[float]] = {threads: [] for threads in THREADS}
         for size in sizes:

@@ -25,7 +25,7 @@ BUDGET_S = 0.3
 
 
 def growth_rows() -> Iterator[Row]:
-    """Measure the compiled solve over growing scenes.
+    """Measure the machine code's part of a run over growing scenes.
 
     Each curve's exponent stands in its last row. It is fitted to the fastest runs: on a busy machine the long ones have
     to wait more often than the short ones, so medians would bend the curve.
@@ -52,7 +52,7 @@ def _curve(kind: Kind, method: str, grown: str, sizes: Sequence[tuple[int, int]]
         row = Row(
             "growth",
             f"{kind} table, {grown}",
-            engine_name(method, "-solve"),
+            engine_name(method),
             statistics.median(times_s),
             details={
                 "fastest_us": fastest_s[-1] * 1e6,
