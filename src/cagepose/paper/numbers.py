@@ -48,7 +48,7 @@ def _general(cases: Mapping[str, CaseRuns]) -> list[Row]:
     return [
         _row(
             cases, "Abstract", "time of a run, at most", Printed("0.6", "s"), lambda runs: runs.slowest_s, None,
-            "The slowest of our four cases, median of its runs on this machine; compiling is not counted.", "measured"),
+            "The slowest of our four cases, median of its runs on this machine.", "measured"),
         _row(
             cases, "III.D", "small turn of the stability test", Printed("0.01", "deg"),
             lambda runs: BLOCKED_ANGLE_RAD if runs.sample.method == PAPER_METHOD else None, math.pi / 10000.0,
@@ -82,7 +82,7 @@ def _of_the_sample(cases: Mapping[str, CaseRuns]) -> list[Row]:
         ask("A-3: third contact", Printed("C3"), lambda run: _hit(run, "A-3"), "C3",
             "The point that the side at low y meets."),
         ask("A-4: verdict", Printed("stable"), ending, None,
-            "No turn about two of C1, C3, C4 is free. A balance of forces it is only with friction of 0.457 or more."
+            "No turn about two of C1, C3, C4 is free. It is a balance of forces only with friction of 0.457 or more."
             " Without friction the cube tips over C1 to a pitch of -45 deg, on C1 and C4 alone."),
         ask("centre of gravity over the triangle C1 C3 C4", Printed("inside"), _place_of_load, None,
             "Seen from above, 1.07 mm from the nearest side."),
@@ -115,7 +115,7 @@ def _of_the_pitch_case(cases: Mapping[str, CaseRuns]) -> list[Row]:
             "not derivable"),
         _row(
             cases, "IV.B", "time of the run", Printed("0.554", "s"), lambda runs: runs.pitch_s, None,
-            "Median of our runs of this case on this machine; compiling is not counted.", "measured"),
+            "Median of our runs of this case on this machine.", "measured"),
     ]  # fmt: skip
 
 
