@@ -1,8 +1,8 @@
 """cagepose as an engine, measured two ways that must not be confused.
 
 - ``cagepose-METHOD``: the one call of machine code that a run is: the method's steps from the start pose, the proof of
-  each phase's end, and all that a `Run` reads, written down. The scene is taken apart beforehand. This is what peers are
-  compared with: their models are built beforehand too.
+  each phase's end, and all that a `Run` reads, written down. The scene is taken apart beforehand. This is what peers
+  are compared with: their models are built beforehand too.
 - ``cagepose-METHOD-call``: `cagepose.run` as users call it, from a scene to a `Run` of which verdict, pose, events,
   contacts and forces are read.
 """
@@ -29,7 +29,7 @@ def engine_name(method: str, part: str = "") -> str:
 
 def measure(scene: Scene, method: str, budget_s: float) -> tuple[dict[str, tuple[float, float]], Answer]:
     """Return (median wall, median CPU) seconds of each of `PARTS`, and the answer."""
-    calls = {"": native_call(scene, method), "-call": partial(read_run, scene, method)}
+    calls: dict[str, Callable[[], object]] = {"": native_call(scene, method), "-call": partial(read_run, scene, method)}
     times_s = {
         part: (median_s(call, budget_s / 4.0), median_cpu_s(call, budget_s / 4.0)) for part, call in calls.items()
     }

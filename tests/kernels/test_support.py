@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 import pytest
-from cagepose.kernels.trace import NONE, TURN
 from numpy.testing import assert_allclose
 
 from cagepose import Box, Cage, Object, Pose
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
 from cagepose.kernels.collision.geometry import empty_placement, place_object
 from cagepose.kernels.collision.turn import key_of_angle
+from cagepose.kernels.outcome.trace import NONE, TURN
 from cagepose.kernels.stepwise.support import PointLoad, SupportRules, driven_axis, pairwise_stability
 from cagepose.model.geometry import scene_geometry
 

@@ -8,13 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from cagepose.kernels.batch.stepwise import stepwise_runs
 
 import cagepose
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, SceneError, Variation, run, run_many
 from cagepose.model.methods import METHODS
 from cagepose.runs import many
-from jit import JIT_IS_OFF, cases
 from rails import rail_scene
 
 MM = 1e-3
@@ -88,7 +86,7 @@ def assert_same(found: many.Runs, row: int, scene: Scene, method: str) -> None:
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("name", VARIED)
 def test_each_thing_that_varies_gives_the_runs_of_scenes_built_one_by_one(name: str, method: str) -> None:
-    values = VARIED[name](np.random.default_rng(3), cases(8))
+    values = VARIED[name](np.random.default_rng(3), 8)
     found = run_many(block(), Variation(**{name: values}), method=method, threads=2)
     assert len(found) == len(values)
     assert np.isfinite(found.position_m[:, 1]).all(axis=1).mean() > 0.5  # the push matters
@@ -117,7 +115,7 @@ def test_weight_and_force_count_as_in_a_scene_of_its_own(
 @pytest.mark.parametrize("method", METHODS)
 def test_all_that_varies_at_once_and_in_any_order_and_number_of_threads(method: str) -> None:
     rng = np.random.default_rng(4)
-    n = cases(40)
+    n = 40
     values = {name: draw(rng, n) for name, draw in VARIED.items()}
     found = run_many(block(), Variation(**values), method=method, threads=1)
     order = rng.permutation(n)
@@ -219,11 +217,13 @@ def test_calls_that_mean_nothing_are_refused() -> None:
     assert cagepose.run_many is run_many
 
 
-@pytest.mark.skipif(JIT_IS_OFF, reason="nothing is compiled")
-def test_nothing_is_compiled_again_whatever_varies() -> None:
-    """Arrays that are read-only, or not in C order, would be other types to the compiler."""
-    run_many(block(), method="stepwise")
-    values = {name: draw(np.random.default_rng(5), 2) for name, draw in VARIED.items()}
-    for name, value in values.items():
-        run_many(block(), Variation(**{name: np.asfortranarray(value)}), method="stepwise")
-    assert len(stepwise_runs.loaded) == 1
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("name", VARIED)
+def test_arrays_that_machine_code_does_not_take_are_copied(name: str, method: str) -> None:
+    """Columns first, and read-only: machine code takes rows first."""
+    values = VARIED[name](np.random.default_rng(5), 2)
+    otherwise = np.asfortranarray(values)
+    otherwise.flags.writeable = False
+    expected, found = (run_many(block(), Variation(**{name: given}), method=method) for given in (values, otherwise))
+    assert np.array_equal(found.position_m, expected.position_m)
+    assert np.array_equal(found.quaternion_wxyz, expected.quaternion_wxyz)

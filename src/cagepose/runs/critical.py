@@ -18,4 +18,4 @@ def with_critical_friction(run: Run) -> Run:
     for number, phase in enumerate(run.phases):
         least = critical_friction_at(run.scene, phase.pose, number) if phase.verdict in AT_REST else None
         phases.append(replace(phase, proof=replace(phase.proof, critical_friction=least)))
-    return Run(run.scene, run.method, tuple(phases), run.warnings, run.solve_s)
+    return replace(run, phases=tuple(phases))

@@ -8,7 +8,7 @@ from cagepose.errors import CageposeError
 from cagepose.kernels.outcome.records import empty_outcome
 from cagepose.runs.cases import cases_of, part_of
 from cagepose.runs.run import Event, Run
-from cagepose.runs.solved import SolvedRun, read_events, written
+from cagepose.runs.solved import Solution, read_events, written
 
 
 def replay_event(run: Run, phase: int, event: int, *, in_python: bool = False) -> Event:
@@ -32,12 +32,13 @@ def replay_event(run: Run, phase: int, event: int, *, in_python: bool = False) -
     IndexError
         There is no such phase or event.
     """
-    if not isinstance(run, SolvedRun):
+    solution = vars(run).get("solution")
+    if not isinstance(solution, Solution):
         raise CageposeError("this run was loaded from a file, which keeps no states; run its scene again")
-    scene, outcome = run.scene, run.outcome
-    first_step, n_steps = run.steps_of(phase, event)
+    scene, outcome = run.scene, solution.outcome
+    first_step, n_steps = solution.steps_of(phase, event)
     steps: Any = outcome.steps
-    method, repeated = run.solved_by, empty_outcome(1, n_steps, len(scene.cage.names), 1)
+    method, repeated = solution.method, empty_outcome(1, n_steps, len(scene.cage.names), 1)
     kernel = method.repeat.python if in_python else method.repeat
     kernel(
         phase,
@@ -45,8 +46,8 @@ def replay_event(run: Run, phase: int, event: int, *, in_python: bool = False) -
         outcome.order[first_step],
         n_steps,
         part_of(scene),
-        cases_of(scene, run.friction),
-        run.rules,
+        cases_of(scene, solution.friction),
+        solution.rules,
         method.workspace(scene.geometry, n_steps),
         repeated,
     )

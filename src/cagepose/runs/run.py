@@ -209,6 +209,15 @@ class Run:
     warnings: tuple[str, ...]
     solve_s: float
 
+    def __getattr__(self, name: str) -> object:
+        """Read phases and warnings from the solution, once, when they are first asked for."""
+        solution = vars(self).get("solution")
+        if solution is None or name not in ("phases", "warnings"):
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+        found: object = solution.phases() if name == "phases" else solution.warnings(self.phases)
+        vars(self)[name] = found
+        return found
+
     @property
     def verdict(self) -> Verdict:
         """The verdict of the last phase that was run."""

@@ -13,7 +13,7 @@ from cagepose.model.scene import Scene
 from cagepose.runs.cases import prepared
 from cagepose.runs.methods import Method, chosen_method
 from cagepose.runs.run import Run
-from cagepose.runs.solved import SolvedRun, written
+from cagepose.runs.solved import Solution, written
 
 CONTACTS_PER_POINT = 3
 """Contacts that an outcome has room for at first, for each point: a corner of a box has three faces."""
@@ -51,7 +51,7 @@ def run_with(scene: Scene, method: Method, rules: Any) -> Run:
         fits = method.run(part, cases, rules, room.work, room.outcome_slots)
         solve_s = time.perf_counter() - began
         if fits:
-            return SolvedRun(scene, method, rules, friction, written(room.outcome), solve_s)
+            return Solution(scene, method, rules, friction, written(room.outcome)).run(solve_s)
         n_contacts *= 2
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import cached_property
 from itertools import compress
 from typing import Any, TypeVar
 
@@ -20,27 +19,29 @@ from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run, Verdict
 T = TypeVar("T")
 
 
-class SolvedRun(Run):
-    """A run that reads its phases from an outcome when they are first asked for."""
+class Solution:
+    """What a kernel has written of a run: a `Run` reads from it when it is asked.
 
-    solved_by: Method
-    rules: Any
-    friction: float
-    outcome: Outcome
+    Attributes
+    ----------
+    scene, method, rules, friction
+        What was run, by which method with which numbers, and with which coefficient of friction.
+    outcome
+        Everything that the kernel gave.
+    """
 
-    def __init__(
-        self, scene: Scene, method: Method, rules: Any, friction: float, outcome: Outcome, solve_s: float
-    ) -> None:
-        vars(self).update(scene=scene, method=method.name, solve_s=solve_s)
-        vars(self).update(solved_by=method, rules=rules, friction=friction, outcome=outcome)
+    def __init__(self, scene: Scene, method: Method, rules: Any, friction: float, outcome: Outcome) -> None:
+        self.scene, self.method, self.rules, self.friction, self.outcome = scene, method, rules, friction, outcome
 
-    @cached_property
+    def run(self, solve_s: float) -> Run:
+        """Return the run, whose phases and warnings are read when they are first asked for."""
+        return _made(Run, scene=self.scene, method=self.method.name, solve_s=solve_s, solution=self)
+
     def phases(self) -> tuple[PhaseRun, ...]:
-        return _read_phases(self.scene, self.solved_by, self.outcome)
+        return _read_phases(self.scene, self.method, self.outcome)
 
-    @cached_property
-    def warnings(self) -> tuple[str, ...]:
-        return tuple(self.solved_by.warnings(self.scene, self.phases, self.friction))
+    def warnings(self, phases: Sequence[PhaseRun]) -> tuple[str, ...]:
+        return tuple(self.method.warnings(self.scene, phases, self.friction))
 
     def steps_of(self, phase: int, event: int) -> tuple[int, int]:
         """Return the first step of an event, and how many it is made of.
