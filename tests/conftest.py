@@ -1,4 +1,4 @@
-"""How many random cases tests draw."""
+"""How many random cases tests draw, and what they say of them."""
 
 from __future__ import annotations
 
@@ -28,6 +28,25 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     drawing = [item for item in items if "cases" in getattr(item, "fixturenames", ())]
     config.hook.pytest_deselected(items=[item for item in items if item not in set(drawing)])
     items[:] = drawing
+
+
+@pytest.fixture
+def say(record_property: Callable[[str, object], None]) -> Callable[[str], None]:
+    """Say what people want to see of a test: below all tests, whichever process it ran in."""
+    return lambda text: record_property("said", text)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    reports = [report for reports in terminalreporter.stats.values() for report in reports]
+    said = {
+        (report.nodeid, text)
+        for report in reports
+        for name, text in getattr(report, "user_properties", ())
+        if name == "said"
+    }
+    if said:
+        terminalreporter.section("random cases")
+        terminalreporter.write_line("\n".join(text for _, text in sorted(said)))
 
 
 @pytest.fixture(scope="session")

@@ -75,8 +75,8 @@ def random_scene(rng: np.random.Generator) -> Scene:
     return Scene(held, Cage(points), loads, name="random")
 
 
-def random_scenes(n_scenes: int, seed: int) -> Iterator[Scene]:
-    """Yield ``n_scenes`` scenes; the same ones for the same seed.
+def random_scenes(n_scenes: float, seed: int) -> Iterator[Scene]:
+    """Yield ``n_scenes`` scenes, or without end; the same ones for the same seed.
 
     A draw that is refused at the door (a point in the seam between two flush boxes) is drawn again.
     """

@@ -96,7 +96,7 @@ class Screw(Turn):
 def test_first_contact_is_neither_late_nor_early(motion_kind, cases):
     rng = np.random.default_rng(20261121)
     n_met = n_blocked = 0
-    for case in range(cases(400, 3000)):
+    for case in range(cases(1000, 3000)):
         half = rng.uniform(0.1, 1.0, 3)
         point = random_start(rng, half)
         motion = motion_kind(rng)
@@ -123,7 +123,7 @@ def test_first_contact_is_neither_late_nor_early(motion_kind, cases):
 def test_a_turn_is_cut_short_only_where_nothing_is_met_before(cases):
     rng = np.random.default_rng(8)
     n_cut = n_blocked = 0
-    for _ in range(cases(400, 3000)):
+    for _ in range(cases(1000, 3000)):
         half = rng.uniform(0.1, 1.0, 3)
         point = random_start(rng, half)
         motion = Turn(rng)
@@ -143,7 +143,7 @@ def test_a_turn_is_cut_short_only_where_nothing_is_met_before(cases):
 def test_a_point_that_starts_inside_the_tolerance_is_never_pushed_deeper(motion_kind, cases):
     rng = np.random.default_rng(7)
     n_free = 0
-    for case in range(cases(200, 1500)):
+    for case in range(cases(500, 1500)):
         half = rng.uniform(0.1, 1.0, 3)
         point = rng.uniform(-1.0, 1.0, 3) * half
         axis = rng.integers(3)

@@ -9,9 +9,9 @@ import pytest
 
 from cagepose import run
 from quasistatic.paths import VERDICTS, again, depth, path_of, potential
+from quasistatic.random_runs import random_run
 from random_scenes import random_scenes
 
-SEED = 20261121
 RISE = 1e-12
 """Of total force times size: what a potential may rise by, its rounding over some thousand metres of sums. A rest is
 put on its faces at last: out of them, where a point has sunk in by part of the touch tolerance, against the forces."""
@@ -28,9 +28,9 @@ def lifted(scene, load, phase):
     return carried / total * scene.tolerances.touch
 
 
-def checked(scene, number, verdicts):
-    """Run, check every pose of the path; return (greatest rise of the potential, greatest depth), relative."""
-    result = run(scene, method="quasistatic")
+def checked(result, number, verdicts):
+    """Check every pose of the path; return (greatest rise of the potential, greatest depth), relative."""
+    scene = result.scene
     verdicts[result.verdict] += 1
     assert result.verdict in VERDICTS
     rise, deepest = 0.0, -np.inf
@@ -50,20 +50,21 @@ def checked(scene, number, verdicts):
 @pytest.mark.parametrize(
     ("friction", "few", "many", "nameless_share"), [(None, 200, 1500, 0.001), (0.3, 100, 400, 0.02)]
 )
-def test_random_scenes_end_by_name_downhill_and_outside(friction, few, many, nameless_share, capsys, cases):
+def test_random_scenes_end_by_name_downhill_and_outside(friction, few, many, nameless_share, say, cases):
     """``nameless_share``: runs that end "stalled" or "limit", no answer, at most; measured, see the printed line."""
     n_scenes = cases(few, many)
     verdicts: collections.Counter[str] = collections.Counter()
     rises, depths = [], []
-    for number, scene in enumerate(random_scenes(n_scenes, SEED)):
-        metric = ("release", "drag")[number % 2]
-        rise, deepest = checked(again(scene, friction=friction, metric=metric), number, verdicts)
+    for number in range(n_scenes):
+        result = random_run(number, friction)
+        rise, deepest = checked(result, number, verdicts)
         rises.append(rise)
-        depths.append(deepest / scene.tolerances.touch)
+        depths.append(deepest / result.scene.tolerances.touch)
     shares = ", ".join(f"{name} {count / n_scenes:.2%}" for name, count in verdicts.most_common())
-    with capsys.disabled():
-        print(f"\n{n_scenes} random scenes, friction {friction or 0.0:g}: {shares};")
-        print(f"greatest rise of the potential {max(rises):.1e}, deepest point {max(depths):.1e} touch tolerances")
+    say(
+        f"{n_scenes} random scenes, friction {friction or 0.0:g}: {shares}; greatest rise of the potential"
+        f" {max(rises):.1e}, deepest point {max(depths):.1e} touch tolerances"
+    )
     assert max(depths) <= 1.0, f"scene {int(np.argmax(depths))}"
     assert max(rises) <= RISE, f"scenes {np.nonzero(np.array(rises) > RISE)[0].tolist()}"
     assert verdicts["stalled"] + verdicts["limit"] <= nameless_share * n_scenes

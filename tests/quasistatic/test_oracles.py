@@ -153,7 +153,7 @@ def coulomb_violation(columns, friction, b, forces):
     return worst / size
 
 
-def test_the_onset_with_friction_obeys_coulombs_law(capsys, cases):
+def test_the_onset_with_friction_obeys_coulombs_law(say, cases):
     """Random sets of 1 to 8 contacts, mu from 0.05 to 1: where nothing balances the load, forces and motion are
     found for all but a share that is named ("stalled" in a run), and obey the law to 1e-8 of the load.
     """
@@ -180,8 +180,7 @@ def test_the_onset_with_friction_obeys_coulombs_law(capsys, cases):
             n_unsolved += 1
             continue
         worst = max(worst, coulomb_violation(columns, friction, b, forces))
-    with capsys.disabled():
-        print(f"\n{n_moves} onsets with friction: {n_unsolved} unsolved; greatest violation {worst:.1e} of the load")
+    say(f"{n_moves} onsets with friction: {n_unsolved} unsolved; greatest violation {worst:.1e} of the load")
     assert worst <= 1e-8
     assert n_unsolved <= UNSOLVED_SHARE * n_moves
 

@@ -7,8 +7,8 @@ import pytest
 
 from cagepose.runs.quasistatic import TURN_STEP_RAD, run_quasistatic
 from quasistatic.paths import again, distance, rows_at
+from quasistatic.random_runs import random_run
 from rails import rail_scene
-from random_scenes import random_scenes
 
 
 @pytest.mark.parametrize("metric", ["release", "drag"])
@@ -33,35 +33,33 @@ def is_vertex(result):
     return len(rows) >= 6 and np.linalg.svd(wrenches, compute_uv=False)[5] > 1e-3
 
 
-def compared(friction, wanted, seed, n_scenes):
+def compared(friction, wanted, n_scenes):
     """Distance of the ends with whole and quarter steps, in sizes, of the scenes whose rest is wanted; and how many
     ended otherwise, by verdict.
     """
     distances, n_other = [], 0
-    for number, plain in enumerate(random_scenes(n_scenes, seed)):
-        scene = again(plain, friction=friction, metric=("release", "drag")[number % 2])
-        coarse = run_quasistatic(scene)
+    for number in range(n_scenes):
+        coarse = random_run(number, friction)
         if coarse.verdict not in ("rests", "may rest") or not wanted(coarse):
             continue
-        fine = run_quasistatic(scene, TURN_STEP_RAD / 4.0)
+        fine = run_quasistatic(coarse.scene, TURN_STEP_RAD / 4.0)
         if fine.verdict != coarse.verdict:
             n_other += 1
         else:
-            distances.append(distance(scene, coarse.pose, fine.pose))
+            distances.append(distance(coarse.scene, coarse.pose, fine.pose))
     return np.array(distances), n_other
 
 
-def test_isolated_rests_do_not_depend_on_the_steps(capsys, cases):
+def test_isolated_rests_do_not_depend_on_the_steps(say, cases):
     """Frictionless rests on six independent contacts. A run that takes another way at a fork of its path ends at
     another rest: then nothing small is expected, and the share of these is told.
     """
-    distances, n_other = compared(None, is_vertex, 5, cases(300, 1500))
+    distances, n_other = compared(None, is_vertex, cases(300, 1500))
     same = distances[distances < SAME_REST]
-    with capsys.disabled():
-        print(
-            f"\n{len(distances) + n_other} rests on six contacts: {len(distances) - len(same) + n_other} ended"
-            f" elsewhere with shorter steps; the others moved by at most {same.max(initial=0.0):.1e} of the size"
-        )
+    say(
+        f"{len(distances) + n_other} rests on six contacts: {len(distances) - len(same) + n_other} ended"
+        f" elsewhere with shorter steps; the others moved by at most {same.max(initial=0.0):.1e} of the size"
+    )
     assert len(same) >= 5
     assert same.max() <= 1e-8 * 1e-3  # a play of a thousandth of the size
     assert len(distances) - len(same) + n_other <= 0.1 * (len(distances) + n_other)
@@ -71,13 +69,12 @@ SAME_REST = 1e-4
 """Of the size: two rests farther apart are different ones."""
 
 
-def test_what_friction_leaves_to_the_path_depends_little_on_the_steps(capsys, cases):
+def test_what_friction_leaves_to_the_path_depends_little_on_the_steps(say, cases):
     """With friction an object stops where its path leads, and the path is wrong by about the step."""
-    distances, n_other = compared(0.3, lambda _: True, 6, cases(40, 300))
-    with capsys.disabled():
-        print(
-            f"\n{len(distances)} rests with friction: with steps a quarter as long {n_other} end otherwise, half move"
-            f" by less than {np.median(distances):.1e} of the size, nine of ten by less than"
-            f" {np.quantile(distances, 0.9):.1e}, the worst by {distances.max():.1e}"
-        )
+    distances, n_other = compared(0.3, lambda _: True, cases(40, 300))
+    say(
+        f"{len(distances)} rests with friction: with steps a quarter as long {n_other} end otherwise, half move"
+        f" by less than {np.median(distances):.1e} of the size, nine of ten by less than"
+        f" {np.quantile(distances, 0.9):.1e}, the worst by {distances.max():.1e}"
+    )
     assert np.median(distances) <= 1e-3

@@ -59,7 +59,7 @@ def random_case(random: np.random.Generator) -> Held:
 
 
 def test_what_it_says_moves_has_no_balance_and_its_twist_shows_it(
-    judge: Judge, cases: Callable[[int, int], int]
+    judge: Judge, cases: Callable[[int, int], int], say: Callable[[str], None]
 ) -> None:
     random, n_moving, n_sure = np.random.default_rng(0), 0, 0
     n_cases = cases(400, 4000)
@@ -75,7 +75,7 @@ def test_what_it_says_moves_has_no_balance_and_its_twist_shows_it(
         if judge.left(case, case.friction) > 1e-3 and judge.left(case, WIDER * case.friction) > 1e-3:
             n_moving += 1
             n_sure += is_sure
-    print(f"\n{n_moving} loads that nothing balances, not even with wider cones: {n_sure} of them shown")
+    say(f"{n_moving} loads that nothing balances, not even with wider cones: {n_sure} of them shown")
     assert n_moving > n_cases // 20
     assert n_sure > 0.95 * n_moving
 

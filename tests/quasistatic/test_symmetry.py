@@ -123,7 +123,7 @@ def decided(request, cases):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_random_scene_seen_otherwise_ends_alike(decided, kind, capsys):
+def test_a_random_scene_seen_otherwise_ends_alike(decided, kind, say):
     """The same verdict in every phase, and the same rest: to 1e-8 of the size without friction. With friction a path
     ends where the forces first balance, to 1e-10 of them; where that changes little along the path, its end is as much
     less sure.
@@ -143,8 +143,7 @@ def test_a_random_scene_seen_otherwise_ends_alike(decided, kind, capsys):
             worst = max(worst, distance)
             if distance > alike:
                 differ.append((number, distance))
-    with capsys.disabled():
-        print(f"\n{kind}: {len(kept)} scenes, {n_rests} rests, apart by at most {worst:.1e}; {n_ties} ties left out")
+    say(f"{kind}: {len(kept)} scenes, {n_rests} rests, apart by at most {worst:.1e}; {n_ties} ties left out")
     assert not differ
     assert n_rests >= 5
     assert n_ties <= TIES_SHARE * (n_ties + len(kept))

@@ -71,7 +71,7 @@ def ball(scene: Scene) -> Body:
     return body
 
 
-def test_random_scenes_end_by_name_and_nobody_is_ever_inside(capsys, monkeypatch, cases):
+def test_random_scenes_end_by_name_and_nobody_is_ever_inside(say, monkeypatch, cases):
     # The inertia of a union of boxes takes longer than its run, and no balance hangs on it.
     monkeypatch.setattr("cagepose.runs.judge.body_of", ball)
     n_scenes = cases(1000, 20_000)
@@ -92,10 +92,11 @@ def test_random_scenes_end_by_name_and_nobody_is_ever_inside(capsys, monkeypatch
         worst = max(worst, depth)
         if result.verdict in ("spins", "cycling"):
             assert swings_past_its_balance(result), f"scene {number}: {result.verdict} without a swing"
-    with capsys.disabled():
-        shares = ", ".join(f"{name} {count / n_scenes:.1%}" for name, count in verdicts.most_common())
-        print(f"\n{n_scenes} random scenes: {shares};")
-        print(f"at most {most_events} events in a phase, deepest point {worst:.1e} of the scene's size")
+    shares = ", ".join(f"{name} {count / n_scenes:.1%}" for name, count in verdicts.most_common())
+    say(
+        f"{n_scenes} random scenes, stepwise: {shares}; at most {most_events} events in a phase, deepest point"
+        f" {worst:.1e} of the scene's size"
+    )
     assert verdicts["limit"] <= 0.0005 * n_scenes
 
 
