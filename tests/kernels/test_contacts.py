@@ -3,22 +3,44 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from cagepose import Box, Cage, Object, Pose
-from cagepose.kernels.collision.contacts import contact_rows, deepest_boxes
+from cagepose.kernels.algebra.record import empty_record
+from cagepose.kernels.collision.contacts import deepest_boxes, is_near_edge
+from cagepose.kernels.collision.geometry import empty_placement, place_object
+from cagepose.kernels.contact.contact_set import empty_contact_set, find_contacts
+from cagepose.kernels.contact.metric import Body, frame_at
 from cagepose.model.geometry import object_seams, scene_geometry
 
 TOUCH = 1e-9
+
+
+class Rows(NamedTuple):
+    points: np.ndarray
+    boxes: np.ndarray
+    normals_world: np.ndarray
+    gaps: np.ndarray
+    near_edge: np.ndarray
+
+
 STILL = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 
 
 def rows_of(boxes, points, pose=STILL, touch=TOUCH):
     held = Object(boxes)
-    return contact_rows(scene_geometry(held, Cage(points), object_seams(held, touch).bridges), *pose, touch)
+    geometry = scene_geometry(held, Cage(points), object_seams(held, touch).bridges)
+    placement, contacts, body = empty_placement(geometry), empty_contact_set(12 * len(points)), empty_record(Body)
+    body.axes_object[:], body.radii[:] = np.eye(3), 1.0
+    place_object(geometry, *pose, placement)
+    assert find_contacts(geometry, placement, pose[0], frame_at(body, pose[1]), touch, contacts)
+    rows = contacts.rows[: contacts.used[0]]
+    near_edge = [is_near_edge(geometry, placement, row.box, row.point, row.axis, touch) for row in rows]
+    return Rows(rows["point"], rows["box"], rows["normal"], rows["gap"], np.array(near_edge, dtype=bool))
 
 
 def normals(rows):

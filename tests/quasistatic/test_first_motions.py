@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, run
-from cagepose.runs.quasistatic import run_quasistatic
-from cagepose.runs.screw_between import motion_between
+from cagepose.runs.run import motion_between
 from quasistatic.paths import RESTS, path_of
+from quasistatic.steps import run_with_steps
 
 MM = 1e-3
 GRAVITY = Load("gravity", gravity=(0, 0, -1))
@@ -40,7 +40,7 @@ def test_a_released_rod_turns_about_the_axis_of_its_inertia(c_mm, d_mm, metric):
     spin = normal_force * np.array([d_mm / kx2, -c_mm / ky2, 0.0])
     per_radian_mm = (normal_force - 1.0) / np.linalg.norm(spin)
 
-    result = run_quasistatic(rod_on_a_point(c_mm, d_mm, metric), turn_step_rad=1e-6)
+    result = run_with_steps(rod_on_a_point(c_mm, d_mm, metric), turn_step_rad=1e-6)
     first = result.phases[0].events[0]
     motion = motion_between(result.phases[0].start_pose, first.path[0], np.zeros(3), result.scene.size_m)
     assert motion.axis_world == pytest.approx(spin / np.linalg.norm(spin), abs=1e-5)
@@ -59,7 +59,7 @@ def test_a_sticking_point_turns_it_about_the_inertia_at_the_point(c_mm, d_mm, me
     r = np.array([-c_mm, -d_mm, 1.0])
     spin = np.linalg.solve(inertia + r @ r * np.eye(3) - np.outer(r, r), np.cross(r, (0.0, 0.0, -1.0)))
 
-    result = run_quasistatic(rod_on_a_point(c_mm, d_mm, metric, friction=20.0), turn_step_rad=1e-6)
+    result = run_with_steps(rod_on_a_point(c_mm, d_mm, metric, friction=20.0), turn_step_rad=1e-6)
     first = result.phases[0].events[0]
     assert first.rule == "pivot"
     motion = motion_between(result.phases[0].start_pose, first.path[0], np.zeros(3), result.scene.size_m)
@@ -105,7 +105,7 @@ def test_a_force_off_the_centre_turns_it_in_flight(metric):
     points = np.array([(60, y, z) for y in (-4, 4) for z in (-4, 4)]) * MM
     push = Load("push", force=Force((1, 0, 0), np.array((0.0, 4.0, 0.0)) * MM))
     scene = Scene(Object([Box(np.full(3, 10.0) * MM)]), Cage(points), [push], metric=metric)
-    result = run_quasistatic(scene, turn_step_rad=1e-3)
+    result = run_with_steps(scene, turn_step_rad=1e-3)
     first = result.phases[0].events[0].path[0]
     motion = motion_between(scene.object.pose_world_object, first, np.zeros(3), scene.size_m)
     assert motion.axis_world == pytest.approx((0.0, 0.0, -1.0), abs=1e-9)

@@ -9,7 +9,7 @@ import pytest
 
 from cagepose import Box, Cage, Load, Object, Scene
 from cagepose.kernels.contact.onset import COMBINATIONS_LIMIT
-from cagepose.runs.judge import Judge
+from cagepose.runs.judge import judge_pose
 
 CORNERS = np.array(list(itertools.product((-0.5, 0.5), repeat=3)))
 
@@ -18,7 +18,7 @@ def judged(points: np.ndarray, friction: float, gravity: tuple[float, float, flo
     scene = Scene(
         Object([Box((1, 1, 1))]), Cage(points), [Load("weight", gravity=gravity)], friction_coefficient=friction
     )
-    return Judge(scene, friction).proof(scene.object.pose_world_object, 0)
+    return judge_pose(scene, scene.object.pose_world_object, 0, friction)
 
 
 @pytest.mark.parametrize("gravity", [(0.0, 0.0, -1.0), (0.2, 0.1, -1.0)])

@@ -46,9 +46,9 @@ def passive_set(n_rows):
 def contacts_with(columns):
     """Contacts with these wrenches; and a view on all their forces."""
     rows = empty_rows(ContactRow, len(columns))
-    rows.columns[:] = columns
-    rows.chosen[:] = True
-    return rows, rows.forces
+    rows["columns"] = columns
+    rows["chosen"] = True
+    return rows, rows["forces"]
 
 
 def solved(columns, b, passive):

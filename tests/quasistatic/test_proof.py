@@ -6,22 +6,22 @@ All lengths in metres.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from cagepose import Box, Cage, Force, Load, Object, Pose, Run, Scene, run, with_critical_friction
-from cagepose.runs.judge import Judge
+from cagepose.runs.judge import critical_friction_at, judge_pose
 
 DOWN = Load("weight", gravity=(0, 0, -1))
 
 
 def judged(scene: Scene, friction: float, pose: Pose | None = None):
     """The proof, the contacts and the critical friction at a pose (left out: where the scene starts)."""
-    judge = Judge(scene, friction)
     pose = scene.object.pose_world_object if pose is None else pose
-    proof, contacts = judge.proof(pose, 0)
-    return judge.with_critical_friction(proof, pose, 0), contacts
+    proof, contacts = judge_pose(scene, pose, 0, friction)
+    return replace(proof, critical_friction=critical_friction_at(scene, pose, 0)), contacts
 
 
 def slope(angle: float, friction: float | None = None, height: float = 0.02) -> Scene:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cagepose.runs.quasistatic import TURN_STEP_RAD, run_quasistatic
+from cagepose.runs.quasistatic import TURN_STEP_RAD
 from quasistatic.paths import again, distance, rows_at
 from quasistatic.random_runs import random_run
+from quasistatic.steps import run_with_steps
 from rails import rail_scene
 
 
@@ -16,7 +17,7 @@ from rails import rail_scene
 @pytest.mark.parametrize("misaligned", ["pitch_deg", "yaw_deg", "roll_deg"])
 def test_the_rail_ends_in_the_same_pose_with_steps_a_quarter_as_long(misaligned, play_mm, metric):
     scene = again(rail_scene(**{misaligned: 0.1}, play_mm=play_mm), metric=metric)
-    coarse, fine = (run_quasistatic(scene, step).pose for step in (TURN_STEP_RAD, TURN_STEP_RAD / 4.0))
+    coarse, fine = (run_with_steps(scene, step).pose for step in (TURN_STEP_RAD, TURN_STEP_RAD / 4.0))
     assert distance(scene, coarse, fine) * scene.size_m <= 1e-8 * play_mm * 1e-3
 
 
@@ -42,7 +43,7 @@ def compared(friction, wanted, n_scenes):
         coarse = random_run(number, friction)
         if coarse.verdict not in ("rests", "may rest") or not wanted(coarse):
             continue
-        fine = run_quasistatic(coarse.scene, TURN_STEP_RAD / 4.0)
+        fine = run_with_steps(coarse.scene, TURN_STEP_RAD / 4.0)
         if fine.verdict != coarse.verdict:
             n_other += 1
         else:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, run
-from cagepose.runs.quasistatic import run_quasistatic
 from quasistatic.paths import gap_of, path_of, rows_at
+from quasistatic.steps import run_with_steps
 
 MM = 1e-3
 
@@ -58,7 +58,7 @@ def test_a_plate_that_turns_as_it_slides_stays_on_its_points(turn_step_rad, metr
     points = np.array([(-70, 0, 0), (70, 20, 0), (70, -20, 0)]) * MM
     load = Load("push", gravity=(0, 0, -1), force=push)
     scene = Scene(held, Cage(points), [load], friction_coefficient=0.2, metric=metric)
-    phase = run_quasistatic(scene, turn_step_rad).phases[0]
+    phase = run_with_steps(scene, turn_step_rad).phases[0]
     assert phase.events[0].rule == "slide"
     rows = rows_at(scene, phase.start_pose, scene.touch_m)
     assert len(rows) == 3
@@ -84,6 +84,6 @@ def test_a_bar_that_rolls_in_a_groove_slides_on_both_faces(turn_step_rad, fricti
         [Box(np.array((20.0, 60.0, 20.0)) * MM)], pose=Pose(center * MM, euler_zyx=(0.0, math.pi / 4.0 + turn, 0.0))
     )
     scene = Scene(held, Cage(points * MM), [Load("g", gravity=(0, 0, -1))], friction_coefficient=friction)
-    phase = run_quasistatic(scene, turn_step_rad).phases[0]
+    phase = run_with_steps(scene, turn_step_rad).phases[0]
     assert phase.events[0].rule == "slide"
     assert greatest_gap(scene, phase, ("C1", "C2", "C3", "C4")) <= 1.0

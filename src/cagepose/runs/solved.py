@@ -125,7 +125,7 @@ def read_events(scene: Scene, method: Method, outcome: Outcome) -> list[Event]:
                 motion=motion,
                 hit=tuple(compress(scene.cage.names, hit)),
                 contacts=tuple(compress(scene.cage.names, touching)),
-                pose_world_object=pose,
+                pose_world_object=path[first + n_steps - 1] if path else pose,
                 note=NOTE_NAMES[note] if note < len(NOTE_NAMES) else None,
                 path=tuple(path[first : first + n_steps]),
             )

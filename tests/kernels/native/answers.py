@@ -15,7 +15,7 @@ from typing import Any
 
 from cagepose import Run, Scene, load_scene, run
 from cagepose.kernels.native.library import kernel_library
-from cagepose.runs.solve import METHODS
+from cagepose.model.methods import METHODS
 
 TESTS = Path(__file__).resolve().parents[2]
 SCENES = sorted((TESTS.parent / "scenes").glob("*.yaml"))

@@ -18,7 +18,7 @@ from cagepose.errors import KernelsError
 from cagepose.kernels.algebra.pose import write_euler_zyx, write_quaternions
 from cagepose.kernels.native import library
 from cagepose.kernels.native.library import FILE_NAME, LIBRARY, Library, kernel_library
-from cagepose.runs.solve import METHODS
+from cagepose.model.methods import METHODS
 
 ROOT = Path(__file__).resolve().parents[3]
 SCENE = ROOT / "scenes" / "sample.yaml"
@@ -47,20 +47,25 @@ def fake_processor(monkeypatch: pytest.MonkeyPatch, best: int) -> None:
 
 
 def test_a_processor_gets_the_best_level_that_it_can_run(monkeypatch):
-    for index, level in enumerate(levels()):
+    for index, level in enumerate(every := levels()):
         fake_processor(monkeypatch, index)
         assert Library(LIBRARY).level == level
+        for beyond in every[index + 1 :]:
+            with pytest.raises(KernelsError, match=f"{beyond} is not for this processor"):
+                Library(LIBRARY, beyond)
 
 
 def test_a_processor_older_than_all_levels_is_told_what_still_works(monkeypatch):
-    fake_processor(monkeypatch, -1)
     message = rf"^this processor is older than {levels()[0]}; set CAGEPOSE_KERNELS=python$"
+    fake_processor(monkeypatch, -1)
     with pytest.raises(KernelsError, match=message):
         Library(LIBRARY)
 
 
 def test_a_level_that_the_library_lacks_is_told_with_those_that_it_has():
-    with pytest.raises(KernelsError, match=r"^CAGEPOSE_KERNELS=x86-64-v9 is unknown; choose python or one of \S+"):
+    with pytest.raises(
+        KernelsError, match=r"^CAGEPOSE_KERNELS=x86-64-v9 is not for this processor; choose python or one of \S+"
+    ):
         Library(LIBRARY, "x86-64-v9")
 
 
@@ -134,7 +139,7 @@ def test_a_copied_tree_runs_with_its_own_library(tree):
     assert missing.stderr.count("\n") == 1
 
 
-@pytest.mark.parametrize("source", ["algebra/pose.py", "quasistatic/run.py", "batch/rows.py"])
+@pytest.mark.parametrize("source", ["algebra/pose.py", "quasistatic/run.py", "outcome/cases.py"])
 def test_kernels_that_have_changed_since_the_build_do_not_run(tree, source):
     edit(tree / "src/cagepose/kernels" / source)
     done = run_in(tree)

@@ -9,7 +9,6 @@ little into the face and a little outward, is there another box?
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,35 +26,13 @@ from cagepose.kernels.collision.geometry import (
     place_object,
     point_in_box,
 )
-from cagepose.kernels.native.kernel import entry, kernel
+from cagepose.kernels.native.kernel import kernel
 
 # In touch tolerances. The probe must clear a point that lies a whole tolerance inside (hence more than 1 and more
 # than the margin), and the margin must clear boxes that meet up to a tolerance apart. Scenes refuse boxes thinner
 # than 10.
 PROBE = 3.0
 PROBE_MARGIN = 1.5
-
-
-class ContactRows(NamedTuple):
-    """One row for each (cage point, face) that touch.
-
-    Attributes
-    ----------
-    points, boxes
-        Indices, (n,).
-    normals_world
-        Outward unit normals of the faces, (n, 3).
-    gaps
-        Distances from the faces, below zero inside, (n,), metres.
-    near_edge
-        Whether the point lies within the touch tolerance of an edge of the union's surface, (n,).
-    """
-
-    points: NDArray[np.int64]
-    boxes: NDArray[np.int64]
-    normals_world: FloatArray
-    gaps: FloatArray
-    near_edge: NDArray[np.bool_]
 
 
 @kernel
@@ -158,64 +135,6 @@ def steepest_contact(
             else:
                 best_cosine, best_normal, is_tie = cosine, normal, False
     return best_cosine > -math.inf, best_normal, is_tie
-
-
-@entry
-def fill_contact_rows(
-    geometry: Geometry,
-    position: Vector,
-    quaternion: Quaternion,
-    touch_m: float,
-    placement: Placement,
-    rows: ContactRows,
-) -> int:
-    """Write ``placement``, and as many rows as fit; return how many there are."""
-    place_object(geometry, position, quaternion, placement)
-    n_rows = 0
-    for point in range(len(geometry.points_world)):
-        for box in range(geometry.n_own_boxes):
-            half_size = row(geometry.half_sizes, box)
-            point_box = box_point(placement, box, point)
-            if placement.gaps[box, point] > touch_m:
-                continue
-            for axis in range(3):
-                if not touches_face(point_box, half_size, axis, touch_m):
-                    continue
-                if is_hidden(geometry, placement, box, point, axis, touch_m):
-                    continue
-                if n_rows < len(rows.points):
-                    rows.points[n_rows] = point
-                    rows.boxes[n_rows] = box
-                    normal = face_normal(placement, box, axis, math.copysign(1.0, point_box[axis]))
-                    for k in range(3):
-                        rows.normals_world[n_rows, k] = normal[k]
-                    rows.gaps[n_rows] = abs(point_box[axis]) - half_size[axis]
-                    rows.near_edge[n_rows] = is_near_edge(geometry, placement, box, point, axis, touch_m)
-                n_rows += 1
-    return n_rows
-
-
-def empty_contact_rows(n_rows: int) -> ContactRows:
-    """Return room for contacts (plain Python)."""
-    return ContactRows(
-        np.empty(n_rows, np.int64),
-        np.empty(n_rows, np.int64),
-        np.empty((n_rows, 3)),
-        np.empty(n_rows),
-        np.empty(n_rows, np.bool_),
-    )
-
-
-def contact_rows(geometry: Geometry, position: Vector, quaternion: Quaternion, touch_m: float) -> ContactRows:
-    """Return all contacts at a pose, by point, then box, then face (plain Python)."""
-    placement = empty_placement(geometry)
-    n_room = 3 * len(geometry.points_world)  # a corner of a box has three faces
-    while True:
-        rows = empty_contact_rows(n_room)
-        n_rows = fill_contact_rows(geometry, position, quaternion, touch_m, placement, rows)
-        if n_rows <= n_room:
-            return ContactRows._make(column[:n_rows] for column in rows)
-        n_room = n_rows
 
 
 def deepest_boxes(geometry: Geometry, position: Vector, quaternion: Quaternion) -> tuple[FloatArray, NDArray[np.int64]]:

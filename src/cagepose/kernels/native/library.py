@@ -55,12 +55,15 @@ class Library:
         levels: list[str] = description["levels"]
         self.signatures: dict[str, tuple[str, str]] = description["signatures"]
         self.sources_hash: str = description["sources"]
-        if level and level not in levels:
-            raise KernelsError(f"{VARIABLE}={level} is unknown; choose {PLAIN_PYTHON} or one of {', '.join(levels)}")
         best = self._library.cagepose_best_level()
         if best < 0:
             raise KernelsError(f"this processor is older than {levels[0]}; set {VARIABLE}={PLAIN_PYTHON}")
-        self.level = level or levels[best]
+        can_run = levels[: best + 1]
+        if level and level not in can_run:
+            raise KernelsError(
+                f"{VARIABLE}={level} is not for this processor; choose {PLAIN_PYTHON} or one of {', '.join(can_run)}"
+            )
+        self.level = level or can_run[-1]
 
     def function(self, name: str) -> Callable[..., int]:
         """Return the machine code of an entry: ``int32_t name(int64_t *slots, double *the_same)``."""
@@ -81,7 +84,7 @@ def kernel_library() -> Library | None:
     if chosen == PLAIN_PYTHON:
         return None
     library = Library(LIBRARY, chosen)
-    if is_checkout() and _is_older_than_sources() and library.sources_hash != sources_hash():
+    if is_checkout() and library.sources_hash != sources_hash():  # by content: dates tell little after a git checkout
         raise KernelsError(f"{LIBRARY}: kernels have changed since the library was built; {REMEDY}")
     return library
 
@@ -102,8 +105,3 @@ def sources_hash() -> str:
     for path in kernel_sources():
         digest.update(path.relative_to(KERNELS).as_posix().encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
-
-
-def _is_older_than_sources() -> bool:
-    built = LIBRARY.stat().st_mtime
-    return any(path.stat().st_mtime > built for path in kernel_sources())
