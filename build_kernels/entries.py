@@ -29,7 +29,7 @@ from cagepose.kernels.quasistatic.run import (
     run_quasistatic_cases,
 )
 from cagepose.kernels.quasistatic.workspace import empty_quasistatic_workspace
-from cagepose.kernels.stability.proof import empty_proof_room
+from cagepose.kernels.stability.proof import empty_proof_workspace
 from cagepose.kernels.stepwise.run import (
     StepwiseRules,
     empty_stepwise_workspace,
@@ -59,7 +59,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     points = np.zeros((1, 1, 3))
     cases = Cases(vectors, quaternions, points, vectors, quaternions, numbers, numbers, loads, tolerances)
     outcome, endings = empty_outcome(1, 1, 1, 1), empty_endings(1, 1, 1)
-    proof = empty_proof_room(geometry)
+    proof = empty_proof_workspace(geometry)
     yield judge_start, (0, part, cases, vectors, proof, outcome)
     yield critical_friction, (0, part, cases, vectors, proof)
 

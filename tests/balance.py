@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from cagepose import PhaseRun, Scene
-from cagepose.runs.weights import weigh
+from cagepose.runs.load_scaling import scaled_load
 
 
 def imbalance(scene: Scene, phase: PhaseRun) -> float:
     """Net force, and net moment about the centre of gravity by the scene's size, as a fraction of the load."""
     load = next(load for load in scene.loads if load.name == phase.name)
-    weighed = weigh(scene, load)
+    weighed = scaled_load(scene, load)
     center = phase.pose.transform(scene.object.center_of_gravity_m)
     acts = [(weighed.gravity, center)]
     if load.force is not None:

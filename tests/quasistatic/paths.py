@@ -8,7 +8,7 @@ import numpy as np
 
 from cagepose import Load, PhaseRun, Pose, Run, Scene
 from cagepose.kernels.collision.contacts import deepest_boxes
-from cagepose.runs.weights import weigh
+from cagepose.runs.load_scaling import scaled_load
 
 RESTS = ("rests", "may rest")
 VERDICTS = {*RESTS, "escapes", "stalled", "limit"}
@@ -39,7 +39,7 @@ def path_poses(result: Run) -> Iterator[Pose]:
 
 def potential(scene: Scene, load: Load, pose: Pose) -> float:
     """Potential of a phase's dead loads, -sum F . x, x where each acts, in units of total force times size."""
-    weighed = weigh(scene, load)
+    weighed = scaled_load(scene, load)
     value = -weighed.gravity @ pose.transform(scene.object.center_of_gravity_m)
     if load.force is not None:
         value -= weighed.force @ pose.transform(load.force.at_object_m)

@@ -16,9 +16,9 @@ from cagepose.kernels.algebra.least_squares import empty_system
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.contact.contact_set import ContactSet, empty_contact_set
 from cagepose.kernels.contact.coulomb_newton import NewtonRoom
-from cagepose.kernels.stability.second_order import StabilityRoom
-from cagepose.kernels.stability.sure_contacts import SureRoom, find_sure, rest_is_sure, write_normals
-from cagepose.kernels.stability.uniqueness import N_COLUMNS, OTHER_FOUND, UNIQUE, ModesRoom, other_onset
+from cagepose.kernels.stability.second_order import StabilityWorkspace
+from cagepose.kernels.stability.uniqueness import N_COLUMNS, OTHER_FOUND, UNIQUE, ModesWorkspace, other_onset
+from cagepose.kernels.stability.uniqueness_bound import BoundWorkspace, find_carrying, rest_is_unique, write_normals
 from inner_kernels import as_machine_code
 
 
@@ -86,13 +86,13 @@ class Prover:
 
     def __init__(self) -> None:
         self._search = as_machine_code(other_onset)
-        self._sure, self._rest = empty_record(SureRoom), empty_record(StabilityRoom)
-        self._modes, self._newton = empty_record(ModesRoom), empty_record(NewtonRoom)
+        self._sure, self._rest = empty_record(BoundWorkspace), empty_record(StabilityWorkspace)
+        self._modes, self._newton = empty_record(ModesWorkspace), empty_record(NewtonRoom)
         self._system = empty_system(N_COLUMNS)
 
     def is_sure(self, held: Held) -> bool:
         at = contacts_of(held)
-        return bool(rest_is_sure(at, held.friction, held.load, 1.0, self._sure, self._rest, self._system))
+        return bool(rest_is_unique(at, held.friction, held.load, 1.0, self._sure, self._rest, self._system))
 
     def search(self, held: Held) -> int:
         at = contacts_of(held)
@@ -106,7 +106,7 @@ class Prover:
         self._rest.held.basis[:rank, :6] = axes[:rank]
         self._rest.held.used = rank
         write_normals(at, held.friction, self._rest.held, self._system)
-        n = find_sure(at, held.friction, held.load, self._sure, self._system)
+        n = find_carrying(at, held.friction, held.load, self._sure, self._system)
         return {int(self._sure.contacts[k]): self._sure.limits[k] / held.friction for k in range(n)}
 
 

@@ -8,7 +8,7 @@ from scipy.optimize import nnls
 
 from cagepose.kernels.algebra.least_squares import PassiveSet, empty_system, nonnegative_least_squares
 from cagepose.kernels.algebra.record import empty_record, empty_rows
-from cagepose.kernels.contact.cone import HELD, ConeRoom, clear_cone, cone_residual, write_forces
+from cagepose.kernels.contact.cone import HELD, ConeWorkspace, clear_cone, cone_residual, write_forces
 from cagepose.kernels.contact.contact_set import ContactRow
 from cagepose.kernels.contact.coulomb import coulomb_onset
 from cagepose.kernels.contact.coulomb_newton import NewtonRoom
@@ -116,7 +116,7 @@ def test_the_frictionless_onset_obeys_the_optimality_conditions(cases):
     for number in range(cases(200, 2000)):
         n = int(rng.integers(1, 13))
         columns, b = contact_columns(rng, n), rng.normal(size=6)
-        room = empty_record(ConeRoom)
+        room = empty_record(ConeWorkspace)
         rows, forces = contacts_with(columns)
         clear_cone(room, b, WRENCH, np.linalg.norm(b))
         left = residual(rows, n, 0.0, b, False, room)
@@ -164,7 +164,7 @@ def test_the_onset_with_friction_obeys_coulombs_law(say, cases):
     for _ in range(cases(200, 2000)):
         n, friction = int(rng.integers(1, 9)), float(rng.uniform(0.05, 1.0))
         columns, b = contact_columns(rng, n), rng.normal(size=6)
-        cone, y = empty_record(ConeRoom), np.zeros(6)
+        cone, y = empty_record(ConeWorkspace), np.zeros(6)
         rows, forces = contacts_with(columns)
         clear_cone(cone, b, WRENCH, np.linalg.norm(b))
         left = residual(rows, n, friction, b, False, cone)

@@ -13,9 +13,9 @@ import pytest
 
 from cagepose.kernels.algebra.least_squares import rounding_scale
 from cagepose.kernels.algebra.record import empty_record
-from cagepose.kernels.contact.cone import BALANCED, HELD, ConeRoom, clear_cone, cone_residual
+from cagepose.kernels.contact.cone import BALANCED, HELD, ConeWorkspace, clear_cone, cone_residual
 from cagepose.kernels.contact.metric import WRENCH
-from cagepose.kernels.contact.sure_motion import SURELY, WIDER, leaves_cones, moves_surely
+from cagepose.kernels.contact.separation import SURELY, WIDER, leaves_cones, separating_twist
 from inner_kernels import as_machine_code
 from quasistatic.test_only_onset import Held, contacts_of, random_held
 
@@ -24,7 +24,7 @@ class Judge:
     """Both ways to ask, of one contact set and load after the other."""
 
     def __init__(self) -> None:
-        self.room = empty_record(ConeRoom)
+        self.room = empty_record(ConeWorkspace)
         self._solve = as_machine_code(cone_residual)
 
     def left(self, case: Held, friction: float) -> float:
@@ -37,7 +37,7 @@ class Judge:
     def moves(self, case: Held) -> bool:
         self.left(case, 0.0)
         contacts = contacts_of(case)
-        return bool(moves_surely(contacts.rows, contacts.used[0], case.friction, case.load, self.room))
+        return bool(separating_twist(contacts.rows, contacts.used[0], case.friction, case.load, self.room))
 
     def leaves(self, case: Held, twist: np.ndarray, slack: float) -> bool:
         contacts = contacts_of(case)

@@ -20,9 +20,9 @@ from cagepose.model.load import Force, Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import FARTHEST_START, Scene
 from cagepose.runs.cases import cases_of, dead_loads, part_of
+from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.methods import Method
 from cagepose.runs.variation import Variation
-from cagepose.runs.weights import weigh
 
 
 class Batch:
@@ -107,7 +107,7 @@ def _loads(scene: Scene, columns: dict[str, FloatArray]) -> Rows[Rows[PhaseLoad]
     if "force_magnitude_n" in columns:  # of a force of 1 N: a scene may give none, and count no newtons then
         magnitudes = columns["force_magnitude_n"]
         force = Force(force.direction_world, force.at_object_m, 1.0)
-    weighed = weigh(scene, Load(load.name, gravity=load.gravity_world, force=force))
+    weighed = scaled_load(scene, Load(load.name, gravity=load.gravity_world, force=force))
     pushes = weighed.force[None]
     if "force_direction_world" in columns:
         pushes = np.linalg.norm(weighed.force) * _unit_rows(columns["force_direction_world"])

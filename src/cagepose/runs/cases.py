@@ -16,7 +16,7 @@ from cagepose.model.checks import as_vector
 from cagepose.model.methods import DEFAULT_METRIC
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.runs.weights import weigh
+from cagepose.runs.load_scaling import scaled_load
 
 
 def part_of(scene: Scene) -> Part:
@@ -69,7 +69,7 @@ def dead_loads(scene: Scene) -> np.ndarray:
     """Return the loads of all phases as records, (n_phases,)."""
     loads = np.zeros(len(scene.loads), dtype_of(PhaseLoad))
     for index, load in enumerate(scene.loads):
-        weighed = weigh(scene, load)
+        weighed = scaled_load(scene, load)
         loads["forces_world"][index] = weighed.gravity, weighed.force
         if load.force is not None:
             loads["arms_object"][index, 1] = load.force.at_object_m - scene.object.center_of_gravity_m

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cagepose.kernels.outcome import at_pose
 from cagepose.kernels.outcome.records import empty_outcome
-from cagepose.kernels.stability.proof import empty_proof_room
+from cagepose.kernels.stability.proof import empty_proof_workspace
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.cases import cases_of, part_of
@@ -20,7 +20,12 @@ def judge_pose(scene: Scene, pose: Pose, phase: int, friction: float) -> tuple[P
     while True:
         outcome = empty_outcome(len(scene.loads), 1, len(points), n_contacts)
         fits = at_pose.judge_start(
-            phase, part_of(scene), cases_of(scene, friction, pose), points, empty_proof_room(scene.geometry), outcome
+            phase,
+            part_of(scene),
+            cases_of(scene, friction, pose),
+            points,
+            empty_proof_workspace(scene.geometry),
+            outcome,
         )
         if fits:
             contacts, proofs = judged(scene, written(outcome), [pose] * (phase + 1))
@@ -35,5 +40,5 @@ def critical_friction_at(scene: Scene, pose: Pose, phase: int) -> float:
         part_of(scene),
         cases_of(scene, 0.0, pose),
         scene.cage.points_world(),
-        empty_proof_room(scene.geometry),
+        empty_proof_workspace(scene.geometry),
     )

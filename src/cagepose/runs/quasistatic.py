@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 
 from cagepose.kernels.quasistatic.run import QuasistaticRules
 from cagepose.model.scene import Scene
-from cagepose.runs.remarks import edge_remarks, proof_remarks, seam_remarks, weight_remarks
 from cagepose.runs.run import PhaseRun
+from cagepose.runs.warnings_of_runs import edge_warnings, proof_warnings, seam_warnings, weight_warnings
 
 TURN_STEP_RAD = 0.02
 """Longest turn in one step: the path is wrong by about this fraction of it (docs/theory/mechanics)."""
@@ -22,8 +22,8 @@ def quasistatic_rules(_scene: Scene) -> QuasistaticRules:
 
 def quasistatic_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: float) -> Iterator[str]:
     """What a careful reader should know: seams, weights, contacts on edges, and what is less than a proven rest."""
-    yield from seam_remarks(scene)
-    yield from weight_remarks(scene, len(phases))
+    yield from seam_warnings(scene)
+    yield from weight_warnings(scene, len(phases))
     for phase in phases:
-        yield from edge_remarks(phase)
-    yield from proof_remarks(phases, friction)
+        yield from edge_warnings(phase)
+    yield from proof_warnings(phases, friction)

@@ -10,8 +10,8 @@ from cagepose.kernels.stepwise.run import StepwiseRules
 from cagepose.kernels.stepwise.slip import SlipRules
 from cagepose.kernels.stepwise.support import SupportRules
 from cagepose.model.scene import Scene
-from cagepose.runs.remarks import edge_remarks, proof_remarks, seam_remarks
 from cagepose.runs.run import Note, PhaseRun
+from cagepose.runs.warnings_of_runs import edge_warnings, proof_warnings, seam_warnings
 
 BLOCKED_ANGLE_RAD = math.pi / 10000.0
 """A turn that ends within 0.018 deg is blocked (R3)."""
@@ -61,7 +61,7 @@ def stepwise_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: float)
     """What a careful reader should know: ties, conventions, poses beyond the method's range, contacts on edges, and
     where the mechanics contradicts the rules.
     """
-    yield from seam_remarks(scene)
+    yield from seam_warnings(scene)
     largest = 0.0
     start = scene.object.pose_world_object.inverse()
     for phase, load in zip(phases, scene.loads, strict=False):
@@ -71,10 +71,10 @@ def stepwise_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: float)
             largest = max(largest, *(abs(angle) for angle in (start @ event.pose_world_object).euler_zyx))
             if event.note is not None:
                 yield f"{phase.name}, event {number} ({event.rule}): {NOTES[event.note]}"
-        yield from edge_remarks(phase)
+        yield from edge_warnings(phase)
     if largest > SMALL_POSE_RAD:
         yield (
             f"turned by {math.degrees(largest):.1f} deg about one axis from the start; the paper's rules are meant for"
             " at most 45 deg (assumption E)"
         )
-    yield from proof_remarks(phases, friction)
+    yield from proof_warnings(phases, friction)

@@ -17,7 +17,7 @@ from cagepose.kernels.play.search import REACHED, Extreme, find_play
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.runs.weights import weigh
+from cagepose.runs.load_scaling import scaled_load
 from cagepose.studies.play_frame import FREEDOMS, PlayFrame
 
 CARRIES = 1e-9
@@ -107,7 +107,7 @@ def _load_goals(scene: Scene, frame: PlayFrame) -> tuple[Rows[Goal], FloatArray]
     goals = empty_rows(Goal, len(scene.loads))
     sizes = np.zeros(len(scene.loads))
     for index, load in enumerate(scene.loads):
-        weight, force, _ = weigh(scene, load)
+        weight, force, _ = scaled_load(scene, load)
         sizes[index] = max(np.linalg.norm(weight), np.linalg.norm(force))
         goal = goals[index]
         goal.kind, goal.sign = SHIFT, 1.0
@@ -183,7 +183,7 @@ def _rest(
     scene: Scene, frame: PlayFrame, polytope: _Polytope, index: int, goal: Goal, size_n: float, extreme: Extreme
 ) -> PlayRest:
     load = scene.loads[index]
-    in_newtons = weigh(scene, load).in_newtons
+    in_newtons = scaled_load(scene, load).in_newtons
     arms = goal.starts / frame.length_m
     objective = np.append(goal.directions.sum(axis=0), np.cross(arms, goal.directions).sum(axis=0))
     exact = None

@@ -20,10 +20,10 @@ from cagepose.kernels.contact.onset import (
     HELD_WITHOUT_FRICTION,
     MOVES,
     UNSOLVED,
-    OnsetRoom,
+    ContactWorkspace,
     is_balance,
 )
-from cagepose.kernels.contact.sure_motion import moves_surely, step_to_balance
+from cagepose.kernels.contact.separation import separating_twist, step_to_balance
 from cagepose.kernels.native.kernel import kernel
 
 RESERVE = 1e-6
@@ -31,14 +31,14 @@ RESERVE = 1e-6
 
 
 @kernel
-def left_by_friction(rows: Rows[ContactRow], n_contacts: int, friction: float, room: OnsetRoom) -> float:
+def left_by_friction(rows: Rows[ContactRow], n_contacts: int, friction: float, room: ContactWorkspace) -> float:
     """Return what contact forces with this friction leave of the load, in lengths of the terms."""
     clear_cone(room.cone, room.load, WRENCH, room.load_terms)
-    return left_going_on(rows, n_contacts, friction, room)
+    return left_from_less_friction(rows, n_contacts, friction, room)
 
 
 @kernel
-def left_going_on(rows: Rows[ContactRow], n_contacts: int, friction: float, room: OnsetRoom) -> float:
+def left_from_less_friction(rows: Rows[ContactRow], n_contacts: int, friction: float, room: ContactWorkspace) -> float:
     """Return the same, going on from the solution in ``room``, which is that for less friction."""
     cone = room.cone
     charged = False
@@ -48,13 +48,13 @@ def left_going_on(rows: Rows[ContactRow], n_contacts: int, friction: float, room
 
 
 @kernel
-def take_forces(rows: Rows[ContactRow], n_contacts: int, friction: float, left: float, room: OnsetRoom) -> None:
+def take_forces(rows: Rows[ContactRow], n_contacts: int, friction: float, left: float, room: ContactWorkspace) -> None:
     write_forces(room.cone, friction, rows, n_contacts)
     room.residual = left
 
 
 @kernel
-def balance_with_faces(rows: Rows[ContactRow], n_contacts: int, friction: float, room: OnsetRoom) -> int:
+def balance_with_faces(rows: Rows[ContactRow], n_contacts: int, friction: float, room: ContactWorkspace) -> int:
     """Return the code of the load in ``room`` for one choice of faces: MOVES where no forces balance it.
 
     Filled: forces, and the residual. Forces of a balance with friction lie inside the cones, not on them, where they
@@ -68,11 +68,11 @@ def balance_with_faces(rows: Rows[ContactRow], n_contacts: int, friction: float,
     if friction == 0.0:
         return MOVES
     if step_to_balance(rows, n_contacts, cone) > friction:
-        if moves_surely(rows, n_contacts, friction, room.load, cone):
+        if separating_twist(rows, n_contacts, friction, room.load, cone):
             room.residual = length(cone.passive.residual, 6) / rounding_scale(cone.passive)
             return MOVES
         clear_cone(cone, room.load, WRENCH, room.load_terms)  # its cones were wider
-    left = left_going_on(rows, n_contacts, spared, room)
+    left = left_from_less_friction(rows, n_contacts, spared, room)
     if left > BALANCED:
         left = left_by_friction(rows, n_contacts, friction, room)
         take_forces(rows, n_contacts, friction, left, room)
@@ -86,7 +86,7 @@ def balance_with_faces(rows: Rows[ContactRow], n_contacts: int, friction: float,
 
 
 @kernel
-def balance(contacts: ContactSet, friction: float, room: OnsetRoom) -> int:
+def balance(contacts: ContactSet, friction: float, room: ContactWorkspace) -> int:
     """Return the code of the load in ``room``, whichever faces count on edges: MOVES as soon as it is not balanced.
 
     Filled: which faces are chosen, their forces, and the residual; for MOVES ``cone.passive.residual`` is a twist along

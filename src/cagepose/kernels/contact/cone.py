@@ -41,7 +41,7 @@ N_ROWS = 7
 """With one more row than a wrench has, the last one adds up the normal forces."""
 
 
-class ConeRoom:
+class ConeWorkspace:
     """Room for one problem, and its solution; a record.
 
     Attributes
@@ -79,7 +79,7 @@ def write_generator(contact: ContactRow, friction: float, one: float, two: float
 
 
 @kernel
-def clear_cone(room: ConeRoom, b: FloatArray, n_rows: int, terms: float) -> None:
+def clear_cone(room: ConeWorkspace, b: FloatArray, n_rows: int, terms: float) -> None:
     """Start from no force: b is (6,), or (7,) where a sum of the normal forces is asked for too, of terms so long."""
     clear(room.passive, n_rows, terms)
     aim(room.passive, b)
@@ -87,7 +87,7 @@ def clear_cone(room: ConeRoom, b: FloatArray, n_rows: int, terms: float) -> None
 
 @kernel
 def generator_price(
-    rows: Rows[ContactRow], contact: int, friction: float, charged: bool, room: ConeRoom
+    rows: Rows[ContactRow], contact: int, friction: float, charged: bool, room: ConeWorkspace
 ) -> tuple[float, bool]:
     """Return how far the steepest generator of a contact lies along the residual r, and whether the contact has one.
 
@@ -113,7 +113,7 @@ def generator_price(
 
 
 @kernel
-def go_on(rows: Rows[ContactRow], n_contacts: int, room: ConeRoom) -> int:
+def renumber_generators(rows: Rows[ContactRow], n_contacts: int, room: ConeWorkspace) -> int:
     """Number the generators in use from zero on, so that the room is never full; return how many there are.
 
     No contact is rejected any more.
@@ -131,7 +131,13 @@ def go_on(rows: Rows[ContactRow], n_contacts: int, room: ConeRoom) -> int:
 
 @kernel
 def add_generator(
-    rows: Rows[ContactRow], n_contacts: int, friction: float, b: FloatArray, charged: bool, number: int, room: ConeRoom
+    rows: Rows[ContactRow],
+    n_contacts: int,
+    friction: float,
+    b: FloatArray,
+    charged: bool,
+    number: int,
+    room: ConeWorkspace,
 ) -> int:
     """Let the generator in that lies most along the residual, as the one with this number; return the next number.
 
@@ -179,7 +185,7 @@ def cone_residual(
     friction: float,
     b: FloatArray,
     charged: bool,
-    room: ConeRoom,
+    room: ConeWorkspace,
 ) -> float:
     """Return the least |b - sum of contact forces|, going on from the forces in ``room``.
 
@@ -203,7 +209,7 @@ def cone_residual(
         all that the contacts can carry.
     """
     passive = room.passive
-    n_generators = go_on(rows, n_contacts, room)
+    n_generators = renumber_generators(rows, n_contacts, room)
     while 0 <= n_generators < GENERATOR_LIMIT:
         if (
             friction > 0.0
@@ -216,7 +222,7 @@ def cone_residual(
 
 
 @kernel
-def write_forces(room: ConeRoom, friction: float, rows: Rows[ContactRow], n_contacts: int) -> None:
+def write_forces(room: ConeWorkspace, friction: float, rows: Rows[ContactRow], n_contacts: int) -> None:
     """Write normal and tangential forces of all contacts."""
     for i in range(n_contacts):
         for k in range(3):

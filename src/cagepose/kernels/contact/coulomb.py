@@ -15,7 +15,7 @@ import math
 
 from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.algebra.record import FloatArray, Rows
-from cagepose.kernels.contact.cone import ConeRoom, clear_cone, cone_residual, steepest_tangent, write_forces
+from cagepose.kernels.contact.cone import ConeWorkspace, clear_cone, cone_residual, steepest_tangent, write_forces
 from cagepose.kernels.contact.contact_set import ContactRow
 from cagepose.kernels.contact.coulomb_newton import (
     OPENS,
@@ -170,7 +170,7 @@ def coulomb_onset(
     n_contacts: int,
     friction: float,
     b: FloatArray,
-    cone: ConeRoom,
+    cone: ConeWorkspace,
     y: FloatArray,
     newton: NewtonRoom,
 ) -> bool:

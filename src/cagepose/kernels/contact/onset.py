@@ -18,7 +18,7 @@ from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.contact.cone import (
     BALANCED,
     HELD,
-    ConeRoom,
+    ConeWorkspace,
     clear_cone,
     cone_residual,
     write_forces,
@@ -43,7 +43,7 @@ COMBINATIONS_LIMIT = 729
 STRICTER = 0.1
 
 
-class OnsetRoom:
+class ContactWorkspace:
     """Room for one onset, and its answer; a record.
 
     Attributes
@@ -62,7 +62,7 @@ class OnsetRoom:
 
     load: ScaledVector
     load_terms: float
-    cone: ConeRoom
+    cone: ConeWorkspace
     newton: NewtonRoom
     y: ScaledVector
     trial: ScaledVector
@@ -72,7 +72,7 @@ class OnsetRoom:
 
 @kernel
 def is_balance(
-    rows: Rows[ContactRow], left: float, friction: float, strictness: float, scale: float, room: OnsetRoom
+    rows: Rows[ContactRow], left: float, friction: float, strictness: float, scale: float, room: ContactWorkspace
 ) -> bool:
     """Whether a residual counts as zero: up to BALANCED, and where contacts slip up to HELD, in lengths of the terms.
 
@@ -105,7 +105,7 @@ def onset_with_faces(
     b: FloatArray,
     terms: float,
     y: FloatArray,
-    room: OnsetRoom,
+    room: ContactWorkspace,
 ) -> int:
     """Solve the onset for one choice of faces; return its code. Forces and motion are filled."""
     cone = room.cone
@@ -132,7 +132,7 @@ def onset_with_faces(
 
 
 @kernel
-def onset(contacts: ContactSet, friction: float, room: OnsetRoom) -> int:
+def onset(contacts: ContactSet, friction: float, room: ContactWorkspace) -> int:
     """Solve the onset of motion at a pose; return its code.
 
     Filled: which faces are chosen, their forces, and in ``room`` the motion y (zero if held) and the residual.
@@ -158,7 +158,7 @@ def onset(contacts: ContactSet, friction: float, room: OnsetRoom) -> int:
 
 
 @kernel
-def is_held(contacts: ContactSet, friction: float, room: OnsetRoom) -> bool:
+def is_held(contacts: ContactSet, friction: float, room: ContactWorkspace) -> bool:
     """Whether the contacts hold the object, whichever faces count on edges.
 
     Asked more strictly than by `onset`, so that a pose found by halving a step is held when it is looked at again.

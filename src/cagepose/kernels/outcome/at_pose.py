@@ -11,12 +11,12 @@ from cagepose.kernels.outcome.publish import begin, end_phase
 from cagepose.kernels.outcome.records import Outcome
 from cagepose.kernels.outcome.trace import RESTS
 from cagepose.kernels.stability.critical_friction import least_friction_of_faces
-from cagepose.kernels.stability.proof import ProofRoom, stand_at
+from cagepose.kernels.stability.proof import ProofWorkspace, stand_at
 
 
 @entry
 def judge_start(
-    phase: int, part: Part, cases: Cases, points_world: FloatArray, at: ProofRoom, outcome: Outcome
+    phase: int, part: Part, cases: Cases, points_world: FloatArray, at: ProofWorkspace, outcome: Outcome
 ) -> bool:
     """Judge the start pose of the first case under the load of a phase.
 
@@ -43,7 +43,7 @@ def judge_start(
 
 
 @entry
-def critical_friction(phase: int, part: Part, cases: Cases, points_world: FloatArray, at: ProofRoom) -> float:
+def critical_friction(phase: int, part: Part, cases: Cases, points_world: FloatArray, at: ProofWorkspace) -> float:
     """Return the least coefficient of friction at which the contacts can balance the load of a phase at the start pose
     of the first case (5.17); inf: none; NaN: there are too many contacts, or choices of faces, to tell.
 

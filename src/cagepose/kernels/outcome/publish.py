@@ -13,7 +13,7 @@ from cagepose.kernels.outcome.cases import Part, Start, object_position
 from cagepose.kernels.outcome.motion import motion_between, motion_of_twist
 from cagepose.kernels.outcome.records import Outcome, PhaseRecord
 from cagepose.kernels.outcome.trace import LET_GO, NONE, RESTS, SCREW, STALLED, Trace
-from cagepose.kernels.stability.proof import OTHER_ONSET, PROVEN_MOVES, TOO_MANY_CONTACTS, ProofRoom
+from cagepose.kernels.stability.proof import OTHER_ONSET, PROVEN_MOVES, TOO_MANY_CONTACTS, ProofWorkspace
 from cagepose.kernels.stability.proof_search import judge
 
 PHASES, EVENTS, STEPS, CONTACTS = 0, 1, 2, 3
@@ -31,7 +31,7 @@ def begin(outcome: Outcome) -> None:
 
 @kernel
 def judge_end(
-    phase: int, position: Vector, quaternion: Quaternion, start: Start, part: Part, at: ProofRoom
+    phase: int, position: Vector, quaternion: Quaternion, start: Start, part: Part, at: ProofWorkspace
 ) -> tuple[int, int, int]:
     """Judge the pose at the end of a phase under its load; see `judge`."""
     return judge(
@@ -55,7 +55,7 @@ def end_phase(
     quaternion: Quaternion,
     start: Start,
     part: Part,
-    at: ProofRoom,
+    at: ProofWorkspace,
     outcome: Outcome,
 ) -> tuple[int, bool]:
     """Judge the end of a phase whose events are published, and write all that is known of it.
@@ -151,7 +151,7 @@ def publish_events(
 
 
 @kernel
-def publish_contacts(start: Start, at: ProofRoom, outcome: Outcome) -> bool:
+def publish_contacts(start: Start, at: ProofWorkspace, outcome: Outcome) -> bool:
     """Append the contacts of a proof; False: there is no room for all of them."""
     for i in range(at.contacts.used[0]):
         if outcome.counts[CONTACTS] == len(outcome.contacts):
@@ -180,7 +180,7 @@ def publish_proof(
     quaternion: Quaternion,
     start: Start,
     part: Part,
-    at: ProofRoom,
+    at: ProofWorkspace,
     phase: PhaseRecord,
 ) -> None:
     """Write what a proof says of the pose at the end of a phase."""

@@ -53,7 +53,7 @@ class StepRecord:
         Code of what a careful reader should know.
     start_position, start_quaternion
         Pose before the step.
-    turn_step, n_still, n_polished
+    turn_step, n_still, n_refined
         What else a quasistatic step began from, see `cagepose.kernels.quasistatic.step.State`.
     """
 
@@ -70,7 +70,7 @@ class StepRecord:
     start_quaternion: Annotated[FloatArray, 4]
     turn_step: float
     n_still: int
-    n_polished: int
+    n_refined: int
 
 
 class Trace(NamedTuple):

@@ -16,8 +16,8 @@ from cagepose.kernels.collision.geometry import Geometry, Placement, place_objec
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.metric import Body, PhaseLoad, moved_along_twist, total_force, work_done
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.edge_crossing import first_run_off
-from cagepose.kernels.quasistatic.projection import Pins, add_pin, empty_pins, pull_back
+from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
+from cagepose.kernels.quasistatic.projection import Constraints, add_constraint, empty_constraints, projected
 
 HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
@@ -55,16 +55,16 @@ class Setting(NamedTuple):
     tolerances: KernelTolerances
 
 
-class PathRoom(NamedTuple):
+class StepWorkspace(NamedTuple):
     """Room for one step: contacts to keep, and the depth allowed to each point, (n_points,), metres."""
 
-    pins: Pins
+    constraints: Constraints
     allowed: FloatArray
 
 
-def empty_path_room(n_points: int) -> PathRoom:
+def empty_step_workspace(n_points: int) -> StepWorkspace:
     """Return room for ``n_points`` cage points (plain Python)."""
-    return PathRoom(empty_pins(3 * n_points + POINTS_PUSHED), np.zeros(n_points))
+    return StepWorkspace(empty_constraints(3 * n_points + POINTS_PUSHED), np.zeros(n_points))
 
 
 class Twist(NamedTuple):
@@ -148,28 +148,30 @@ def shallowest_face(geometry: Geometry, placement: Placement, point: int, box: i
 
 
 @kernel
-def pin_face(geometry: Geometry, placement: Placement, point: int, box: int, pins: Pins) -> bool:
-    """Pin a point to the face of a box that it has reached."""
+def constrain_to_face(geometry: Geometry, placement: Placement, point: int, box: int, constraints: Constraints) -> bool:
+    """Constrain a point to the face of a box that it has reached."""
     axis, side = shallowest_face(geometry, placement, point, box)
-    return add_pin(pins, point, box, axis, side, geometry.half_sizes[box, axis])
+    return add_constraint(constraints, point, box, axis, side, geometry.half_sizes[box, axis])
 
 
 @kernel
-def pin_contacts(geometry: Geometry, placement: Placement, contacts: ContactSet, pins: Pins) -> None:
-    """Pin the contacts that carry in this step: to their faces, and where they stick also in the face."""
-    pins.rooms[0].used = 0
+def constrain_contacts(
+    geometry: Geometry, placement: Placement, contacts: ContactSet, constraints: Constraints
+) -> None:
+    """Constrain the contacts that carry in this step to their faces, and where they stick also in the face."""
+    constraints.rooms[0].used = 0
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
         if contact.step_forces[0] > 0.0:
             at = geometry.half_sizes[contact.box, contact.axis]
-            add_pin(pins, contact.point, contact.box, contact.axis, contact.side, at)
+            add_constraint(constraints, contact.point, contact.box, contact.axis, contact.side, at)
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
         if contact.step_forces[0] > 0.0 and contact.is_sticking:
             for turn in range(1, 3):
                 axis = (contact.axis + turn) % 3
                 at = placement.points_box[contact.box, axis, contact.point]
-                add_pin(pins, contact.point, contact.box, axis, 1.0, at)
+                add_constraint(constraints, contact.point, contact.box, axis, 1.0, at)
 
 
 @kernel
@@ -196,21 +198,21 @@ def box_around(geometry: Geometry, placement: Placement, point: int) -> int:
 
 @kernel
 def pushed_out(
-    setting: Setting, placement: Placement, position: Vector, quaternion: Quaternion, room: PathRoom
+    setting: Setting, placement: Placement, position: Vector, quaternion: Quaternion, room: StepWorkspace
 ) -> tuple[bool, Vector, Quaternion]:
-    """Make all pins hold, and push points out of the object that this has brought in; placement is filled."""
+    """Make all constraints hold, and push points out of the object that this has brought in; placement is filled."""
     geometry = setting.geometry
     holds = True
     for _ in range(POINTS_PUSHED):
-        if room.pins.rooms[0].used > 0:
-            holds, position, quaternion = pull_back(
-                geometry, setting.body, position, quaternion, room.pins, setting.size_m
+        if room.constraints.rooms[0].used > 0:
+            holds, position, quaternion = projected(
+                geometry, setting.body, position, quaternion, room.constraints, setting.size_m
             )
         place_object(geometry, position, quaternion, placement)
         point = deepest_offender(placement, room.allowed)
         if point < 0 or not holds:
             break
-        if not pin_face(geometry, placement, point, box_around(geometry, placement, point), room.pins):
+        if not constrain_to_face(geometry, placement, point, box_around(geometry, placement, point), room.constraints):
             return False, position, quaternion
     return holds and deepest_offender(placement, room.allowed) < 0, position, quaternion
 
@@ -226,7 +228,7 @@ def stepped(
     amount: float,
     hit_point: int,
     hit_box: int,
-    room: PathRoom,
+    room: StepWorkspace,
 ) -> tuple[bool, Vector, Quaternion]:
     """Move by ``amount`` and put the contacts that carry, and the one that is hit, on their faces.
 
@@ -234,11 +236,11 @@ def stepped(
     placement is that of the new pose, or of the old one.
     """
     geometry = setting.geometry
-    pin_contacts(geometry, placement, contacts, room.pins)
+    constrain_contacts(geometry, placement, contacts, room.constraints)
     moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
     if hit_point >= 0:
         place_object(geometry, moved[0], moved[1], placement)
-        pin_face(geometry, placement, hit_point, hit_box, room.pins)
+        constrain_to_face(geometry, placement, hit_point, hit_box, room.constraints)
     done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], room)
     if done:
         work = work_done(setting.load, position, quaternion, new_position, new_quaternion)
@@ -278,7 +280,7 @@ def nothing_ahead(setting: Setting, position: Vector) -> bool:
 
 
 @kernel
-def allow_depths(placement: Placement, tolerances: KernelTolerances, room: PathRoom) -> None:
+def allow_depths(placement: Placement, tolerances: KernelTolerances, room: StepWorkspace) -> None:
     """Write how deep each point may be after the step: no deeper than it is."""
     for point in range(len(room.allowed)):
         room.allowed[point] = allowed_depth(placement.depths[point], tolerances)
@@ -292,7 +294,7 @@ def furthest_step(
     position: Vector,
     quaternion: Quaternion,
     twist: Twist,
-    room: PathRoom,
+    room: StepWorkspace,
 ) -> tuple[float, bool, Vector, Quaternion]:
     """Go along a twist to its end, the first contact or the edge of a face that carries, or less if need be.
 
@@ -301,7 +303,7 @@ def furthest_step(
     """
     allow_depths(placement, setting.tolerances, room)
     amount, hit_point, hit_box = first_contact(setting, placement, position, twist, twist.end)
-    run_off = first_run_off(
+    edge_crossing = first_edge_crossing(
         setting.geometry,
         placement,
         contacts,
@@ -311,8 +313,8 @@ def furthest_step(
         twist.end,
         setting.tolerances.touch_m,
     )
-    if run_off < amount:
-        amount, hit_point, hit_box = run_off, -1, -1
+    if edge_crossing < amount:
+        amount, hit_point, hit_box = edge_crossing, -1, -1
     if twist.end < amount:
         amount = twist.end
     if amount == math.inf:

@@ -15,7 +15,7 @@ CLEAR = 2.0
 
 
 @kernel
-def travel_off(coordinate: float, rate: float, limit: float) -> float:
+def travel_to_edge(coordinate: float, rate: float, limit: float) -> float:
     """Return when a coordinate that grows by ``rate`` leaves [-limit, limit]."""
     if rate == 0.0:
         return math.inf
@@ -23,7 +23,7 @@ def travel_off(coordinate: float, rate: float, limit: float) -> float:
 
 
 @kernel
-def first_run_off(
+def first_edge_crossing(
     geometry: Geometry,
     placement: Placement,
     contacts: ContactSet,
@@ -51,7 +51,7 @@ def first_run_off(
                 continue
             limit = half_size[k] + CLEAR * touch_m
             if rate == 0.0:
-                first = min(first, travel_off(point_box[k], -moves[k], limit))
+                first = min(first, travel_to_edge(point_box[k], -moves[k], limit))
                 continue
             axis = scaled(spin_box, 1.0 / rate)
             per_radian = scaled(moves, 1.0 / rate)

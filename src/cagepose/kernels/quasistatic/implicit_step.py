@@ -17,7 +17,7 @@ from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.curvature import greatest_curvature
 from cagepose.kernels.contact.metric import WRENCH, ScaledVector
-from cagepose.kernels.contact.onset import MOVES, OnsetRoom, onset_with_faces
+from cagepose.kernels.contact.onset import MOVES, ContactWorkspace, onset_with_faces
 from cagepose.kernels.native.kernel import kernel
 
 RAISES = 12
@@ -26,7 +26,7 @@ LEAST_RHO = 1e-9
 """In curvatures: freedoms without curvature (a block that slides on a plane) keep the matrix regular by this."""
 
 
-class StiffRoom:
+class ImplicitStepWorkspace:
     """Room for one step; a record.
 
     Attributes
@@ -94,7 +94,7 @@ def solve_upper(factor: FloatArray, vector: FloatArray) -> None:
 
 
 @kernel
-def keep_along_faces(contacts: ContactSet, room: StiffRoom) -> float:
+def keep_along_faces(contacts: ContactSet, room: ImplicitStepWorkspace) -> float:
     """Replace what S has across the faces (and, where contacts stick, along them) by the greatest curvature along them.
 
     Nothing moves there, but it could make the matrix look as if it were not positive, or rounding of the forces as if
@@ -130,7 +130,7 @@ def keep_along_faces(contacts: ContactSet, room: StiffRoom) -> float:
 
 
 @kernel
-def write_matrix(room: StiffRoom, rho: float) -> None:
+def write_matrix(room: ImplicitStepWorkspace, rho: float) -> None:
     """Write rho 1 + S."""
     for j in range(6):
         for k in range(6):
@@ -139,13 +139,13 @@ def write_matrix(room: StiffRoom, rho: float) -> None:
 
 
 @kernel
-def stiff_step(
+def implicit_step(
     contacts: ContactSet,
     turned: Rows[ContactRow],
     friction: float,
     rho: float,
-    room: StiffRoom,
-    solver: OnsetRoom,
+    room: ImplicitStepWorkspace,
+    solver: ContactWorkspace,
 ) -> bool:
     """Write the step into ``room.delta`` and what the contacts carry into their ``step_forces``; False: take the
     explicit step.

@@ -30,7 +30,7 @@ ON_FACE = 4e-16
 """In sizes of the scene: a gap that is rounding."""
 
 
-class Pin:
+class PositionConstraint:
     """A coordinate of a cage point, in the frame of a box, that shall have a given value; a record.
 
     Attributes
@@ -51,8 +51,8 @@ class Pin:
     value: float
 
 
-class PullRoom:
-    """How many pins there are, and room for one wrench, a scaled twist and the pins' basis; a record."""
+class ProjectionWorkspace:
+    """How many constraints there are, and room for one wrench, a scaled twist and the constraints' basis; a record."""
 
     used: int
     column: ScaledVector
@@ -60,31 +60,37 @@ class PullRoom:
     basis: PassiveSet
 
 
-class Pins(NamedTuple):
-    """Pins 0 to rooms[0].used - 1 of ``rows`` are to hold."""
+class Constraints(NamedTuple):
+    """Constraints 0 to rooms[0].used - 1 of ``rows`` are to hold."""
 
-    rooms: Rows[PullRoom]
-    rows: Rows[Pin]
+    rooms: Rows[ProjectionWorkspace]
+    rows: Rows[PositionConstraint]
 
 
-def empty_pins(n_pins: int) -> Pins:
-    """Return room for ``n_pins`` (plain Python)."""
-    return Pins(empty_rows(PullRoom, 1), empty_rows(Pin, n_pins))
+def empty_constraints(n_constraints: int) -> Constraints:
+    """Return room for ``n_constraints`` (plain Python)."""
+    return Constraints(empty_rows(ProjectionWorkspace, 1), empty_rows(PositionConstraint, n_constraints))
 
 
 @kernel
-def add_pin(pins: Pins, point: int, box: int, axis: int, side: float, target: float) -> bool:
-    """Add a pin; False: there is no room, or it is there already."""
-    n = pins.rooms[0].used
-    if n == len(pins.rows):
+def add_constraint(constraints: Constraints, point: int, box: int, axis: int, side: float, target: float) -> bool:
+    """Add a constraint; False: there is no room, or it is there already."""
+    n = constraints.rooms[0].used
+    if n == len(constraints.rows):
         return False
     for i in range(n):
-        pin = pins.rows[i]
-        if pin.point == point and pin.box == box and pin.axis == axis:
+        constraint = constraints.rows[i]
+        if constraint.point == point and constraint.box == box and constraint.axis == axis:
             return False
-    pin = pins.rows[n]
-    pin.point, pin.box, pin.axis, pin.side, pin.target = point, box, axis, side, target
-    pins.rooms[0].used = n + 1
+    constraint = constraints.rows[n]
+    constraint.point, constraint.box, constraint.axis, constraint.side, constraint.target = (
+        point,
+        box,
+        axis,
+        side,
+        target,
+    )
+    constraints.rooms[0].used = n + 1
     return True
 
 
@@ -96,14 +102,14 @@ def box_axis(geometry: Geometry, box: int, axis: int) -> Vector:
 
 
 @kernel
-def pull_back(
-    geometry: Geometry, body: Body, position: Vector, quaternion: Quaternion, pins: Pins, size_m: float
+def projected(
+    geometry: Geometry, body: Body, position: Vector, quaternion: Quaternion, constraints: Constraints, size_m: float
 ) -> tuple[bool, Vector, Quaternion]:
-    """Move the object so that all pins hold; return (whether they do, position, quaternion).
+    """Move the object so that all constraints hold; return (whether they do, position, quaternion).
 
-    Pins that depend on others follow from them: where they do not, that shows as a point inside the object later.
+    Those that depend on others follow from them: where they do not, that shows as a point inside the object later.
     """
-    room, rows = pins.rooms[0], pins.rows
+    room, rows = constraints.rooms[0], constraints.rows
     worst_before = math.inf
     for _ in range(ROUNDS):
         frame = frame_at(body, quaternion)
@@ -111,15 +117,15 @@ def pull_back(
         clear(room.basis, WRENCH, 1.0)
         worst = 0.0
         for i in range(room.used):
-            pin = rows[i]
-            axis_object = scaled(box_axis(geometry, pin.box, pin.axis), pin.side)
-            arm = minus(row(geometry.points_world, pin.point), position)
-            from_box = minus(rotated(back, arm), row(geometry.box_positions, pin.box))
+            constraint = rows[i]
+            axis_object = scaled(box_axis(geometry, constraint.box, constraint.axis), constraint.side)
+            arm = minus(row(geometry.points_world, constraint.point), position)
+            from_box = minus(rotated(back, arm), row(geometry.box_positions, constraint.box))
             direction = rotated(quaternion, axis_object)
             write_scaled_wrench(direction, cross(arm, direction), frame, room.column)
             place = room.basis.used
             if append_column(room.basis, room.column, i, 0.0):
-                rows[place].value = dot(axis_object, from_box) - pin.target
+                rows[place].value = dot(axis_object, from_box) - constraint.target
                 worst = max(worst, abs(rows[place].value))
         if worst <= ON_FACE * size_m or worst >= worst_before:
             return worst <= 1e3 * ON_FACE * size_m, position, quaternion

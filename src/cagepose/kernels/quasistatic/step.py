@@ -45,14 +45,14 @@ from cagepose.kernels.quasistatic.along_twist import (
     Setting,
     Twist,
     allow_depths,
+    constrain_contacts,
     furthest_step,
     longest_step,
     nothing_ahead,
-    pin_contacts,
     pushed_out,
     straightened,
 )
-from cagepose.kernels.quasistatic.implicit_step import curvature_along, keep_along_faces, stiff_step
+from cagepose.kernels.quasistatic.implicit_step import curvature_along, implicit_step, keep_along_faces
 from cagepose.kernels.quasistatic.projection import ON_FACE
 from cagepose.kernels.quasistatic.rest_on_the_way import first_rest, is_held_on_the_way
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
@@ -67,7 +67,7 @@ STILL = 1e-14
 """In sizes of the scene: a shorter step is no progress."""
 STILL_STEPS = 6
 """Steps without progress after which the run has stalled."""
-POLISHES = 3
+REFINEMENTS = 3
 """How often, in a phase, a rest is put on its faces and looked at again: what balanced before may not quite, then."""
 
 GOES_ON = -1
@@ -85,7 +85,7 @@ class State(NamedTuple):
         How far this step may turn: less after one that did not get as far as it should.
     n_still
         Steps without progress before it.
-    n_polished
+    n_refined
         How often a rest has been put on its faces in this phase.
     """
 
@@ -93,7 +93,7 @@ class State(NamedTuple):
     quaternion: Quaternion
     turn_step_rad: float
     n_still: int
-    n_polished: int
+    n_refined: int
 
 
 @kernel
@@ -134,7 +134,7 @@ def next_twist(
         write_curvature(contacts, setting.load, quaternion, frame, room.stiff.curvature)
         rho = max(keep_along_faces(contacts, room.stiff), 1.0 / end)
         if abs(curvature_along(room.stiff.curvature, y)) * end > STIFF:
-            if stiff_step(contacts, work.turned, setting.friction, rho, room.stiff, room.solver):
+            if implicit_step(contacts, work.turned, setting.friction, rho, room.stiff, room.solver):
                 velocity, spin = twist_of(room.stiff.delta, frame)
                 end = min(1.0, longest_step(velocity, spin, carries, turn_step_rad, setting.size_m))
                 for i in range(contacts.used[0]):
@@ -156,7 +156,7 @@ def gap_left(contacts: ContactSet) -> float:
 
 
 @kernel
-def polished(
+def refined(
     setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace
 ) -> tuple[Vector, Quaternion]:
     """Close the gaps, within the touch tolerance, of the contacts that carry (5.12)."""
@@ -164,7 +164,7 @@ def polished(
     for i in range(work.contacts.used[0]):
         work.contacts.rows[i].is_sticking = False
     allow_depths(work.placement, setting.tolerances, work.path)
-    pin_contacts(setting.geometry, work.placement, work.contacts, work.path.pins)
+    constrain_contacts(setting.geometry, work.placement, work.contacts, work.path.constraints)
     done, new_position, new_quaternion = pushed_out(setting, work.placement, position, quaternion, work.path)
     if done:
         return new_position, new_quaternion
@@ -238,22 +238,22 @@ def next_step(
         See there.
     """
     solver = work.rooms[0].solver
-    position, quaternion, n_polished = state.position, state.quaternion, state.n_polished
+    position, quaternion, n_refined = state.position, state.quaternion, state.n_refined
     write_state(work.trace.rows[step], state)
 
     # What happens from rest at this pose? A rest is put on its faces, and looked at again.
     code = UNSOLVED
-    for _ in range(POLISHES + 1):
+    for _ in range(REFINEMENTS + 1):
         note_touching(work)
         solver.load_terms = write_load(setting.load, quaternion, frame_at(setting.body, quaternion), solver.load)
         code = onset(work.contacts, setting.friction, solver) if fits else UNSOLVED
         is_rest = code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
-        if not is_rest or n_polished == POLISHES or gap_left(work.contacts) <= ON_FACE * setting.size_m:
+        if not is_rest or n_refined == REFINEMENTS or gap_left(work.contacts) <= ON_FACE * setting.size_m:
             break
-        position, quaternion = polished(setting, position, quaternion, work)
+        position, quaternion = refined(setting, position, quaternion, work)
         fits = find_placed_contacts(setting, position, quaternion, work)
-        n_polished += 1
-    here = State(position, quaternion, state.turn_step_rad, state.n_still, n_polished)
+        n_refined += 1
+    here = State(position, quaternion, state.turn_step_rad, state.n_still, n_refined)
     if code != MOVES:
         write_step(work, step, STUCK if code == UNSOLVED else HELD, NONE, position, quaternion)
         return (STALLED if code == UNSOLVED else RESTS), here, fits
@@ -283,14 +283,14 @@ def next_step(
         turn_step = min(2.0 * state.turn_step_rad, setting.turn_step_rad)
     fits = find_placed_contacts(setting, end, turned, work)
     write_step(work, step, rule, motion, end, turned)
-    there = State(end, turned, turn_step, n_still, n_polished)
+    there = State(end, turned, turn_step, n_still, n_refined)
     return (STALLED if n_still == STILL_STEPS else GOES_ON), there, fits
 
 
 @kernel
 def write_state(record: StepRecord, state: State) -> None:
     """Write what a step began from."""
-    record.turn_step, record.n_still, record.n_polished = state.turn_step_rad, state.n_still, state.n_polished
+    record.turn_step, record.n_still, record.n_refined = state.turn_step_rad, state.n_still, state.n_refined
     for k in range(3):
         record.start_position[k] = state.position[k]
     for k in range(4):
@@ -306,5 +306,5 @@ def state_of(record: StepRecord) -> State:
         (q[0], q[1], q[2], q[3]),
         record.turn_step,
         record.n_still,
-        record.n_polished,
+        record.n_refined,
     )

@@ -16,25 +16,25 @@ from cagepose.kernels.contact.contact_set import (
     empty_contact_set,
 )
 from cagepose.kernels.contact.onset import (
-    OnsetRoom,
+    ContactWorkspace,
 )
 from cagepose.kernels.outcome.trace import (
     Trace,
     empty_trace,
 )
 from cagepose.kernels.quasistatic.along_twist import (
-    PathRoom,
-    empty_path_room,
+    StepWorkspace,
+    empty_step_workspace,
 )
-from cagepose.kernels.quasistatic.implicit_step import StiffRoom
-from cagepose.kernels.stability.proof import ProofRoom, empty_proof_room
+from cagepose.kernels.quasistatic.implicit_step import ImplicitStepWorkspace
+from cagepose.kernels.stability.proof import ProofWorkspace, empty_proof_workspace
 
 
-class RunRoom:
+class SolverWorkspace:
     """Room of fixed size: what the solvers need; a record."""
 
-    solver: OnsetRoom
-    stiff: StiffRoom
+    solver: ContactWorkspace
+    stiff: ImplicitStepWorkspace
 
 
 class QuasistaticWorkspace(NamedTuple):
@@ -66,12 +66,12 @@ class QuasistaticWorkspace(NamedTuple):
     contacts: ContactSet
     ahead: ContactSet
     turned: Rows[ContactRow]
-    rooms: Rows[RunRoom]
-    path: PathRoom
+    rooms: Rows[SolverWorkspace]
+    path: StepWorkspace
     touched: NDArray[np.bool_]
     trace: Trace
     points_world: FloatArray
-    proof: ProofRoom
+    proof: ProofWorkspace
 
 
 def empty_quasistatic_workspace(geometry: Geometry, step_limit: int) -> QuasistaticWorkspace:
@@ -83,10 +83,10 @@ def empty_quasistatic_workspace(geometry: Geometry, step_limit: int) -> Quasista
         empty_contact_set(n_contacts),
         empty_contact_set(n_contacts),
         empty_rows(ContactRow, n_contacts),
-        empty_rows(RunRoom, 1),
-        empty_path_room(n_points),
+        empty_rows(SolverWorkspace, 1),
+        empty_step_workspace(n_points),
         np.zeros(n_points, np.bool_),
         empty_trace(step_limit, n_points),
         np.zeros((n_points, 3)),
-        empty_proof_room(geometry),
+        empty_proof_workspace(geometry),
     )

@@ -8,10 +8,10 @@ from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.contact.balance import left_by_friction
 from cagepose.kernels.contact.cone import BALANCED, HELD, write_forces
 from cagepose.kernels.contact.contact_set import ContactRow, choose_next_faces
-from cagepose.kernels.contact.onset import COMBINATIONS_LIMIT, OnsetRoom
-from cagepose.kernels.contact.sure_motion import step_to_balance
+from cagepose.kernels.contact.onset import COMBINATIONS_LIMIT, ContactWorkspace
+from cagepose.kernels.contact.separation import step_to_balance
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.stability.proof import ProofRoom
+from cagepose.kernels.stability.proof import ProofWorkspace
 
 FRICTION_GREATEST = 1e4
 """A coefficient above which a balance counts as none."""
@@ -21,7 +21,7 @@ SURE = 1e-6
 
 
 @kernel
-def least_friction(rows: Rows[ContactRow], n_contacts: int, solver: OnsetRoom) -> float:
+def least_friction(rows: Rows[ContactRow], n_contacts: int, solver: ContactWorkspace) -> float:
     """Return the least coefficient at which one choice of faces balances the load (5.17); inf: none.
 
     Bisection, and Newton's method where the residual falls straight to zero: there the last step is taken from a
@@ -55,7 +55,7 @@ def least_friction(rows: Rows[ContactRow], n_contacts: int, solver: OnsetRoom) -
 
 
 @kernel
-def least_friction_of_faces(at: ProofRoom) -> float:
+def least_friction_of_faces(at: ProofWorkspace) -> float:
     """Return the least coefficient with which the contacts at a pose balance the load, whichever faces count on edges;
     inf: none; NaN: there are too many choices of faces to ask them all.
     """

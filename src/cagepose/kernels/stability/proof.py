@@ -26,26 +26,26 @@ from cagepose.kernels.contact.onset import (
     HELD_WITHOUT_FRICTION,
     MOVES,
     UNSOLVED,
-    OnsetRoom,
+    ContactWorkspace,
 )
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.second_order import (
     MARGINAL,
     STABLE_REST,
-    StabilityRoom,
+    StabilityWorkspace,
     find_held,
     find_shared,
     stability,
 )
-from cagepose.kernels.stability.sure_contacts import SureRoom, rest_is_sure
-from cagepose.kernels.stability.uniqueness import N_COLUMNS, ModesRoom
+from cagepose.kernels.stability.uniqueness import N_COLUMNS, ModesWorkspace
+from cagepose.kernels.stability.uniqueness_bound import BoundWorkspace, rest_is_unique
 
 PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE, OTHER_ONSET, UNIQUENESS_NOT_SHOWN = 0, 1, 2, 3
 TOO_MANY_CHOICES, PROVEN_MOVES, TOO_MANY_CONTACTS = 4, 5, 6
 """Codes of a proof."""
 
 
-class JudgeRoom:
+class AnalysisWorkspace:
     """Room of fixed size, and the answer; a record.
 
     Attributes
@@ -66,33 +66,33 @@ class JudgeRoom:
         Whether the contacts can press against each other without a load; asked only by `proof_search`.
     """
 
-    solver: OnsetRoom
+    solver: ContactWorkspace
     twist: ScaledVector
     twist_residual: float
-    modes: ModesRoom
-    sure: SureRoom
-    rest: StabilityRoom
+    modes: ModesWorkspace
+    sure: BoundWorkspace
+    rest: StabilityWorkspace
     sum_only: ScaledVector
     wedged: bool
 
 
-class ProofRoom(NamedTuple):
+class ProofWorkspace(NamedTuple):
     """Room for one proof: what is at the pose, where ``contacts`` hold the forces of a rest, one room for all else,
     and that of a system.
     """
 
     placement: Placement
     contacts: ContactSet
-    rooms: Rows[JudgeRoom]
+    rooms: Rows[AnalysisWorkspace]
     system: System
 
 
-def empty_proof_room(geometry: Geometry) -> ProofRoom:
+def empty_proof_workspace(geometry: Geometry) -> ProofWorkspace:
     """Return room for one proof (plain Python)."""
     n_contacts = CONTACTS_PER_POINT * len(geometry.points_world)
-    rooms = empty_rows(JudgeRoom, 1)
+    rooms = empty_rows(AnalysisWorkspace, 1)
     rooms[0].sum_only[6] = 1.0
-    return ProofRoom(
+    return ProofWorkspace(
         empty_placement(geometry), empty_contact_set(n_contacts), rooms, empty_system(max(N_COLUMNS, n_contacts))
     )
 
@@ -105,7 +105,7 @@ def stand_at(
     quaternion: Quaternion,
     load: PhaseLoad,
     touch_m: float,
-    at: ProofRoom,
+    at: ProofWorkspace,
 ) -> bool:
     """Fill placement, contacts and load at a pose; False: too many contacts."""
     frame = frame_at(body, quaternion)
@@ -125,7 +125,7 @@ def prove(
     friction: float,
     size_m: float,
     tolerances: KernelTolerances,
-    at: ProofRoom,
+    at: ProofWorkspace,
 ) -> tuple[int, int, int]:
     """Judge a pose; return (code of the proof, code of stability, number of undetermined freedoms).
 
@@ -171,7 +171,7 @@ def prove(
 
 @kernel
 def judge_faces(
-    at: ProofRoom,
+    at: ProofWorkspace,
     code: int,
     one_choice: bool,
     friction: float,
@@ -195,7 +195,9 @@ def judge_faces(
         )
         steady = max(steady, with_these)
         if code != HELD_WITHOUT_FRICTION:
-            is_sure = rest_is_sure(contacts, friction, solver.load, solver.load_terms, room.sure, room.rest, at.system)
+            is_sure = rest_is_unique(
+                contacts, friction, solver.load, solver.load_terms, room.sure, room.rest, at.system
+            )
             proof = max(proof, PROVEN_UNIQUE if is_sure else UNIQUENESS_NOT_SHOWN)
         if not choose_next_faces(contacts, every):
             return proof, steady

@@ -24,16 +24,16 @@ from cagepose.kernels.stability.proof import (
     PROVEN_MOVES,
     PROVEN_UNIQUE,
     UNIQUENESS_NOT_SHOWN,
-    JudgeRoom,
-    ProofRoom,
+    AnalysisWorkspace,
+    ProofWorkspace,
     prove,
 )
-from cagepose.kernels.stability.sure_contacts import rest_is_sure
 from cagepose.kernels.stability.uniqueness import OTHER_FOUND, UNIQUE, other_onset
+from cagepose.kernels.stability.uniqueness_bound import rest_is_unique
 
 
 @kernel
-def has_self_stress(contacts: ContactSet, friction: float, room: JudgeRoom) -> bool:
+def has_self_stress(contacts: ContactSet, friction: float, room: AnalysisWorkspace) -> bool:
     """Whether contact forces other than zero, inside their cones, balance each other: a wedge (5.16).
 
     The sum of their normal forces is asked to be 1, and nothing else.
@@ -46,7 +46,7 @@ def has_self_stress(contacts: ContactSet, friction: float, room: JudgeRoom) -> b
 
 
 @kernel
-def search_faces(friction: float, at: ProofRoom) -> int:
+def search_faces(friction: float, at: ProofWorkspace) -> int:
     """Return the code of the proof, the least sure of all combinations of faces."""
     contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
     every = True
@@ -54,7 +54,7 @@ def search_faces(friction: float, at: ProofRoom) -> int:
     choose_first_faces(contacts)
     for _ in range(COMBINATIONS_LIMIT):
         code = balance_with_faces(contacts.rows, contacts.used[0], friction, solver)
-        if code == HELD_BY_FRICTION and not rest_is_sure(
+        if code == HELD_BY_FRICTION and not rest_is_unique(
             contacts, friction, solver.load, solver.load_terms, room.sure, room.rest, at.system
         ):
             answer = other_onset(contacts, friction, solver.load, room.modes, solver.newton, at.system)
@@ -67,7 +67,7 @@ def search_faces(friction: float, at: ProofRoom) -> int:
 
 
 @kernel
-def search_onsets(friction: float, at: ProofRoom) -> int:
+def search_onsets(friction: float, at: ProofWorkspace) -> int:
     """Try all contact modes (5.13) where `prove` has not shown that rest is the only onset.
 
     Parameters
@@ -93,7 +93,7 @@ def search_onsets(friction: float, at: ProofRoom) -> int:
 
 
 @kernel
-def first_motion(friction: float, at: ProofRoom) -> None:
+def first_motion(friction: float, at: ProofWorkspace) -> None:
     """Write into ``at.rooms[0].solver.y`` how an object begins to move that does so by `prove`.
 
     It is the onset that obeys Coulomb's law (5.7), and the residual is then the least that contact forces leave of the
@@ -124,7 +124,7 @@ def judge(
     friction: float,
     size_m: float,
     tolerances: KernelTolerances,
-    at: ProofRoom,
+    at: ProofWorkspace,
 ) -> tuple[int, int, int]:
     """Judge a pose, with the long search where it takes one, and the motion that begins where the object moves.
 

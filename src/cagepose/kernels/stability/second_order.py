@@ -38,7 +38,7 @@ ONE_SIDED_LIMIT = 10
 """Contacts that may open, of which all sets are asked for; with more, a rest is called marginal at best."""
 
 
-class StabilityRoom:
+class StabilityWorkspace:
     """Room for one rest, and the answer; a record.
 
     Attributes
@@ -93,7 +93,7 @@ def write_outside(basis: PassiveSet, column: FloatArray, out: FloatArray) -> boo
 
 
 @kernel
-def hold(basis: PassiveSet, column: FloatArray, room: StabilityRoom) -> None:
+def hold(basis: PassiveSet, column: FloatArray, room: StabilityWorkspace) -> None:
     """Add a column to a basis unless it lies in its span."""
     if write_outside(basis, column, room.rest):
         size = length(room.rest, 6)
@@ -103,7 +103,7 @@ def hold(basis: PassiveSet, column: FloatArray, room: StabilityRoom) -> None:
 
 
 @kernel
-def find_held(contacts: ContactSet, friction: float, room: StabilityRoom, system: System) -> bool:
+def find_held(contacts: ContactSet, friction: float, room: StabilityWorkspace, system: System) -> bool:
     """Find what the contacts hold; return whether one is at the limit of friction.
 
     A contact without force holds too if another balance loads it: then it cannot open without work. That is so where
@@ -141,7 +141,7 @@ def find_held(contacts: ContactSet, friction: float, room: StabilityRoom, system
 
 
 @kernel
-def lies_in_cone(contacts: ContactSet, i: int, sign: float, room: StabilityRoom, system: System) -> bool:
+def lies_in_cone(contacts: ContactSet, i: int, sign: float, room: StabilityWorkspace, system: System) -> bool:
     """Whether ``sign`` times a contact's wrench lies in the cone of the others that may open, seen outside the span of
     what is held.
 
@@ -163,7 +163,7 @@ def lies_in_cone(contacts: ContactSet, i: int, sign: float, room: StabilityRoom,
 
 
 @kernel
-def list_one_sided(contacts: ContactSet, room: StabilityRoom, system: System) -> int:
+def list_one_sided(contacts: ContactSet, room: StabilityWorkspace, system: System) -> int:
     """List the contacts that may open and that no others make superfluous; return how many, -1: too many."""
     n_one_sided = 0
     for i in range(contacts.used[0]):
@@ -187,7 +187,7 @@ def is_same_face(one: ContactRow, other: ContactRow) -> bool:
 
 
 @kernel
-def find_shared(contacts: ContactSet, room: StabilityRoom) -> None:
+def find_shared(contacts: ContactSet, room: StabilityWorkspace) -> None:
     """Mark the contacts whose normal force could be another: their wrench lies in the span of the rest."""
     rows, n, span = contacts.rows, contacts.used[0], room.scratch
     clear(span, WRENCH, 1.0)
@@ -208,7 +208,7 @@ def find_shared(contacts: ContactSet, room: StabilityRoom) -> None:
 
 
 @kernel
-def find_free(room: StabilityRoom) -> int:
+def find_free(room: StabilityWorkspace) -> int:
     """Complete the basis of what is held; write what is added into ``free`` and return how many there are."""
     n_held = int(room.held.used)
     for place in range(n_held, 6):
@@ -228,7 +228,9 @@ def find_free(room: StabilityRoom) -> int:
 
 
 @kernel
-def is_feasible(contacts: ContactSet, n_one_sided: int, twist: FloatArray, sign: float, room: StabilityRoom) -> bool:
+def is_feasible(
+    contacts: ContactSet, n_one_sided: int, twist: FloatArray, sign: float, room: StabilityWorkspace
+) -> bool:
     """Whether a scaled twist closes none of the contacts that may open."""
     for k in range(n_one_sided):
         column = contacts.rows[room.one_sided[k]].columns[0]
@@ -238,7 +240,7 @@ def is_feasible(contacts: ContactSet, n_one_sided: int, twist: FloatArray, sign:
 
 
 @kernel
-def hold_some(contacts: ContactSet, n_one_sided: int, chosen: int, room: StabilityRoom) -> bool:
+def hold_some(contacts: ContactSet, n_one_sided: int, chosen: int, room: StabilityWorkspace) -> bool:
     """Hold those of the one-sided contacts whose bit is set, too; False: they depend on each other."""
     for k in range(n_one_sided):
         if (chosen >> k) & 1:
@@ -258,7 +260,7 @@ def stability(
     frame: Frame,
     terms: float,
     size_m: float,
-    room: StabilityRoom,
+    room: StabilityWorkspace,
     system: System,
 ) -> int:
     """Return the code of stability of a rest with the forces in ``contacts``; free twists without curvature are added
@@ -282,7 +284,7 @@ def stability(
 
 
 @kernel
-def least_curvature(contacts: ContactSet, n_one_sided: int, flat: float, room: StabilityRoom) -> int:
+def least_curvature(contacts: ContactSet, n_one_sided: int, flat: float, room: StabilityWorkspace) -> int:
     """Return the code of stability over the twists that what is held leaves free."""
     n_free = find_free(room)
     for i in range(n_free):

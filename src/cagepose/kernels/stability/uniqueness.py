@@ -43,7 +43,7 @@ UNIQUE, OTHER_FOUND, NOT_SHOWN = 0, 1, 2
 UNDECIDED = -1
 
 
-class ModesRoom:
+class ModesWorkspace:
     """Room for one search; a record.
 
     Attributes
@@ -80,7 +80,13 @@ class ModesRoom:
 
 @kernel
 def write_velocity(
-    contacts: ContactSet, n_rows: int, b: FloatArray, wrench: FloatArray, sign: float, out: FloatArray, room: ModesRoom
+    contacts: ContactSet,
+    n_rows: int,
+    b: FloatArray,
+    wrench: FloatArray,
+    sign: float,
+    out: FloatArray,
+    room: ModesWorkspace,
 ) -> None:
     """Write what one scaled wrench adds to the velocities that the modes speak of, and to w . nu."""
     for place in range(n_rows):
@@ -102,7 +108,7 @@ def add_force_column(
     friction: float,
     angle: float,
     n_columns: int,
-    room: ModesRoom,
+    room: ModesWorkspace,
     system: System,
 ) -> int:
     """Add the force along one generator of a cone; return the number of columns."""
@@ -117,7 +123,9 @@ def add_force_column(
 
 
 @kernel
-def add_slack(n_rows: int, row: int, one: float, two: float, n_columns: int, room: ModesRoom, system: System) -> int:
+def add_slack(
+    n_rows: int, row: int, one: float, two: float, n_columns: int, room: ModesWorkspace, system: System
+) -> int:
     """Add a column with two entries, at ``row`` and the one below; return the number of columns."""
     for k in range(3 * n_rows + 1):
         system.columns[n_columns, k] = 0.0
@@ -129,7 +137,7 @@ def add_slack(n_rows: int, row: int, one: float, two: float, n_columns: int, roo
 
 @kernel
 def write_modes(
-    contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesRoom, system: System
+    contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesWorkspace, system: System
 ) -> int:
     """Write the system of the present modes; return the number of columns. Column 0 is the scale of the load."""
     write_velocity(contacts, n_rows, b, b, 1.0, system.columns[0], room)
@@ -163,7 +171,7 @@ def write_modes(
 
 @kernel
 def is_possible(
-    contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesRoom, system: System
+    contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesWorkspace, system: System
 ) -> bool:
     """Whether the present modes are not ruled out."""
     n_columns = write_modes(contacts, n_rows, friction, b, room, system)
@@ -173,7 +181,7 @@ def is_possible(
 
 @kernel
 def is_witnessed(
-    contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesRoom, newton: NewtonRoom
+    contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesWorkspace, newton: NewtonRoom
 ) -> bool:
     """Whether Newton's method from the solution of the system ends in a motion that obeys Coulomb's law.
 
@@ -212,7 +220,7 @@ def is_witnessed(
 
 
 @kernel
-def put_aside(n_waiting: int, place: int, mode: int, start: float, width: float, room: ModesRoom) -> int:
+def put_aside(n_waiting: int, place: int, mode: int, start: float, width: float, room: ModesWorkspace) -> int:
     """Let the present combination wait, with another mode of one contact; return how many wait."""
     for k in range(CONTACT_LIMIT):
         room.waiting_modes[n_waiting, k] = room.modes[k]
@@ -225,7 +233,7 @@ def put_aside(n_waiting: int, place: int, mode: int, start: float, width: float,
 
 
 @kernel
-def branch(n_rows: int, n_waiting: int, room: ModesRoom) -> int:
+def branch(n_rows: int, n_waiting: int, room: ModesWorkspace) -> int:
     """Divide the present combination: decide a contact, else halve the widest sector; return how many wait.
 
     -1: nothing is left to divide.
@@ -249,7 +257,7 @@ def branch(n_rows: int, n_waiting: int, room: ModesRoom) -> int:
 
 @kernel
 def other_onset(
-    contacts: ContactSet, friction: float, b: FloatArray, room: ModesRoom, newton: NewtonRoom, system: System
+    contacts: ContactSet, friction: float, b: FloatArray, room: ModesWorkspace, newton: NewtonRoom, system: System
 ) -> int:
     """Return UNIQUE if Coulomb's law allows no onset but rest; OTHER_FOUND: one is in ``room``; or NOT_SHOWN.
 

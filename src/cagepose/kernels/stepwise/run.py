@@ -39,7 +39,7 @@ from cagepose.kernels.outcome.trace import (
     Trace,
     empty_trace,
 )
-from cagepose.kernels.stability.proof import ProofRoom, empty_proof_room
+from cagepose.kernels.stability.proof import ProofWorkspace, empty_proof_workspace
 from cagepose.kernels.stepwise.slip import SlipRules, slip_step
 from cagepose.kernels.stepwise.step import Step, pose_during, write_step
 from cagepose.kernels.stepwise.support import (
@@ -280,7 +280,7 @@ class StepwiseWorkspace(NamedTuple):
     touching: Touching
     trace: Trace
     points_world: FloatArray
-    proof: ProofRoom
+    proof: ProofWorkspace
 
 
 def empty_stepwise_workspace(geometry: Geometry, event_limit: int) -> StepwiseWorkspace:
@@ -291,7 +291,7 @@ def empty_stepwise_workspace(geometry: Geometry, event_limit: int) -> StepwiseWo
         empty_touching(n_points),
         empty_trace(event_limit, n_points),
         np.zeros((n_points, 3)),
-        empty_proof_room(geometry),
+        empty_proof_workspace(geometry),
     )
 
 

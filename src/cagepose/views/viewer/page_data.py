@@ -10,8 +10,8 @@ import numpy as np
 from cagepose.files.units import from_metres
 from cagepose.files.words import LengthWords
 from cagepose.model.checks import FloatArray
+from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.run import AT_REST, FAILURES
-from cagepose.runs.weights import weigh
 from cagepose.studies.comparison import ENDS, same_pose
 from cagepose.views.viewer.playback import LoadArrow, Playback, Row, Shot, Touches
 from cagepose.views.viewer.stage import EXAGGERATIONS, MOST_ADDED, Stage
@@ -142,7 +142,7 @@ class _Writer:
 
     def _force_unit(self) -> str:
         loads = self.run.scene.loads[: len(self.run.phases)]
-        return "N" if all(weigh(self.run.scene, load).in_newtons for load in loads) else "parts of the load"
+        return "N" if all(scaled_load(self.run.scene, load).in_newtons for load in loads) else "parts of the load"
 
 
 def verdict_kind(verdict: str) -> str:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from cagepose.files.units import LengthUnit
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
+from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
-from cagepose.runs.weights import weigh
 from cagepose.views.viewer.surface import nearest_on_object
 
 SHOTS_PER_MOTION = 24
@@ -243,7 +243,7 @@ def _force(contact: Contact) -> FloatArray | None:
 
 def _load_arrows(run: Run, phase: int) -> tuple[LoadArrow, ...]:
     load = run.scene.loads[phase]
-    weighed = weigh(run.scene, load)
+    weighed = scaled_load(run.scene, load)
     arrows = [LoadArrow("weight", run.scene.object.center_of_gravity_m, weighed.gravity)]
     if load.force is not None:
         arrows.append(LoadArrow(load.name, load.force.at_object_m, weighed.force))

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from cagepose.model.scene import Scene
+from cagepose.runs.load_scaling import WEIGHT_BESIDE_FORCE, scaled_load
 from cagepose.runs.run import PhaseRun
-from cagepose.runs.weights import WEIGHT_BESIDE_FORCE, weigh
 
 
-def seam_remarks(scene: Scene) -> Iterator[str]:
+def seam_warnings(scene: Scene) -> Iterator[str]:
     for one, other in scene.open_seams:
         yield (
             f"boxes {one} and {other} meet flush with outlines that cross: a point that moves exactly in their common"
@@ -17,22 +17,22 @@ def seam_remarks(scene: Scene) -> Iterator[str]:
         )
 
 
-def edge_remarks(phase: PhaseRun) -> Iterator[str]:
+def edge_warnings(phase: PhaseRun) -> Iterator[str]:
     edges = sorted({contact.point for contact in phase.contacts if contact.near_edge})
     if edges:
         yield f"{phase.name}: {', '.join(edges)} within the touch tolerance of a face's edge"
 
 
-def weight_remarks(scene: Scene, n_phases: int) -> Iterator[str]:
+def weight_warnings(scene: Scene, n_phases: int) -> Iterator[str]:
     for load in scene.loads[:n_phases]:
-        if load.gravity_world is not None and load.force is not None and not weigh(scene, load).in_newtons:
+        if load.gravity_world is not None and load.force is not None and not scaled_load(scene, load).in_newtons:
             yield (
                 f"{load.name}: gravity and force act together, but mass or magnitude is not given: the force dominates"
                 f" (weight = {WEIGHT_BESIDE_FORCE:g} of it)"
             )
 
 
-def proof_remarks(phases: Sequence[PhaseRun], friction: float) -> Iterator[str]:
+def proof_warnings(phases: Sequence[PhaseRun], friction: float) -> Iterator[str]:
     """What the mechanics says against a phase that ended held, or about how firmly it is held."""
     for phase in phases:
         proof = phase.proof

@@ -1,4 +1,4 @@
-"""How much gravity and force weigh against each other when both act."""
+"""How much gravity and force scaled_load against each other when both act."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ WEIGHT_BESIDE_FORCE = 1e-6
 and gravity settles only what the force leaves open."""
 
 
-class Weighed(NamedTuple):
+class ScaledLoad(NamedTuple):
     """Gravity and force of one phase: vectors in the world, (3,). In newtons if all that needs is given, else per unit
     load.
     """
@@ -25,20 +25,20 @@ class Weighed(NamedTuple):
     in_newtons: bool
 
 
-def weigh(scene: Scene, load: Load) -> Weighed:
+def scaled_load(scene: Scene, load: Load) -> ScaledLoad:
     """Return the two loads of a phase, at the scale in which they act together."""
     none = np.zeros(3)
     mass = scene.object.mass_kg
     if load.force is None:
         assert load.gravity_world is not None
         if mass is None:
-            return Weighed(unit_vector(load.gravity_world, "gravity"), none, in_newtons=False)
-        return Weighed(mass * load.gravity_world, none, in_newtons=True)
+            return ScaledLoad(unit_vector(load.gravity_world, "gravity"), none, in_newtons=False)
+        return ScaledLoad(mass * load.gravity_world, none, in_newtons=True)
     magnitude = load.force.magnitude_n
     force = load.force.direction_world * (1.0 if magnitude is None else magnitude)
     if load.gravity_world is None:
-        return Weighed(none, force, in_newtons=magnitude is not None)
+        return ScaledLoad(none, force, in_newtons=magnitude is not None)
     if mass is not None and magnitude is not None:
-        return Weighed(mass * load.gravity_world, force, in_newtons=True)
+        return ScaledLoad(mass * load.gravity_world, force, in_newtons=True)
     weight = WEIGHT_BESIDE_FORCE * float(np.linalg.norm(force))
-    return Weighed(weight * unit_vector(load.gravity_world, "gravity"), force, in_newtons=False)
+    return ScaledLoad(weight * unit_vector(load.gravity_world, "gravity"), force, in_newtons=False)

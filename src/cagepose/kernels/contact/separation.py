@@ -11,7 +11,13 @@ import math
 
 from cagepose.kernels.algebra.least_squares import PRICE, inner, length, rounding_scale
 from cagepose.kernels.algebra.record import FloatArray, Rows
-from cagepose.kernels.contact.cone import GENERATOR_LIMIT, ConeRoom, add_generator, go_on, steepest_tangent
+from cagepose.kernels.contact.cone import (
+    GENERATOR_LIMIT,
+    ConeWorkspace,
+    add_generator,
+    renumber_generators,
+    steepest_tangent,
+)
 from cagepose.kernels.contact.contact_set import ContactRow
 from cagepose.kernels.native.kernel import kernel
 
@@ -22,7 +28,7 @@ SURELY = 1e-6
 
 
 @kernel
-def step_to_balance(rows: Rows[ContactRow], n_contacts: int, room: ConeRoom) -> float:
+def step_to_balance(rows: Rows[ContactRow], n_contacts: int, room: ConeWorkspace) -> float:
     """Return by how much more friction the residual r would vanish, to first order: |r|^2 / sum f_n |r_t|.
 
     The contacts' forces are those of ``room``.
@@ -48,7 +54,9 @@ def leaves_cones(rows: Rows[ContactRow], n_contacts: int, friction: float, slack
 
 
 @kernel
-def moves_surely(rows: Rows[ContactRow], n_contacts: int, friction: float, b: FloatArray, room: ConeRoom) -> bool:
+def separating_twist(
+    rows: Rows[ContactRow], n_contacts: int, friction: float, b: FloatArray, room: ConeWorkspace
+) -> bool:
     """Whether a twist is found that proves that there is no balance; False says nothing.
 
     Parameters
@@ -60,7 +68,7 @@ def moves_surely(rows: Rows[ContactRow], n_contacts: int, friction: float, b: Fl
     """
     passive = room.passive
     charged = False
-    number = go_on(rows, n_contacts, room)
+    number = renumber_generators(rows, n_contacts, room)
     while 0 <= number < GENERATOR_LIMIT and length(passive.residual, 6) > SURELY * rounding_scale(passive):
         if leaves_cones(rows, n_contacts, friction, PRICE * passive.terms, passive.residual):
             return inner(b, passive.residual, 6) > 0.0

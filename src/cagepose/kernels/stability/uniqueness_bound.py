@@ -27,14 +27,14 @@ from cagepose.kernels.contact.cone import HELD
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.metric import WRENCH, ScaledVector
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.stability.second_order import IN_SPAN, StabilityRoom, find_free, hold, write_outside
+from cagepose.kernels.stability.second_order import IN_SPAN, StabilityWorkspace, find_free, hold, write_outside
 
 SURELY = 1e-6
 """What a proof must have to spare, in lengths of the terms and in parts of the friction: a thousand times what rounding
 can make of it."""
 
 
-class SureRoom:
+class BoundWorkspace:
     """Room for one proof; a record.
 
     Attributes
@@ -86,7 +86,7 @@ def write_normals(contacts: ContactSet, friction: float, basis: PassiveSet, syst
 
 
 @kernel
-def greatest_shift(n_contacts: int, room: SureRoom, system: System) -> float:
+def greatest_shift(n_contacts: int, room: BoundWorkspace, system: System) -> float:
     """Return rho, by how much friction can move what the contacts take along their normals (5.19); inf: no bound.
 
     The shortest u with a_i . u >= tau_i comes from non-negative least squares (Lawson and Hanson's "least distance").
@@ -114,7 +114,7 @@ def greatest_shift(n_contacts: int, room: SureRoom, system: System) -> float:
 
 @kernel
 def least_force(
-    contacts: ContactSet, place: int, n_carrying: int, shift: float, spare: float, room: SureRoom, system: System
+    contacts: ContactSet, place: int, n_carrying: int, shift: float, spare: float, room: BoundWorkspace, system: System
 ) -> float:
     """Return what one of the carrying contacts carries at least, whatever motion begins, equation (5.20); 0: perhaps
     nothing.
@@ -140,7 +140,7 @@ def least_force(
 
 
 @kernel
-def find_sure(contacts: ContactSet, friction: float, b: FloatArray, room: SureRoom, system: System) -> int:
+def find_carrying(contacts: ContactSet, friction: float, b: FloatArray, room: BoundWorkspace, system: System) -> int:
     """Find the contacts that carry whatever motion begins; return how many. The system holds all normals."""
     passive, n = room.passive, contacts.used[0]
     for k in range(6):
@@ -165,7 +165,13 @@ def find_sure(contacts: ContactSet, friction: float, b: FloatArray, room: SureRo
 
 @kernel
 def write_shared_friction(
-    contacts: ContactSet, n_sure: int, b: FloatArray, n_free: int, free: FloatArray, room: SureRoom, row: FloatArray
+    contacts: ContactSet,
+    n_sure: int,
+    b: FloatArray,
+    n_free: int,
+    free: FloatArray,
+    room: BoundWorkspace,
+    row: FloatArray,
 ) -> float:
     """Share what is left of the load off the span of the normals out among the sure contacts, in parts of their limits
     and with the least sum of squares; return the greatest part. ``passive.residual`` holds two for each contact.
@@ -193,13 +199,13 @@ def write_shared_friction(
 
 
 @kernel
-def rest_is_sure(
+def rest_is_unique(
     contacts: ContactSet,
     friction: float,
     b: FloatArray,
     terms: float,
-    room: SureRoom,
-    rest: StabilityRoom,
+    room: BoundWorkspace,
+    rest: StabilityWorkspace,
     system: System,
 ) -> bool:
     """Whether rest is proven to be the only onset that Coulomb's law allows; False says nothing.
@@ -218,7 +224,7 @@ def rest_is_sure(
         if rows[i].chosen:
             hold(rest.held, rows[i].columns[0], rest)
     write_normals(contacts, friction, rest.held, system)
-    n_sure = find_sure(contacts, friction, b, room, system)
+    n_sure = find_carrying(contacts, friction, b, room, system)
     if n_sure == 0:
         return False
     n_free = find_free(rest)
