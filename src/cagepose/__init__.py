@@ -5,7 +5,7 @@
     print(run.verdict, run.pose.position_m)
 
 Everything is in SI units and radians; scene files and ``--json`` documents have their own units. Names are loaded when
-they are first used, so that ``cagepose --help`` need not wait for Numba.
+they are first used, so that ``cagepose --help`` need not wait for NumPy.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from cagepose.errors import CageposeError as CageposeError
+    from cagepose.errors import KernelsError as KernelsError
     from cagepose.errors import MissingExtraError as MissingExtraError
     from cagepose.errors import Problem as Problem
     from cagepose.errors import RunFileError as RunFileError
@@ -57,6 +58,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "cagepose.errors": (
         "CageposeError",
+        "KernelsError",
         "MissingExtraError",
         "Problem",
         "RunFileError",
@@ -93,6 +95,7 @@ __all__ = [
     "Force",
     "Frame",
     "FreeMotion",
+    "KernelsError",
     "Load",
     "MissingExtraError",
     "Motion",

@@ -27,6 +27,7 @@ def test_all_names_every_public_class_and_function_once() -> None:
             "Parting",
             "PhaseRun",
             "Play",
+            "KernelsError",
             "Pose",
             "Problem",
             "Proof",
