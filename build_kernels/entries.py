@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.kernels.algebra.linear_program import ProgramRoom, extents, program_rows, solve_program
+from cagepose.kernels.algebra.linear_program import Program, program_rows, solve_program
 from cagepose.kernels.algebra.pose import write_euler_zyx, write_quaternions
+from cagepose.kernels.algebra.program_bound import extents
 from cagepose.kernels.algebra.record import dtype_of, empty_record, empty_rows
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
 from cagepose.kernels.collision.geometry import Geometry, empty_placement, place_object
@@ -17,11 +18,12 @@ from cagepose.kernels.outcome.at_pose import critical_friction, judge_start
 from cagepose.kernels.outcome.cases import Cases, Part
 from cagepose.kernels.outcome.endings import empty_endings
 from cagepose.kernels.outcome.records import empty_outcome
-from cagepose.kernels.play.certificate import certify, empty_certificate_room
+from cagepose.kernels.play.certificate import certify, empty_certificate_workspace
+from cagepose.kernels.play.clearances import LimitingGap, find_limiting_gaps
 from cagepose.kernels.play.escape import Station, grow_tree
 from cagepose.kernels.play.goal import Goal
-from cagepose.kernels.play.rows import empty_play_room, write_start
-from cagepose.kernels.play.search import Extreme, find_play
+from cagepose.kernels.play.polytope import empty_play_workspace, write_start
+from cagepose.kernels.play.search import Extreme, find_linear_play, find_play
 from cagepose.kernels.quasistatic.run import (
     QuasistaticRules,
     repeat_quasistatic,
@@ -74,11 +76,13 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield repeat_stepwise, (0, outcome.steps, outcome.order[0], 1, part, cases, paper, paper_work, outcome)
     yield run_stepwise_cases, (0, 0, part, cases, 0.0, paper, paper_work, endings)
 
-    program, (rows, bounds) = empty_record(ProgramRoom), program_rows(1)
+    program, (rows, bounds) = empty_record(Program), program_rows(1)
     yield solve_program, (rows, bounds, program)
     yield extents, (rows, bounds, program, np.zeros(6), np.zeros(6))
-    room, goals, extremes = empty_play_room(geometry), empty_rows(Goal, 1), empty_rows(Extreme, 1)
-    yield write_start, (geometry, 0.0, room)
-    yield find_play, (geometry, 0.0, goals, extremes, room)
-    yield certify, (geometry, 0.0, 0.0, goals, numbers, room, empty_certificate_room(1))
-    yield grow_tree, (geometry, 0.0, vectors, empty_rows(Station, 1), 1, empty_placement(geometry), tolerances)
+    play_work, goals, extremes = empty_play_workspace(geometry), empty_rows(Goal, 1), empty_rows(Extreme, 1)
+    yield write_start, (geometry, play_work)
+    yield find_play, (geometry, goals, extremes, play_work)
+    yield find_limiting_gaps, (geometry, goals[0], extremes[0], empty_rows(LimitingGap, 1), play_work)
+    yield find_linear_play, (goals, rows, bounds, program, extremes)
+    yield certify, (geometry, 0.0, goals, numbers, play_work, empty_certificate_workspace(1))
+    yield grow_tree, (geometry, vectors, empty_rows(Station, 1), 1, empty_placement(geometry), tolerances)

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from bench.ours import native_call, read_run
-from cagepose.kernels.algebra.linear_program import ProgramRoom, program_rows, solve_program
+from cagepose.kernels.algebra.linear_program import Program, program_rows, solve_program
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.native.library import kernel_library
 from cagepose.kernels.native.slots import Slots
@@ -47,13 +47,13 @@ def yardstick() -> Callable[[], None]:
     rng = np.random.default_rng(1)
     rows, bounds = program_rows(60)
     rows[:], bounds[:] = rng.normal(size=(60, 6)), rng.uniform(0.5, 1.0, 60)
-    room = empty_record(ProgramRoom)
+    room = empty_record(Program)
     room.objective[:] = rng.normal(size=6)
     solve = partial(solve_program, *[Slots(part) for part in (rows, bounds, room)])
 
     def solve_all() -> None:
         for _ in range(PROGRAMS):
-            room.basis[0] = -1
+            room.passive.used = 0
             solve()
 
     return solve_all

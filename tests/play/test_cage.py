@@ -170,7 +170,7 @@ def walk(scene: Scene, found: Play, seconds: float) -> int:
     turns = Rotation.from_quat(stations["quaternion"][:n_stations][:, [1, 2, 3, 0]])
     yaw, pitch, roll = turns.as_euler("ZYX").T
     starts = frame.pose_frame_object.transform(np.array([np.zeros(3), *(point.at_object for point in found.points)]))
-    shifts = [turns.apply(start) + stations["position"][:n_stations] - start for start in starts]
+    shifts = [turns.apply(start) + frame.length_m * stations["position"][:n_stations] - start for start in starts]
     values = dict(zip(FREEDOMS, (*shifts[0].T, roll, pitch, yaw), strict=True))
     for name, ends in found.freedoms.items():
         assert ends.low.certified <= values[name].min(), name

@@ -11,7 +11,7 @@ from scipy.optimize import linprog, minimize
 from caged_scenes import caged_scene
 from cagepose import Box, Cage, Load, Object, Pose, Scene, play
 from cagepose.kernels.algebra.linear_program import OPTIMAL, UNBOUNDED, solve_program
-from cagepose.kernels.play.rows import empty_play_room, write_start
+from cagepose.kernels.play.polytope import empty_play_workspace, write_start
 from cagepose.studies.play import FREEDOMS
 from cagepose.studies.play_frame import PlayFrame
 from rails import rail_scene
@@ -49,17 +49,16 @@ def test_all_twelve_programs_of_random_caged_scenes_agree_with_highs(cases):
     n_bounded, n_scenes = 0, cases(40, 250)
     for _ in range(n_scenes):
         frame = PlayFrame(caged_scene(rng))
-        room = empty_play_room(frame.geometry)
-        write_start(frame.geometry, frame.length_m, room)
-        n = len(room.faces)
+        work = empty_play_workspace(frame.geometry)
+        write_start(frame.geometry, work)
+        n = len(work.faces)
         for objective in np.vstack([np.eye(6), -np.eye(6)]):
-            room.program.objective[:] = objective
-            room.program.basis[0] = -1
-            outcome = solve_program(room.rows, room.bounds, room.program)
+            work.program.objective[:] = objective
+            outcome = solve_program(work.rows, work.bounds, work.program)
             known = linprog(
                 -objective,
-                A_ub=room.rows[:n],
-                b_ub=room.bounds[:n],
+                A_ub=work.rows[:n],
+                b_ub=work.bounds[:n],
                 bounds=(None, None),
                 method="highs-ds",
                 options=HIGHS,
@@ -68,7 +67,7 @@ def test_all_twelve_programs_of_random_caged_scenes_agree_with_highs(cases):
             n_bounded += outcome == OPTIMAL
             if outcome == UNBOUNDED:
                 continue
-            assert float(objective @ room.program.x_near) == pytest.approx(-known.fun, abs=1e-9)
+            assert float(objective @ work.program.x) == pytest.approx(-known.fun, abs=1e-9)
     assert n_bounded >= 11 * n_scenes
 
 

@@ -9,16 +9,16 @@ from typing import Literal
 
 import numpy as np
 
+from cagepose.kernels.algebra.pose import euler_zyx_from_quaternion
 from cagepose.kernels.algebra.record import Rows, empty_rows
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
 from cagepose.kernels.collision.geometry import empty_placement
-from cagepose.kernels.play.certificate import CAGED, FREE, OFF_EDGE, RAN_OFF, UNSOLVED, CertificateRoom
+from cagepose.kernels.play.certificate import CAGED, FREE, OFF_EDGE, RAN_OFF, UNSOLVED, CertificateWorkspace
 from cagepose.kernels.play.escape import N_RANDOM, Station, grow_tree
-from cagepose.model.checks import as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.run import Motion
-from cagepose.studies.play_frame import PlayFrame
+from cagepose.studies.play_frame import PlayFrame, motion_after
 
 Caged = Literal["caged", "not certified", "escapes"]
 MOST_STATIONS = 100_000
@@ -67,29 +67,29 @@ class CageVerdict:
 def judge_cage(
     scene: Scene,
     frame: PlayFrame,
-    work: CertificateRoom,
+    proof: CertificateWorkspace,
     free_directions: tuple[str, ...],
     search_s: float,
     progress: Callable[[float], None] | None,
 ) -> CageVerdict:
     """Return the verdict; a search for a way out follows where there is no proof."""
-    if work.certificate.outcome == CAGED:
+    if proof.certificate.outcome == CAGED:
         return CageVerdict("caged", "every pose on the way out puts a point inside the object", (), None, None, 0)
     stations, n_stations, is_out, n_tried = search_way_out(scene, frame, search_s, progress)
     if is_out:
         path = _path(frame, stations, n_stations - 1)
         reason = f"a way out of {len(path)} {'motion' if len(path) == 1 else 'motions'} was found"
         return CageVerdict("escapes", reason, free_directions, path, None, n_tried)
-    reason, leaves_at = _reason(scene, frame, work, free_directions)
+    reason, leaves_at = _reason(scene, frame, proof, free_directions)
     searched = "no way out was found" if n_tried else "no way out was looked for"
     return CageVerdict("not certified", f"{reason}; {searched}", free_directions, None, leaves_at, n_tried)
 
 
 def _reason(
-    scene: Scene, frame: PlayFrame, work: CertificateRoom, free_directions: tuple[str, ...]
+    scene: Scene, frame: PlayFrame, proof: CertificateWorkspace, free_directions: tuple[str, ...]
 ) -> tuple[str, Pose | None]:
     """Return why there is no proof, and the pose at which a point leaves its face."""
-    certificate = work.certificate
+    certificate = proof.certificate
     if certificate.outcome == FREE:
         return f"nothing limits {' '.join(free_directions)}", None
     if certificate.outcome == UNSOLVED:
@@ -101,16 +101,16 @@ def _reason(
     point = scene.cage.names[pair // frame.geometry.n_own_boxes]
     box = scene.object.boxes[pair % frame.geometry.n_own_boxes].name
     if certificate.outcome == RAN_OFF:
-        way = "may run off its face of" if work.fates[pair] == OFF_EDGE else "may come out behind its face of"
+        way = "may run off its face of" if proof.status[pair] == OFF_EDGE else "may come out behind its face of"
         reason = f"{point} {way} {box}, and without it the object is not held"
-        twist = work.lost_at[pair]
+        twist = proof.lost_at[pair]
         if not np.isfinite(twist).all():
             return reason, None
-        motion = frame.motion(twist)
-        yaw, pitch, roll = np.degrees(motion.euler_zyx).tolist()
+        position, quaternion = motion_after(twist)
+        yaw, pitch, roll = np.degrees(euler_zyx_from_quaternion(quaternion)).tolist()
         return (
             f"{reason}; it is farthest off, to first order, after roll {roll:.4g}, pitch {pitch:.4g}, yaw {yaw:.4g} deg"
-        ), frame.outward(*motion.as_tuples())
+        ), frame.pose_after(position, quaternion)
     return (
         f"the play is too large for the proof: what linearising the gap of {point} to {box} leaves out grows faster"
         f" than the room it is given (turns up to {turn_deg:.3g} deg)"
@@ -122,14 +122,15 @@ def search_way_out(
 ) -> tuple[Rows[Station], int, bool, int]:
     """Grow a tree of free motions until one leads out or time is up.
 
-    Returns the stations, how many there are, whether the last one is out, and how many motions were tried.
+    Returns the stations (lengths of the scene), how many there are, whether the last one is out, and how many motions
+    were tried.
     """
     stations = empty_rows(Station, MOST_STATIONS)
     stations[0].parent = -1
     stations[0].quaternion[0] = 1.0
     n_stations, n_tried, is_out = 1, 0, False
     placement = empty_placement(frame.geometry)
-    tolerances = kernel_tolerances(scene.size_m, scene.tolerances.touch)
+    tolerances = kernel_tolerances(scene.size_m / frame.length_m, scene.tolerances.touch)
     random = np.random.default_rng(SEED)
     started = perf_counter()
     while not is_out and n_stations + BATCH <= MOST_STATIONS:
@@ -138,10 +139,8 @@ def search_way_out(
             progress(min(share, 1.0))
         if share >= 1.0:
             break
-        dice = random.random((BATCH, N_RANDOM))
-        n_stations, is_out = grow_tree(
-            frame.geometry, frame.length_m, dice, stations, n_stations, placement, tolerances
-        )
+        samples = random.random((BATCH, N_RANDOM))
+        n_stations, is_out = grow_tree(frame.geometry, samples, stations, n_stations, placement, tolerances)
         n_tried += BATCH
     return stations, n_stations, is_out, n_tried
 
@@ -150,14 +149,11 @@ def _path(frame: PlayFrame, stations: Rows[Station], last: int) -> tuple[PathSte
     steps = []
     while stations[last].parent >= 0:
         station = stations[last]
-        w, x, y, z = station.quaternion.tolist()
-        pose = frame.outward(as_vector(station.position), (w, x, y, z))
-        along = frame.to_world(as_vector(station.along))
+        along = frame.vector_to_world(station.along)
         if station.angle > 0.0:
-            through = frame.point_to_world(as_vector(station.through))
-            motion = Motion("turn", None, along, through, 0.0, float(station.angle))
+            motion = Motion("turn", None, along, frame.point_to_world(station.through), 0.0, float(station.angle))
         else:
-            motion = Motion("travel", along, None, None, float(station.distance), 0.0)
-        steps.append(PathStep(motion, pose))
+            motion = Motion("travel", along, None, None, frame.length_m * float(station.distance), 0.0)
+        steps.append(PathStep(motion, frame.pose_after(station.position, station.quaternion)))
         last = int(station.parent)
     return tuple(reversed(steps))

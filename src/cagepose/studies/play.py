@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -13,18 +12,18 @@ from numpy.typing import ArrayLike
 
 from cagepose.errors import Problem, SceneError
 from cagepose.kernels.algebra.record import Rows, empty_rows
-from cagepose.kernels.play.certificate import CAGED, CertificateRoom, certify, empty_certificate_room
-from cagepose.kernels.play.goal import PITCH, ROLL, SHIFT, YAW, Goal
-from cagepose.kernels.play.rows import empty_play_room
+from cagepose.kernels.native.slots import Slots
+from cagepose.kernels.play.certificate import CAGED, certify, empty_certificate_workspace
+from cagepose.kernels.play.goal import SHIFT, Goal
+from cagepose.kernels.play.polytope import empty_play_workspace
 from cagepose.kernels.play.search import OPEN, REACHED, Extreme, find_play
 from cagepose.model.checks import FloatArray, finite_array, unit_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import FARTHEST_START, Scene, millimetres
 from cagepose.studies.cage_verdict import CageVerdict, judge_cage
-from cagepose.studies.play_frame import FREEDOMS, PlayFrame
+from cagepose.studies.play_frame import FREEDOMS, PlayFrame, range_goals
 from cagepose.studies.play_limits import Clearance, limiting_clearances
 
-_ANGLES = {"roll": ROLL, "pitch": PITCH, "yaw": YAW}
 SEARCH_S = 2.0
 """Seconds that the search for a way out may take, if the object is not proven to be caged."""
 
@@ -43,16 +42,19 @@ class PlayEnd:
         No motion inside the cage passes this (7.7); None: not proven.
     is_open
         Whether the exact end is known to lie nowhere.
-    pose_world_object
-        Reaches the exact end; None: there is none.
     """
 
     linear: float | None
     exact: float | None
     certified: float | None
     is_open: bool
-    pose_world_object: Pose | None
+    _find_pose: Callable[[], Pose | None] = field(repr=False)
     _find_clearances: Callable[[], tuple[Clearance, ...]] = field(repr=False)
+
+    @cached_property
+    def pose_world_object(self) -> Pose | None:
+        """Reaches the exact end; None: there is none."""
+        return self._find_pose()
 
     @cached_property
     def clearances(self) -> tuple[Clearance, ...]:
@@ -134,28 +136,17 @@ def play(
     """
     points = [_point_near(scene, point) for point in at]
     along = [unit_vector(direction, "direction") for direction in (directions if len(directions) else np.eye(3))]
+    shifts = [(point, direction) for point in points for direction in along]
     frame = PlayFrame(scene)
-    pairs = [(point, direction) for point in points for direction in along]
-    goals = _goals(frame, pairs)
-    extremes = empty_rows(Extreme, len(goals))
-    room = empty_play_room(frame.geometry)
-    work = empty_certificate_room(len(room.faces))
-    bounds = np.full(len(goals), np.inf)
-    touch_m = scene.tolerances.touch * scene.size_m
-    started = perf_counter()
-    find_play(frame.geometry, frame.length_m, goals, extremes, room)
-    analysed = perf_counter()
-    certify(frame.geometry, frame.length_m, touch_m, goals, bounds, room, work)
-    certified = perf_counter()
-    writer = _Writer(scene, frame, goals, extremes, bounds, work)
-    freedoms = {name: PlayRange(*writer.ends(place)) for place, name in enumerate(FREEDOMS)}
+    found = _Found(scene, frame, range_goals(frame, shifts))
+    ranges = found.ranges()
     return Play(
         scene,
-        freedoms,
-        tuple(PointPlay(*pair, *writer.ends(len(FREEDOMS) + place)) for place, pair in enumerate(pairs)),
-        judge_cage(scene, frame, work, _free_names(extremes), search_s, progress),
-        analysed - started,
-        certified - analysed,
+        {name: PlayRange(*ranges[index]) for index, name in enumerate(FREEDOMS)},
+        tuple(PointPlay(*shift, *ends) for shift, ends in zip(shifts, ranges[len(FREEDOMS) :], strict=True)),
+        judge_cage(scene, frame, found.proof, found.free_directions(), search_s, progress),
+        found.analysis_s,
+        found.certificate_s,
     )
 
 
@@ -168,67 +159,57 @@ def _point_near(scene: Scene, value: ArrayLike) -> FloatArray:
     return point
 
 
-def _goals(frame: PlayFrame, pairs: Sequence[tuple[FloatArray, FloatArray]]) -> Rows[Goal]:
-    """Two goals for each range: least, greatest."""
-    origin = frame.pose_frame_object.position_m
-    shifts = [(origin, axis) for axis in np.eye(3)]
-    shifts += [(frame.pose_frame_object.transform(point), direction) for point, direction in pairs]
-    goals = empty_rows(Goal, 2 * (len(shifts) + len(_ANGLES)))
-    for place in range(len(goals)):
-        goal = goals[place]
-        goal.sign = 1.0 if place % 2 else -1.0
-        index = place // 2
-        if 3 <= index < len(FREEDOMS):
-            goal.kind = _ANGLES[FREEDOMS[index]]
-            continue
-        goal.kind = SHIFT
-        goal.starts[0], goal.directions[0] = shifts[index if index < 3 else index - 3]
-    return goals
+class _Found:
+    """What the kernels find for a scene's goals, two for each range: least, greatest."""
 
-
-def _free_names(extremes: Rows[Extreme]) -> tuple[str, ...]:
-    """``x``: free both ways; ``+x``: free one way; as linearised."""
-    names = []
-    for place, name in enumerate(FREEDOMS):
-        low, high = (extremes[2 * place + side].linear_outcome == OPEN for side in range(2))
-        if low or high:
-            names.append(name if low and high else f"{'-' if low else '+'}{name}")
-    return tuple(names)
-
-
-class _Writer:
-    def __init__(
-        self,
-        scene: Scene,
-        frame: PlayFrame,
-        goals: Rows[Goal],
-        extremes: Rows[Extreme],
-        bounds: FloatArray,
-        work: CertificateRoom,
-    ) -> None:
+    def __init__(self, scene: Scene, frame: PlayFrame, goals: Rows[Goal]) -> None:
         self.scene = scene
         self.frame = frame
         self.goals = goals
-        self.extremes = extremes
-        self.bounds = bounds
-        self.work = work
+        self.extremes = empty_rows(Extreme, len(goals))
+        self.bounds = np.full(len(goals), np.inf)
+        work = empty_play_workspace(frame.geometry)
+        self.proof = empty_certificate_workspace(len(work.faces))
+        geometry, workspace = Slots(frame.geometry), Slots(work)
+        touch = scene.tolerances.touch * scene.size_m / frame.length_m
+        started = perf_counter()
+        find_play(geometry, goals, self.extremes, workspace)
+        analysed = perf_counter()
+        certify(geometry, touch, goals, self.bounds, workspace, self.proof)
+        self.analysis_s = analysed - started
+        self.certificate_s = perf_counter() - analysed
+        self.is_caged = bool(self.proof.certificate.outcome == CAGED)
 
-    def ends(self, place: int) -> tuple[PlayEnd, PlayEnd]:
-        return self._end(2 * place), self._end(2 * place + 1)
+    def ranges(self) -> list[tuple[PlayEnd, PlayEnd]]:
+        goals, found = np.asarray(self.goals), np.asarray(self.extremes)
+        units = np.where(goals["kind"] == SHIFT, self.frame.length_m, 1.0)
+        linear = _known(units * found["linear"], found["linear_outcome"] == REACHED)
+        exact = _known(units * found["value"], found["outcome"] == REACHED)
+        certified = _known(units * goals["sign"] * self.bounds, self.is_caged & np.isfinite(self.bounds))
+        is_open = (found["outcome"] == OPEN).tolist()
+        ends = [
+            PlayEnd(*values, partial(self._pose, index), partial(self._clearances, index))
+            for index, values in enumerate(zip(linear, exact, certified, is_open, strict=True))
+        ]
+        return list(zip(ends[::2], ends[1::2], strict=True))
 
-    def _end(self, index: int) -> PlayEnd:
+    def _pose(self, index: int) -> Pose | None:
         extreme = self.extremes[index]
-        is_reached = extreme.outcome == REACHED
-        has_bound = self.work.certificate.outcome == CAGED and math.isfinite(self.bounds[index])
-        motion = Pose(extreme.position, extreme.quaternion) if is_reached else None
-        return PlayEnd(
-            linear=float(extreme.linear) if extreme.linear_outcome == REACHED else None,
-            exact=float(extreme.value) if is_reached else None,
-            certified=float(self.goals[index].sign * self.bounds[index]) if has_bound else None,
-            is_open=bool(extreme.outcome == OPEN),
-            pose_world_object=None if motion is None else self.frame.outward(*motion.as_tuples()),
-            _find_clearances=partial(self._clearances, index, motion),
-        )
+        return self.frame.pose_after(extreme.position, extreme.quaternion) if extreme.outcome == REACHED else None
 
-    def _clearances(self, index: int, motion: Pose | None) -> tuple[Clearance, ...]:
-        return () if motion is None else limiting_clearances(self.scene, self.frame, self.goals[index], motion)
+    def _clearances(self, index: int) -> tuple[Clearance, ...]:
+        goal, extreme = self.goals[index], self.extremes[index]
+        return limiting_clearances(self.scene, self.frame, goal, extreme) if extreme.outcome == REACHED else ()
+
+    def free_directions(self) -> tuple[str, ...]:
+        """``x``: free both ways; ``+x``: free one way; as linearised."""
+        names = []
+        for place, name in enumerate(FREEDOMS):
+            low, high = (self.extremes[2 * place + side].linear_outcome == OPEN for side in range(2))
+            if low or high:
+                names.append(name if low and high else f"{'-' if low else '+'}{name}")
+        return tuple(names)
+
+
+def _known(values: FloatArray, is_known: np.ndarray) -> list[float | None]:
+    return [value if known else None for value, known in zip(values.tolist(), is_known.tolist(), strict=True)]

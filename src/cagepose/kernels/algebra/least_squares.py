@@ -28,6 +28,8 @@ DEPENDENT = 1e-10
 """A column whose part outside the span of the others is smaller than this fraction of it depends on them."""
 PRICE = 1e-14
 """In lengths of the terms of the residual: a column that points along the residual by less only meets rounding."""
+GIVES_WAY = 1e-11
+"""A column that a dependent one takes less of than this cannot be dropped for it: that would divide by rounding."""
 ROUNDS_PER_COLUMN = 10
 """The method is finite; in exact arithmetic it takes about one round for each passive column."""
 
@@ -259,12 +261,16 @@ def exchange_column(passive: PassiveSet, column: FloatArray, label: int, cost: f
     for k in range(n):
         passive.target[k] = inner(passive.basis[k], column, passive.n_rows)
     solve_triangle(passive)
-    leaves, share = n, math.inf
+    share = math.inf
     for k in range(n):
-        if passive.target[k] > 0.0 and passive.x[k] < share * passive.target[k]:
-            leaves, share = k, passive.x[k] / passive.target[k]
-    if leaves == n:
+        if passive.target[k] > GIVES_WAY:
+            share = min(share, passive.x[k] / passive.target[k])
+    if share == math.inf:
         return False
+    leaves, most = n, GIVES_WAY
+    for k in range(n):  # of those that come to zero together, the one that the new column takes most of
+        if passive.target[k] > most and passive.x[k] <= (share + GIVES_WAY) * passive.target[k]:
+            leaves, most = k, passive.target[k]
     for k in range(n):
         passive.x[k] = max(0.0, passive.x[k] - share * passive.target[k])
     remove_column(passive, leaves)
@@ -315,7 +321,7 @@ def nonnegative_least_squares(system: System, n_columns: int, passive: PassiveSe
     columns, b, rejected = system
     for k in range(passive.used):  # a warm start is any set of columns; from zero, `settle` finds which may stay
         passive.x[k] = 0.0
-    warm_start(passive, b)
+    keep_above(passive, b, 0.0)
     for j in range(n_columns):
         rejected[j] = False
     for _ in range(ROUNDS_PER_COLUMN * (n_columns + passive.n_rows)):
@@ -343,10 +349,10 @@ def nonnegative_least_squares(system: System, n_columns: int, passive: PassiveSe
 
 
 @kernel
-def warm_start(passive: PassiveSet, b: FloatArray) -> None:
-    """Keep of the passive columns a set that has positive coefficients for the new ``b``."""
+def keep_above(passive: PassiveSet, b: FloatArray, least: float) -> None:
+    """Keep of the passive columns a set whose coefficients for the new ``b`` are above ``least``."""
     aim(passive, b)
-    while passive.used > 0 and least_target(passive) <= 0.0:
+    while passive.used > 0 and least_target(passive) <= least:
         lowest = passive.used - 1
         for k in range(passive.used):
             if passive.target[k] < passive.target[lowest]:

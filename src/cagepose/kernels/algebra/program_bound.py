@@ -8,33 +8,59 @@ sums is bounded instead.
 
 from __future__ import annotations
 
-from cagepose.kernels.algebra.linear_program import N_UNKNOWNS, ProgramRoom, coefficient
+import math
+
+from cagepose.kernels.algebra.linear_program import N_UNKNOWNS, OPTIMAL, UNBOUNDED, Program, solve_program
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.native.kernel import entry, kernel
 
 SUM_ROUNDING = 4e-15
 """Of the magnitudes that are summed: twice the rounding of six products and their sum, twice."""
 
 
 @kernel
-def dual_bound(rows: FloatArray, bounds: FloatArray, room: ProgramRoom) -> tuple[float, float]:
-    """Return (b, r) with f . x <= b + r max |x_k| for each x within the rows, after the program is solved.
-
-    The rows of the basis count, unless they are of the far box, whose multipliers are zero but for rounding.
-    """
-    n_rows = len(rows)
-    bound, magnitude, left_over = 0.0, 0.0, 0.0
-    for i in range(N_UNKNOWNS):
-        if room.basis[i] < n_rows:
-            part = max(room.multipliers[i], 0.0) * bounds[room.basis[i]]
-            bound += part
-            magnitude += abs(part)
+def dual_bound(rows: FloatArray, bounds: FloatArray, program: Program) -> tuple[float, float]:
+    """Return (b, r) with f . x <= b + r max |x_k| for each x within the rows, after the program is solved."""
+    passive = program.passive
+    bound, magnitude, missing = 0.0, 0.0, 0.0
+    for i in range(passive.used):
+        part = passive.x[i] * bounds[passive.labels[i]]
+        bound += part
+        magnitude += abs(part)
     for k in range(N_UNKNOWNS):
-        missed, size = room.objective[k], abs(room.objective[k])
-        for i in range(N_UNKNOWNS):
-            if room.basis[i] < n_rows:
-                part = max(room.multipliers[i], 0.0) * coefficient(rows, room.basis[i], k)
-                missed -= part
-                size += abs(part)
-        left_over += abs(missed) + SUM_ROUNDING * size
-    return bound + SUM_ROUNDING * magnitude, left_over
+        missed, size = program.objective[k], abs(program.objective[k])
+        for i in range(passive.used):
+            part = passive.x[i] * rows[passive.labels[i], k]
+            missed -= part
+            size += abs(part)
+        missing += abs(missed) + SUM_ROUNDING * size
+    return bound + SUM_ROUNDING * magnitude, missing
+
+
+@entry
+def extents(
+    rows: FloatArray, bounds: FloatArray, program: Program, least: FloatArray, greatest: FloatArray
+) -> tuple[int, float]:
+    """Bound each unknown from below and above, (6,) each, -inf and inf where it has no end.
+
+    Returns OPTIMAL, or INFEASIBLE or FAILED of the first program that was, and r: each bound holds once r times the
+    greatest |x_k| is added.
+    """
+    most_missing = 0.0
+    for side in range(2 * N_UNKNOWNS):
+        k, sign = side % N_UNKNOWNS, (1.0 if side < N_UNKNOWNS else -1.0)
+        for other in range(N_UNKNOWNS):
+            program.objective[other] = sign if other == k else 0.0
+        program.passive.used = 0
+        outcome = solve_program(rows, bounds, program)
+        bound, missing = math.inf, 0.0
+        if outcome == OPTIMAL:
+            bound, missing = dual_bound(rows, bounds, program)
+        elif outcome != UNBOUNDED:
+            return outcome, 0.0
+        most_missing = max(most_missing, missing)
+        if side < N_UNKNOWNS:
+            greatest[k] = bound
+        else:
+            least[k] = -bound
+    return OPTIMAL, most_missing

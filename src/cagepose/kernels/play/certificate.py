@@ -12,27 +12,27 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from cagepose.kernels.algebra.linear_program import FAILED, OPTIMAL, UNBOUNDED, solve_program
-from cagepose.kernels.algebra.program_bound import dual_bound
+from cagepose.kernels.algebra.program_bound import dual_bound, extents
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_record
 from cagepose.kernels.algebra.vector import Vector, cross, norm, row, scaled, vector_from
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.goal import PITCH, SHIFT, YAW, Goal, write_slope
+from cagepose.kernels.play.polytope import START, PlayWorkspace, write_start
 from cagepose.kernels.play.remainder import gap_left_out, spread, turning_left_out
-from cagepose.kernels.play.rows import PlayRoom, write_start
 
 CAGED, FREE, RAN_OFF, TOO_LARGE, UNSOLVED = range(5)
 KEPT, OFF_EDGE, THROUGH = range(3)
-"""What becomes of a row: its point may run off the face sideways, or come out behind the box."""
+"""Status of a row: kept, or given up, as its point may run off the face sideways, or come out behind the box."""
 ROUNDS = 60
 """Each moves the rows out once; some five are usual, and what has not closed by then grows without end."""
 SPARE = 1.02
 """Rows are moved out by this much more than they must be, so that the next round closes."""
-MOST_LEFT_OVER = 0.01
-"""Of an objective: a program whose multipliers miss it by more has no proof."""
+MOST_MISSING = 0.01
+"""Of an objective: programs whose multipliers miss it by more have no proof."""
 LARGEST_TURN = 1.0
 """Radians. The bounds hold up to pi, but are of no use beyond this."""
-ROUNDING = 1e-12
+BOUND_ROUNDING = 1e-12
 """Lengths of the scene, and radians. Added to each bound: a thousand times the rounding of one gap."""
 
 
@@ -53,7 +53,7 @@ class Certificate:
     travel, turn
         The largest magnitudes of each component.
     reach
-        The largest of all magnitudes; infinite before it is known.
+        The largest of all magnitudes.
     slack
         Lengths of the scene: how deep a point may be without being inside.
     """
@@ -69,32 +69,32 @@ class Certificate:
     slack: float
 
 
-class CertificateRoom(NamedTuple):
-    """Room for one certificate.
+class CertificateWorkspace(NamedTuple):
+    """Memory for one certificate.
 
     Attributes
     ----------
     gaps, moved_out
-        Bounds of the rows at the start, and how far they are moved out, (n_points * n_boxes,), lengths of the scene.
-    fates
-        KEPT, or why a row no longer counts.
+        Bounds of the rows at the start, and how far they are moved out, (n_pairs,), lengths of the scene.
+    status
+        KEPT, or why a row no longer counts, (n_pairs,).
     lost_at
-        The twist of the polytope at which such a row's point is farthest off its face, (n_points * n_boxes, 6); NaN:
-        none is known.
+        The twist of the polytope at which such a row's point is farthest off its face, (n_pairs, 6); NaN: none is
+        known.
     certificate
         The result.
     """
 
     gaps: FloatArray
     moved_out: FloatArray
-    fates: IntArray
+    status: IntArray
     lost_at: FloatArray
     certificate: Certificate
 
 
-def empty_certificate_room(n_pairs: int) -> CertificateRoom:
-    """Return room for a scene (plain Python)."""
-    return CertificateRoom(
+def empty_certificate_workspace(n_pairs: int) -> CertificateWorkspace:
+    """Return a workspace for a scene (plain Python)."""
+    return CertificateWorkspace(
         np.zeros(n_pairs),
         np.zeros(n_pairs),
         np.zeros(n_pairs, np.int64),
@@ -104,157 +104,144 @@ def empty_certificate_room(n_pairs: int) -> CertificateRoom:
 
 
 @kernel
-def bound_program(room: PlayRoom, certificate: Certificate) -> float:
-    """Bound ``room.program.objective`` over the polytope from above (7.12); inf: there is no bound."""
-    room.program.basis[0] = -1
-    if solve_program(room.rows, room.bounds, room.program) != OPTIMAL:
+def bound_program(work: PlayWorkspace, certificate: Certificate) -> float:
+    """Bound ``work.program.objective`` over the polytope from above (7.12); inf: there is no bound."""
+    work.program.passive.used = 0
+    if solve_program(work.rows, work.bounds, work.program) != OPTIMAL:
         return math.inf
-    bound, left_over = dual_bound(room.rows, room.bounds, room.program)
-    return bound + (left_over * certificate.reach if left_over > 0.0 else 0.0)
+    bound, missing = dual_bound(work.rows, work.bounds, work.program)
+    return bound + missing * certificate.reach
 
 
 @kernel
-def bound_extents(room: PlayRoom, certificate: Certificate) -> int:
+def bound_extents(work: PlayWorkspace, certificate: Certificate) -> int:
     """Bound each unknown over the polytope (7.12); OPTIMAL, UNBOUNDED, or how a program failed."""
-    objective = room.program.objective
-    largest, most_left_over = 0.0, 0.0
-    for side in range(12):
-        k, sign = side % 6, (1.0 if side < 6 else -1.0)
-        for other in range(6):
-            objective[other] = sign if other == k else 0.0
-        room.program.basis[0] = -1
-        outcome = solve_program(room.rows, room.bounds, room.program)
-        if outcome != OPTIMAL:
-            return outcome
-        bound, left_over = dual_bound(room.rows, room.bounds, room.program)
-        largest, most_left_over = max(largest, bound), max(most_left_over, left_over)
-        if side < 6:
-            certificate.greatest[k] = bound
-        else:
-            certificate.least[k] = -bound
-    if most_left_over > MOST_LEFT_OVER:
+    least, greatest = certificate.least, certificate.greatest
+    outcome, missing = extents(work.rows, work.bounds, work.program, least, greatest)
+    if outcome != OPTIMAL:
+        return outcome
+    if missing > MOST_MISSING:
         return FAILED
-    certificate.reach = largest / (1.0 - most_left_over)
-    spare = most_left_over * certificate.reach
+    largest = 0.0
     for k in range(6):
-        certificate.greatest[k] += spare
-        certificate.least[k] -= spare
+        largest = max(largest, greatest[k], -least[k])
+    if largest == math.inf:
+        return UNBOUNDED
+    certificate.reach = largest / (1.0 - missing)
+    for k in range(6):
+        greatest[k] += missing * certificate.reach
+        least[k] -= missing * certificate.reach
     for k in range(3):
-        certificate.travel[k] = max(-certificate.least[k], certificate.greatest[k])
-        certificate.turn[k] = max(-certificate.least[3 + k], certificate.greatest[3 + k])
+        certificate.travel[k] = max(-least[k], greatest[k])
+        certificate.turn[k] = max(-least[3 + k], greatest[3 + k])
     return OPTIMAL
 
 
 @kernel
 def is_within(
-    room: PlayRoom,
+    work: PlayWorkspace,
     certificate: Certificate,
     axis: Vector,
     moment: Vector,
     here: float,
-    left: float,
+    limit: float,
     lost_at: FloatArray,
 ) -> bool:
-    """Whether |here - (axis . t + moment . w)| stays below ``left`` in the whole polytope; if not, write where.
+    """Whether |here - (axis . t + moment . w)| stays below ``limit`` in the whole polytope; if not, write where.
 
     Asked of the extents first, then of the polytope itself.
     """
     travel, turn = vector_from(certificate.travel), vector_from(certificate.turn)
-    if abs(here) + spread(axis, travel) + spread(moment, turn) < left:
+    if abs(here) + spread(axis, travel) + spread(moment, turn) < limit:
         return True
-    objective = room.program.objective
+    objective = work.program.objective
     for side in range(2):
         sign = 2.0 * side - 1.0
         for k in range(3):
             objective[k] = sign * axis[k]
             objective[3 + k] = sign * moment[k]
-        if bound_program(room, certificate) - sign * here >= left:
+        if bound_program(work, certificate) - sign * here >= limit:
             for k in range(6):
-                lost_at[k] = room.program.x_near[k]
+                lost_at[k] = work.program.x[k]
             return False
     return True
 
 
 @kernel
-def fate_of(geometry: Geometry, pair: int, length_m: float, room: PlayRoom, work: CertificateRoom) -> int:
+def status_of(geometry: Geometry, pair: int, work: PlayWorkspace, proof: CertificateWorkspace) -> int:
     """Return KEPT if the point stays over its face and above the opposite one in the whole polytope (7.9)."""
-    certificate = work.certificate
+    certificate = proof.certificate
     travel, turn = vector_from(certificate.travel), vector_from(certificate.turn)
-    point, box, face = pair // geometry.n_own_boxes, pair % geometry.n_own_boxes, room.faces[pair]
-    arm = row(room.arms, pair)
-    _, left_out = gap_left_out(row(room.rows, pair), arm, travel, turn)
-    deepest = work.moved_out[pair] + left_out + certificate.slack  # a point that starts inside is within the slack
-    if deepest + certificate.slack >= 2.0 * geometry.half_sizes[box, face % 3] / length_m:
+    point, box, face = work.points[pair], work.boxes[pair], work.faces[pair]
+    arm = row(work.arms, pair)
+    _, left_out = gap_left_out(row(work.rows, pair), arm, travel, turn)
+    deepest = proof.moved_out[pair] + left_out + certificate.slack  # a point that starts inside is within the slack
+    if deepest + certificate.slack >= 2.0 * geometry.half_sizes[box, face % 3]:
         for k in range(6):
-            work.lost_at[pair, k] = math.nan
+            proof.lost_at[pair, k] = math.nan
         return THROUGH
+    columns = work.placement.box_rotations[box]
     for step in range(1, 3):
         k = (face + step) % 3
-        columns = room.placement.box_rotations[box]
         axis = (columns[0, k], columns[1, k], columns[2, k])
-        here = room.placement.points_box[box, k, point] / length_m
         _, left_out = gap_left_out(axis, arm, travel, turn)
-        left = geometry.half_sizes[box, k] / length_m - left_out - certificate.slack
-        if not is_within(room, certificate, axis, cross(arm, axis), here, left, work.lost_at[pair]):
+        limit = geometry.half_sizes[box, k] - left_out - certificate.slack
+        here = work.placement.points_box[box, k, point]
+        if not is_within(work, certificate, axis, cross(arm, axis), here, limit, proof.lost_at[pair]):
             return OFF_EDGE
     return KEPT
 
 
 @kernel
-def move_out(geometry: Geometry, length_m: float, room: PlayRoom, work: CertificateRoom) -> bool:
+def move_out(geometry: Geometry, work: PlayWorkspace, proof: CertificateWorkspace) -> bool:
     """Compare each row with what linearising leaves out; True: every row is far enough out, and its point stays."""
-    certificate = work.certificate
+    certificate = proof.certificate
     travel, turn = vector_from(certificate.travel), vector_from(certificate.turn)
-    closed = True
-    most = 0.0
-    for pair in range(len(work.gaps)):
-        if work.fates[pair] != KEPT:
+    is_closed, most = True, 0.0
+    for pair in range(len(proof.gaps)):
+        if proof.status[pair] != KEPT:
             continue
-        work.fates[pair] = fate_of(geometry, pair, length_m, room, work)
-        if work.fates[pair] != KEPT:
-            closed = False
+        proof.status[pair] = status_of(geometry, pair, work, proof)
+        if proof.status[pair] != KEPT:
+            is_closed = False
             continue
-        above, _ = gap_left_out(row(room.rows, pair), row(room.arms, pair), travel, turn)
-        if above + certificate.slack >= work.moved_out[pair]:
-            if above - work.moved_out[pair] > most:
-                most, certificate.worst = above - work.moved_out[pair], pair
-            work.moved_out[pair] = SPARE * above + 2.0 * certificate.slack
-            closed = False
-    return closed
+        above, _ = gap_left_out(row(work.rows, pair), row(work.arms, pair), travel, turn)
+        if above + certificate.slack >= proof.moved_out[pair]:
+            if above - proof.moved_out[pair] > most:
+                most, certificate.worst = above - proof.moved_out[pair], pair
+            proof.moved_out[pair] = SPARE * above + 2.0 * certificate.slack
+            is_closed = False
+    return is_closed
 
 
 @kernel
-def write_bounds(room: PlayRoom, work: CertificateRoom) -> None:
-    for pair in range(len(work.gaps)):
-        room.bounds[pair] = work.gaps[pair] + work.moved_out[pair] if work.fates[pair] == KEPT else math.inf
-
-
-@kernel
-def tightest_given_up(work: CertificateRoom) -> int:
+def tightest_given_up(proof: CertificateWorkspace) -> int:
     """Return the row with the smallest gap of those that no longer count; -1: all do."""
     tightest = -1
-    for pair in range(len(work.gaps)):
-        if work.fates[pair] != KEPT and (tightest < 0 or work.gaps[pair] < work.gaps[tightest]):
+    for pair in range(len(proof.gaps)):
+        if proof.status[pair] != KEPT and (tightest < 0 or proof.gaps[pair] < proof.gaps[tightest]):
             tightest = pair
     return tightest
 
 
 @kernel
-def close_polytope(geometry: Geometry, length_m: float, room: PlayRoom, work: CertificateRoom) -> int:
+def close_polytope(geometry: Geometry, work: PlayWorkspace, proof: CertificateWorkspace) -> int:
     """Move the rows out until what linearising leaves out is less (7.7)."""
-    certificate = work.certificate
+    certificate = proof.certificate
     for n_rounds in range(ROUNDS):
         certificate.n_rounds = n_rounds + 1
-        write_bounds(room, work)
-        outcome = bound_extents(room, certificate)
+        for pair in range(len(proof.gaps)):
+            is_kept = proof.status[pair] == KEPT
+            work.bounds[pair] = proof.gaps[pair] + proof.moved_out[pair] if is_kept else math.inf
+        outcome = bound_extents(work, certificate)
         if outcome == UNBOUNDED:
-            certificate.worst = tightest_given_up(work)
+            certificate.worst = tightest_given_up(proof)
             return FREE if certificate.worst < 0 else RAN_OFF
         if outcome != OPTIMAL:
             return UNSOLVED
         if norm(vector_from(certificate.turn)) > LARGEST_TURN:
             return TOO_LARGE
-        if move_out(geometry, length_m, room, work):
+        if move_out(geometry, work, proof):
             return CAGED
     return TOO_LARGE
 
@@ -264,9 +251,9 @@ def angle_bound(goal: Goal, certificate: Certificate) -> float:
     """Bound a yaw, pitch or roll (7.10), its sign applied."""
     turn = certificate.turn
     k = 5 - goal.kind  # components of w: roll about x, pitch about y, yaw about z
-    one, other = (k + 1) % 3 + 3, (k + 2) % 3 + 3
+    one, other = (k + 1) % 3, (k + 2) % 3
     bound = certificate.greatest[k] if goal.sign > 0.0 else -certificate.least[k]
-    sine = max(bound, 0.0) + 0.5 * turn[one - 3] * turn[other - 3] + ROUNDING
+    sine = max(bound, 0.0) + 0.5 * turn[one] * turn[other] + BOUND_ROUNDING
     if goal.kind == PITCH:
         return math.asin(min(sine, 1.0))
     cosine = 1.0 - 0.5 * (turn[1] ** 2 + (turn[2] ** 2 if goal.kind == YAW else turn[0] ** 2))
@@ -274,54 +261,52 @@ def angle_bound(goal: Goal, certificate: Certificate) -> float:
 
 
 @kernel
-def shift_bound(goal: Goal, length_m: float, room: PlayRoom, certificate: Certificate) -> float:
-    """Bound how far points go, its sign applied, metres: by a program, and by (7.8) for what it leaves out."""
-    factor = write_slope(goal, (1.0, 0.0, 0.0, 0.0), length_m, room)
+def shift_bound(goal: Goal, work: PlayWorkspace, certificate: Certificate) -> float:
+    """Bound how far points go, its sign applied: by a program, and by (7.8) for what it leaves out."""
+    factor = write_slope(goal, START, work.program.objective)
     above = 0.0
     for i in range(2):
         direction = scaled(row(goal.directions, i), goal.sign)
-        arm = scaled(row(goal.starts, i), 1.0 / length_m)
-        above += turning_left_out(direction, arm, vector_from(certificate.turn))[0]
-    return length_m * (factor * bound_program(room, certificate) + above + ROUNDING)
+        above += turning_left_out(direction, row(goal.starts, i), vector_from(certificate.turn))[0]
+    return factor * bound_program(work, certificate) + above + BOUND_ROUNDING
 
 
 @entry
 def certify(
     geometry: Geometry,
-    length_m: float,
-    touch_m: float,
+    touch: float,
     goals: Rows[Goal],
     bounds: FloatArray,
-    room: PlayRoom,
-    work: CertificateRoom,
+    work: PlayWorkspace,
+    proof: CertificateWorkspace,
 ) -> None:
     """Prove that the object is caged, and bound each goal.
 
     Parameters
     ----------
-    geometry, length_m, goals
+    geometry, goals
         As in `cagepose.kernels.play.search.find_play`.
-    touch_m
-        A point that is no deeper than this only touches: the proof holds for poses that are so deep, too. It is far
-        more than the rounding of the scene.
+    touch
+        A point that is no deeper than this only touches, lengths of the scene: the proof holds for poses that are so
+        deep, too. It is far more than the rounding of the scene.
     bounds
-        Where caged: the greatest value that each goal could have, its sign applied, (n_goals,), radians or metres.
-    room, work
-        See there; ``work.certificate`` is the result.
+        Where caged: the greatest value that each goal could have, its sign applied, (n_goals,), radians or lengths of
+        the scene.
+    work, proof
+        See there; ``proof.certificate`` is the result.
     """
-    write_start(geometry, length_m, room)
-    for pair in range(len(work.gaps)):
-        work.gaps[pair] = room.bounds[pair]
-        work.moved_out[pair] = 0.0
-        work.fates[pair] = KEPT
-    certificate = work.certificate
+    write_start(geometry, work)
+    for pair in range(len(proof.gaps)):
+        proof.gaps[pair] = work.bounds[pair]
+        proof.moved_out[pair] = 0.0
+        proof.status[pair] = KEPT
+    certificate = proof.certificate
     certificate.worst = -1
-    certificate.reach = math.inf
-    certificate.slack = touch_m / length_m + ROUNDING
-    certificate.outcome = close_polytope(geometry, length_m, room, work)
+    certificate.slack = touch + BOUND_ROUNDING
+    certificate.outcome = close_polytope(geometry, work, proof)
     if certificate.outcome == CAGED:
         for i in range(len(goals)):
             if goals[i].kind == SHIFT:
-                bounds[i] = shift_bound(goals[i], length_m, room, certificate)
+                bounds[i] = shift_bound(goals[i], work, certificate)
             else:
                 bounds[i] = angle_bound(goals[i], certificate)

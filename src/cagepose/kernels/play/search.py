@@ -1,8 +1,8 @@
 """Play: how far the object can move inside the cage before a point would enter it, exactly.
 
-The motion M = (t, R) is that of the object as it stands at the start, in a frame with the cage's axes and its origin
-amid the cage's points. The greatest value of what is asked for is found by linear programs in a trust region, each seen
-from where the last one led (7.5).
+A motion is that of the object as it stands at the start, in a frame with the cage's axes and its origin amid the cage's
+points. The greatest value of what is asked for is found by linear programs in a trust region, each seen from where the
+last one led (7.5), and by Newton's steps on the rows that limit them (7.6).
 """
 
 from __future__ import annotations
@@ -10,30 +10,35 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
-from cagepose.kernels.algebra.linear_program import OPTIMAL, UNBOUNDED, ProgramRoom, come_near, solve_program
-from cagepose.kernels.algebra.pose import Quaternion, euler_zyx_from_quaternion, quaternion_about, quaternion_product
+from cagepose.kernels.algebra.least_squares import (
+    System,
+    aim,
+    clear,
+    inner,
+    least_target,
+    length,
+    nonnegative_least_squares,
+)
+from cagepose.kernels.algebra.linear_program import OPTIMAL, UNBOUNDED, Program, renew_rows, solve_program, write_corner
+from cagepose.kernels.algebra.pose import euler_zyx_from_quaternion, quaternion_about, quaternion_product
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
-from cagepose.kernels.algebra.vector import Vector, norm, scaled
-from cagepose.kernels.collision.geometry import Geometry, place_object
+from cagepose.kernels.algebra.vector import norm, plus, scaled
+from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.goal import SHIFT, Goal, value_at, write_curvature, write_slope
-from cagepose.kernels.play.newton import (
-    find_prices,
-    join_steps,
-    newton_step,
-    size_of_step,
-    take_row,
-    take_rows,
-    write_onto,
-)
-from cagepose.kernels.play.rows import (
-    HARDLY,
+from cagepose.kernels.play.newton import hold_limits, hold_row, join_steps, size_of_step, write_steps
+from cagepose.kernels.play.polytope import (
+    GAP_ROUNDING,
+    N_TRUST,
     NOT_BEYOND,
     START,
-    PlayRoom,
-    change_faces,
+    Motion,
+    PlayWorkspace,
+    farthest_face,
     gap_at,
+    is_beyond,
     least_gap,
+    place,
     write_rows,
     write_start,
     write_trust_region,
@@ -47,11 +52,13 @@ LAST_RADIUS = 1e-6
 SHORTEST = 1e-9
 """Radians, and lengths of the scene: where no step of this size can be taken, none is left."""
 LAST_STEP = 1e-7
-"""Of the motion: a Newton step that is shorter has arrived; the value errs by the square of this."""
+"""Of the motion: a Newton step that is shorter is the last one; the value errs by the square of this."""
 MOST_PROGRAMS = 200
 """A dozen are usual, forty where curvature alone limits the motion."""
 GAIN = 1e-12
 """A program that promises less than this fraction of the value has nothing left to find."""
+PRICELESS = 1e-9
+"""A gap whose multiplier is smaller does not limit the motion."""
 STEEPEST = 1.55
 """Radians. Pitch beyond is next to the pole of the angles; where it can go there, it has no extreme."""
 FARTHEST = 20.0
@@ -60,299 +67,311 @@ RESTORING = 3
 """Newton steps at the end that bring the limiting points onto their faces."""
 
 
+class Limits:
+    """The pairs that limit an end, and how much its value gains for each length that such a gap grows; a record."""
+
+    n_pairs: int
+    pairs: Annotated[IntArray, 6]
+    prices: Annotated[FloatArray, 6]
+
+
 class Extreme:
     """One end of the play; a record.
 
     Attributes
     ----------
-    linear_outcome, outcome
-        REACHED, OPEN (no end), or NOT_FOUND.
-    linear, value
-        By the linear program at the start, and exactly; radians or metres.
-    position, quaternion
-        The motion that reaches the exact one.
-    n_limits, limits, prices
-        Which points with which boxes limit it, as ``point * n_boxes + box``, and how much the value gains for each
-        metre that such a gap grows.
+    linear_outcome, linear, linear_twist, linear_limits
+        By the linear program at the start: REACHED, OPEN (no end) or NOT_FOUND; the value, radians or lengths of the
+        scene; a twist that reaches it, and what limits it.
+    outcome, value, position, quaternion, limits
+        The same exactly, and the motion that reaches it.
     n_programs
         How many were solved.
     """
 
     linear_outcome: int
     linear: float
+    linear_twist: Annotated[FloatArray, 6]
+    linear_limits: Limits
     outcome: int
     value: float
     position: Annotated[FloatArray, 3]
     quaternion: Annotated[FloatArray, 4]
-    prices: Annotated[FloatArray, 6]
-    limits: Annotated[IntArray, 6]
-    n_limits: int
+    limits: Limits
     n_programs: int
 
 
 @kernel
-def moved(position: Vector, quaternion: Quaternion, step: FloatArray, length_m: float) -> tuple[Vector, Quaternion]:
-    """Return the motion after a step (t / L, w): t is added, the turn by w comes after."""
+def write_limits(labels: IntArray, prices: FloatArray, used: int, n_pairs: int, factor: float, limits: Limits) -> None:
+    """Write the rows in use that limit an end; ``factor`` was taken out of the slope that their prices hold."""
+    limits.n_pairs = 0
+    for k in range(used):
+        if labels[k] < n_pairs and prices[k] > PRICELESS:
+            limits.pairs[limits.n_pairs] = labels[k]
+            limits.prices[limits.n_pairs] = factor * prices[k]
+            limits.n_pairs += 1
+
+
+@kernel
+def moved(motion: Motion, step: FloatArray) -> Motion:
+    """Return the motion after a step (t, w): t is added, the turn by w comes after."""
     spin = (step[3], step[4], step[5])
     angle = norm(spin)
-    new_position = (
-        position[0] + length_m * step[0],
-        position[1] + length_m * step[1],
-        position[2] + length_m * step[2],
-    )
+    position = plus(motion[0], (step[0], step[1], step[2]))
     if angle == 0.0:
-        return new_position, quaternion
-    return new_position, quaternion_product(quaternion_about(scaled(spin, 1.0 / angle), angle), quaternion)
+        return position, motion[1]
+    return position, quaternion_product(quaternion_about(scaled(spin, 1.0 / angle), angle), motion[1])
 
 
 @kernel
-def promised(program: ProgramRoom) -> float:
-    """Return f . x of the program's solution."""
-    gain = 0.0
-    for k in range(6):
-        gain += program.objective[k] * program.x_near[k]
-    return gain
+def size_of(motion: Motion) -> float:
+    """Return the size of a motion: of its travel in lengths of the scene and its turn in radians."""
+    return norm(motion[0]) + 2.0 * norm((motion[1][1], motion[1][2], motion[1][3]))
 
 
 @kernel
-def total_price(room: PlayRoom) -> float:
+def is_out(goal: Goal, motion: Motion) -> bool:
+    """Whether a search has left the range in which there is an extreme to find."""
+    value = abs(value_at(goal, motion))
+    if goal.kind == SHIFT:
+        return value > FARTHEST
+    pitch = euler_zyx_from_quaternion(motion[1])[1]
+    return abs(pitch) > STEEPEST or value > 0.9 * math.pi
+
+
+@kernel
+def merit_at(geometry: Geometry, goal: Goal, motion: Motion, penalty: float, work: PlayWorkspace) -> float:
+    """Return the value less the penalty on the deepest point."""
+    place(geometry, motion, work)
+    return value_at(goal, motion) + penalty * min(least_gap(geometry, work), 0.0)
+
+
+@kernel
+def total_price(work: PlayWorkspace) -> float:
     """Return the sum of the multipliers of all gaps."""
+    passive = work.program.passive
     total = 0.0
-    for k in range(6):
-        if room.program.basis[k] < len(room.faces):
-            total += max(room.program.multipliers[k], 0.0)
+    for k in range(passive.used):
+        if passive.labels[k] < len(work.faces):
+            total += passive.x[k]
     return total
 
 
 @kernel
-def note_limits(room: PlayRoom, factor: float, extreme: Extreme) -> None:
-    """Write which pairs limit the extreme, and the prices of their gaps."""
-    extreme.n_limits = 0
-    for i in range(room.newton.n_rows):
-        pair = room.newton.pairs[i]
-        if room.newton.prices[i] > HARDLY:
-            extreme.limits[extreme.n_limits] = pair
-            extreme.prices[extreme.n_limits] = factor * room.newton.prices[i]
-            extreme.n_limits += 1
+def write_newton_step(goal: Goal, motion: Motion, factor: float, goes_on: bool, work: PlayWorkspace) -> bool:
+    """Write Newton's step on the rows that the program leans on, and those that block it; False: it leads to no top.
+
+    A search that goes on has just made such a step. It stays on its rows: seen from where second order has led it, a
+    program leans on rows that have no price at the top, and would go along a flat one to meet them.
+    """
+    newton, objective, n_pairs = work.newton, work.program.objective, len(work.faces)
+    if goes_on:
+        renew_rows(work.rows, work.bounds, newton.held)
+    else:
+        hold_limits(work.rows, n_pairs, work.program, newton)
+    is_top = False
+    for _ in range(6):
+        aim(newton.held, objective)
+        write_curvature(goal, motion, factor, work)
+        is_top = write_steps(work.bounds, objective, newton)
+        blocks = join_steps(work.rows, work.bounds, n_pairs, is_top, FIRST_RADIUS, newton)
+        if blocks < 0 or newton.held.used == 6 or not hold_row(work.rows, blocks, newton):
+            break
+    return is_top
 
 
 @kernel
-def solve_linear(length_m: float, goal: Goal, room: PlayRoom, extreme: Extreme) -> None:
-    """Find the greatest value over the polytope (7.1) of the start."""
-    unit = length_m if goal.kind == SHIFT else 1.0
-    write_trust_region(room, math.inf)
-    factor = write_slope(goal, (1.0, 0.0, 0.0, 0.0), length_m, room)
-    room.program.basis[0] = -1
-    outcome = solve_program(room.rows, room.bounds, room.program)
-    extreme.linear = goal.sign * math.inf
-    extreme.linear_outcome = OPEN
-    if outcome == OPTIMAL:
-        come_near(room.rows, room.bounds, room.program)
-        extreme.linear = goal.sign * unit * factor * promised(room.program)
-        extreme.linear_outcome = REACHED
-    elif outcome != UNBOUNDED:
-        extreme.linear_outcome = NOT_FOUND
+def moved_along_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> Motion:
+    """Return the motion after Newton's step, put back on the faces that the step's curvature has left.
+
+    Without this the penalty would refuse good steps along curved limits.
+    """
+    newton = work.newton
+    motion = moved(motion, newton.step)
+    place(geometry, motion, work)
+    for i in range(newton.held.used):
+        pair = newton.held.labels[i]
+        work.bounds[pair] = gap_at(geometry, pair, work)
+    write_corner(work.bounds, newton.held, newton.onto)
+    return moved(motion, newton.onto)
 
 
 @kernel
-def travels_without_end(program: ProgramRoom) -> bool:
-    """Whether an unbounded program grows by a translation alone: then no point is in the way, exactly."""
-    turning, travelling = 0.0, 0.0
-    for k in range(3):
-        travelling += program.objective[k] * program.x_far[k]
-        turning = max(turning, abs(program.x_far[3 + k]))
-    return travelling > NOT_BEYOND and turning <= NOT_BEYOND
+def put_on_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> Motion:
+    """Take the last steps, which are of the size of rounding, so that no limiting point is left inside."""
+    for _ in range(RESTORING):
+        inside = write_rows(geometry, motion, work)
+        write_trust_region(work, 100.0 * inside)
+        if inside == 0.0 or solve_program(work.rows, work.bounds, work.program) != OPTIMAL:
+            break
+        motion = moved(motion, work.program.x)
+    return motion
 
 
 @kernel
-def is_out(goal: Goal, value: float, quaternion: Quaternion, length_m: float) -> bool:
-    """Whether a search has left the range in which there is an extreme to find."""
-    if goal.kind == SHIFT:
-        return abs(value) > FARTHEST * length_m
-    pitch = euler_zyx_from_quaternion(quaternion)[1]
-    return abs(pitch) > STEEPEST or abs(value) > 0.9 * math.pi
-
-
-@kernel
-def note_extreme(
-    goal: Goal, length_m: float, position: Vector, quaternion: Quaternion, room: PlayRoom, extreme: Extreme
-) -> None:
-    """Write down where a search has come to, unless it has been farther."""
-    value = value_at(goal, position, quaternion)
+def note_extreme(goal: Goal, motion: Motion, work: PlayWorkspace, extreme: Extreme) -> None:
+    """Write down where a search has come to and what limits it there, unless it has been farther."""
+    value = value_at(goal, motion)
     if extreme.outcome == REACHED and goal.sign * extreme.value >= value:
         return
     extreme.outcome = REACHED
     extreme.value = goal.sign * value
     for k in range(3):
-        extreme.position[k] = position[k]
+        extreme.position[k] = motion[0][k]
     for k in range(4):
-        extreme.quaternion[k] = quaternion[k]
-    factor = write_slope(goal, quaternion, length_m, room)
-    note_limits(room, factor if goal.kind == SHIFT else factor / length_m, extreme)
+        extreme.quaternion[k] = motion[1][k]
+    factor = write_slope(goal, motion, work.program.objective)
+    held = work.newton.held
+    write_limits(held.labels, held.target, held.used, len(work.faces), factor, extreme.limits)
 
 
 @kernel
-def write_newton_step(goal: Goal, quaternion: Quaternion, length_m: float, factor: float, room: PlayRoom) -> bool:
-    """Write Newton's step on the rows that the program leans on, and those that block it; False: it leads to no top."""
-    newton = room.newton
-    take_rows(room.rows, room.bounds, len(room.faces), room.program, newton)
-    is_top = False
-    for _ in range(6):
-        find_prices(room.program, newton)
-        write_curvature(goal, quaternion, length_m, factor, room)
-        is_top = newton_step(room.program, newton)
-        blocks = join_steps(room.rows, room.bounds, len(room.faces), is_top, FIRST_RADIUS, newton)
-        if blocks < 0 or newton.n_rows == 6:
-            break
-        take_row(room.rows, room.bounds, blocks, newton)
-    return is_top
+def change_faces(geometry: Geometry, work: PlayWorkspace) -> bool:
+    """Where a point that limits the motion is beyond another face too, let it stay beyond that one instead."""
+    held = work.newton.held
+    changed = False
+    for i in range(held.used):
+        if held.target[i] > PRICELESS:
+            pair = held.labels[i]
+            best = farthest_face(geometry, pair, work)
+            if best != work.faces[pair] and is_beyond(geometry, pair, best, work):
+                work.faces[pair] = best
+                changed = True
+    return changed
 
 
 @kernel
-def moved_along_faces(
-    geometry: Geometry, length_m: float, position: Vector, quaternion: Quaternion, room: PlayRoom
-) -> tuple[Vector, Quaternion]:
-    """Return the motion after Newton's step, put back on the faces that the step's curvature has left.
-
-    Without this the penalty would refuse good steps along curved limits.
-    """
-    newton = room.newton
-    position, quaternion = moved(position, quaternion, newton.step, length_m)
-    place_object(geometry, position, quaternion, room.placement)
-    for i in range(newton.n_rows):
-        point, box = newton.pairs[i] // geometry.n_own_boxes, newton.pairs[i] % geometry.n_own_boxes
-        newton.bounds[i] = gap_at(geometry, length_m, point, box, room)
-    write_onto(newton)
-    return moved(position, quaternion, newton.onto, length_m)
-
-
-@kernel
-def merit_at(
-    geometry: Geometry,
-    length_m: float,
-    goal: Goal,
-    position: Vector,
-    quaternion: Quaternion,
-    penalty: float,
-    room: PlayRoom,
-) -> float:
-    """Return the value less the penalty on the deepest point; lengths of the scene, or radians."""
-    place_object(geometry, position, quaternion, room.placement)
-    inside = max(0.0, -least_gap(geometry, length_m, room))
-    unit = length_m if goal.kind == SHIFT else 1.0
-    return value_at(goal, position, quaternion) / unit - penalty * inside
-
-
-@kernel
-def climb(geometry: Geometry, length_m: float, goal: Goal, room: PlayRoom, extreme: Extreme) -> None:
+def climb(geometry: Geometry, goal: Goal, work: PlayWorkspace, extreme: Extreme) -> None:
     """Follow linear programs in a trust region to a greatest value (7.5), from the start.
 
     Where their limiting rows leave something free, Newton's step on these rows is tried too, and the better one taken.
-    Where the points that limit an extreme have run off their faces, the search goes on beyond the others.
     """
-    unit = length_m if goal.kind == SHIFT else 1.0
-    position, quaternion = START, (1.0, 0.0, 0.0, 0.0)
-    last_position, last_quaternion = position, quaternion
-    radius, longest, penalty = FIRST_RADIUS, FIRST_RADIUS, 0.0
+    newton, program = work.newton, work.program
+    motion = last_motion = START
+    radius = longest = FIRST_RADIUS
+    penalty, has_arrived, goes_on = 0.0, False, False
     extreme.outcome = NOT_FOUND
-    has_arrived = False
     for n_programs in range(MOST_PROGRAMS):
         extreme.n_programs = n_programs + 1
-        size = size_of(position, quaternion, length_m)
+        size = size_of(motion)
+
+        # Here is an extreme, unless a point that limits it has run off its face: then look farther, beyond the next.
         if has_arrived or radius < max(LAST_RADIUS * size, SHORTEST):
-            position, quaternion = put_on_faces(geometry, length_m, position, quaternion, room)
-            note_extreme(goal, length_m, position, quaternion, room, extreme)
-            if not change_faces(geometry, length_m, room):
+            motion = put_on_faces(geometry, motion, work)
+            note_extreme(goal, motion, work, extreme)
+            if not change_faces(geometry, work):
                 break
-            radius, longest, penalty, has_arrived = FIRST_RADIUS, FIRST_RADIUS, 0.0, False
-        place_object(geometry, position, quaternion, room.placement)
-        inside = max(0.0, -write_rows(geometry, position, length_m, room))
-        value = value_at(goal, position, quaternion)
-        factor = write_slope(goal, quaternion, length_m, room)
-        write_trust_region(room, radius)
-        if solve_program(room.rows, room.bounds, room.program) != OPTIMAL:
-            # The last step led to where no small motion brings all points out: take a shorter one.
-            room.program.basis[0] = -1
-            position, quaternion = last_position, last_quaternion
-            radius *= 0.25
-            longest = radius
+            radius = longest = FIRST_RADIUS
+            penalty, has_arrived, goes_on = 0.0, False, False
+
+        # Solve the linear program here. If no small motion brings all points out, the last step was too long.
+        inside = write_rows(geometry, motion, work)
+        factor = write_slope(goal, motion, program.objective)
+        write_trust_region(work, radius)
+        if solve_program(work.rows, work.bounds, program) != OPTIMAL:
+            motion = last_motion
+            radius = longest = 0.25 * radius
             continue
-        penalty = max(penalty, 2.0 * factor * total_price(room))
-        is_top = write_newton_step(goal, quaternion, length_m, factor, room)
-        gain = factor * promised(room.program) + penalty * inside
-        merit = value / unit - penalty * inside
-        noise = GAIN * abs(value) / unit + 1e-15
-        by_newton = moved_along_faces(geometry, length_m, position, quaternion, room)
-        more = merit_at(geometry, length_m, goal, by_newton[0], by_newton[1], penalty, room) - merit
-        has_arrived = (is_top and size_of_step(room.newton.step) < LAST_STEP * size) or max(gain, more) <= noise
+
+        # Compare what it promises with what Newton's step gains, the depth of the deepest point at its price.
+        value = value_at(goal, motion)
+        penalty = max(penalty, 2.0 * factor * total_price(work))
+        merit = value - penalty * inside
+        promised = factor * inner(program.objective, program.x, 6) + penalty * inside
+        is_top = write_newton_step(goal, motion, factor, goes_on, work)
+        newton_motion = moved_along_faces(geometry, motion, work)
+        newton_gain = merit_at(geometry, goal, newton_motion, penalty, work) - merit
+        newton_size = size_of_step(newton.step)
+        noise = GAIN * abs(value) + 1e-15
+        is_limited = inside <= GAP_ROUNDING and least_target(newton.held) >= -PRICELESS
+        is_last = is_top and is_limited and newton_size < LAST_STEP * size
+        has_arrived = is_last or max(promised, newton_gain) <= noise
         if has_arrived:
+            motion = newton_motion if newton_gain > 0.0 else motion
             continue
-        to_position, to_quaternion = moved(position, quaternion, room.program.x_near, length_m)
-        gained = merit_at(geometry, length_m, goal, to_position, to_quaternion, penalty, room) - merit
-        if gained < 0.5 * gain:  # a parabola's top lies nearer than the step is long
-            radius = 0.5 * min(radius, size_of_step(room.program.x_near))
-        elif gained > 0.75 * gain:
+
+        # Let the trust region follow how much of the promise the program's own step keeps.
+        linear_motion = moved(motion, program.x)
+        linear_gain = merit_at(geometry, goal, linear_motion, penalty, work) - merit
+        if linear_gain < 0.5 * promised:  # a parabola's top lies nearer than the step is long
+            radius = 0.5 * min(radius, size_of_step(program.x))
+        elif linear_gain > 0.75 * promised:
             radius = min(FIRST_RADIUS, 2.0 * radius)
-        takes = gained > max(0.1 * gain, 0.0)
-        if more > max(gained, 0.0) and size_of_step(room.newton.step) <= longest:
-            to_position, to_quaternion = by_newton
-            takes = True
-            radius = min(FIRST_RADIUS, max(radius, size_of_step(room.newton.step)))
-        if takes:
-            last_position, last_quaternion = position, quaternion
-            position, quaternion = to_position, to_quaternion
-            if is_out(goal, value_at(goal, position, quaternion), quaternion, length_m):
-                extreme.outcome = OPEN
-                break
 
-
-@kernel
-def size_of(position: Vector, quaternion: Quaternion, length_m: float) -> float:
-    """Return the size of a motion: of its travel in lengths of the scene and its turn in radians."""
-    return norm(position) / length_m + 2.0 * norm((quaternion[1], quaternion[2], quaternion[3]))
-
-
-@kernel
-def put_on_faces(
-    geometry: Geometry, length_m: float, position: Vector, quaternion: Quaternion, room: PlayRoom
-) -> tuple[Vector, Quaternion]:
-    """Take the last steps, which are of the size of rounding, so that no limiting point is left inside."""
-    for _ in range(RESTORING):
-        place_object(geometry, position, quaternion, room.placement)
-        inside = max(0.0, -write_rows(geometry, position, length_m, room))
-        write_trust_region(room, 100.0 * inside)
-        if inside == 0.0 or solve_program(room.rows, room.bounds, room.program) != OPTIMAL:
+        # Take the better of the two steps, if it is good at all.
+        goes_on = newton_gain > max(linear_gain, 0.0) and newton_size <= longest
+        if goes_on:
+            last_motion, motion = motion, newton_motion
+            radius = min(FIRST_RADIUS, max(radius, newton_size))
+        elif linear_gain > max(0.1 * promised, 0.0):
+            last_motion, motion = motion, linear_motion
+        if is_out(goal, motion):
+            extreme.outcome = OPEN
             break
-        position, quaternion = moved(position, quaternion, room.program.x_near, length_m)
-    return position, quaternion
+
+
+@kernel
+def find_linear(goal: Goal, rows: FloatArray, bounds: FloatArray, program: Program, extreme: Extreme) -> None:
+    """Find the greatest value over the polytope (7.1) of the start."""
+    factor = write_slope(goal, START, program.objective)
+    program.passive.used = 0
+    outcome = solve_program(rows, bounds, program)
+    extreme.linear, extreme.linear_outcome = goal.sign * math.inf, OPEN
+    if outcome == OPTIMAL:
+        extreme.linear = goal.sign * factor * inner(program.objective, program.x, 6)
+        extreme.linear_outcome = REACHED
+        for k in range(6):
+            extreme.linear_twist[k] = program.x[k]
+        passive = program.passive
+        write_limits(passive.labels, passive.x, passive.used, len(rows) - N_TRUST, factor, extreme.linear_limits)
+    elif outcome != UNBOUNDED:
+        extreme.linear_outcome = NOT_FOUND
 
 
 @entry
-def find_play(geometry: Geometry, length_m: float, goals: Rows[Goal], extremes: Rows[Extreme], room: PlayRoom) -> None:
+def find_linear_play(
+    goals: Rows[Goal], rows: FloatArray, bounds: FloatArray, program: Program, extremes: Rows[Extreme]
+) -> None:
+    """Find the linear extremes alone, over any polytope of twists from the start."""
+    for i in range(len(goals)):
+        find_linear(goals[i], rows, bounds, program, extremes[i])
+
+
+@kernel
+def travels_without_end(work: PlayWorkspace) -> bool:
+    """Whether some translation alone lets the value grow without end: no point is in its way, and that is exact."""
+    objective, passive = work.program.objective, work.program.passive
+    clear(passive, 3, length(objective, 3))
+    rest = nonnegative_least_squares(System(work.rows, objective, work.is_rejected), len(work.faces), passive)
+    passive.used = 0
+    return rest > NOT_BEYOND
+
+
+@entry
+def find_play(geometry: Geometry, goals: Rows[Goal], extremes: Rows[Extreme], work: PlayWorkspace) -> None:
     """Find the linear and the exact extreme for each goal.
 
     Parameters
     ----------
     geometry
-        Boxes as they stand at the start, points and boxes in the frame of the motion.
-    length_m
-        The scene's length: what a turn by a radian is compared with.
+        Boxes as they stand at the start, and points, in the frame of the motion, lengths of the scene. That length is
+        what a turn by a radian is compared with.
     goals, extremes
         What is asked for, and what is found.
-    room
+    work
         See there.
     """
-    write_start(geometry, length_m, room)
+    write_start(geometry, work)
     for i in range(len(goals)):
         goal, extreme = goals[i], extremes[i]
-        for pair in range(len(room.faces)):
-            room.faces[pair] = room.start_faces[pair]
-        place_object(geometry, START, (1.0, 0.0, 0.0, 0.0), room.placement)
-        write_rows(geometry, START, length_m, room)
-        solve_linear(length_m, goal, room, extreme)
-        if extreme.linear_outcome == OPEN and travels_without_end(room.program):
-            extreme.outcome, extreme.value = OPEN, extreme.linear
+        for pair in range(len(work.faces)):
+            work.faces[pair] = work.start_faces[pair]
+        write_rows(geometry, START, work)
+        write_trust_region(work, math.inf)
+        find_linear(goal, work.rows, work.bounds, work.program, extreme)
+        if extreme.linear_outcome == OPEN and travels_without_end(work):
+            extreme.outcome = OPEN
         else:
-            climb(geometry, length_m, goal, room, extreme)
+            climb(geometry, goal, work, extreme)
         if extreme.outcome == OPEN:
             extreme.value = goal.sign * math.inf
