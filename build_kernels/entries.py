@@ -21,9 +21,10 @@ from cagepose.kernels.outcome.records import empty_outcome
 from cagepose.kernels.play.certificate import certify, empty_certificate_workspace
 from cagepose.kernels.play.clearances import LimitingGap, find_limiting_gaps
 from cagepose.kernels.play.escape import Station, grow_tree
+from cagepose.kernels.play.extreme import Extreme, find_linear_play
 from cagepose.kernels.play.goal import Goal
 from cagepose.kernels.play.polytope import empty_play_workspace, write_start
-from cagepose.kernels.play.search import Extreme, find_linear_play, find_play
+from cagepose.kernels.play.search import find_play
 from cagepose.kernels.quasistatic.run import (
     QuasistaticRules,
     repeat_quasistatic,

@@ -14,9 +14,10 @@ from cagepose.errors import Problem, SceneError
 from cagepose.kernels.algebra.record import Rows, empty_rows
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.play.certificate import CAGED, certify, empty_certificate_workspace
+from cagepose.kernels.play.extreme import OPEN, REACHED, Extreme
 from cagepose.kernels.play.goal import SHIFT, Goal
 from cagepose.kernels.play.polytope import empty_play_workspace
-from cagepose.kernels.play.search import OPEN, REACHED, Extreme, find_play
+from cagepose.kernels.play.search import find_play
 from cagepose.model.checks import FloatArray, finite_array, unit_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import FARTHEST_START, Scene, millimetres

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from cagepose.kernels.algebra.record import empty_rows
 from cagepose.kernels.play.clearances import LimitingGap, find_limiting_gaps
+from cagepose.kernels.play.extreme import Extreme
 from cagepose.kernels.play.goal import SHIFT, Goal
 from cagepose.kernels.play.polytope import empty_play_workspace
-from cagepose.kernels.play.search import Extreme
 from cagepose.model.scene import Scene
 from cagepose.studies.play_frame import PlayFrame
 

@@ -11,9 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from cagepose.kernels.algebra.record import IntArray, Rows, empty_rows
+from cagepose.kernels.play.extreme import REACHED, Extreme, Limits, find_linear_play
 from cagepose.kernels.play.goal import SHIFT, Goal
 from cagepose.kernels.play.polytope import PlayWorkspace, empty_play_workspace, write_start
-from cagepose.kernels.play.search import REACHED, Extreme, Limits, find_linear_play, find_play
+from cagepose.kernels.play.search import find_play
+from cagepose.kernels.play.tolerances import TOUCHES
 from cagepose.model.checks import FloatArray
 from cagepose.model.load import Load
 from cagepose.model.pose import Pose
@@ -23,8 +25,6 @@ from cagepose.studies.play_frame import FREEDOMS, LENGTHS, PlayFrame, motion_aft
 
 LEFT_OPEN = 1e-7
 """Lengths of the scene, or radians. A freedom with a smaller range at rest is determined."""
-TOUCHES = 1e-9
-"""Lengths of the scene: a row whose gap is smaller touches."""
 FLAT = 1e-12
 """Lengths of the scene: how exactly the touching points stay at their faces while ranges are asked."""
 

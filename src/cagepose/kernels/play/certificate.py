@@ -20,6 +20,7 @@ from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.goal import PITCH, SHIFT, YAW, Goal, write_slope
 from cagepose.kernels.play.polytope import START, PlayWorkspace, write_start
 from cagepose.kernels.play.remainder import gap_left_out, spread, turning_left_out
+from cagepose.kernels.play.tolerances import ROUNDING
 
 CAGED, FREE, RAN_OFF, TOO_LARGE, UNSOLVED = range(5)
 KEPT, OFF_EDGE, THROUGH = range(3)
@@ -32,8 +33,6 @@ MOST_MISSING = 0.01
 """Of an objective: programs whose multipliers miss it by more have no proof."""
 LARGEST_TURN = 1.0
 """Radians. The bounds hold up to pi, but are of no use beyond this."""
-BOUND_ROUNDING = 1e-12
-"""Lengths of the scene, and radians. Added to each bound: a thousand times the rounding of one gap."""
 
 
 class Certificate:
@@ -253,7 +252,7 @@ def angle_bound(goal: Goal, certificate: Certificate) -> float:
     k = 5 - goal.kind  # components of w: roll about x, pitch about y, yaw about z
     one, other = (k + 1) % 3, (k + 2) % 3
     bound = certificate.greatest[k] if goal.sign > 0.0 else -certificate.least[k]
-    sine = max(bound, 0.0) + 0.5 * turn[one] * turn[other] + BOUND_ROUNDING
+    sine = max(bound, 0.0) + 0.5 * turn[one] * turn[other] + ROUNDING
     if goal.kind == PITCH:
         return math.asin(min(sine, 1.0))
     cosine = 1.0 - 0.5 * (turn[1] ** 2 + (turn[2] ** 2 if goal.kind == YAW else turn[0] ** 2))
@@ -268,7 +267,7 @@ def shift_bound(goal: Goal, work: PlayWorkspace, certificate: Certificate) -> fl
     for i in range(2):
         direction = scaled(row(goal.directions, i), goal.sign)
         above += turning_left_out(direction, row(goal.starts, i), vector_from(certificate.turn))[0]
-    return factor * bound_program(work, certificate) + above + BOUND_ROUNDING
+    return factor * bound_program(work, certificate) + above + ROUNDING
 
 
 @entry
@@ -302,7 +301,7 @@ def certify(
         proof.status[pair] = KEPT
     certificate = proof.certificate
     certificate.worst = -1
-    certificate.slack = touch + BOUND_ROUNDING
+    certificate.slack = touch + ROUNDING
     certificate.outcome = close_polytope(geometry, work, proof)
     if certificate.outcome == CAGED:
         for i in range(len(goals)):

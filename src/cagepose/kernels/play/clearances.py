@@ -15,27 +15,21 @@ from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import vector_from
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.native.kernel import entry, kernel
+from cagepose.kernels.play.extreme import Extreme
 from cagepose.kernels.play.goal import Goal, write_slope
 from cagepose.kernels.play.polytope import (
     START,
-    Motion,
     PlayWorkspace,
     farthest_face,
     gap_beyond,
     place,
-    write_row,
-    write_trust_region,
+    write_touching_rows,
 )
-from cagepose.kernels.play.search import Extreme
+from cagepose.kernels.play.tolerances import PRICELESS, SAME_ROW
 
-TOUCHES = 1e-8
-"""Lengths of the scene: the search leaves limiting gaps of 1e-12, and knows flat tops to their square root."""
-WORTHLESS = 1e-6
-"""Of the slope. A gap that is worth less does not limit the end."""
-SAME_FACE = 1e-9
-"""Rows that differ by less: faces of two boxes that are flush at the point, one gap."""
-FARTHEST = 1e3
-"""How far the programs may go for a bound of one: what the slope lacks of the rows, 1e-9, errs by this much more."""
+REACH = 1e3
+"""How far the programs may go for a bound of one: what the slope lacks of the rows, a price of 1e-9, errs so much
+more."""
 
 
 class LimitingGap:
@@ -59,24 +53,12 @@ class LimitingGap:
 
 
 @kernel
-def write_touching_rows(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> None:
-    """Write the rows of the pairs that touch, with bounds of zero; those of the others are infinite."""
-    place(geometry, motion, work)
-    for pair in range(len(work.faces)):
-        work.faces[pair] = farthest_face(geometry, pair, work)
-        write_row(geometry, motion, pair, work)
-        touches = gap_beyond(geometry, pair, work.faces[pair], work) < TOUCHES
-        work.bounds[pair] = 0.0 if touches else math.inf
-    write_trust_region(work, FARTHEST)
-
-
-@kernel
 def is_same_gap(one: int, other: int, work: PlayWorkspace) -> bool:
     """Whether two pairs are of one point, and faces that are flush there."""
     apart = 0.0
     for k in range(6):
         apart = max(apart, abs(work.rows[one, k] - work.rows[other, k]))
-    return work.points[one] == work.points[other] and apart < SAME_FACE
+    return work.points[one] == work.points[other] and apart < SAME_ROW
 
 
 @kernel
@@ -122,14 +104,17 @@ def find_limiting_gaps(
     """
     q = extreme.quaternion
     motion = (vector_from(extreme.position), (q[0], q[1], q[2], q[3]))
-    write_touching_rows(geometry, motion, work)
+    place(geometry, motion, work)
+    for pair in range(len(work.faces)):
+        work.faces[pair] = farthest_face(geometry, pair, work)
+    write_touching_rows(geometry, motion, REACH, work)
     factor = write_slope(goal, motion, work.program.objective)
     n_found = 0
     for pair in range(len(work.faces)):
         if not stands_for_gap(pair, work):
             continue
         closing = gain_of(pair, -1.0, work)
-        if closing > WORTHLESS:
+        if closing > REACH * PRICELESS:
             gap = found[n_found]
             gap.pair, gap.closing = pair, factor * closing
             gap.opening = factor * max(gain_of(pair, 1.0, work), 0.0)

@@ -30,15 +30,7 @@ from cagepose.kernels.algebra.linear_program import Program, write_corner
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import norm
 from cagepose.kernels.native.kernel import kernel
-
-SAYS_NEW = 1e-7
-"""A row whose part outside the span of the others is shorter than this says nothing new; rows are about one long."""
-FLAT = 1e-6
-"""Of the curvature: added to it, so that directions in which nothing changes stay where they are."""
-FLAT_ROUNDING = 1e-12
-"""The same of the whole curvature: ten thousand times the rounding of the differences that what is free comes from."""
-NO_SPEED = 1e-12
-"""Of a step: a row that it comes nearer by less cannot stop it."""
+from cagepose.kernels.play.tolerances import FLAT, ROUNDING, SAME_ROW
 
 
 class NewtonStep:
@@ -71,7 +63,7 @@ def hold_row(rows: FloatArray, pair: int, newton: NewtonStep) -> bool:
     held = newton.held
     if not append_column(held, rows[pair], pair, 0.0):
         return False
-    if held.triangle[held.used - 1, held.used - 1] * SAYS_NEW > 1.0:
+    if held.triangle[held.used - 1, held.used - 1] * SAME_ROW > 1.0:
         held.used -= 1
         return False
     return True
@@ -94,7 +86,7 @@ def write_free_curvature(newton: NewtonStep) -> None:
         for k in range(6):
             newton.factor[j, k] = -newton.curvature[j, k]
     size = frobenius_norm(newton.curvature)
-    shift = FLAT * confine(newton.factor, newton.held) + FLAT_ROUNDING * size
+    shift = FLAT * confine(newton.factor, newton.held) + ROUNDING * size
     add_across(newton.factor, newton.held, size)
     for j in range(6):
         newton.factor[j, j] += shift
@@ -154,7 +146,7 @@ def join_steps(
             gap -= rows[pair, k] * newton.onto[k]
             speed += rows[pair, k] * newton.along[k]
         gap = max(gap, 0.0)
-        if speed > NO_SPEED * size and gap < share * speed and not label_is_passive(newton.held, pair):
+        if speed > ROUNDING * size and gap < share * speed and not label_is_passive(newton.held, pair):
             share, blocks = gap / speed, pair
     for k in range(6):
         newton.step[k] = newton.onto[k] + share * newton.along[k]

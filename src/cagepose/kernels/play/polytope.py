@@ -19,18 +19,13 @@ from cagepose.kernels.algebra.vector import Vector, cross, minus, row
 from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement, place_object
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.newton import NewtonStep
+from cagepose.kernels.play.tolerances import GAP_ROUNDING, ROUNDING, TOUCHES
 
 Motion = tuple[Vector, Quaternion]
 """Of the object as it stands at the start: travel t and turn R, x -> R x + t."""
 START = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 N_TRUST = 12
 """Rows |xi_k| <= radius of the trust region."""
-NEGLIGIBLE = 1e-12
-"""Coefficients of a row below this are rounding: they do not reach for an end that is not there."""
-NOT_BEYOND = 1e-8
-"""Lengths of the scene. A point that is beyond another face of the box by less stays with its face."""
-GAP_ROUNDING = 1e-13
-"""Lengths of the scene: gaps of points that touch are known so well."""
 
 
 class PlayWorkspace(NamedTuple):
@@ -140,8 +135,8 @@ def farthest_face(geometry: Geometry, pair: int, work: PlayWorkspace) -> int:
 
 @kernel
 def is_beyond(geometry: Geometry, pair: int, face: int, work: PlayWorkspace) -> bool:
-    """Whether the point is beyond that face by more than one that is flush with it can be by rounding."""
-    return gap_beyond(geometry, pair, face, work) > NOT_BEYOND
+    """Whether the point is beyond that face by more than one that touches it can be by rounding."""
+    return gap_beyond(geometry, pair, face, work) > TOUCHES
 
 
 @kernel
@@ -184,6 +179,15 @@ def write_trust_region(work: PlayWorkspace, radius: float) -> None:
 
 
 @kernel
+def write_touching_rows(geometry: Geometry, motion: Motion, radius: float, work: PlayWorkspace) -> None:
+    """Write the rows of the pairs that touch, with bounds of zero, and a trust region; the others do not count."""
+    write_rows(geometry, motion, work)
+    for pair in range(len(work.faces)):
+        work.bounds[pair] = 0.0 if work.bounds[pair] < TOUCHES else math.inf
+    write_trust_region(work, radius)
+
+
+@kernel
 def has_choice(geometry: Geometry, pair: int, work: PlayWorkspace) -> bool:
     """Whether the point is beyond more than one face of the box."""
     n_beyond = 0
@@ -199,7 +203,7 @@ def gap_at_worst(pair: int, work: PlayWorkspace) -> float:
     gap: float = work.bounds[pair]
     for k in range(6):
         a = work.rows[pair, k]
-        if abs(a) > NEGLIGIBLE:
+        if abs(a) > ROUNDING:  # else it reaches for no end, even where there is none
             gap -= a * (work.greatest[k] if a > 0.0 else work.least[k])
     return gap
 

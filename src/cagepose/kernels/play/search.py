@@ -8,29 +8,26 @@ last one led (7.5), and by Newton's steps on the rows that limit them (7.6).
 from __future__ import annotations
 
 import math
-from typing import Annotated
 
-from cagepose.kernels.algebra.least_squares import (
-    System,
-    aim,
-    clear,
-    inner,
-    least_target,
-    length,
-    nonnegative_least_squares,
-)
-from cagepose.kernels.algebra.linear_program import OPTIMAL, UNBOUNDED, Program, renew_rows, solve_program, write_corner
+from cagepose.kernels.algebra.least_squares import aim, inner, least_target
+from cagepose.kernels.algebra.linear_program import OPTIMAL, renew_rows, solve_program, write_corner
 from cagepose.kernels.algebra.pose import euler_zyx_from_quaternion, quaternion_about, quaternion_product
-from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
+from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import norm, plus, scaled
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.native.kernel import entry, kernel
+from cagepose.kernels.play.extreme import (
+    NOT_FOUND,
+    OPEN,
+    REACHED,
+    Extreme,
+    find_linear,
+    travels_without_end,
+    write_limits,
+)
 from cagepose.kernels.play.goal import SHIFT, Goal, value_at, write_curvature, write_slope
 from cagepose.kernels.play.newton import hold_limits, hold_row, join_steps, size_of_step, write_steps
 from cagepose.kernels.play.polytope import (
-    GAP_ROUNDING,
-    N_TRUST,
-    NOT_BEYOND,
     START,
     Motion,
     PlayWorkspace,
@@ -41,75 +38,26 @@ from cagepose.kernels.play.polytope import (
     place,
     write_rows,
     write_start,
+    write_touching_rows,
     write_trust_region,
 )
+from cagepose.kernels.play.tolerances import (
+    EPSILON,
+    FARTHEST,
+    FIRST_RADIUS,
+    GAP_ROUNDING,
+    LAST_RADIUS,
+    LAST_STEP,
+    PRICELESS,
+    ROUNDING,
+    SHORTEST,
+    STEEPEST,
+)
 
-REACHED, OPEN, NOT_FOUND = range(3)
-FIRST_RADIUS = 0.3
-"""Radians, and lengths of the scene: the linear rows say little beyond."""
-LAST_RADIUS = 1e-6
-"""Of the motion: the value errs by the square of this."""
-SHORTEST = 1e-9
-"""Radians, and lengths of the scene: where no step of this size can be taken, none is left."""
-LAST_STEP = 1e-7
-"""Of the motion: a Newton step that is shorter is the last one; the value errs by the square of this."""
 MOST_PROGRAMS = 200
 """A dozen are usual, forty where curvature alone limits the motion."""
-GAIN = 1e-12
-"""A program that promises less than this fraction of the value has nothing left to find."""
-PRICELESS = 1e-9
-"""A gap whose multiplier is smaller does not limit the motion."""
-STEEPEST = 1.55
-"""Radians. Pitch beyond is next to the pole of the angles; where it can go there, it has no extreme."""
-FARTHEST = 20.0
-"""Lengths of the scene. Whoever gets so far is out."""
 RESTORING = 3
 """Newton steps at the end that bring the limiting points onto their faces."""
-
-
-class Limits:
-    """The pairs that limit an end, and how much its value gains for each length that such a gap grows; a record."""
-
-    n_pairs: int
-    pairs: Annotated[IntArray, 6]
-    prices: Annotated[FloatArray, 6]
-
-
-class Extreme:
-    """One end of the play; a record.
-
-    Attributes
-    ----------
-    linear_outcome, linear, linear_twist, linear_limits
-        By the linear program at the start: REACHED, OPEN (no end) or NOT_FOUND; the value, radians or lengths of the
-        scene; a twist that reaches it, and what limits it.
-    outcome, value, position, quaternion, limits
-        The same exactly, and the motion that reaches it.
-    n_programs
-        How many were solved.
-    """
-
-    linear_outcome: int
-    linear: float
-    linear_twist: Annotated[FloatArray, 6]
-    linear_limits: Limits
-    outcome: int
-    value: float
-    position: Annotated[FloatArray, 3]
-    quaternion: Annotated[FloatArray, 4]
-    limits: Limits
-    n_programs: int
-
-
-@kernel
-def write_limits(labels: IntArray, prices: FloatArray, used: int, n_pairs: int, factor: float, limits: Limits) -> None:
-    """Write the rows in use that limit an end; ``factor`` was taken out of the slope that their prices hold."""
-    limits.n_pairs = 0
-    for k in range(used):
-        if labels[k] < n_pairs and prices[k] > PRICELESS:
-            limits.pairs[limits.n_pairs] = labels[k]
-            limits.prices[limits.n_pairs] = factor * prices[k]
-            limits.n_pairs += 1
 
 
 @kernel
@@ -209,7 +157,16 @@ def put_on_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> Mot
 
 
 @kernel
-def note_extreme(goal: Goal, motion: Motion, work: PlayWorkspace, extreme: Extreme) -> None:
+def find_prices(geometry: Geometry, goal: Goal, motion: Motion, work: PlayWorkspace) -> float:
+    """Find the multipliers with which the rows that touch hold the value; return the factor taken out of its slope."""
+    write_touching_rows(geometry, motion, FIRST_RADIUS, work)
+    factor = write_slope(goal, motion, work.program.objective)
+    solve_program(work.rows, work.bounds, work.program)
+    return factor
+
+
+@kernel
+def note_extreme(goal: Goal, motion: Motion, factor: float, work: PlayWorkspace, extreme: Extreme) -> None:
     """Write down where a search has come to and what limits it there, unless it has been farther."""
     value = value_at(goal, motion)
     if extreme.outcome == REACHED and goal.sign * extreme.value >= value:
@@ -220,19 +177,17 @@ def note_extreme(goal: Goal, motion: Motion, work: PlayWorkspace, extreme: Extre
         extreme.position[k] = motion[0][k]
     for k in range(4):
         extreme.quaternion[k] = motion[1][k]
-    factor = write_slope(goal, motion, work.program.objective)
-    held = work.newton.held
-    write_limits(held.labels, held.target, held.used, len(work.faces), factor, extreme.limits)
+    write_limits(work.program.passive, len(work.faces), factor, extreme.limits)
 
 
 @kernel
 def change_faces(geometry: Geometry, work: PlayWorkspace) -> bool:
     """Where a point that limits the motion is beyond another face too, let it stay beyond that one instead."""
-    held = work.newton.held
+    passive = work.program.passive
     changed = False
-    for i in range(held.used):
-        if held.target[i] > PRICELESS:
-            pair = held.labels[i]
+    for k in range(passive.used):
+        pair = passive.labels[k]
+        if pair < len(work.faces) and passive.x[k] > PRICELESS:
             best = farthest_face(geometry, pair, work)
             if best != work.faces[pair] and is_beyond(geometry, pair, best, work):
                 work.faces[pair] = best
@@ -258,7 +213,8 @@ def climb(geometry: Geometry, goal: Goal, work: PlayWorkspace, extreme: Extreme)
         # Here is an extreme, unless a point that limits it has run off its face: then look farther, beyond the next.
         if has_arrived or radius < max(LAST_RADIUS * size, SHORTEST):
             motion = put_on_faces(geometry, motion, work)
-            note_extreme(goal, motion, work, extreme)
+            factor = find_prices(geometry, goal, motion, work)
+            note_extreme(goal, motion, factor, work, extreme)
             if not change_faces(geometry, work):
                 break
             radius = longest = FIRST_RADIUS
@@ -282,7 +238,7 @@ def climb(geometry: Geometry, goal: Goal, work: PlayWorkspace, extreme: Extreme)
         newton_motion = moved_along_faces(geometry, motion, work)
         newton_gain = merit_at(geometry, goal, newton_motion, penalty, work) - merit
         newton_size = size_of_step(newton.step)
-        noise = GAIN * abs(value) + 1e-15
+        noise = ROUNDING * abs(value) + EPSILON
         is_limited = inside <= GAP_ROUNDING and least_target(newton.held) >= -PRICELESS
         is_last = is_top and is_limited and newton_size < LAST_STEP * size
         has_arrived = is_last or max(promised, newton_gain) <= noise
@@ -308,43 +264,6 @@ def climb(geometry: Geometry, goal: Goal, work: PlayWorkspace, extreme: Extreme)
         if is_out(goal, motion):
             extreme.outcome = OPEN
             break
-
-
-@kernel
-def find_linear(goal: Goal, rows: FloatArray, bounds: FloatArray, program: Program, extreme: Extreme) -> None:
-    """Find the greatest value over the polytope (7.1) of the start."""
-    factor = write_slope(goal, START, program.objective)
-    program.passive.used = 0
-    outcome = solve_program(rows, bounds, program)
-    extreme.linear, extreme.linear_outcome = goal.sign * math.inf, OPEN
-    if outcome == OPTIMAL:
-        extreme.linear = goal.sign * factor * inner(program.objective, program.x, 6)
-        extreme.linear_outcome = REACHED
-        for k in range(6):
-            extreme.linear_twist[k] = program.x[k]
-        passive = program.passive
-        write_limits(passive.labels, passive.x, passive.used, len(rows) - N_TRUST, factor, extreme.linear_limits)
-    elif outcome != UNBOUNDED:
-        extreme.linear_outcome = NOT_FOUND
-
-
-@entry
-def find_linear_play(
-    goals: Rows[Goal], rows: FloatArray, bounds: FloatArray, program: Program, extremes: Rows[Extreme]
-) -> None:
-    """Find the linear extremes alone, over any polytope of twists from the start."""
-    for i in range(len(goals)):
-        find_linear(goals[i], rows, bounds, program, extremes[i])
-
-
-@kernel
-def travels_without_end(work: PlayWorkspace) -> bool:
-    """Whether some translation alone lets the value grow without end: no point is in its way, and that is exact."""
-    objective, passive = work.program.objective, work.program.passive
-    clear(passive, 3, length(objective, 3))
-    rest = nonnegative_least_squares(System(work.rows, objective, work.is_rejected), len(work.faces), passive)
-    passive.used = 0
-    return rest > NOT_BEYOND
 
 
 @entry
