@@ -31,7 +31,7 @@ def test_no_point_inside_passes_the_bound_and_it_is_tight(cases):
         rows, bounds, objective = random_box(rng, 10.0 ** rng.uniform(-9, 0))
         program = solved(rows, bounds, objective)
         assert program is not None
-        bound, left_over = bound_of(rows, bounds, program)
+        bound, left_over = dual_bound(rows, bounds, program)
         assert left_over < 1e-7
         # The solution itself, pulled towards the origin until it is inside exactly, is a witness.
         corner = program.x * (1 - 1e-9)
@@ -51,5 +51,5 @@ def test_wrong_multipliers_still_give_a_bound(cases):
         assert program is not None
         maximum = float(objective @ program.x)
         program.passive.x[:6] *= rng.uniform(0.9, 1.1, 6)
-        bound, left_over = bound_of(rows, bounds, program)
+        bound, left_over = dual_bound(rows, bounds, program)
         assert bound + left_over * 0.02 >= maximum

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from cagepose.kernels.algebra.linear_program import ProgramRoom
+from cagepose.kernels.algebra.linear_program import Program
 from cagepose.kernels.algebra.pose import write_quaternions
 from cagepose.kernels.algebra.record import dtype_of, empty_record, empty_rows
 from cagepose.kernels.native.kernel import Entry, entry
@@ -49,8 +49,8 @@ def test_kinds_name_what_stands_in_the_slots(value, kinds):
 
 
 def test_a_record_is_its_address_and_counts_by_its_size():
-    room, rows = empty_record(ProgramRoom), empty_rows(ProgramRoom, 3)
-    size = dtype_of(ProgramRoom).itemsize
+    room, rows = empty_record(Program), empty_rows(Program, 3)
+    size = dtype_of(Program).itemsize
     assert Slots(room).kinds == f"{{|V{size}}}"
     assert Slots(rows).kinds == f"[|V{size},1]"
     first, second = (struct.unpack("=q", Slots(rows[index]).packed)[0] for index in (0, 1))
