@@ -34,7 +34,7 @@ $(LOCKED): requirements.lock
 	@touch $@
 
 # A kernel's change makes a new library; `pip install` below then finds it built.
-$(BUILT): $(LOCKED) $(shell find src/cagepose/kernels -name '*.py' -not -path '*/native/*') $(wildcard build_kernels/*.*)
+$(BUILT): $(LOCKED) $(shell find src/cagepose/kernels -name '*.py') $(wildcard build_kernels/*.*)
 	@echo "Compiling the kernels (about a minute) ..."
 	@PYTHONPATH=src $(BIN)/python -m build_kernels
 	@touch $@

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import sys
 from pathlib import Path
 from typing import Any
@@ -20,7 +19,10 @@ class KernelsHook(BuildHookInterface):  # type: ignore[type-arg]
 
     def dependencies(self) -> list[str]:
         """Return what is needed to link: a C compiler from PyPI where the machine has none."""
-        return [] if shutil.which("cc") else ["ziglang"]
+        sys.path.insert(0, str(ROOT))
+        from build_kernels.c_compiler import c_compiler
+
+        return [] if c_compiler() else ["ziglang"]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:  # noqa: ARG002  (as hatchling calls it)
         if self.target_name != "wheel":

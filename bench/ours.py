@@ -42,9 +42,10 @@ def native_call(scene: Scene, name: str) -> Callable[[], object]:
     method = REGISTRY[name]
     part, cases = prepared(scene, method.friction(scene))
     n_points = len(scene.cage.names)
-    outcome = empty_outcome(len(scene.loads), method.step_limit, n_points, 12 * n_points)
-    work = method.workspace(scene.geometry, method.step_limit)
-    return partial(method.run, part, cases, Slots(method.rules(scene)), Slots(work), Slots(outcome))
+    rules = method.rules(scene)
+    outcome = empty_outcome(len(scene.loads), rules.step_limit, n_points, 0 if method.joins_steps else n_points)
+    work = method.workspace(scene.geometry, rules.step_limit)
+    return partial(method.run, part, cases, Slots(rules), Slots(work), Slots(outcome))
 
 
 def read_run(scene: Scene, method: str) -> tuple[Run, list[object]]:

@@ -8,8 +8,9 @@ const char *cagepose_description = CAGEPOSE_DESCRIPTION;
 int cagepose_best_level(void) {
 #if defined(__x86_64__) || defined(_M_X64)
     __builtin_cpu_init();
-    if (__builtin_cpu_supports("x86-64-v3")) return 1;
-    return __builtin_cpu_supports("x86-64-v2") ? 0 : -1;
+    /* By features, as older compilers do not know the names of levels; every processor with these has the others. */
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2")) return 1;
+    return __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt") ? 0 : -1;
 #else
     return 0;
 #endif

@@ -8,7 +8,6 @@ import platform
 import shutil
 import subprocess
 import sys
-import sysconfig
 import tempfile
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -16,6 +15,7 @@ from pathlib import Path
 
 import llvmlite.binding as llvm
 
+from build_kernels.c_compiler import c_compiler
 from build_kernels.compile import Module
 
 HERE = Path(__file__).resolve().parent
@@ -39,7 +39,15 @@ def link(module: Module, sources_hash: str, target: Path) -> None:
                 )
             )
         made = folder / target.name
-        command = [*_c_compiler(), "-shared", "-fPIC", "-O1", f"-I{folder}", str(HERE / "best_level.c"), *objects]
+        command = [
+            *(c_compiler() or [sys.executable, "-m", "ziglang", "cc"]),
+            "-shared",
+            "-fPIC",
+            "-O1",
+            f"-I{folder}",
+            str(HERE / "best_level.c"),
+            *objects,
+        ]
         subprocess.run([*command, "-lm", "-o", str(made)], check=True)
         part = target.with_name(f".{target.name}.{os.getpid()}")
         shutil.copyfile(made, part)
@@ -60,11 +68,3 @@ def _write_machine_code(text: str, names: Sequence[str], level: str, path: str) 
     builder = llvm.create_pass_builder(machine, options)
     builder.getModulePassManager().run(module, builder)
     Path(path).write_bytes(machine.emit_object(module))
-
-
-def _c_compiler() -> list[str]:
-    """Return the command of the machine's C compiler, or of the one that the package ``ziglang`` brings."""
-    named = os.environ.get("CC") or (sysconfig.get_config_var("CC") or "cc").split()[0]
-    if shutil.which(named) and sys.platform != "win32":
-        return [named]
-    return [sys.executable, "-m", "ziglang", "cc"]

@@ -25,7 +25,7 @@ def finite_array(value: ArrayLike, shape: tuple[int, ...], key: str) -> FloatArr
         Not numbers, another shape, NaN or infinite.
     """
     try:
-        array = np.array(value, dtype=np.float64)
+        array = np.array(value, dtype=np.float64, order="C")  # as kernels take arrays
     except (TypeError, ValueError):
         raise SceneError([Problem((key,), f"is not made of numbers: {value!r}")]) from None
     fits = array.ndim == len(shape) and all(

@@ -57,9 +57,9 @@ class Batch:
 
     def _room(self) -> Callable[[int, int], None]:
         """Return a call of the kernel with room for one thread."""
-        rules = Slots(self._method.rules(self._scene))
-        work = Slots(self._method.workspace(self._scene.geometry, self._method.step_limit))
-        return partial(_run, self._method, [self._part, self._cases, FARTHEST_START, rules, work, self._endings])
+        rules = self._method.rules(self._scene)
+        work = Slots(self._method.workspace(self._scene.geometry, rules.step_limit))
+        return partial(_run, self._method, [self._part, self._cases, FARTHEST_START, Slots(rules), work, self._endings])
 
 
 def _run(method: Method, arguments: list[object], first: int, last: int) -> None:

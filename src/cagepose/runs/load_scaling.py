@@ -1,4 +1,4 @@
-"""How much gravity and force scaled_load against each other when both act."""
+"""How gravity and force are scaled against each other when both act."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ def run_many(
 ) -> Runs:
     """Run one scene many times with values that vary, or many scenes, on several threads without Python between runs.
 
-    Poses and verdicts are those of `cagepose.run`. Left out are events, contact forces, remarks, and what a proof says
+    Poses and verdicts are those of `cagepose.run`. Left out are events, contact forces, warnings, and what a proof says
     beyond the verdict: run the few rows that matter one by one.
 
     Parameters

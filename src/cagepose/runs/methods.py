@@ -15,9 +15,9 @@ from cagepose.kernels.quasistatic.workspace import empty_quasistatic_workspace
 from cagepose.kernels.stepwise import run as stepwise_kernels
 from cagepose.model.methods import DEFAULT_FRICTION, DEFAULT_METHOD, METHODS
 from cagepose.model.scene import Scene
-from cagepose.runs.quasistatic import STEP_LIMIT, quasistatic_rules, quasistatic_warnings
+from cagepose.runs.quasistatic import quasistatic_rules, quasistatic_warnings
 from cagepose.runs.run import PhaseRun
-from cagepose.runs.stepwise import EVENT_LIMIT, stepwise_rules, stepwise_warnings
+from cagepose.runs.stepwise import stepwise_rules, stepwise_warnings
 
 
 @dataclass(frozen=True)
@@ -37,9 +37,7 @@ class Method:
     rules
         The method's numbers for a scene, of size 1.
     workspace
-        Room for one run at a time.
-    step_limit
-        Greatest number of steps in a phase.
+        What one run at a time writes to, for a geometry and a greatest number of steps in a phase.
     warnings
         What a careful reader should know of a run: from the scene, the phases and the coefficient of friction.
     """
@@ -47,13 +45,16 @@ class Method:
     name: str
     rule_names: tuple[str, ...]
     joins_steps: bool
-    run: Entry[bool]
+    run: Entry[None]
     run_cases: Entry[None]
     repeat: Entry[None]
     rules: Callable[[Scene], Any]
     workspace: Callable[[Geometry, int], Any]
-    step_limit: int
     warnings: Callable[[Scene, Sequence[PhaseRun], float], Iterator[str]]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A method is saved by its name, so that runs can go from process to process."""
+        return _named, (self.name,)
 
     def friction(self, scene: Scene) -> float:
         """Return the coefficient of friction of a scene, or the method's default."""
@@ -71,7 +72,6 @@ REGISTRY = {
         stepwise_kernels.repeat_stepwise,
         stepwise_rules,
         stepwise_kernels.empty_stepwise_workspace,
-        EVENT_LIMIT,
         stepwise_warnings,
     ),
     "quasistatic": Method(
@@ -83,11 +83,14 @@ REGISTRY = {
         quasistatic_kernels.repeat_quasistatic,
         quasistatic_rules,
         empty_quasistatic_workspace,
-        STEP_LIMIT,
         quasistatic_warnings,
     ),
 }
 """By name; the names themselves, and their defaults, are in `cagepose.model.methods`."""
+
+
+def _named(name: str) -> Method:
+    return REGISTRY[name]
 
 
 def chosen_method(scene: Scene, method: str | None = None) -> Method:

@@ -28,17 +28,17 @@ def replay_event(run: Run, phase: int, event: int, *, in_python: bool = False) -
     Raises
     ------
     CageposeError
-        The run was loaded from a file, which keeps no states.
+        The run keeps no states: it was loaded from a file, or changed.
     IndexError
         There is no such phase or event.
     """
     solution = vars(run).get("solution")
     if not isinstance(solution, Solution):
-        raise CageposeError("this run was loaded from a file, which keeps no states; run its scene again")
+        raise CageposeError("this run keeps no states: it was loaded from a file, or changed; run its scene again")
     scene, outcome = run.scene, solution.outcome
     first_step, n_steps = solution.steps_of(phase, event)
     steps: Any = outcome.steps
-    method, repeated = solution.method, empty_outcome(1, n_steps, len(scene.cage.names), 1)
+    method, repeated = solution.method, empty_outcome(1, n_steps, len(scene.cage.names), outcome.order.shape[1])
     kernel = method.repeat.python if in_python else method.repeat
     kernel(
         phase,

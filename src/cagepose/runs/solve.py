@@ -15,8 +15,6 @@ from cagepose.runs.methods import Method, chosen_method
 from cagepose.runs.run import Run
 from cagepose.runs.solved import Solution, written
 
-CONTACTS_PER_POINT = 3
-"""Contacts that an outcome has room for at first, for each point: a corner of a box has three faces."""
 WORKSPACES_KEPT = 8
 """For each thread: scenes of the same numbers of points, boxes and phases share one."""
 
@@ -44,15 +42,11 @@ def run_with(scene: Scene, method: Method, rules: Any) -> Run:
     """Run a scene by a method with other numbers than its own."""
     friction = method.friction(scene)
     part, cases = prepared(scene, friction)
-    n_contacts = CONTACTS_PER_POINT * len(scene.cage.names)
-    while True:
-        room = _room(scene, method, n_contacts)
-        began = time.perf_counter()
-        fits = method.run(part, cases, rules, room.work, room.outcome_slots)
-        solve_s = time.perf_counter() - began
-        if fits:
-            return Solution(scene, method, rules, friction, written(room.outcome)).run(solve_s)
-        n_contacts *= 2
+    room = _room(scene, method, rules.step_limit)
+    began = time.perf_counter()
+    method.run(part, cases, rules, room.work, room.outcome_slots)
+    solve_s = time.perf_counter() - began
+    return Solution(scene, method, rules, friction, written(room.outcome)).run(solve_s)
 
 
 class _Room(NamedTuple):
@@ -73,15 +67,15 @@ class _Rooms(threading.local):
 _ROOMS = _Rooms()
 
 
-def _room(scene: Scene, method: Method, n_contacts: int) -> _Room:
+def _room(scene: Scene, method: Method, step_limit: int) -> _Room:
     n_phases, n_points = len(scene.loads), len(scene.cage.names)
-    size = (method.name, n_phases, n_points, len(scene.geometry.half_sizes), n_contacts)
+    size = (method.name, n_phases, n_points, len(scene.geometry.half_sizes), step_limit)
     rooms = _ROOMS.by_size
     if size in rooms:
         rooms.move_to_end(size)
         return rooms[size]
     if len(rooms) == WORKSPACES_KEPT:
         rooms.popitem(last=False)
-    outcome = empty_outcome(n_phases, method.step_limit, n_points, n_contacts)
-    rooms[size] = _Room(Slots(method.workspace(scene.geometry, method.step_limit)), Slots(outcome), outcome)
+    outcome = empty_outcome(n_phases, step_limit, n_points, 0 if method.joins_steps else n_points)
+    rooms[size] = _Room(Slots(method.workspace(scene.geometry, step_limit)), Slots(outcome), outcome)
     return rooms[size]

@@ -10,7 +10,10 @@ is asked for, which took 40 us for the room of a proof; an array takes 0.2 us.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Protocol, TypeVar, cast, get_args, get_origin, get_type_hints
+import sys
+from functools import cache
+from types import CodeType
+from typing import Annotated, Any, Protocol, TypeVar, cast, get_args, get_origin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +45,9 @@ def dtype_of(record: type[object]) -> np.dtype[Any]:
     if record in _LAYOUTS:
         return _LAYOUTS[record]
     fields = list[tuple[Any, ...]]()
-    for name, hint in get_type_hints(record, include_extras=True).items():
+    names = vars(sys.modules[record.__module__])
+    for name, text in record.__annotations__.items():
+        hint = eval(_compiled(text), names)  # as `get_type_hints`, which compiles each text again: 4 ms for one run
         if get_origin(hint) is Annotated:
             array, *shape = get_args(hint)
             fields.append((name, get_args(get_args(array)[1])[0], tuple(shape)))
@@ -54,6 +59,11 @@ def dtype_of(record: type[object]) -> np.dtype[Any]:
             raise TypeError(f"{record.__name__}.{name}: NumPy's records have an attribute of that name; choose another")
     _LAYOUTS[record] = np.dtype((np.record, np.dtype(fields, align=True)))
     return _LAYOUTS[record]
+
+
+@cache
+def _compiled(annotation: str) -> CodeType:
+    return compile(annotation, "<annotation>", "eval")
 
 
 def empty_record(record: type[R_co]) -> R_co:

@@ -23,7 +23,7 @@ SAME_NORMAL = 1e-9
 """Radians. Flush faces of two boxes give one contact."""
 
 CONTACTS_PER_POINT = 12
-"""Faces that one point may touch. More: the run stalls, by name."""
+"""Faces that a point may touch, taken over all points. More: the run stalls, by name."""
 
 
 class ContactRow:

@@ -50,11 +50,14 @@ class Library:
             self._library = ctypes.CDLL(str(path))
         except OSError as error:
             raise KernelsError(f"{path}: the library of kernels cannot be loaded ({error}); {REMEDY}") from None
-        described = ctypes.c_char_p.in_dll(self._library, "cagepose_description").value or b"{}"
-        description = json.loads(described)
-        levels: list[str] = description["levels"]
-        self.signatures: dict[str, tuple[str, str]] = description["signatures"]
-        self.sources_hash: str = description["sources"]
+        try:
+            described = ctypes.c_char_p.in_dll(self._library, "cagepose_description").value or b""
+            description = json.loads(described)
+            levels: list[str] = description["levels"]
+            self.signatures: dict[str, tuple[str, str]] = description["signatures"]
+            self.sources_hash: str = description["sources"]
+        except (ValueError, KeyError) as error:
+            raise KernelsError(f"{path}: this is no library of kernels ({error}); {REMEDY}") from None
         best = self._library.cagepose_best_level()
         if best < 0:
             raise KernelsError(f"this processor is older than {levels[0]}; set {VARIABLE}={PLAIN_PYTHON}")
@@ -94,14 +97,16 @@ def is_checkout() -> bool:
     return (KERNELS.parents[2] / "build_kernels").is_dir()
 
 
-def kernel_sources() -> list[Path]:
-    """Return the files that are compiled."""
-    return sorted(path for path in KERNELS.rglob("*.py") if path.parent != LIBRARY.parent)
+def sources() -> list[Path]:
+    """Return the files, in a source tree, that decide what the library is: kernels, how they are built, how called."""
+    kernels = [path for path in KERNELS.rglob("*.py") if path.parent != LIBRARY.parent]
+    build = (KERNELS.parents[2] / "build_kernels").glob("*.[pc]*")
+    return sorted([*kernels, LIBRARY.with_name("slots.py"), *build])
 
 
 def sources_hash() -> str:
-    """Return a hash of all that is compiled."""
+    """Return a hash of the sources."""
     digest = hashlib.sha256()
-    for path in kernel_sources():
-        digest.update(path.relative_to(KERNELS).as_posix().encode() + b"\0" + path.read_bytes())
+    for path in sources():
+        digest.update(path.relative_to(KERNELS.parents[2]).as_posix().encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()

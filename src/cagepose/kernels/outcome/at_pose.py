@@ -17,7 +17,7 @@ from cagepose.kernels.stability.proof import ProofWorkspace, stand_at
 @entry
 def judge_start(
     phase: int, part: Part, cases: Cases, points_world: FloatArray, at: ProofWorkspace, outcome: Outcome
-) -> bool:
+) -> None:
     """Judge the start pose of the first case under the load of a phase.
 
     Parameters
@@ -31,15 +31,10 @@ def judge_start(
     outcome
         Filled: the phase's record and its contacts.
 
-    Returns
-    -------
-    bool
-        False: the outcome has no room for all contacts.
     """
     begin(outcome)
     start = start_of(0, part, cases, points_world)
-    _, fits = end_phase(RESTS, phase, start.position, start.quaternion, start, part, at, outcome)
-    return fits
+    end_phase(RESTS, phase, start.position, start.quaternion, start, part, at, outcome)
 
 
 @entry

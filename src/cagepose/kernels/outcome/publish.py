@@ -57,10 +57,9 @@ def end_phase(
     part: Part,
     at: ProofWorkspace,
     outcome: Outcome,
-) -> tuple[int, bool]:
-    """Judge the end of a phase whose events are published, and write all that is known of it.
-
-    Return (code of the verdict, whether there was room for all contacts).
+) -> int:
+    """Judge the end of a phase whose events are published, write all that is known of it, and return the code of the
+    verdict.
     """
     code, stability, n_undetermined = judge_end(phase, position, quaternion, start, part, at)
     if verdict == RESTS and code in NO_BALANCE:
@@ -68,14 +67,14 @@ def end_phase(
     record = outcome.phases[phase]
     record.verdict = verdict
     publish_proof(code, stability, n_undetermined, position, quaternion, start, part, at, record)
-    fits = publish_contacts(start, at, outcome)
+    publish_contacts(start, at, outcome)
     record.n_events, record.n_steps, record.n_contacts = (
         outcome.counts[EVENTS],
         outcome.counts[STEPS],
         outcome.counts[CONTACTS],
     )
     outcome.counts[PHASES] = phase + 1
-    return verdict, fits
+    return verdict
 
 
 @kernel
@@ -151,11 +150,9 @@ def publish_events(
 
 
 @kernel
-def publish_contacts(start: Start, at: ProofWorkspace, outcome: Outcome) -> bool:
-    """Append the contacts of a proof; False: there is no room for all of them."""
+def publish_contacts(start: Start, at: ProofWorkspace, outcome: Outcome) -> None:
+    """Append the contacts of a proof."""
     for i in range(at.contacts.used[0]):
-        if outcome.counts[CONTACTS] == len(outcome.contacts):
-            return False
         found, contact = at.contacts.rows[i], outcome.contacts[outcome.counts[CONTACTS]]
         contact.point, contact.box, contact.gap = found.point, found.box, found.gap
         contact.near_edge = is_near_edge(
@@ -168,7 +165,6 @@ def publish_contacts(start: Start, at: ProofWorkspace, outcome: Outcome) -> bool
                 found.forces[1] * found.columns[1, k] + found.forces[2] * found.columns[2, k]
             )
         outcome.counts[CONTACTS] += 1
-    return True
 
 
 @kernel

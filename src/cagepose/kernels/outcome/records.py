@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
+from cagepose.kernels.contact.contact_set import CONTACTS_PER_POINT
 from cagepose.kernels.outcome.trace import StepRecord
 
 
@@ -130,17 +131,19 @@ class Outcome(NamedTuple):
     order: NDArray[np.int64]
 
 
-def empty_outcome(n_phases: int, n_steps: int, n_points: int, n_contacts: int) -> Outcome:
-    """Return room for one run with at most ``n_steps`` steps and ``n_contacts`` contacts in a phase (plain Python)."""
+def empty_outcome(n_phases: int, n_steps: int, n_points: int, n_ordered: int) -> Outcome:
+    """Return an outcome for at most ``n_steps`` steps in a phase (plain Python); ``n_ordered``: points whose order of
+    touching the method keeps, all or none.
+    """
     n_events = n_phases * n_steps
     return Outcome(
         np.zeros(4, np.int64),
         empty_rows(PhaseRecord, n_phases),
         empty_rows(EventRecord, n_events),
-        empty_rows(ContactRecord, n_phases * n_contacts),
+        empty_rows(ContactRecord, n_phases * CONTACTS_PER_POINT * n_points),
         np.zeros((n_events, n_points), np.bool_),
         np.zeros((n_events, n_points), np.bool_),
         np.zeros((n_events, 7)),
         empty_rows(StepRecord, n_events),
-        np.zeros((n_events, n_points), np.int64),
+        np.zeros((n_events, n_ordered), np.int64),
     )

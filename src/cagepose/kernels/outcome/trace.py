@@ -84,11 +84,11 @@ class Trace(NamedTuple):
     order: NDArray[np.int64]
 
 
-def empty_trace(n_steps: int, n_points: int) -> Trace:
-    """Return room for the steps of a phase (plain Python)."""
+def empty_trace(n_steps: int, n_points: int, n_ordered: int) -> Trace:
+    """Return room for the steps of a phase (plain Python); ``n_ordered``: all points, or none if no order is kept."""
     return Trace(
         empty_rows(StepRecord, n_steps),
         np.zeros((n_steps, n_points), np.bool_),
         np.zeros((n_steps, n_points), np.bool_),
-        np.zeros((n_steps, n_points), np.int64),
+        np.zeros((n_steps, n_ordered), np.int64),
     )

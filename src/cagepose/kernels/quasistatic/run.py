@@ -96,7 +96,7 @@ def run_phase(
 @entry
 def run_quasistatic(
     part: Part, cases: Cases, rules: QuasistaticRules, work: QuasistaticWorkspace, outcome: Outcome
-) -> bool:
+) -> None:
     """Run the phases of a scene one after the other, and judge where each of them ends.
 
     Parameters
@@ -110,10 +110,6 @@ def run_quasistatic(
     outcome
         Filled. A phase that does not end at rest is the last one.
 
-    Returns
-    -------
-    bool
-        False: the outcome has no room for all contacts.
     """
     begin(outcome)
     start = start_of(0, part, cases, work.points_world)
@@ -121,11 +117,10 @@ def run_quasistatic(
     for phase in range(len(start.loads)):
         verdict, n_steps, end, turned = run_phase(start, part, rules, phase, position, quaternion, work)
         publish_events(work.trace, n_steps, True, position, quaternion, start, part, outcome)
-        verdict, fits = end_phase(verdict, phase, end, turned, start, part, work.proof, outcome)
-        if verdict != RESTS or not fits:
-            return fits
+        verdict = end_phase(verdict, phase, end, turned, start, part, work.proof, outcome)
+        if verdict != RESTS:
+            return
         position, quaternion = end, turned
-    return True
 
 
 @entry

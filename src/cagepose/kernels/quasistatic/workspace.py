@@ -86,7 +86,7 @@ def empty_quasistatic_workspace(geometry: Geometry, step_limit: int) -> Quasista
         empty_rows(SolverWorkspace, 1),
         empty_step_workspace(n_points),
         np.zeros(n_points, np.bool_),
-        empty_trace(step_limit, n_points),
+        empty_trace(step_limit, n_points, 0),
         np.zeros((n_points, 3)),
         empty_proof_workspace(geometry),
     )

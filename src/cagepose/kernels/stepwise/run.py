@@ -62,13 +62,13 @@ class StepwiseRules(NamedTuple):
     ----------
     support, slip
         See `SupportRules` and `SlipRules`.
-    event_limit
+    step_limit
         Greatest number of events in a phase.
     """
 
     support: SupportRules
     slip: SlipRules
-    event_limit: int
+    step_limit: int
 
 
 @kernel
@@ -237,7 +237,7 @@ def rules_of(of_size: StepwiseRules, friction: float, size_m: float) -> Stepwise
     return StepwiseRules(
         SupportRules(support.least_moment, support.blocked_key, support.unseen_key, support.equal_distance_m * size_m),
         SlipRules(math.atan(friction), slip.contactless_angle_rad, slip.parallel_sine, slip.equal_distance_m * size_m),
-        of_size.event_limit,
+        of_size.step_limit,
     )
 
 
@@ -283,20 +283,20 @@ class StepwiseWorkspace(NamedTuple):
     proof: ProofWorkspace
 
 
-def empty_stepwise_workspace(geometry: Geometry, event_limit: int) -> StepwiseWorkspace:
+def empty_stepwise_workspace(geometry: Geometry, step_limit: int) -> StepwiseWorkspace:
     """Return room for one run at a time (plain Python)."""
     n_points = len(geometry.points_world)
     return StepwiseWorkspace(
         empty_placement(geometry),
         empty_touching(n_points),
-        empty_trace(event_limit, n_points),
+        empty_trace(step_limit, n_points, n_points),
         np.zeros((n_points, 3)),
         empty_proof_workspace(geometry),
     )
 
 
 @entry
-def run_stepwise(part: Part, cases: Cases, rules: StepwiseRules, work: StepwiseWorkspace, outcome: Outcome) -> bool:
+def run_stepwise(part: Part, cases: Cases, rules: StepwiseRules, work: StepwiseWorkspace, outcome: Outcome) -> None:
     """Run the phases of a scene one after the other, and judge by the mechanics where each of them ends.
 
     Parameters
@@ -310,23 +310,18 @@ def run_stepwise(part: Part, cases: Cases, rules: StepwiseRules, work: StepwiseW
     outcome
         Filled. A phase that does not end stable is the last one.
 
-    Returns
-    -------
-    bool
-        False: the outcome has no room for all contacts.
     """
     begin(outcome)
     start = start_of(0, part, cases, work.points_world)
     position, quaternion = start.position, start.quaternion
     forget_contacts(work.touching)
     for phase in range(len(start.loads)):
-        verdict, n_steps, end, turned = phase_run(start, phase, position, quaternion, rules, rules.event_limit, work)
+        verdict, n_steps, end, turned = phase_run(start, phase, position, quaternion, rules, rules.step_limit, work)
         publish_events(work.trace, n_steps, False, position, quaternion, start, part, outcome)
-        verdict, fits = end_phase(verdict, phase, end, turned, start, part, work.proof, outcome)
-        if verdict != STABLE or not fits:
-            return fits
+        verdict = end_phase(verdict, phase, end, turned, start, part, work.proof, outcome)
+        if verdict != STABLE:
+            return
         position, quaternion = end, turned
-    return True
 
 
 @entry
@@ -360,7 +355,7 @@ def run_stepwise_cases(
         forget_contacts(work.touching)
         for phase in range(len(start.loads)):
             verdict, n_steps, position, quaternion = phase_run(
-                start, phase, position, quaternion, rules, rules.event_limit, work
+                start, phase, position, quaternion, rules, rules.step_limit, work
             )
             write_ending(endings, case, phase, verdict, n_steps, position, quaternion, start, part)
             for point in range(len(work.points_world)):
