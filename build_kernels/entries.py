@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from cagepose.kernels.algebra.least_distance import shortest_inside
+from cagepose.kernels.algebra.least_squares import PassiveSet, empty_system
 from cagepose.kernels.algebra.linear_program import Program, program_rows, solve_program
 from cagepose.kernels.algebra.pose import write_euler_zyx, write_quaternions
 from cagepose.kernels.algebra.program_bound import extents
@@ -79,6 +81,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
 
     program, (rows, bounds) = empty_record(Program), program_rows(1)
     yield solve_program, (rows, bounds, program)
+    yield shortest_inside, (rows, bounds, empty_system(1), empty_record(PassiveSet), np.zeros(6))
     yield extents, (rows, bounds, program, np.zeros(6), np.zeros(6))
     play_work, goals, extremes = empty_play_workspace(geometry), empty_rows(Goal, 1), empty_rows(Extreme, 1)
     yield write_start, (geometry, play_work)

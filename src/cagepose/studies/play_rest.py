@@ -10,12 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cagepose.kernels.algebra.least_distance import shortest_inside
+from cagepose.kernels.algebra.least_squares import empty_system
 from cagepose.kernels.algebra.record import IntArray, Rows, empty_rows
 from cagepose.kernels.play.extreme import REACHED, Extreme, Limits, find_linear_play
 from cagepose.kernels.play.goal import SHIFT, Goal
 from cagepose.kernels.play.polytope import PlayWorkspace, empty_play_workspace, write_start
 from cagepose.kernels.play.search import find_play
-from cagepose.kernels.play.tolerances import TOUCHES
 from cagepose.model.checks import FloatArray
 from cagepose.model.load import Load
 from cagepose.model.pose import Pose
@@ -64,7 +65,7 @@ class PlayRest:
     in_newtons
         Whether forces are in newtons, not per unit load.
     linear_pose_world_object
-        By the linear program; of what the load leaves open, near to the start. None: the load meets no end.
+        By the linear program; of what the load leaves open, nearest to the start. None: the load meets no end.
     pose_world_object
         The exact one, where the load can do no more work nearby. None: none was found.
     forces, exact_forces
@@ -125,11 +126,10 @@ def _rest(scene: Scene, frame: PlayFrame, work: PlayWorkspace, load: Load, size_
         rows, bounds = _face(work, limits.pairs[: limits.n_pairs])
         ranges = empty_rows(Extreme, 2 * len(FREEDOMS))
         find_linear_play(range_goals(frame), rows, bounds, work.program, ranges)
-        ends = np.asarray(ranges)
-        open_freedoms = _open_freedoms(ends, frame.length_m)
-        twists = ends["linear_twist"][ends["linear_outcome"] == REACHED]
-        middle = twists.mean(axis=0) if len(twists) else extreme.linear_twist
-        linear_pose = frame.pose_after(*motion_after(_towards_start(rows, bounds, middle)))
+        open_freedoms = _open_freedoms(np.asarray(ranges), frame.length_m)
+        twist = extreme.linear_twist.copy()
+        shortest_inside(rows, bounds, empty_system(len(rows)), work.program.passive, twist)
+        linear_pose = frame.pose_after(*motion_after(twist))
     return PlayRest(
         load.name,
         scaled_load(scene, load).in_newtons,
@@ -159,17 +159,6 @@ def _open_freedoms(ends: np.ndarray, length_m: float) -> list[OpenFreedom]:
                 OpenFreedom(FREEDOMS[place], *(None if math.isnan(end) else unit * end for end in (low, high)))
             )
     return found
-
-
-def _towards_start(rows: FloatArray, bounds: FloatArray, middle: FloatArray) -> FloatArray:
-    """Go from a twist inside straight to the smallest one that touches the same rows, if the others allow."""
-    gaps = bounds - rows @ middle
-    touching = gaps < TOUCHES
-    smallest = np.linalg.lstsq(rows[touching], bounds[touching])[0].astype(np.float64)
-    speed = rows @ (smallest - middle)
-    blocks = ~touching & (speed > 0.0) & np.isfinite(gaps)
-    share = min(1.0, float((gaps[blocks] / speed[blocks]).min(initial=1.0)))
-    return middle + share * (smallest - middle)
 
 
 def _forces(scene: Scene, limits: Limits, size_n: float) -> tuple[PressedPoint, ...]:

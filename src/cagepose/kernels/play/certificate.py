@@ -45,8 +45,6 @@ class Certificate:
         TOO_LARGE: what linearising leaves out grows with the polytope without end, or UNSOLVED: a program failed.
     worst
         The row that grew most; where the outcome is RAN_OFF, the one with the smallest gap of those given up; -1: none.
-    n_rounds
-        How often the rows were moved out.
     least, greatest
         Extents of the polytope, travel in lengths of the scene, turn in radians.
     travel, turn
@@ -59,7 +57,6 @@ class Certificate:
 
     outcome: int
     worst: int
-    n_rounds: int
     least: Annotated[FloatArray, 6]
     greatest: Annotated[FloatArray, 6]
     travel: Annotated[FloatArray, 3]
@@ -227,8 +224,7 @@ def tightest_given_up(proof: CertificateWorkspace) -> int:
 def close_polytope(geometry: Geometry, work: PlayWorkspace, proof: CertificateWorkspace) -> int:
     """Move the rows out until what linearising leaves out is less (7.7)."""
     certificate = proof.certificate
-    for n_rounds in range(ROUNDS):
-        certificate.n_rounds = n_rounds + 1
+    for _ in range(ROUNDS):
         for pair in range(len(proof.gaps)):
             is_kept = proof.status[pair] == KEPT
             work.bounds[pair] = proof.gaps[pair] + proof.moved_out[pair] if is_kept else math.inf

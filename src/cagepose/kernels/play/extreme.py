@@ -34,8 +34,6 @@ class Extreme:
         scene; a twist that reaches it, and what limits it.
     outcome, value, position, quaternion, limits
         The same exactly, and the motion that reaches it.
-    n_programs
-        How many were solved.
     """
 
     linear_outcome: int
@@ -47,7 +45,6 @@ class Extreme:
     position: Annotated[FloatArray, 3]
     quaternion: Annotated[FloatArray, 4]
     limits: Limits
-    n_programs: int
 
 
 @kernel

@@ -109,8 +109,8 @@ def total_price(work: PlayWorkspace) -> float:
 def write_newton_step(goal: Goal, motion: Motion, factor: float, goes_on: bool, work: PlayWorkspace) -> bool:
     """Write Newton's step on the rows that the program leans on, and those that block it; False: it leads to no top.
 
-    A search that goes on has just made such a step. It stays on its rows: seen from where second order has led it, a
-    program leans on rows that have no price at the top, and would go along a flat one to meet them.
+    A search that goes on has just taken such a step, and stays on its rows: from beside the top, a program leans on
+    rows that have no price at the top itself, and would send the search along a flat direction to meet them.
     """
     newton, objective, n_pairs = work.newton, work.program.objective, len(work.faces)
     if goes_on:
@@ -206,8 +206,7 @@ def climb(geometry: Geometry, goal: Goal, work: PlayWorkspace, extreme: Extreme)
     radius = longest = FIRST_RADIUS
     penalty, has_arrived, goes_on = 0.0, False, False
     extreme.outcome = NOT_FOUND
-    for n_programs in range(MOST_PROGRAMS):
-        extreme.n_programs = n_programs + 1
+    for _ in range(MOST_PROGRAMS):
         size = size_of(motion)
 
         # Here is an extreme, unless a point that limits it has run off its face: then look farther, beyond the next.
@@ -220,12 +219,13 @@ def climb(geometry: Geometry, goal: Goal, work: PlayWorkspace, extreme: Extreme)
             radius = longest = FIRST_RADIUS
             penalty, has_arrived, goes_on = 0.0, False, False
 
-        # Solve the linear program here. If no small motion brings all points out, the last step was too long.
+        # Solve the linear program here. If no small motion brings all points out, the last step was too long, and so
+        # would be any Newton step beyond the new radius.
         inside = write_rows(geometry, motion, work)
         factor = write_slope(goal, motion, program.objective)
         write_trust_region(work, radius)
         if solve_program(work.rows, work.bounds, program) != OPTIMAL:
-            motion = last_motion
+            motion, goes_on = last_motion, False
             radius = longest = 0.25 * radius
             continue
 
