@@ -70,8 +70,10 @@ def in_programs(call: Callable[[], object]) -> float:
     programs = yardstick()
     gc.collect()
     gc.disable()  # a collection takes as long as there are objects in this process, most of them not ours
-    pairs = [(seconds(call), seconds(programs)) for _ in range(REPEATS)]
-    gc.enable()
+    try:
+        pairs = [(seconds(call), seconds(programs)) for _ in range(REPEATS)]
+    finally:
+        gc.enable()
     return statistics.median(call_s / (program_s / PROGRAMS) for call_s, program_s in pairs)
 
 

@@ -17,13 +17,7 @@ from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.contact.cone import ConeWorkspace, clear_cone, cone_residual, steepest_tangent, write_forces
 from cagepose.kernels.contact.contact_set import ContactRow
-from cagepose.kernels.contact.coulomb_newton import (
-    OPENS,
-    SLIPS,
-    STICKS,
-    NewtonRoom,
-    newton_on_modes,
-)
+from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS, NewtonRoom, newton_on_modes
 from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.native.kernel import kernel
 

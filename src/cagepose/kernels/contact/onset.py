@@ -6,23 +6,9 @@ moves with any of them; then the freest counts, the one with the greatest |y| (t
 
 from __future__ import annotations
 
-from cagepose.kernels.algebra.least_squares import (
-    PassiveSet,
-    append_column,
-    clear,
-    inner,
-    length,
-    rounding_scale,
-)
+from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, inner, length, rounding_scale
 from cagepose.kernels.algebra.record import FloatArray, Rows
-from cagepose.kernels.contact.cone import (
-    BALANCED,
-    HELD,
-    ConeWorkspace,
-    clear_cone,
-    cone_residual,
-    write_forces,
-)
+from cagepose.kernels.contact.cone import BALANCED, HELD, ConeWorkspace, clear_cone, cone_residual, write_forces
 from cagepose.kernels.contact.contact_set import (
     ContactRow,
     ContactSet,

@@ -17,14 +17,7 @@ from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.extreme import Extreme
 from cagepose.kernels.play.goal import Goal, write_slope
-from cagepose.kernels.play.polytope import (
-    START,
-    PlayWorkspace,
-    farthest_face,
-    gap_beyond,
-    place,
-    write_touching_rows,
-)
+from cagepose.kernels.play.polytope import START, PlayWorkspace, farthest_face, gap_beyond, place, write_touching_rows
 from cagepose.kernels.play.tolerances import PRICELESS, SAME_ROW
 
 REACH = 1e3

@@ -19,13 +19,7 @@ from cagepose.kernels.algebra.dense import (
     solve_upper,
 )
 from cagepose.kernels.algebra.eigen import symmetric_eigen
-from cagepose.kernels.algebra.least_squares import (
-    PassiveSet,
-    append_column,
-    clear,
-    inner,
-    label_is_passive,
-)
+from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, inner, label_is_passive
 from cagepose.kernels.algebra.linear_program import Program, write_corner
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import norm

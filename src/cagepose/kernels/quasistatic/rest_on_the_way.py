@@ -6,21 +6,11 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.geometry import place_object
-from cagepose.kernels.contact.contact_set import (
-    ContactRow,
-    ContactSet,
-    find_contacts,
-)
+from cagepose.kernels.contact.contact_set import ContactRow, ContactSet, find_contacts
 from cagepose.kernels.contact.metric import frame_at, write_load
-from cagepose.kernels.contact.onset import (
-    is_held,
-)
+from cagepose.kernels.contact.onset import is_held
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.along_twist import (
-    Setting,
-    Twist,
-    stepped,
-)
+from cagepose.kernels.quasistatic.along_twist import Setting, Twist, stepped
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
 HALVES_TO_REST = 45

@@ -15,32 +15,12 @@ from typing import NamedTuple
 from cagepose.kernels.algebra.pose import Quaternion, turned_by
 from cagepose.kernels.algebra.vector import Vector, minus, norm, vector_from
 from cagepose.kernels.collision.geometry import place_object
-from cagepose.kernels.contact.contact_set import (
-    ContactSet,
-    find_contacts,
-)
+from cagepose.kernels.contact.contact_set import ContactSet, find_contacts
 from cagepose.kernels.contact.curvature import write_curvature
 from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, write_load
-from cagepose.kernels.contact.onset import (
-    HELD_BY_FRICTION,
-    HELD_WITHOUT_FRICTION,
-    MOVES,
-    UNSOLVED,
-    onset,
-    sticks,
-)
+from cagepose.kernels.contact.onset import HELD_BY_FRICTION, HELD_WITHOUT_FRICTION, MOVES, UNSOLVED, onset, sticks
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.outcome.trace import (
-    ESCAPES,
-    LET_GO,
-    NONE,
-    PLAIN,
-    RESTS,
-    SCREW,
-    STALLED,
-    TRAVEL,
-    StepRecord,
-)
+from cagepose.kernels.outcome.trace import ESCAPES, LET_GO, NONE, PLAIN, RESTS, SCREW, STALLED, TRAVEL, StepRecord
 from cagepose.kernels.quasistatic.along_twist import (
     Setting,
     Twist,

@@ -21,13 +21,7 @@ from cagepose.kernels.contact.contact_set import (
     put_best_faces_back,
 )
 from cagepose.kernels.contact.metric import WRENCH, Body, Frame, PhaseLoad, ScaledVector, frame_at, write_load
-from cagepose.kernels.contact.onset import (
-    COMBINATIONS_LIMIT,
-    HELD_WITHOUT_FRICTION,
-    MOVES,
-    UNSOLVED,
-    ContactWorkspace,
-)
+from cagepose.kernels.contact.onset import COMBINATIONS_LIMIT, HELD_WITHOUT_FRICTION, MOVES, UNSOLVED, ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.second_order import (
     MARGINAL,
