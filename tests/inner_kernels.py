@@ -32,13 +32,13 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     from cagepose.kernels.contact.cone import ConeWorkspace, cone_residual
     from cagepose.kernels.contact.contact_set import empty_contact_set
     from cagepose.kernels.contact.coulomb import coulomb_onset
-    from cagepose.kernels.contact.coulomb_newton import NewtonRoom
+    from cagepose.kernels.contact.coulomb_newton import NewtonWorkspace
     from cagepose.kernels.stability.uniqueness import N_COLUMNS, ModesWorkspace, other_onset
 
     contacts, load = empty_contact_set(1), np.zeros(7)
-    cone, newton, modes = empty_record(ConeWorkspace), empty_record(NewtonRoom), empty_record(ModesWorkspace)
-    yield cone_residual, (contacts.rows, 1, 0.0, load, False, cone)
-    yield coulomb_onset, (contacts.rows, 1, 0.0, load, cone, load, newton)
+    cone, newton, modes = empty_record(ConeWorkspace), empty_record(NewtonWorkspace), empty_record(ModesWorkspace)
+    yield cone_residual, (contacts, 0.0, load, cone)
+    yield coulomb_onset, (contacts, 0.0, load, cone, load, newton)
     yield other_onset, (contacts, 0.0, load, modes, newton, empty_system(N_COLUMNS))
 
 

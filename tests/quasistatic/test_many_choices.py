@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cagepose import Box, Cage, Load, Object, Scene
-from cagepose.kernels.contact.onset import COMBINATIONS_LIMIT
+from cagepose.kernels.contact.edges import CHOICES_LIMIT
 from cagepose.runs.judge import judge_pose
 
 CORNERS = np.array(list(itertools.product((-0.5, 0.5), repeat=3)))
@@ -24,7 +24,7 @@ def judged(points: np.ndarray, friction: float, gravity: tuple[float, float, flo
 @pytest.mark.parametrize("gravity", [(0.0, 0.0, -1.0), (0.2, 0.1, -1.0)])
 def test_a_choice_that_does_not_hold_moves_with_the_twist_that_shows_it(gravity):
     """Three faces at each of eight corners, 6561 choices: the first motion is not known, its proof is."""
-    assert 3 ** len(CORNERS) > COMBINATIONS_LIMIT
+    assert 3 ** len(CORNERS) > CHOICES_LIMIT
     proof, _ = judged(CORNERS, 0.3, gravity)
     assert proof.verdict == "moves"
     assert proof.residual > 1e-3

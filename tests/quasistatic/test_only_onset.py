@@ -15,7 +15,7 @@ from scipy.optimize import nnls
 from cagepose.kernels.algebra.least_squares import empty_system
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.contact.contact_set import ContactSet, empty_contact_set
-from cagepose.kernels.contact.coulomb_newton import NewtonRoom
+from cagepose.kernels.contact.coulomb_newton import NewtonWorkspace
 from cagepose.kernels.stability.second_order import StabilityWorkspace
 from cagepose.kernels.stability.uniqueness import N_COLUMNS, OTHER_FOUND, UNIQUE, ModesWorkspace, other_onset
 from cagepose.kernels.stability.uniqueness_bound import BoundWorkspace, find_carrying, rest_is_unique, write_normals
@@ -76,8 +76,8 @@ def contacts_of(held: Held) -> ContactSet:
     contacts.used[0] = len(held.columns)
     for i, columns in enumerate(held.columns):
         contacts.rows[i].columns[:] = columns
-        contacts.rows[i].chosen = True
         contacts.rows[i].group = i
+        contacts.states[i].chosen = True
     return contacts
 
 
@@ -87,7 +87,7 @@ class Prover:
     def __init__(self) -> None:
         self._search = as_machine_code(other_onset)
         self._sure, self._rest = empty_record(BoundWorkspace), empty_record(StabilityWorkspace)
-        self._modes, self._newton = empty_record(ModesWorkspace), empty_record(NewtonRoom)
+        self._modes, self._newton = empty_record(ModesWorkspace), empty_record(NewtonWorkspace)
         self._system = empty_system(N_COLUMNS)
 
     def is_sure(self, held: Held) -> bool:

@@ -7,11 +7,11 @@ import pytest
 from scipy.optimize import nnls
 
 from cagepose.kernels.algebra.least_squares import PassiveSet, empty_system, nonnegative_least_squares
-from cagepose.kernels.algebra.record import empty_record, empty_rows
+from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.contact.cone import HELD, ConeWorkspace, clear_cone, cone_residual, write_forces
-from cagepose.kernels.contact.contact_set import ContactRow
+from cagepose.kernels.contact.contact_set import empty_contact_set
 from cagepose.kernels.contact.coulomb import coulomb_onset
-from cagepose.kernels.contact.coulomb_newton import NewtonRoom
+from cagepose.kernels.contact.coulomb_newton import NewtonWorkspace
 from cagepose.kernels.contact.metric import WRENCH
 from inner_kernels import as_machine_code
 
@@ -45,10 +45,11 @@ def passive_set(n_rows):
 
 def contacts_with(columns):
     """Contacts with these wrenches; and a view on all their forces."""
-    rows = empty_rows(ContactRow, len(columns))
-    rows["columns"] = columns
-    rows["chosen"] = True
-    return rows, rows["forces"]
+    contacts = empty_contact_set(len(columns))
+    contacts.used[0] = len(columns)
+    contacts.rows["columns"] = columns
+    contacts.states["chosen"] = True
+    return contacts, contacts.states["forces"]
 
 
 def solved(columns, b, passive):
@@ -117,10 +118,10 @@ def test_the_frictionless_onset_obeys_the_optimality_conditions(cases):
         n = int(rng.integers(1, 13))
         columns, b = contact_columns(rng, n), rng.normal(size=6)
         room = empty_record(ConeWorkspace)
-        rows, forces = contacts_with(columns)
+        contacts, forces = contacts_with(columns)
         clear_cone(room, b, WRENCH, np.linalg.norm(b))
-        left = residual(rows, n, 0.0, b, False, room)
-        write_forces(room, 0.0, rows, n)
+        left = residual(contacts, 0.0, b, room)
+        write_forces(room, 0.0, contacts)
         normals = columns[:, 0]
         y = b - normals.T @ forces[:, 0]
         scale = np.linalg.norm(b) + forces[:, 0] @ np.linalg.norm(normals, axis=1)
@@ -154,8 +155,9 @@ def coulomb_violation(columns, friction, b, forces):
 
 
 def test_the_onset_with_friction_obeys_coulombs_law(say, cases):
-    """Random sets of 1 to 8 contacts, mu from 0.05 to 1: where nothing balances the load, forces and motion are
-    found for all but a share that is named ("stalled" in a run), and obey the law to 1e-8 of the load.
+    """Random sets of 1 to 8 contacts, mu from 0.05 to 1: where nothing balances the load, what is left of it is a twist
+    along which it works and that no force in a cone resists, and forces and motion are found for all but a share that
+    is named ("stalled" in a run), and obey the law to 1e-8 of the load.
     """
     rng = np.random.default_rng(4)
     residual, onset = as_machine_code(cone_residual), as_machine_code(coulomb_onset)
@@ -165,10 +167,10 @@ def test_the_onset_with_friction_obeys_coulombs_law(say, cases):
         n, friction = int(rng.integers(1, 9)), float(rng.uniform(0.05, 1.0))
         columns, b = contact_columns(rng, n), rng.normal(size=6)
         cone, y = empty_record(ConeWorkspace), np.zeros(6)
-        rows, forces = contacts_with(columns)
+        contacts, forces = contacts_with(columns)
         clear_cone(cone, b, WRENCH, np.linalg.norm(b))
-        left = residual(rows, n, friction, b, False, cone)
-        write_forces(cone, friction, rows, n)
+        left = residual(contacts, friction, b, cone)
+        write_forces(cone, friction, contacts)
         scale = np.linalg.norm(b) + forces[:, 0] @ np.linalg.norm(columns[:, 0], axis=1)
         if left <= HELD * scale:
             balance = np.einsum("ijk,ij->k", columns, forces)
@@ -176,7 +178,11 @@ def test_the_onset_with_friction_obeys_coulombs_law(say, cases):
             assert (np.linalg.norm(forces[:, 1:], axis=1) <= friction * forces[:, 0] * (1.0 + 1e-12)).all()
             continue
         n_moves += 1
-        if not onset(rows, n, friction, b, cone, y, empty_record(NewtonRoom)):
+        twist = cone.passive.residual[:6]
+        resists = columns[:, 0] @ twist + friction * np.linalg.norm(columns[:, 1:] @ twist, axis=1)
+        assert (resists <= 1e-9 * scale * np.linalg.norm(columns[:, 0], axis=1)).all()
+        assert b @ twist > 0.0
+        if not onset(contacts, friction, b, cone, y, empty_record(NewtonWorkspace)):
             n_unsolved += 1
             continue
         worst = max(worst, coulomb_violation(columns, friction, b, forces))

@@ -24,8 +24,8 @@ from cagepose.kernels.algebra.least_squares import (
     rounding_scale,
     settle,
 )
-from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
-from cagepose.kernels.contact.contact_set import ContactRow
+from cagepose.kernels.algebra.record import FloatArray, IntArray
+from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.metric import ScaledVector
 from cagepose.kernels.native.kernel import kernel
 
@@ -42,7 +42,7 @@ N_ROWS = 7
 
 
 class ConeWorkspace:
-    """Room for one problem, and its solution; a record.
+    """Memory for one problem, and its solution; a record.
 
     Attributes
     ----------
@@ -50,6 +50,8 @@ class ConeWorkspace:
         The generators in use; their labels index the next two.
     contacts, directions
         Contact and tangent d of each generator.
+    is_corrected
+        Whether the slip speeds of the contacts count, as a cost of mu s_i for each newton of their normal force (5.7).
     column
         One generator.
     """
@@ -57,6 +59,7 @@ class ConeWorkspace:
     passive: PassiveSet
     contacts: Annotated[IntArray, GENERATOR_LIMIT]
     directions: Annotated[FloatArray, GENERATOR_LIMIT, 2]
+    is_corrected: bool
     column: ScaledVector
 
 
@@ -79,157 +82,144 @@ def write_generator(contact: ContactRow, friction: float, one: float, two: float
 
 
 @kernel
-def clear_cone(room: ConeWorkspace, b: FloatArray, n_rows: int, terms: float) -> None:
+def clear_cone(cone: ConeWorkspace, b: FloatArray, n_rows: int, terms: float) -> None:
     """Start from no force: b is (6,), or (7,) where a sum of the normal forces is asked for too, of terms so long."""
-    clear(room.passive, n_rows, terms)
-    aim(room.passive, b)
+    cone.is_corrected = False
+    clear(cone.passive, n_rows, terms)
+    aim(cone.passive, b)
 
 
 @kernel
-def generator_price(
-    rows: Rows[ContactRow], contact: int, friction: float, charged: bool, room: ConeWorkspace
-) -> tuple[float, bool]:
+def generator_price(contacts: ContactSet, i: int, friction: float, cone: ConeWorkspace) -> tuple[float, bool]:
     """Return how far the steepest generator of a contact lies along the residual r, and whether the contact has one.
 
-    A generator in use lies across r (but for its charge), so for another of the same contact only the angle between
+    A generator in use lies across r (but for its cost), so for another of the same contact only the angle between
     their tangents counts: mu |r_t| (1 - cos), which has its digits however small it is.
     """
-    passive = room.passive
-    slip, one, two = steepest_tangent(rows[contact], passive.residual)
+    passive = cone.passive
+    slip, one, two = steepest_tangent(contacts.rows[i], passive.residual)
     nearest = math.inf
     for k in range(passive.used):
         label = passive.labels[k]
-        if room.contacts[label] == contact:
-            across = one * room.directions[label, 1] - two * room.directions[label, 0]
-            along = one * room.directions[label, 0] + two * room.directions[label, 1]
+        if cone.contacts[label] == i:
+            across = one * cone.directions[label, 1] - two * cone.directions[label, 0]
+            along = one * cone.directions[label, 0] + two * cone.directions[label, 1]
             apart = across * across / (1.0 + along) if along > 0.0 else 1.0 - along
             nearest = min(nearest, apart)
     if nearest < math.inf:
         return friction * slip * nearest, True
-    price = inner(rows[contact].columns[0], passive.residual, 6) + friction * slip
+    price = inner(contacts.rows[i].columns[0], passive.residual, 6) + friction * slip
     if passive.n_rows == N_ROWS:
         price += passive.residual[N_ROWS - 1]
-    return (price - friction * rows[contact].slip if charged else price), False
+    return price - generator_cost(contacts, i, friction, cone), False
 
 
 @kernel
-def renumber_generators(rows: Rows[ContactRow], n_contacts: int, room: ConeWorkspace) -> int:
-    """Number the generators in use from zero on, so that the room is never full; return how many there are.
+def generator_cost(contacts: ContactSet, i: int, friction: float, cone: ConeWorkspace) -> float:
+    return friction * contacts.states[i].slip_speed if cone.is_corrected else 0.0
+
+
+@kernel
+def renumber_generators(contacts: ContactSet, cone: ConeWorkspace) -> int:
+    """Number the generators in use from zero on, so that there is always memory; return how many there are.
 
     No contact is rejected any more.
     """
-    passive = room.passive
-    for i in range(n_contacts):
-        rows[i].is_rejected = False
+    passive = cone.passive
+    for i in range(contacts.used[0]):
+        contacts.states[i].is_rejected = False
     for k in range(passive.used):
         label = passive.labels[k]
-        room.contacts[k] = room.contacts[label]
-        room.directions[k, 0], room.directions[k, 1] = room.directions[label, 0], room.directions[label, 1]
+        cone.contacts[k] = cone.contacts[label]
+        cone.directions[k, 0], cone.directions[k, 1] = cone.directions[label, 0], cone.directions[label, 1]
         passive.labels[k] = k
     return int(passive.used)
 
 
 @kernel
-def add_generator(
-    rows: Rows[ContactRow],
-    n_contacts: int,
-    friction: float,
-    b: FloatArray,
-    charged: bool,
-    number: int,
-    room: ConeWorkspace,
-) -> int:
+def add_generator(contacts: ContactSet, friction: float, b: FloatArray, number: int, cone: ConeWorkspace) -> int:
     """Let the generator in that lies most along the residual, as the one with this number; return the next number.
 
     -1: none lies along it. Parameters as for `cone_residual`.
     """
-    passive = room.passive
+    passive, states = cone.passive, contacts.states
     scale = rounding_scale(passive)
     left = length(passive.residual, passive.n_rows)
     best, best_price = -1, 0.0
-    for i in range(n_contacts):
-        if not rows[i].chosen or rows[i].is_rejected:
+    for i in range(contacts.used[0]):
+        if not states[i].chosen or states[i].is_rejected:
             continue
-        price, is_steeper = generator_price(rows, i, friction, charged, room)
+        price, is_steeper = generator_price(contacts, i, friction, cone)
         if price <= 0.0:
             continue
-        size = length(rows[i].columns[0], 6)
+        size = length(contacts.rows[i].columns[0], 6)
         if price > best_price * size and price > (STEEPER * left if is_steeper else PRICE * scale) * size:
             best, best_price = i, price / size
     if best < 0:
         return -1
-    _, one, two = steepest_tangent(rows[best], passive.residual)
+    _, one, two = steepest_tangent(contacts.rows[best], passive.residual)
     if friction == 0.0:  # so that what follows with friction may go on from here
         one = two = 0.0
-    write_generator(rows[best], friction, one, two, room.column)
-    room.column[N_ROWS - 1] = 1.0
-    room.contacts[number] = best
-    room.directions[number, 0], room.directions[number, 1] = one, two
-    cost = friction * rows[best].slip if charged else 0.0
-    if append_column(passive, room.column, number, cost) or (
-        charged and exchange_column(passive, room.column, number, cost)
+    write_generator(contacts.rows[best], friction, one, two, cone.column)
+    cone.column[N_ROWS - 1] = 1.0
+    cone.contacts[number] = best
+    cone.directions[number, 0], cone.directions[number, 1] = one, two
+    cost = generator_cost(contacts, best, friction, cone)
+    if append_column(passive, cone.column, number, cost) or (
+        cone.is_corrected and exchange_column(passive, cone.column, number, cost)
     ):
         settle(passive, b)
     if label_is_passive(passive, number):
-        for i in range(n_contacts):
-            rows[i].is_rejected = False
+        for i in range(contacts.used[0]):
+            states[i].is_rejected = False
     else:
-        rows[best].is_rejected = True
+        states[best].is_rejected = True
     return number + 1
 
 
 @kernel
-def cone_residual(
-    rows: Rows[ContactRow],
-    n_contacts: int,
-    friction: float,
-    b: FloatArray,
-    charged: bool,
-    room: ConeWorkspace,
-) -> float:
-    """Return the least |b - sum of contact forces|, going on from the forces in ``room``.
+def cone_residual(contacts: ContactSet, friction: float, b: FloatArray, cone: ConeWorkspace) -> float:
+    """Return the least |b - sum of contact forces|, going on from the forces in ``cone``.
 
     Parameters
     ----------
-    rows, n_contacts
-        The contacts: those that are chosen count.
+    contacts
+        Those that are chosen count.
     friction
         Coefficient of friction.
     b
         Scaled wrench of the load, (at least 6,); see `clear_cone`.
-    charged
-        Whether the contacts' ``slip`` counts; else it is zero.
-    room
+    cone
         The solution. Start with `clear_cone`, or with the solution for a smaller coefficient.
 
     Returns
     -------
     float
-        Zero, to rounding: the forces balance the load. Else the residual in ``room.passive`` separates the load from
+        Zero, to rounding: the forces balance the load. Else the residual in ``cone.passive`` separates the load from
         all that the contacts can carry.
     """
-    passive = room.passive
-    n_generators = renumber_generators(rows, n_contacts, room)
+    passive = cone.passive
+    n_generators = renumber_generators(contacts, cone)
     while 0 <= n_generators < GENERATOR_LIMIT:
         if (
             friction > 0.0
-            and not charged
+            and not cone.is_corrected
             and length(passive.residual, passive.n_rows) <= BALANCED * rounding_scale(passive)
         ):
             break
-        n_generators = add_generator(rows, n_contacts, friction, b, charged, n_generators, room)
+        n_generators = add_generator(contacts, friction, b, n_generators, cone)
     return length(passive.residual, passive.n_rows)
 
 
 @kernel
-def write_forces(room: ConeWorkspace, friction: float, rows: Rows[ContactRow], n_contacts: int) -> None:
+def write_forces(cone: ConeWorkspace, friction: float, contacts: ContactSet) -> None:
     """Write normal and tangential forces of all contacts."""
-    for i in range(n_contacts):
+    for i in range(contacts.used[0]):
         for k in range(3):
-            rows[i].forces[k] = 0.0
-    for k in range(room.passive.used):
-        label = room.passive.labels[k]
-        contact, x = rows[room.contacts[label]], room.passive.x[k]
-        contact.forces[0] += x
-        contact.forces[1] += x * friction * room.directions[label, 0]
-        contact.forces[2] += x * friction * room.directions[label, 1]
+            contacts.states[i].forces[k] = 0.0
+    for k in range(cone.passive.used):
+        label = cone.passive.labels[k]
+        forces, x = contacts.states[cone.contacts[label]].forces, cone.passive.x[k]
+        forces[0] += x
+        forces[1] += x * friction * cone.directions[label, 0]
+        forces[2] += x * friction * cone.directions[label, 1]

@@ -27,7 +27,7 @@ CONTACTS_PER_POINT = 12
 
 
 class ContactRow:
-    """One contact, and what the solvers note beside it; a record.
+    """The geometry of one contact; a record.
 
     Attributes
     ----------
@@ -39,28 +39,11 @@ class ContactRow:
         Distance from the plane of the face, below zero inside, metres.
     group
         The first row of the same point and box; -1: flush faces of another box say all that this one does.
-    chosen
-        Whether this face counts: all but the other faces on an edge.
-    has_carried
-        In the first row of a group: whether its faces carried in a combination that has been asked.
     normal, arm
         Outward unit normal, and the point as seen from the centre of gravity, in the world.
     columns
         Scaled wrenches of a unit force along the normal and along two tangents. The contact pushes
         along their negative.
-    forces
-        What the contact carries along them.
-    is_sticking, step_forces
-        Of the step that is being made: whether the contact sticks, and what it carries on the way.
-    slip, is_rejected
-        Slip speed that its generators are charged for (5.7); whether its generator did not help.
-    mode, first_unknown, kept_forces
-        What the contact does, its place in the system of Newton's method, and its forces before.
-    best_chosen, best_forces
-        Of the best combination of faces so far.
-    is_equality, is_shared
-        Whether it may carry in some balance, so that it can never open without work; whether its normal force could be
-        another.
     """
 
     point: int
@@ -69,35 +52,51 @@ class ContactRow:
     side: float
     gap: float
     group: int
-    chosen: bool
-    has_carried: bool
     normal: Annotated[FloatArray, 3]
     arm: Annotated[FloatArray, 3]
     columns: Annotated[FloatArray, 3, 6]
+
+
+class ContactState:
+    """What one contact does in the problem that is being solved; a record.
+
+    Attributes
+    ----------
+    chosen
+        Whether this face counts: all but the other faces on an edge.
+    forces
+        What the contact carries along its columns.
+    is_sticking
+        Whether it carries and does not slip.
+    slip_speed, is_rejected
+        Of the problem with round cones: De Saxce's correction (5.7), and whether its generator did not help.
+    has_carried
+        In the first row of a group: whether one of its faces carried in a choice that has been asked.
+    kept_chosen, kept_forces
+        Of the choice of faces that is kept.
+    """
+
+    chosen: bool
     forces: Annotated[FloatArray, 3]
     is_sticking: bool
-    step_forces: Annotated[FloatArray, 3]
-    slip: float
+    slip_speed: float
     is_rejected: bool
-    mode: int
-    first_unknown: int
+    has_carried: bool
+    kept_chosen: bool
     kept_forces: Annotated[FloatArray, 3]
-    best_chosen: bool
-    best_forces: Annotated[FloatArray, 3]
-    is_equality: bool
-    is_shared: bool
 
 
 class ContactSet(NamedTuple):
-    """The contacts at one pose: ``rows`` 0 to used - 1; ``used`` is (1,)."""
+    """The contacts at one pose, 0 to used - 1 (``used`` is (1,)): their geometry, and what they do."""
 
     used: IntArray
     rows: Rows[ContactRow]
+    states: Rows[ContactState]
 
 
 def empty_contact_set(n_rows: int) -> ContactSet:
-    """Return room for ``n_rows`` contacts (plain Python)."""
-    return ContactSet(np.zeros(1, np.int64), empty_rows(ContactRow, n_rows))
+    """Return a set with memory for ``n_rows`` contacts (plain Python)."""
+    return ContactSet(np.zeros(1, np.int64), empty_rows(ContactRow, n_rows), empty_rows(ContactState, n_rows))
 
 
 @kernel
@@ -157,87 +156,10 @@ def find_contacts(
                 contact = contacts.rows[contacts.used[0]]
                 contact.gap = abs(point_box[axis]) - half_size[axis]
                 contact.group = first
-                contact.chosen = contacts.used[0] == first
-                contact.has_carried = False
+                contacts.states[contacts.used[0]].chosen = contacts.used[0] == first
                 append_contact(contacts, placement, point, box, axis, side, arm, frame)
             if n_new == 0:
                 for i in range(first, contacts.used[0]):
-                    contacts.rows[i].group, contacts.rows[i].chosen = -1, False
+                    contacts.rows[i].group = -1
+                    contacts.states[i].chosen = False
     return True
-
-
-@kernel
-def last_of_group(contacts: ContactSet, first: int) -> int:
-    last = first
-    while last + 1 < contacts.used[0] and contacts.rows[last + 1].group == first:
-        last += 1
-    return last
-
-
-@kernel
-def choose_first_faces(contacts: ContactSet) -> None:
-    """Choose the faces that `find_contacts` has chosen."""
-    for i in range(contacts.used[0]):
-        contacts.rows[i].chosen = contacts.rows[i].group == i
-        contacts.rows[i].has_carried = False
-
-
-@kernel
-def keep_faces(contacts: ContactSet) -> None:
-    """Note the faces that are chosen, with their forces, as the best combination so far."""
-    for i in range(contacts.used[0]):
-        contact = contacts.rows[i]
-        contact.best_chosen = contact.chosen
-        for j in range(3):
-            contact.best_forces[j] = contact.forces[j]
-
-
-@kernel
-def put_best_faces_back(contacts: ContactSet) -> None:
-    """Choose the faces of the best combination again, with their forces."""
-    for i in range(contacts.used[0]):
-        contact = contacts.rows[i]
-        contact.chosen = contact.best_chosen
-        for j in range(3):
-            contact.forces[j] = contact.best_forces[j]
-
-
-@kernel
-def has_one_choice(contacts: ContactSet) -> bool:
-    """Whether there is no edge, so that all faces count."""
-    n_unchosen = 0
-    for i in range(contacts.used[0]):
-        if contacts.rows[i].group >= 0 and not contacts.rows[i].chosen:
-            n_unchosen += 1
-    return bool(n_unchosen == 0)
-
-
-@kernel
-def choose_next_faces(contacts: ContactSet, every: bool) -> bool:
-    """Choose the next combination of faces on edges; False: there is none, and the first is chosen again.
-
-    Unless ``every`` one is wanted, those are left out whose answer is known: where no face of a group carried, another
-    face of it would not either, and the same forces balance the load (or leave the same motion).
-    """
-    rows = contacts.rows
-    for first in range(contacts.used[0]):
-        if rows[first].group != first:
-            continue
-        last = last_of_group(contacts, first)
-        for i in range(first, last + 1):
-            if rows[i].chosen and rows[i].forces[0] > 0.0:
-                rows[first].has_carried = True
-    for first in range(contacts.used[0]):
-        if rows[first].group != first:
-            continue
-        last = last_of_group(contacts, first)
-        if every or rows[first].has_carried:
-            for i in range(first, last):
-                if rows[i].chosen:
-                    rows[i].chosen = False
-                    rows[i + 1].chosen = True
-                    return True
-        for i in range(first, last + 1):
-            rows[i].chosen = i == first
-        rows[first].has_carried = False
-    return False

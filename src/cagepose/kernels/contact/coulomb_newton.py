@@ -8,117 +8,102 @@ from __future__ import annotations
 
 from typing import Annotated
 
+from cagepose.kernels.algebra.elimination import eliminate
 from cagepose.kernels.algebra.least_squares import inner, length
-from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
+from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.contact.cone import steepest_tangent
-from cagepose.kernels.contact.contact_set import ContactRow
+from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.native.kernel import kernel
 
-CONTACT_LIMIT = 12
-"""More contacts than this that carry: left to the sweeps."""
-UNKNOWNS = 6 + 3 * CONTACT_LIMIT
+STICKING_LIMIT = 12
+"""More contacts than this that stick (or three times as many that slip): left to the sweeps."""
+UNKNOWNS = 6 + 3 * STICKING_LIMIT
+CARRYING_LIMIT = UNKNOWNS - 6
 NEWTON_STEPS = 8
 STILL = 1e-14
 """In lengths of the load: after so small a change the next one is rounding, since the digits double."""
-SINGULAR = 1e-11
-"""Pivots below this fraction of the greatest are zero: forces of several sticking contacts need not be unique."""
-
 
 OPENS, STICKS, SLIPS = 0, 1, 2
 """Codes of what a contact does."""
 
 
-class NewtonRoom:
-    """Room for one system of n equations; a record.
+class NewtonWorkspace:
+    """Memory for one system of n equations; a record.
 
     Attributes
     ----------
+    n_carrying
+        Contacts that do not open; -1: there are too many.
+    contacts, modes, first_unknowns
+        Each one's row, what it does, and the place of its normal force in the system.
     matrix
         The system, right side last.
     order
         Which unknown each column holds.
     """
 
+    n_carrying: int
+    contacts: Annotated[IntArray, CARRYING_LIMIT]
+    modes: Annotated[IntArray, CARRYING_LIMIT]
+    first_unknowns: Annotated[IntArray, CARRYING_LIMIT]
     matrix: Annotated[FloatArray, UNKNOWNS, UNKNOWNS + 1]
     order: Annotated[IntArray, UNKNOWNS]
 
 
 @kernel
-def eliminate(room: NewtonRoom, n: int) -> None:
-    """Solve the system in place by elimination with complete pivoting; undetermined unknowns are zero.
-
-    The solution stands in the last column, in the order of ``room.order``.
-    """
-    m, order = room.matrix, room.order
-    for k in range(n):
-        order[k] = k
-    rank, greatest = 0, 0.0
-    for k in range(n):
-        at_row, at_column, pivot = k, k, 0.0
-        for i in range(k, n):
-            for j in range(k, n):
-                if abs(m[i, j]) > pivot:
-                    at_row, at_column, pivot = i, j, abs(m[i, j])
-        greatest = max(greatest, pivot)
-        if pivot <= SINGULAR * greatest:
-            break
-        for j in range(n + 1):
-            m[k, j], m[at_row, j] = m[at_row, j], m[k, j]
-        for i in range(n):
-            m[i, k], m[i, at_column] = m[i, at_column], m[i, k]
-        order[k], order[at_column] = order[at_column], order[k]
-        for i in range(k + 1, n):
-            factor = m[i, k] / m[k, k]
-            if factor != 0.0:
-                for j in range(k, n + 1):
-                    m[i, j] -= factor * m[k, j]
-        rank = k + 1
-    for k in range(rank, n):
-        m[k, n] = 0.0
-    for k in range(rank - 1, -1, -1):
-        for j in range(k + 1, rank):
-            m[k, n] -= m[k, j] * m[j, n]
-        m[k, n] /= m[k, k]
+def add_carrying(newton: NewtonWorkspace, contact: int, mode: int) -> None:
+    """Let one more contact carry: from ``n_carrying = 0`` on, in the order of their rows."""
+    place = newton.n_carrying
+    if 0 <= place < CARRYING_LIMIT:
+        newton.contacts[place], newton.modes[place] = contact, mode
+        newton.n_carrying = place + 1
+    else:
+        newton.n_carrying = -1
 
 
 @kernel
-def number_unknowns(rows: Rows[ContactRow], n_contacts: int, y: FloatArray) -> int:
+def n_forces(mode: int) -> int:
+    """Return how many unknown forces a contact has: the friction of one that slips follows from its normal force."""
+    return 1 if mode == SLIPS else 3
+
+
+@kernel
+def number_unknowns(contacts: ContactSet, y: FloatArray, newton: NewtonWorkspace) -> int:
     """Number the unknowns: six of the motion, one or three forces of each contact; return how many, -1: too many."""
     n = 6
-    for i in range(n_contacts):
-        contact = rows[i]
-        if contact.mode == SLIPS and steepest_tangent(contact, y)[0] == 0.0:
-            contact.mode = STICKS  # a slip without direction
-        contact.first_unknown = n
-        if contact.mode != OPENS:
-            n += 1 if contact.mode == SLIPS else 3
+    for place in range(newton.n_carrying):
+        contact = contacts.rows[newton.contacts[place]]
+        if newton.modes[place] == SLIPS and steepest_tangent(contact, y)[0] == 0.0:
+            newton.modes[place] = STICKS  # a slip without direction
+        newton.first_unknowns[place] = n
+        n += n_forces(newton.modes[place])
         if n > UNKNOWNS:
             return -1
-    return n
+    return -1 if newton.n_carrying < 0 else n
 
 
 @kernel
 def write_system(
-    rows: Rows[ContactRow], n_contacts: int, friction: float, b: FloatArray, y: FloatArray, n: int, room: NewtonRoom
+    contacts: ContactSet, friction: float, b: FloatArray, y: FloatArray, n: int, newton: NewtonWorkspace
 ) -> None:
     """Write the linear system of one step: balance of y, then one row for each velocity that is zero."""
-    m = room.matrix
+    m = newton.matrix
     for i in range(n):
         for j in range(n + 1):
             m[i, j] = 0.0
     for k in range(6):
         m[k, k] = 1.0
         m[k, n] = b[k] - y[k]
-    for i in range(n_contacts):
-        contact = rows[i]
-        columns, forces, first = contact.columns, contact.forces, contact.first_unknown
-        if contact.mode == STICKS:
+    for place in range(newton.n_carrying):
+        contact, first = contacts.rows[newton.contacts[place]], newton.first_unknowns[place]
+        columns, forces = contact.columns, contacts.states[newton.contacts[place]].forces
+        if newton.modes[place] == STICKS:
             for j in range(3):
                 for k in range(6):
                     m[k, first + j] = m[first + j, k] = columns[j, k]
                     m[k, n] -= columns[j, k] * forces[j]
                 m[first + j, n] = -inner(columns[j], y, 6)
-        elif contact.mode == SLIPS:
+        else:
             slip, one, two = steepest_tangent(contact, y)
             turning = forces[0] * friction / slip
             for k in range(6):
@@ -133,44 +118,53 @@ def write_system(
 
 
 @kernel
-def newton_on_modes(
-    rows: Rows[ContactRow], n_contacts: int, friction: float, b: FloatArray, y: FloatArray, room: NewtonRoom
-) -> None:
-    """Move forces and motion to the solution with the present modes, if there is one near; the caller checks it."""
-    n = number_unknowns(rows, n_contacts, y)
-    if n < 0:
-        return
-    still = STILL * length(b, 6)
-    for _ in range(NEWTON_STEPS):
-        write_system(rows, n_contacts, friction, b, y, n, room)
-        eliminate(room, n)
-        greatest = 0.0
-        for place in range(n):
-            change, unknown = room.matrix[place, n], room.order[place]
-            greatest = max(greatest, abs(change))
-            if unknown < 6:
-                y[unknown] += change
-        for i in range(n_contacts):
-            if rows[i].mode != OPENS:
-                add_changes(room, n, rows[i])
-        if greatest <= still:
-            break
-    for i in range(n_contacts):
-        contact = rows[i]
-        if contact.mode == OPENS:
-            for j in range(3):
-                contact.forces[j] = 0.0
-        elif contact.mode == SLIPS:
-            slip, one, two = steepest_tangent(contact, y)
-            if slip > 0.0:
-                contact.forces[1] = friction * contact.forces[0] * one
-                contact.forces[2] = friction * contact.forces[0] * two
+def add_changes(contacts: ContactSet, y: FloatArray, n: int, newton: NewtonWorkspace) -> float:
+    """Add what the last step found to the motion and to the forces; return the greatest change."""
+    greatest = 0.0
+    for row in range(n):
+        change, unknown = newton.matrix[row, n], newton.order[row]
+        greatest = max(greatest, abs(change))
+        if unknown < 6:
+            y[unknown] += change
+        for place in range(newton.n_carrying):
+            j = unknown - newton.first_unknowns[place]
+            if 0 <= j < n_forces(newton.modes[place]):
+                contacts.states[newton.contacts[place]].forces[j] += change
+    return greatest
 
 
 @kernel
-def add_changes(room: NewtonRoom, n: int, contact: ContactRow) -> None:
-    """Add what the last step found to the forces of one contact."""
-    for place in range(n):
-        j = room.order[place] - contact.first_unknown
-        if 0 <= j < (1 if contact.mode == SLIPS else 3):
-            contact.forces[j] += room.matrix[place, n]
+def newton_on_modes(
+    contacts: ContactSet, friction: float, b: FloatArray, y: FloatArray, newton: NewtonWorkspace
+) -> None:
+    """Move forces and motion to the solution with the modes in ``newton``, if there is one near; the caller checks it.
+
+    Contacts that open carry nothing afterwards.
+    """
+    n = number_unknowns(contacts, y, newton)
+    if n < 0:
+        return
+    for _ in range(NEWTON_STEPS):
+        write_system(contacts, friction, b, y, n, newton)
+        eliminate(newton.matrix, newton.order, n)
+        if add_changes(contacts, y, n, newton) <= STILL * length(b, 6):
+            break
+    finish_forces(contacts, friction, y, newton)
+
+
+@kernel
+def finish_forces(contacts: ContactSet, friction: float, y: FloatArray, newton: NewtonWorkspace) -> None:
+    """Write what the modes say of the forces: contacts that open carry nothing, friction lies along the slip."""
+    place = 0
+    for i in range(contacts.used[0]):
+        forces = contacts.states[i].forces
+        if place == newton.n_carrying or newton.contacts[place] != i:
+            for j in range(3):
+                forces[j] = 0.0
+            continue
+        if newton.modes[place] == SLIPS:
+            slip, one, two = steepest_tangent(contacts.rows[i], y)
+            if slip > 0.0:
+                forces[1] = friction * forces[0] * one
+                forces[2] = friction * forces[0] * two
+        place += 1

@@ -46,17 +46,17 @@ def write_curvature(
         arm = load_arm(load, which, quaternion)
         add_arm_curvature(row(load.forces_world, which), arm, -1.0, frame, out)
     for i in range(contacts.used[0]):
-        contact = contacts.rows[i]
-        if contact.forces[0] <= 0.0:
+        contact, forces = contacts.rows[i], contacts.states[i].forces
+        if forces[0] <= 0.0:
             continue
         normal, arm = vector_from(contact.normal), vector_from(contact.arm)
-        if contact.is_sticking:
+        if contacts.states[i].is_sticking:
             force = (0.0, 0.0, 0.0)
             for j in range(3):
-                force = plus(force, scaled(vector_from(contact.columns[j]), contact.forces[j]))
+                force = plus(force, scaled(vector_from(contact.columns[j]), forces[j]))
             add_arm_curvature(force, arm, 1.0, frame, out)
             continue
-        carried = contact.forces[0]
+        carried = forces[0]
         add_arm_curvature(scaled(normal, carried), arm, -1.0, frame, out)
         for j in range(3):
             across = cross(normal, frame.axes[j])

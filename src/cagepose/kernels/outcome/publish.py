@@ -153,17 +153,16 @@ def publish_events(
 def publish_contacts(start: Start, at: ProofWorkspace, outcome: Outcome) -> None:
     """Append the contacts of a proof."""
     for i in range(at.contacts.used[0]):
-        found, contact = at.contacts.rows[i], outcome.contacts[outcome.counts[CONTACTS]]
+        found, forces = at.contacts.rows[i], at.contacts.states[i].forces
+        contact = outcome.contacts[outcome.counts[CONTACTS]]
         contact.point, contact.box, contact.gap = found.point, found.box, found.gap
         contact.near_edge = is_near_edge(
             start.geometry, at.placement, found.box, found.point, found.axis, start.tolerances.touch_m
         )
-        contact.force_normal, contact.is_shared = found.forces[0], found.is_shared
+        contact.force_normal, contact.is_shared = forces[0], at.statuses[i].is_shared
         for k in range(3):
             contact.normal[k] = found.normal[k]
-            contact.force_tangential[k] = -(
-                found.forces[1] * found.columns[1, k] + found.forces[2] * found.columns[2, k]
-            )
+            contact.force_tangential[k] = -(forces[1] * found.columns[1, k] + forces[2] * found.columns[2, k])
         outcome.counts[CONTACTS] += 1
 
 

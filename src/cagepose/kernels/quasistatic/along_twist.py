@@ -158,16 +158,16 @@ def constrain_to_face(geometry: Geometry, placement: Placement, point: int, box:
 def constrain_contacts(
     geometry: Geometry, placement: Placement, contacts: ContactSet, constraints: Constraints
 ) -> None:
-    """Constrain the contacts that carry in this step to their faces, and where they stick also in the face."""
+    """Constrain the contacts that carry to their faces, and where they stick also in the face."""
     constraints.rooms[0].used = 0
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
-        if contact.step_forces[0] > 0.0:
+        if contacts.states[i].forces[0] > 0.0:
             at = geometry.half_sizes[contact.box, contact.axis]
             add_constraint(constraints, contact.point, contact.box, contact.axis, contact.side, at)
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
-        if contact.step_forces[0] > 0.0 and contact.is_sticking:
+        if contacts.states[i].forces[0] > 0.0 and contacts.states[i].is_sticking:
             for turn in range(1, 3):
                 axis = (contact.axis + turn) % 3
                 at = placement.points_box[contact.box, axis, contact.point]

@@ -38,7 +38,7 @@ def first_edge_crossing(
     rate = norm(spin)
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
-        if contact.forces[0] <= 0.0:
+        if contacts.states[i].forces[0] <= 0.0:
             continue
         box = contact.box
         half_size = row(geometry.half_sizes, box)

@@ -13,11 +13,12 @@ import math
 from typing import Annotated
 
 from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, inner, length
-from cagepose.kernels.algebra.record import FloatArray, Rows
-from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
+from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.curvature import greatest_curvature
+from cagepose.kernels.contact.equilibrium import AT_REST, MOVES, ContactWorkspace, equilibrium_with_faces
 from cagepose.kernels.contact.metric import WRENCH, ScaledVector
-from cagepose.kernels.contact.onset import MOVES, ContactWorkspace, onset_with_faces
+from cagepose.kernels.contact.onset import motion_with_faces
 from cagepose.kernels.native.kernel import kernel
 
 RAISES = 12
@@ -104,10 +105,10 @@ def keep_along_faces(contacts: ContactSet, room: ImplicitStepWorkspace) -> float
     held, curvature = room.held, room.curvature
     clear(held, WRENCH, 1.0)
     for i in range(contacts.used[0]):
-        contact = contacts.rows[i]
-        if contact.forces[0] > 0.0:
-            for which in range(3 if contact.is_sticking else 1):
-                append_column(held, contact.columns[which], which, 0.0)
+        state = contacts.states[i]
+        if state.forces[0] > 0.0:
+            for which in range(3 if state.is_sticking else 1):
+                append_column(held, contacts.rows[i].columns[which], which, 0.0)
     for place in range(held.used):
         across = held.basis[place]
         for j in range(6):  # first every row, then every column
@@ -141,19 +142,17 @@ def write_matrix(room: ImplicitStepWorkspace, rho: float) -> None:
 @kernel
 def implicit_step(
     contacts: ContactSet,
-    turned: Rows[ContactRow],
+    turned: ContactSet,
     friction: float,
     rho: float,
     room: ImplicitStepWorkspace,
     solver: ContactWorkspace,
 ) -> bool:
-    """Write the step into ``room.delta`` and what the contacts carry into their ``step_forces``; False: take the
-    explicit step.
+    """Write the step into ``room.delta``, and what the contacts carry on it; False: take the explicit step.
 
     Given are the explicit motion ``solver.y``, ``room.curvature`` along the faces, and which contacts stick; ``turned``
-    is room for the contacts.
+    is memory for the contacts in the step's coordinates.
     """
-    n_contacts = contacts.used[0]
     size = greatest_curvature(room.curvature)
     for _ in range(RAISES):
         write_matrix(room, rho)
@@ -162,15 +161,23 @@ def implicit_step(
         rho = max(4.0 * rho, 1e-3 * size)
     else:
         return False
-    for i in range(n_contacts):
-        turned[i].chosen = contacts.rows[i].chosen
+    turned.used[0] = contacts.used[0]
+    for i in range(contacts.used[0]):
+        turned.states[i].chosen = contacts.states[i].chosen
         for j in range(3):
-            solve_lower(room.factor, contacts.rows[i].columns[j], turned[i].columns[j])
+            solve_lower(room.factor, contacts.rows[i].columns[j], turned.rows[i].columns[j])
     solve_lower(room.factor, solver.load, room.b)
     terms = solver.load_terms * length(room.b, 6) / length(solver.load, 6)
-    code = onset_with_faces(turned, n_contacts, friction, room.b, terms, room.delta, solver)
-    for i in range(n_contacts):
-        for j in range(3):
-            contacts.rows[i].step_forces[j] = turned[i].forces[j]
+    if equilibrium_with_faces(turned, friction, AT_REST, room.b, terms, solver) != MOVES:
+        return False
+    if not motion_with_faces(turned, friction, room.b, room.delta, solver):
+        return False
     solve_upper(room.factor, room.delta)
-    return code == MOVES and inner(room.delta, solver.y, 6) > 0.0
+    if inner(room.delta, solver.y, 6) <= 0.0:
+        return False
+    for i in range(contacts.used[0]):
+        state = contacts.states[i]
+        for j in range(3):
+            state.forces[j] = turned.states[i].forces[j]
+        state.is_sticking = state.is_sticking and state.forces[0] > 0.0
+    return True

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.geometry import place_object
-from cagepose.kernels.contact.contact_set import ContactRow, ContactSet, find_contacts
+from cagepose.kernels.contact.contact_set import ContactSet, find_contacts
+from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, ON_THE_WAY, equilibrium
 from cagepose.kernels.contact.metric import frame_at, write_load
-from cagepose.kernels.contact.onset import is_held
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.along_twist import Setting, Twist, stepped
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
@@ -29,11 +28,11 @@ def is_held_on_the_way(setting: Setting, position: Vector, quaternion: Quaternio
     kept = 0
     for i in range(work.ahead.used[0]):
         if touches_box(work.contacts, work.ahead.rows[i].point, work.ahead.rows[i].box):
-            copy_contact(work.ahead.rows, i, kept)
+            move_contact(work.ahead, i, kept)
             kept += 1
     work.ahead.used[0] = kept
     work.rooms[0].solver.load_terms = write_load(setting.load, quaternion, frame, work.rooms[0].solver.load)
-    return is_held(work.ahead, setting.friction, work.rooms[0].solver)
+    return equilibrium(work.ahead, setting.friction, ON_THE_WAY, work.rooms[0].solver) <= HELD_BY_FRICTION
 
 
 @kernel
@@ -46,16 +45,15 @@ def touches_box(contacts: ContactSet, point: int, box: int) -> bool:
 
 
 @kernel
-def copy_contact(rows: Rows[ContactRow], source: int, target: int) -> None:
-    """Move what an onset needs of one row to another (groups begin anew at the target)."""
+def move_contact(contacts: ContactSet, source: int, target: int) -> None:
+    """Move what the contact problem needs of one row to another (groups begin anew at the target)."""
     if source == target:
         return
+    rows = contacts.rows
     old, new = rows[source], rows[target]
     new.point, new.box = old.point, old.box
     same_group = target > 0 and rows[target - 1].point == new.point and rows[target - 1].box == new.box
-    counts = old.group >= 0
-    new.group = -1 if not counts else rows[target - 1].group if same_group else target
-    new.chosen = counts and not same_group
+    new.group = -1 if old.group < 0 else rows[target - 1].group if same_group else target
     for j in range(3):
         for k in range(6):
             new.columns[j, k] = old.columns[j, k]

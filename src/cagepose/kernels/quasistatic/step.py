@@ -17,8 +17,9 @@ from cagepose.kernels.algebra.vector import Vector, minus, norm, vector_from
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactSet, find_contacts
 from cagepose.kernels.contact.curvature import write_curvature
+from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, HELD_WITHOUT_FRICTION, MOVES, UNSOLVED
 from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, write_load
-from cagepose.kernels.contact.onset import HELD_BY_FRICTION, HELD_WITHOUT_FRICTION, MOVES, UNSOLVED, onset, sticks
+from cagepose.kernels.contact.onset import find_sticking, onset
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import ESCAPES, LET_GO, NONE, PLAIN, RESTS, SCREW, STALLED, TRAVEL, StepRecord
 from cagepose.kernels.quasistatic.along_twist import (
@@ -81,47 +82,30 @@ def carried_by(contacts: ContactSet) -> int:
     """Return the rule of a motion: FREE, SLIDE or PIVOT."""
     rule = FREE
     for i in range(contacts.used[0]):
-        if contacts.rows[i].step_forces[0] > 0.0:
-            rule = max(rule, PIVOT if contacts.rows[i].is_sticking else SLIDE)
+        if contacts.states[i].forces[0] > 0.0:
+            rule = max(rule, PIVOT if contacts.states[i].is_sticking else SLIDE)
     return rule
-
-
-@kernel
-def carry_as_at_onset(contacts: ContactSet) -> None:
-    """Take the forces of the onset for the step."""
-    for i in range(contacts.used[0]):
-        for j in range(3):
-            contacts.rows[i].step_forces[j] = contacts.rows[i].forces[j]
 
 
 @kernel
 def next_twist(
     setting: Setting, quaternion: Quaternion, frame: Frame, turn_step_rad: float, work: QuasistaticWorkspace
 ) -> Twist:
-    """Return the twist to follow from a pose that moves; the contacts' ``step_forces`` belong to it."""
+    """Return the twist to follow from a pose that moves; forces and sticking are then those of the step."""
     contacts, room = work.contacts, work.rooms[0]
     y = room.solver.y
-    carries = False
-    for i in range(contacts.used[0]):
-        contact = contacts.rows[i]
-        contact.is_sticking = sticks(contact, setting.friction, room.solver.load_terms, y)
-        carries = carries or contact.forces[0] > 0.0
-    carry_as_at_onset(contacts)
+    find_sticking(contacts, setting.friction, room.solver.load_terms, y)
+    carries = carried_by(contacts) != FREE
     velocity, spin = twist_of(y, frame)
     spin = straightened(velocity, spin, setting.body.reach_m, room.solver.load_terms)
     end = longest_step(velocity, spin, carries, turn_step_rad, setting.size_m)
     if end < math.inf:
         write_curvature(contacts, setting.load, quaternion, frame, room.stiff.curvature)
         rho = max(keep_along_faces(contacts, room.stiff), 1.0 / end)
-        if abs(curvature_along(room.stiff.curvature, y)) * end > STIFF:
-            if implicit_step(contacts, work.turned, setting.friction, rho, room.stiff, room.solver):
-                velocity, spin = twist_of(room.stiff.delta, frame)
-                end = min(1.0, longest_step(velocity, spin, carries, turn_step_rad, setting.size_m))
-                for i in range(contacts.used[0]):
-                    contact = contacts.rows[i]
-                    contact.is_sticking = contact.is_sticking and contact.step_forces[0] > 0.0
-            else:
-                carry_as_at_onset(contacts)
+        is_stiff = abs(curvature_along(room.stiff.curvature, y)) * end > STIFF
+        if is_stiff and implicit_step(contacts, work.turned, setting.friction, rho, room.stiff, room.solver):
+            velocity, spin = twist_of(room.stiff.delta, frame)
+            end = min(1.0, longest_step(velocity, spin, carries, turn_step_rad, setting.size_m))
     return Twist(velocity, spin, end)
 
 
@@ -130,7 +114,7 @@ def gap_left(contacts: ContactSet) -> float:
     """Return the greatest distance, to either side, of a contact that carries from its face."""
     greatest = 0.0
     for i in range(contacts.used[0]):
-        if contacts.rows[i].forces[0] > 0.0:
+        if contacts.states[i].forces[0] > 0.0:
             greatest = max(greatest, abs(contacts.rows[i].gap))
     return greatest
 
@@ -140,9 +124,8 @@ def refined(
     setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace
 ) -> tuple[Vector, Quaternion]:
     """Close the gaps, within the touch tolerance, of the contacts that carry (5.12)."""
-    carry_as_at_onset(work.contacts)
     for i in range(work.contacts.used[0]):
-        work.contacts.rows[i].is_sticking = False
+        work.contacts.states[i].is_sticking = False
     allow_depths(work.placement, setting.tolerances, work.path)
     constrain_contacts(setting.geometry, work.placement, work.contacts, work.path.constraints)
     done, new_position, new_quaternion = pushed_out(setting, work.placement, position, quaternion, work.path)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
 from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement
-from cagepose.kernels.contact.contact_set import CONTACTS_PER_POINT, ContactRow, ContactSet, empty_contact_set
-from cagepose.kernels.contact.onset import ContactWorkspace
+from cagepose.kernels.contact.contact_set import CONTACTS_PER_POINT, ContactSet, empty_contact_set
+from cagepose.kernels.contact.equilibrium import ContactWorkspace
 from cagepose.kernels.outcome.trace import Trace, empty_trace
 from cagepose.kernels.quasistatic.along_twist import StepWorkspace, empty_step_workspace
 from cagepose.kernels.quasistatic.implicit_step import ImplicitStepWorkspace
@@ -52,7 +52,7 @@ class QuasistaticWorkspace(NamedTuple):
     placement: Placement
     contacts: ContactSet
     ahead: ContactSet
-    turned: Rows[ContactRow]
+    turned: ContactSet
     rooms: Rows[SolverWorkspace]
     path: StepWorkspace
     touched: NDArray[np.bool_]
@@ -69,7 +69,7 @@ def empty_quasistatic_workspace(geometry: Geometry, step_limit: int) -> Quasista
         empty_placement(geometry),
         empty_contact_set(n_contacts),
         empty_contact_set(n_contacts),
-        empty_rows(ContactRow, n_contacts),
+        empty_contact_set(n_contacts),
         empty_rows(SolverWorkspace, 1),
         empty_step_workspace(n_points),
         np.zeros(n_points, np.bool_),

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 
-from cagepose.kernels.algebra.record import Rows
-from cagepose.kernels.contact.balance import left_by_friction
-from cagepose.kernels.contact.cone import BALANCED, HELD, write_forces
-from cagepose.kernels.contact.contact_set import ContactRow, choose_next_faces
-from cagepose.kernels.contact.onset import COMBINATIONS_LIMIT, ContactWorkspace
-from cagepose.kernels.contact.separation import step_to_balance
+from cagepose.kernels.algebra.least_squares import length
+from cagepose.kernels.contact.cone import BALANCED, HELD, steepest_tangent, write_forces
+from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.edges import CHOICES_LIMIT, ONLY_CARRYING, first_choice, next_choice
+from cagepose.kernels.contact.equilibrium import ContactWorkspace, least_residual
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.proof import ProofWorkspace
 
@@ -21,33 +20,52 @@ SURE = 1e-6
 
 
 @kernel
-def least_friction(rows: Rows[ContactRow], n_contacts: int, solver: ContactWorkspace) -> float:
+def step_to_balance(contacts: ContactSet, work: ContactWorkspace) -> float:
+    """Return by how much more friction the residual r would vanish, to first order: |r|^2 / sum f_n |r_t|.
+
+    The contacts' forces are those that leave it.
+    """
+    residual = work.cone.passive.residual
+    gain = 0.0
+    for i in range(contacts.used[0]):
+        gain += contacts.states[i].forces[0] * steepest_tangent(contacts.rows[i], residual)[0]
+    left = length(residual, 6)
+    return left * left / gain if gain > 0.0 else math.inf
+
+
+@kernel
+def left_of_load(contacts: ContactSet, friction: float, work: ContactWorkspace) -> float:
+    return least_residual(contacts, friction, work.load, work.load_terms, work)
+
+
+@kernel
+def least_friction(contacts: ContactSet, work: ContactWorkspace) -> float:
     """Return the least coefficient at which one choice of faces balances the load (5.17); inf: none.
 
     Bisection, and Newton's method where the residual falls straight to zero: there the last step is taken from a
     residual that is still large enough to be sure of its digits.
     """
     low, high = 0.0, 1.0
-    if left_by_friction(rows, n_contacts, low, solver) <= BALANCED:
+    if left_of_load(contacts, low, work) <= BALANCED:
         return 0.0
-    while left_by_friction(rows, n_contacts, high, solver) > HELD:
+    while left_of_load(contacts, high, work) > HELD:
         low, high = high, 4.0 * high
         if high > FRICTION_GREATEST:
             return math.inf
     for _ in range(BISECTIONS):
-        left = left_by_friction(rows, n_contacts, low, solver)
-        write_forces(solver.cone, low, rows, n_contacts)
-        following = low + step_to_balance(rows, n_contacts, solver.cone)
+        left = left_of_load(contacts, low, work)
+        write_forces(work.cone, low, contacts)
+        following = low + step_to_balance(contacts, work)
         if left <= SURE:
             return min(following, high)
         if not low < following < high:
             following = 0.5 * (low + high)
         if following in (low, high):
             break
-        if left_by_friction(rows, n_contacts, following, solver) <= HELD:
+        if left_of_load(contacts, following, work) <= HELD:
             high = following
             following = 0.5 * (low + high)
-            if left_by_friction(rows, n_contacts, following, solver) <= HELD:
+            if left_of_load(contacts, following, work) <= HELD:
                 high = following
                 continue
         low = following
@@ -60,11 +78,11 @@ def least_friction_of_faces(at: ProofWorkspace) -> float:
     inf: none; NaN: there are too many choices of faces to ask them all.
     """
     least = 0.0
-    rows, n_contacts = at.contacts.rows, at.contacts.used[0]
-    every = False
-    for _ in range(COMBINATIONS_LIMIT):
-        least = max(least, least_friction(rows, n_contacts, at.rooms[0].solver))
-        write_forces(at.rooms[0].solver.cone, least, rows, n_contacts)
-        if least == math.inf or not choose_next_faces(at.contacts, every):
+    contacts, work = at.contacts, at.rooms[0].solver
+    first_choice(contacts)
+    for _ in range(CHOICES_LIMIT):
+        least = max(least, least_friction(contacts, work))
+        write_forces(work.cone, least, contacts)
+        if least == math.inf or not next_choice(contacts, ONLY_CARRYING):
             return least
     return math.nan

@@ -10,22 +10,30 @@ from cagepose.kernels.algebra.record import Rows, empty_rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement, place_object
-from cagepose.kernels.contact.balance import balance, balance_with_faces
-from cagepose.kernels.contact.contact_set import (
-    CONTACTS_PER_POINT,
-    ContactSet,
-    choose_next_faces,
-    empty_contact_set,
-    find_contacts,
+from cagepose.kernels.contact.contact_set import CONTACTS_PER_POINT, ContactSet, empty_contact_set, find_contacts
+from cagepose.kernels.contact.edges import (
+    CHOICES_LIMIT,
+    EVERY,
+    first_choice,
     has_one_choice,
-    put_best_faces_back,
+    next_choice,
+    return_to_kept,
+)
+from cagepose.kernels.contact.equilibrium import (
+    AT_REST,
+    HELD_WITHOUT_FRICTION,
+    MOVES,
+    UNSOLVED,
+    ContactWorkspace,
+    equilibrium,
+    equilibrium_with_faces,
 )
 from cagepose.kernels.contact.metric import WRENCH, Body, Frame, PhaseLoad, ScaledVector, frame_at, write_load
-from cagepose.kernels.contact.onset import COMBINATIONS_LIMIT, HELD_WITHOUT_FRICTION, MOVES, UNSOLVED, ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.second_order import (
     MARGINAL,
     STABLE_REST,
+    ContactStatus,
     StabilityWorkspace,
     find_held,
     find_shared,
@@ -77,6 +85,7 @@ class ProofWorkspace(NamedTuple):
 
     placement: Placement
     contacts: ContactSet
+    statuses: Rows[ContactStatus]
     rooms: Rows[AnalysisWorkspace]
     system: System
 
@@ -87,7 +96,11 @@ def empty_proof_workspace(geometry: Geometry) -> ProofWorkspace:
     rooms = empty_rows(AnalysisWorkspace, 1)
     rooms[0].sum_only[6] = 1.0
     return ProofWorkspace(
-        empty_placement(geometry), empty_contact_set(n_contacts), rooms, empty_system(max(N_COLUMNS, n_contacts))
+        empty_placement(geometry),
+        empty_contact_set(n_contacts),
+        empty_rows(ContactStatus, n_contacts),
+        rooms,
+        empty_system(max(N_COLUMNS, n_contacts)),
     )
 
 
@@ -141,7 +154,7 @@ def prove(
         at.rooms[0].solver.residual = 1.0  # no forces were asked for: all of the load is left
         return TOO_MANY_CONTACTS, STABLE_REST, 0
     contacts, room = at.contacts, at.rooms[0]
-    code = balance(contacts, friction, room.solver)
+    code = equilibrium(contacts, friction, AT_REST, room.solver)
     if code == MOVES:
         room.twist_residual = room.solver.residual
         for k in range(6):
@@ -150,17 +163,17 @@ def prove(
     left = room.solver.residual
     clear(room.rest.ways, WRENCH, 1.0)
     if code == UNSOLVED:
-        find_held(contacts, friction, room.rest, at.system)
-        find_shared(contacts, room.rest)
+        find_held(contacts, at.statuses, friction, room.rest, at.system)
+        find_shared(contacts, at.statuses, room.rest)
         return TOO_MANY_CHOICES, MARGINAL, 0
     frame = frame_at(body, quaternion)
     one_choice = has_one_choice(contacts)
     proof, steady = judge_faces(at, code, one_choice, friction, load, quaternion, frame, size_m)
     if not one_choice:
-        put_best_faces_back(contacts)
+        return_to_kept(contacts)
         room.solver.residual = left
-        find_held(contacts, friction, room.rest, at.system)
-    find_shared(contacts, room.rest)
+        find_held(contacts, at.statuses, friction, room.rest, at.system)
+    find_shared(contacts, at.statuses, room.rest)
     return proof, steady, room.rest.ways.used
 
 
@@ -180,13 +193,14 @@ def judge_faces(
     Where there is one choice of faces only, its balance has this code, and its forces stay.
     """
     contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
-    every = True
     proof, steady = PROVEN_WITHOUT_FRICTION, STABLE_REST
-    for _ in range(COMBINATIONS_LIMIT):
+    if not one_choice:
+        first_choice(contacts)
+    for _ in range(CHOICES_LIMIT):
         if not one_choice:
-            code = balance_with_faces(contacts.rows, contacts.used[0], friction, solver)
+            code = equilibrium_with_faces(contacts, friction, AT_REST, solver.load, solver.load_terms, solver)
         with_these = stability(
-            contacts, friction, load, quaternion, frame, solver.load_terms, size_m, room.rest, at.system
+            contacts, at.statuses, friction, load, quaternion, frame, solver.load_terms, size_m, room.rest, at.system
         )
         steady = max(steady, with_these)
         if code != HELD_WITHOUT_FRICTION:
@@ -194,6 +208,6 @@ def judge_faces(
                 contacts, friction, solver.load, solver.load_terms, room.sure, room.rest, at.system
             )
             proof = max(proof, PROVEN_UNIQUE if is_sure else UNIQUENESS_NOT_SHOWN)
-        if not choose_next_faces(contacts, every):
+        if not next_choice(contacts, EVERY):
             return proof, steady
     return (proof if proof == PROVEN_WITHOUT_FRICTION else UNIQUENESS_NOT_SHOWN), max(steady, MARGINAL)

@@ -7,17 +7,12 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.geometry import Geometry
-from cagepose.kernels.contact.balance import balance_with_faces
 from cagepose.kernels.contact.cone import HELD, N_ROWS, clear_cone, cone_residual
-from cagepose.kernels.contact.contact_set import (
-    ContactSet,
-    choose_first_faces,
-    choose_next_faces,
-    keep_faces,
-    put_best_faces_back,
-)
+from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.edges import CHOICES_LIMIT, EVERY, first_choice, keep_choice, next_choice, return_to_kept
+from cagepose.kernels.contact.equilibrium import AT_REST, HELD_BY_FRICTION, MOVES, equilibrium_with_faces
 from cagepose.kernels.contact.metric import Body, PhaseLoad
-from cagepose.kernels.contact.onset import COMBINATIONS_LIMIT, HELD_BY_FRICTION, MOVES, onset
+from cagepose.kernels.contact.onset import onset
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.proof import (
     OTHER_ONSET,
@@ -40,8 +35,7 @@ def has_self_stress(contacts: ContactSet, friction: float, room: AnalysisWorkspa
     """
     cone = room.solver.cone
     clear_cone(cone, room.sum_only, N_ROWS, 1.0)
-    charged = False
-    left = cone_residual(contacts.rows, contacts.used[0], friction, room.sum_only, charged, cone)
+    left = cone_residual(contacts, friction, room.sum_only, cone)
     return left <= HELD * rounding_scale(cone.passive)
 
 
@@ -49,11 +43,10 @@ def has_self_stress(contacts: ContactSet, friction: float, room: AnalysisWorkspa
 def search_faces(friction: float, at: ProofWorkspace) -> int:
     """Return the code of the proof, the least sure of all combinations of faces."""
     contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
-    every = True
     proof = PROVEN_UNIQUE
-    choose_first_faces(contacts)
-    for _ in range(COMBINATIONS_LIMIT):
-        code = balance_with_faces(contacts.rows, contacts.used[0], friction, solver)
+    first_choice(contacts)
+    for _ in range(CHOICES_LIMIT):
+        code = equilibrium_with_faces(contacts, friction, AT_REST, solver.load, solver.load_terms, solver)
         if code == HELD_BY_FRICTION and not rest_is_unique(
             contacts, friction, solver.load, solver.load_terms, room.sure, room.rest, at.system
         ):
@@ -61,7 +54,7 @@ def search_faces(friction: float, at: ProofWorkspace) -> int:
             if answer == OTHER_FOUND:
                 return OTHER_ONSET
             proof = proof if answer == UNIQUE else UNIQUENESS_NOT_SHOWN
-        if not choose_next_faces(contacts, every):
+        if not next_choice(contacts, EVERY):
             return proof
     return UNIQUENESS_NOT_SHOWN
 
@@ -84,9 +77,9 @@ def search_onsets(friction: float, at: ProofWorkspace) -> int:
     """
     contacts, room = at.contacts, at.rooms[0]
     left = room.solver.residual
-    keep_faces(contacts)
+    keep_choice(contacts)
     proof = search_faces(friction, at)
-    put_best_faces_back(contacts)
+    return_to_kept(contacts)
     room.solver.residual = left
     room.wedged = proof != PROVEN_UNIQUE and has_self_stress(contacts, friction, room)
     return proof
@@ -107,7 +100,6 @@ def first_motion(friction: float, at: ProofWorkspace) -> None:
         As left by the proof.
     """
     contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
-    choose_first_faces(contacts)
     if onset(contacts, friction, solver) != MOVES:
         solver.residual = room.twist_residual
         for k in range(6):

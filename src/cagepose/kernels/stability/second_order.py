@@ -18,7 +18,7 @@ from cagepose.kernels.algebra.least_squares import (
     orthogonalise,
 )
 from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.record import FloatArray, IntArray
+from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.curvature import greatest_curvature, write_curvature
 from cagepose.kernels.contact.metric import WRENCH, Frame, PhaseLoad, ScaledVector
@@ -36,6 +36,24 @@ FLAT = 1e-9
 """In greatest curvatures (or loads for each size of the scene): a smaller one is rounding."""
 ONE_SIDED_LIMIT = 10
 """Contacts that may open, of which all sets are asked for; with more, a rest is called marginal at best."""
+
+
+class ContactStatus:
+    """What a contact does to second order; a record.
+
+    Attributes
+    ----------
+    is_equality
+        Whether it may carry in some balance, so that it can never open without work.
+    is_implied
+        Whether the others that may open keep it from closing.
+    is_shared
+        Whether its normal force could be another.
+    """
+
+    is_equality: bool
+    is_implied: bool
+    is_shared: bool
 
 
 class StabilityWorkspace:
@@ -103,7 +121,9 @@ def hold(basis: PassiveSet, column: FloatArray, room: StabilityWorkspace) -> Non
 
 
 @kernel
-def find_held(contacts: ContactSet, friction: float, room: StabilityWorkspace, system: System) -> bool:
+def find_held(
+    contacts: ContactSet, statuses: Rows[ContactStatus], friction: float, room: StabilityWorkspace, system: System
+) -> bool:
     """Find what the contacts hold; return whether one is at the limit of friction.
 
     A contact without force holds too if another balance loads it: then it cannot open without work. That is so where
@@ -113,35 +133,41 @@ def find_held(contacts: ContactSet, friction: float, room: StabilityWorkspace, s
     clear(room.held, WRENCH, 1.0)
     n = contacts.used[0]
     for i in range(n):
-        carried = contacts.rows[i].forces[0]
-        contacts.rows[i].is_equality = contacts.rows[i].chosen and carried > 0.0
-        contacts.rows[i].is_sticking = False
-        if contacts.rows[i].is_equality:
+        state, status = contacts.states[i], statuses[i]
+        carried, one, two = state.forces
+        status.is_equality = state.chosen and carried > 0.0
+        status.is_implied = state.is_sticking = False
+        if status.is_equality:
             hold(room.held, contacts.rows[i].columns[0], room)
             if friction > 0.0:
-                one, two = contacts.rows[i].forces[1], contacts.rows[i].forces[2]
                 tangential = math.sqrt(one * one + two * two)
-                contacts.rows[i].is_sticking = tangential < (1.0 - AT_LIMIT) * friction * carried
-                at_limit = at_limit or not contacts.rows[i].is_sticking
+                state.is_sticking = tangential < (1.0 - AT_LIMIT) * friction * carried
+                at_limit = at_limit or not state.is_sticking
     for i in range(n):
-        if contacts.rows[i].is_sticking:
+        if contacts.states[i].is_sticking:
             hold(room.held, contacts.rows[i].columns[1], room)
             hold(room.held, contacts.rows[i].columns[2], room)
     found = True
     while found:
         found = False
         for i in range(n):
-            contact = contacts.rows[i]
-            contact.is_rejected = False
-            if contact.chosen and not contact.is_equality and lies_in_cone(contacts, i, -1.0, room, system):
-                contact.is_equality = True
-                hold(room.held, contact.columns[0], room)
+            may_open = contacts.states[i].chosen and not statuses[i].is_equality
+            if may_open and lies_in_cone(contacts, statuses, i, -1.0, room, system):
+                statuses[i].is_equality = True
+                hold(room.held, contacts.rows[i].columns[0], room)
                 found = True
     return at_limit
 
 
 @kernel
-def lies_in_cone(contacts: ContactSet, i: int, sign: float, room: StabilityWorkspace, system: System) -> bool:
+def lies_in_cone(
+    contacts: ContactSet,
+    statuses: Rows[ContactStatus],
+    i: int,
+    sign: float,
+    room: StabilityWorkspace,
+    system: System,
+) -> bool:
     """Whether ``sign`` times a contact's wrench lies in the cone of the others that may open, seen outside the span of
     what is held.
 
@@ -149,9 +175,9 @@ def lies_in_cone(contacts: ContactSet, i: int, sign: float, room: StabilityWorks
     """
     n_others = 0
     for k in range(contacts.used[0]):
-        other = contacts.rows[k]
-        if k != i and other.chosen and not other.is_equality and not other.is_rejected:
-            write_outside(room.held, other.columns[0], system.columns[n_others])
+        may_open = contacts.states[k].chosen and not statuses[k].is_equality
+        if k != i and may_open and not statuses[k].is_implied:
+            write_outside(room.held, contacts.rows[k].columns[0], system.columns[n_others])
             n_others += 1
     if not write_outside(room.held, contacts.rows[i].columns[0], system.right_side):
         return True
@@ -163,15 +189,16 @@ def lies_in_cone(contacts: ContactSet, i: int, sign: float, room: StabilityWorks
 
 
 @kernel
-def list_one_sided(contacts: ContactSet, room: StabilityWorkspace, system: System) -> int:
+def list_one_sided(
+    contacts: ContactSet, statuses: Rows[ContactStatus], room: StabilityWorkspace, system: System
+) -> int:
     """List the contacts that may open and that no others make superfluous; return how many, -1: too many."""
     n_one_sided = 0
     for i in range(contacts.used[0]):
-        contact = contacts.rows[i]
-        if not contact.chosen or contact.is_equality:
+        if not contacts.states[i].chosen or statuses[i].is_equality:
             continue
-        if lies_in_cone(contacts, i, 1.0, room, system):
-            contact.is_rejected = True
+        if lies_in_cone(contacts, statuses, i, 1.0, room, system):
+            statuses[i].is_implied = True
             continue
         if n_one_sided == ONE_SIDED_LIMIT:
             return -1
@@ -187,24 +214,24 @@ def is_same_face(one: ContactRow, other: ContactRow) -> bool:
 
 
 @kernel
-def find_shared(contacts: ContactSet, room: StabilityWorkspace) -> None:
+def find_shared(contacts: ContactSet, statuses: Rows[ContactStatus], room: StabilityWorkspace) -> None:
     """Mark the contacts whose normal force could be another: their wrench lies in the span of the rest."""
     rows, n, span = contacts.rows, contacts.used[0], room.scratch
     clear(span, WRENCH, 1.0)
     for i in range(n):
-        if rows[i].is_sticking:
+        if contacts.states[i].is_sticking:
             hold(span, rows[i].columns[1], room)
             hold(span, rows[i].columns[2], room)
     n_tangential = span.used
     for i in range(n):
-        rows[i].is_shared = False
-        if not rows[i].is_equality:
+        statuses[i].is_shared = False
+        if not statuses[i].is_equality:
             continue
         span.used = n_tangential
         for k in range(n):
-            if rows[k].is_equality and not is_same_face(rows[k], rows[i]):
+            if statuses[k].is_equality and not is_same_face(rows[k], rows[i]):
                 hold(span, rows[k].columns[0], room)
-        rows[i].is_shared = not write_outside(span, rows[i].columns[0], room.rest)
+        statuses[i].is_shared = not write_outside(span, rows[i].columns[0], room.rest)
 
 
 @kernel
@@ -254,6 +281,7 @@ def hold_some(contacts: ContactSet, n_one_sided: int, chosen: int, room: Stabili
 @kernel
 def stability(
     contacts: ContactSet,
+    statuses: Rows[ContactStatus],
     friction: float,
     load: PhaseLoad,
     quaternion: Quaternion,
@@ -269,9 +297,9 @@ def stability(
     On the cone of twists that close no contact, the least curvature is an eigenvalue over the span of one of its faces,
     and its eigenvector lies in that face. So all sets of contacts that may open are held in turn.
     """
-    at_limit = find_held(contacts, friction, room, system)
+    at_limit = find_held(contacts, statuses, friction, room, system)
     n_held = room.held.used
-    n_one_sided = list_one_sided(contacts, room, system)
+    n_one_sided = list_one_sided(contacts, statuses, room, system)
     code = MARGINAL if at_limit or n_one_sided < 0 else STABLE_REST
     write_curvature(contacts, load, quaternion, frame, room.curvature)
     flat = FLAT * max(greatest_curvature(room.curvature), terms / size_m)

@@ -16,7 +16,7 @@ from cagepose.kernels.algebra.least_squares import PassiveSet, System, clear, in
 from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.coulomb import coulomb_error, motion_left
-from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS, NewtonRoom, newton_on_modes
+from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS, NewtonWorkspace, add_carrying, newton_on_modes
 from cagepose.kernels.contact.metric import ScaledVector
 from cagepose.kernels.native.kernel import kernel
 
@@ -181,18 +181,16 @@ def is_possible(
 
 @kernel
 def is_witnessed(
-    contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesWorkspace, newton: NewtonRoom
+    contacts: ContactSet, n_rows: int, friction: float, b: FloatArray, room: ModesWorkspace, newton: NewtonWorkspace
 ) -> bool:
     """Whether Newton's method from the solution of the system ends in a motion that obeys Coulomb's law.
 
     The forces of the contacts are those of that motion afterwards.
     """
     scale = 0.0
-    rows, n_contacts = contacts.rows, contacts.used[0]
-    for i in range(n_contacts):
-        rows[i].mode = OPENS
+    for i in range(contacts.used[0]):
         for j in range(3):
-            rows[i].forces[j] = 0.0
+            contacts.states[i].forces[j] = 0.0
     for k in range(room.passive.used):
         if room.passive.labels[k] == 0:
             scale = room.passive.x[k]
@@ -203,19 +201,21 @@ def is_witnessed(
         place = room.owners[label]
         if place >= 0:
             share = room.passive.x[k] / scale
-            forces = rows[room.contacts[place]].forces
+            forces = contacts.states[room.contacts[place]].forces
             forces[0] += share
             forces[1] += share * room.directions[label, 0]
             forces[2] += share * room.directions[label, 1]
+    newton.n_carrying = 0
     for place in range(n_rows):
-        rows[room.contacts[place]].mode = room.modes[place]
-    motion_left(rows, n_contacts, b, room.y)
+        if room.modes[place] != OPENS:
+            add_carrying(newton, room.contacts[place], room.modes[place])
+    motion_left(contacts, b, room.y)
     for attempt in range(2):
-        if coulomb_error(rows, n_contacts, friction, room.y) <= MOVES_AT_ALL * MOVES_AT_ALL * length(b, 6):
+        if coulomb_error(contacts, friction, room.y) <= MOVES_AT_ALL * MOVES_AT_ALL * length(b, 6):
             return length(room.y, 6) > MOVES_AT_ALL * length(b, 6)
         if attempt == 0:
-            newton_on_modes(rows, n_contacts, friction, b, room.y, newton)
-            motion_left(rows, n_contacts, b, room.y)
+            newton_on_modes(contacts, friction, b, room.y, newton)
+            motion_left(contacts, b, room.y)
     return False
 
 
@@ -257,7 +257,7 @@ def branch(n_rows: int, n_waiting: int, room: ModesWorkspace) -> int:
 
 @kernel
 def other_onset(
-    contacts: ContactSet, friction: float, b: FloatArray, room: ModesWorkspace, newton: NewtonRoom, system: System
+    contacts: ContactSet, friction: float, b: FloatArray, room: ModesWorkspace, newton: NewtonWorkspace, system: System
 ) -> int:
     """Return UNIQUE if Coulomb's law allows no onset but rest; OTHER_FOUND: one is in ``room``; or NOT_SHOWN.
 
@@ -265,7 +265,7 @@ def other_onset(
     """
     n_rows = 0
     for i in range(contacts.used[0]):
-        if contacts.rows[i].chosen:
+        if contacts.states[i].chosen:
             if n_rows == CONTACT_LIMIT:
                 return NOT_SHOWN
             room.contacts[n_rows] = i

@@ -79,7 +79,7 @@ def write_normals(contacts: ContactSet, friction: float, basis: PassiveSet, syst
         contact, column = contacts.rows[i], system.columns[i]
         for k in range(7):
             column[k] = 0.0
-        if contact.chosen:
+        if contacts.states[i].chosen:
             for k in range(6):
                 column[k] = contact.columns[0, k]
             column[6] = friction * (pushing_part(contact, basis) + SURELY * length(column, 6))
@@ -221,7 +221,7 @@ def rest_is_unique(
     rows, n = contacts.rows, contacts.used[0]
     clear(rest.held, WRENCH, 1.0)
     for i in range(n):
-        if rows[i].chosen:
+        if contacts.states[i].chosen:
             hold(rest.held, rows[i].columns[0], rest)
     write_normals(contacts, friction, rest.held, system)
     n_sure = find_carrying(contacts, friction, b, room, system)
@@ -242,7 +242,7 @@ def rest_is_unique(
     for place in range(n_sure):
         hold(rest.held, rows[room.contacts[place]].columns[0], rest)
     for i in range(n):
-        if rows[i].chosen:
+        if contacts.states[i].chosen:
             write_outside(rest.held, rows[i].columns[0], system.columns[i])
     write_outside(rest.held, left, system.right_side)
     clear(room.passive, WRENCH, terms)

@@ -1,0 +1,168 @@
+"""Do the contacts balance a load? Forces inside their friction cones that do, or a twist that separates them.
+
+The one place where this is decided, for a run, for the first rest on the way, for a proof and for the least friction.
+On an edge one face that holds or leaves is enough (2.4): a load is balanced if it is with every choice of faces.
+"""
+
+from __future__ import annotations
+
+from cagepose.kernels.algebra.dense import remove_span
+from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, length, rounding_scale
+from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.contact.cone import BALANCED, HELD, ConeWorkspace, clear_cone, cone_residual, write_forces
+from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.coulomb_newton import NewtonWorkspace
+from cagepose.kernels.contact.edges import (
+    CHOICES_LIMIT,
+    ONLY_CARRYING,
+    first_choice,
+    keep_choice,
+    next_choice,
+    return_to_kept,
+)
+from cagepose.kernels.contact.metric import WRENCH, ScaledVector
+from cagepose.kernels.native.kernel import kernel
+
+HELD_WITHOUT_FRICTION, HELD_BY_FRICTION, UNSOLVED, MOVES = 0, 1, 2, 3
+"""What the contacts do, from the least to the most that moves. Of a balance, MOVES says that there is none, and
+UNSOLVED that there are too many choices of faces to ask them all, and that those which were asked hold."""
+RESERVE = 1e-6
+"""A balance that needs all but this part of the friction is at its limit."""
+AT_REST, ON_THE_WAY = 1.0, 0.1
+"""Strictness. A pose on the way is looked at again when the run has got there: it must hold then, too."""
+
+
+class ContactWorkspace:
+    """Memory for one contact problem, and its answer; a record.
+
+    Attributes
+    ----------
+    load, load_terms
+        Given: the scaled wrench of the load, and the length of its terms (which may cancel).
+    cone, newton
+        See there. Without a balance ``cone.passive.residual`` is a scaled twist along which the load works and that no
+        contact force resists (5.6).
+    y, trial
+        Scaled twist of the motion, and that with one choice of faces.
+    span
+        Basis of all that the carrying contacts can push along, if none of them slips.
+    residual
+        What the contacts leave of the load, in lengths of the terms: zero, to rounding, if the object is held.
+    """
+
+    load: ScaledVector
+    load_terms: float
+    cone: ConeWorkspace
+    newton: NewtonWorkspace
+    y: ScaledVector
+    trial: ScaledVector
+    span: PassiveSet
+    residual: float
+
+
+@kernel
+def least_residual(contacts: ContactSet, friction: float, b: FloatArray, terms: float, work: ContactWorkspace) -> float:
+    """Return what contact forces with this friction leave of a load, in lengths of the terms; they are in the cone."""
+    clear_cone(work.cone, b, WRENCH, terms)
+    return residual_with_more(contacts, friction, b, work)
+
+
+@kernel
+def residual_with_more(contacts: ContactSet, friction: float, b: FloatArray, work: ContactWorkspace) -> float:
+    """Return the same, going on from the solution with less friction."""
+    left = cone_residual(contacts, friction, b, work.cone)
+    scale = rounding_scale(work.cone.passive)
+    return left / scale if scale > 0.0 else 0.0
+
+
+@kernel
+def is_balance(contacts: ContactSet, left: float, friction: float, strictness: float, work: ContactWorkspace) -> bool:
+    """Whether a residual counts as zero: up to BALANCED, and where contacts slip up to HELD, in lengths of the terms.
+
+    The part of it that slips at no contact (a swing about one that sticks) has nothing to do with the limit of
+    friction, and has all its digits.
+    """
+    if left <= strictness * BALANCED:
+        return True
+    if friction == 0.0 or left > strictness * HELD:
+        return False
+    span, cone = work.span, work.cone
+    scale = rounding_scale(cone.passive)
+    clear(span, WRENCH, scale)
+    for k in range(cone.passive.used):
+        for j in range(3):
+            append_column(span, contacts.rows[cone.contacts[cone.passive.labels[k]]].columns[j], k, 0.0)
+    for k in range(6):
+        span.target[k] = cone.passive.residual[k]
+    remove_span(span.target, span)
+    return length(span.target, 6) <= strictness * BALANCED * scale
+
+
+@kernel
+def spare_friction(contacts: ContactSet, friction: float, b: FloatArray, terms: float, work: ContactWorkspace) -> int:
+    """Choose the forces of a balance: without friction where those do, else inside their cones where they can, so that
+    no contact looks as if it were about to slip. Return which.
+    """
+    left = least_residual(contacts, 0.0, b, terms, work)
+    if left <= BALANCED:
+        write_forces(work.cone, 0.0, contacts)
+        work.residual = left
+        return HELD_WITHOUT_FRICTION
+    spared = (1.0 - RESERVE) * friction
+    left = residual_with_more(contacts, spared, b, work)
+    if left <= HELD:
+        write_forces(work.cone, spared, contacts)
+        work.residual = left
+    return HELD_BY_FRICTION
+
+
+@kernel
+def equilibrium_with_faces(
+    contacts: ContactSet, friction: float, strictness: float, b: FloatArray, terms: float, work: ContactWorkspace
+) -> int:
+    """Return the code of a load for one choice of faces; forces and residual are filled.
+
+    Parameters
+    ----------
+    contacts, friction
+        Those that are chosen count; the coefficient of friction.
+    strictness
+        Of the tolerance: AT_REST or ON_THE_WAY.
+    b, terms
+        The load's scaled wrench, (at least 6,), and the length of its terms.
+    work
+        Filled.
+    """
+    left = least_residual(contacts, friction, b, terms, work)
+    write_forces(work.cone, friction, contacts)
+    work.residual = left
+    if not is_balance(contacts, left, friction, strictness, work):
+        return MOVES
+    if friction == 0.0:
+        return HELD_WITHOUT_FRICTION
+    return spare_friction(contacts, friction, b, terms, work)
+
+
+@kernel
+def equilibrium(contacts: ContactSet, friction: float, strictness: float, work: ContactWorkspace) -> int:
+    """Return the code of the load in ``work``, whichever faces count on edges: MOVES as soon as it is not balanced.
+
+    Filled: which faces are chosen, their forces, and the residual. For MOVES the faces are those that do not balance
+    it, and the next choices have not been asked.
+    """
+    best_code, best_left = -1, 0.0
+    first_choice(contacts)
+    for _ in range(CHOICES_LIMIT):
+        code = equilibrium_with_faces(contacts, friction, strictness, work.load, work.load_terms, work)
+        if code == MOVES:
+            return MOVES
+        if code > best_code:
+            best_code, best_left = code, work.residual
+            keep_choice(contacts)
+        if not next_choice(contacts, ONLY_CARRYING):
+            break
+    else:
+        best_code = UNSOLVED
+    return_to_kept(contacts)
+    work.residual = best_left
+    return best_code
