@@ -30,10 +30,13 @@ from cagepose.kernels.contact.metric import ScaledVector
 from cagepose.kernels.native.kernel import kernel
 
 BALANCED = 1e-11
-"""In lengths of the terms of the residual. Ten thousand times their rounding: rounding that a nearly dependent set of
-contacts has magnified still counts as balance."""
+"""In lengths of the load: so little of it may be left by forces that balance it."""
 HELD = 1e-9
 """The same at the limit of friction, where round cones leave more: rounding counts by its square root there."""
+FORCES_COUNT = 1e-4
+"""Of their lengths, forces add to the length that a residual is measured in: that allows for their rounding, tenfold."""
+FORCES_LIMIT = 1e6
+"""In lengths of the load. Greater forces, from faces a millionth of a radian from parallel, hold nothing."""
 STEEPER = 1e-13
 """In lengths of the residual: a generator that points along it by so little more than one in use is no better."""
 GENERATOR_LIMIT = 400
@@ -120,6 +123,17 @@ def generator_cost(contacts: ContactSet, i: int, friction: float, cone: ConeWork
 
 
 @kernel
+def residual_in_loads(passive: PassiveSet) -> float:
+    """Return what is left of the load, in its lengths: zero, to rounding, if forces that a part can bear balance it."""
+    forces = rounding_scale(passive) - passive.terms
+    left = length(passive.residual, passive.n_rows)
+    if forces > FORCES_LIMIT * passive.terms:
+        return max(1.0, left / passive.terms)
+    scale = passive.terms + FORCES_COUNT * forces
+    return left / scale if scale > 0.0 else 0.0
+
+
+@kernel
 def renumber_generators(contacts: ContactSet, cone: ConeWorkspace) -> int:
     """Number the generators in use from zero on, so that there is always memory; return how many there are.
 
@@ -179,7 +193,7 @@ def add_generator(contacts: ContactSet, friction: float, b: FloatArray, number: 
 
 @kernel
 def cone_residual(contacts: ContactSet, friction: float, b: FloatArray, cone: ConeWorkspace) -> float:
-    """Return the least |b - sum of contact forces|, going on from the forces in ``cone``.
+    """Return the least |b - sum of contact forces| in lengths of b, going on from the forces in ``cone``.
 
     Parameters
     ----------
@@ -204,11 +218,11 @@ def cone_residual(contacts: ContactSet, friction: float, b: FloatArray, cone: Co
         if (
             friction > 0.0
             and not cone.is_corrected
-            and length(passive.residual, passive.n_rows) <= BALANCED * rounding_scale(passive)
+            and residual_in_loads(passive) <= BALANCED
         ):
             break
         n_generators = add_generator(contacts, friction, b, n_generators, cone)
-    return length(passive.residual, passive.n_rows)
+    return residual_in_loads(passive)
 
 
 @kernel

@@ -7,7 +7,7 @@ On an edge one face that holds or leaves is enough (2.4): a load is balanced if 
 from __future__ import annotations
 
 from cagepose.kernels.algebra.dense import remove_span
-from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, length, rounding_scale
+from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.cone import BALANCED, HELD, ConeWorkspace, clear_cone, cone_residual, write_forces
 from cagepose.kernels.contact.contact_set import ContactSet
@@ -47,7 +47,7 @@ class ContactWorkspace:
     span
         Basis of all that the carrying contacts can push along, if none of them slips.
     residual
-        What the contacts leave of the load, in lengths of the terms: zero, to rounding, if the object is held.
+        What the contacts leave of the load, in its lengths: zero, to rounding, if the object is held.
     """
 
     load: ScaledVector
@@ -62,22 +62,14 @@ class ContactWorkspace:
 
 @kernel
 def least_residual(contacts: ContactSet, friction: float, b: FloatArray, terms: float, work: ContactWorkspace) -> float:
-    """Return what contact forces with this friction leave of a load, in lengths of the terms; they are in the cone."""
+    """Return what contact forces with this friction leave of a load, in lengths of its terms; they are in the cone."""
     clear_cone(work.cone, b, WRENCH, terms)
-    return residual_with_more(contacts, friction, b, work)
-
-
-@kernel
-def residual_with_more(contacts: ContactSet, friction: float, b: FloatArray, work: ContactWorkspace) -> float:
-    """Return the same, going on from the solution with less friction."""
-    left = cone_residual(contacts, friction, b, work.cone)
-    scale = rounding_scale(work.cone.passive)
-    return left / scale if scale > 0.0 else 0.0
+    return cone_residual(contacts, friction, b, work.cone)
 
 
 @kernel
 def is_balance(contacts: ContactSet, left: float, friction: float, strictness: float, work: ContactWorkspace) -> bool:
-    """Whether a residual counts as zero: up to BALANCED, and where contacts slip up to HELD, in lengths of the terms.
+    """Whether a residual counts as zero: up to BALANCED, and where contacts slip up to HELD, in lengths of the load.
 
     The part of it that slips at no contact (a swing about one that sticks) has nothing to do with the limit of
     friction, and has all its digits.
@@ -87,15 +79,15 @@ def is_balance(contacts: ContactSet, left: float, friction: float, strictness: f
     if friction == 0.0 or left > strictness * HELD:
         return False
     span, cone = work.span, work.cone
-    scale = rounding_scale(cone.passive)
-    clear(span, WRENCH, scale)
+    clear(span, WRENCH, cone.passive.terms)
     for k in range(cone.passive.used):
         for j in range(3):
             append_column(span, contacts.rows[cone.contacts[cone.passive.labels[k]]].columns[j], k, 0.0)
+    whole = length(cone.passive.residual, 6)
     for k in range(6):
         span.target[k] = cone.passive.residual[k]
     remove_span(span.target, span)
-    return length(span.target, 6) <= strictness * BALANCED * scale
+    return left * length(span.target, 6) <= strictness * BALANCED * whole
 
 
 @kernel
@@ -109,7 +101,7 @@ def spare_friction(contacts: ContactSet, friction: float, b: FloatArray, terms: 
         work.residual = left
         return HELD_WITHOUT_FRICTION
     spared = (1.0 - RESERVE) * friction
-    left = residual_with_more(contacts, spared, b, work)
+    left = cone_residual(contacts, spared, b, work.cone)  # going on from there
     if left <= HELD:
         write_forces(work.cone, spared, contacts)
         work.residual = left

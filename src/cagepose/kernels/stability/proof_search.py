@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from cagepose.kernels.algebra.least_squares import rounding_scale
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector
@@ -36,7 +35,7 @@ def has_self_stress(contacts: ContactSet, friction: float, room: AnalysisWorkspa
     cone = room.solver.cone
     clear_cone(cone, room.sum_only, N_ROWS, 1.0)
     left = cone_residual(contacts, friction, room.sum_only, cone)
-    return left <= HELD * rounding_scale(cone.passive)
+    return left <= HELD
 
 
 @kernel
