@@ -40,7 +40,7 @@ def rows_of(boxes, points, pose=STILL, touch=TOUCH):
     assert find_contacts(geometry, placement, pose[0], frame_at(body, pose[1]), touch, contacts)
     rows = contacts.rows[: contacts.used[0]]
     near_edge = [is_near_edge(geometry, placement, row.box, row.point, row.axis, touch) for row in rows]
-    return Rows(rows["point"], rows["box"], rows["normal"], rows["gap"], np.array(near_edge, dtype=bool))
+    return Rows(rows["point"], rows["box"], rows["directions"][:, 0], rows["gap"], np.array(near_edge, dtype=bool))
 
 
 def normals(rows):

@@ -33,10 +33,9 @@ BALANCED = 1e-11
 """In lengths of the load: so little of it may be left by forces that balance it."""
 HELD = 1e-9
 """The same at the limit of friction, where round cones leave more: rounding counts by its square root there."""
-FORCES_COUNT = 1e-4
-"""Of their lengths, forces add to the length that a residual is measured in: that allows for their rounding, tenfold."""
-FORCES_LIMIT = 1e6
-"""In lengths of the load. Greater forces, from faces a millionth of a radian from parallel, hold nothing."""
+FORCES_COUNT, FORCES_LIMIT = 1e-5, 1e8
+"""Of their lengths, forces add to the length that a residual is measured in: that allows for their rounding. Up to so
+many lengths of the load: no balance leaves more than 1e-8 of it."""
 STEEPER = 1e-13
 """In lengths of the residual: a generator that points along it by so little more than one in use is no better."""
 GENERATOR_LIMIT = 400
@@ -124,13 +123,10 @@ def generator_cost(contacts: ContactSet, i: int, friction: float, cone: ConeWork
 
 @kernel
 def residual_in_loads(passive: PassiveSet) -> float:
-    """Return what is left of the load, in its lengths: zero, to rounding, if forces that a part can bear balance it."""
-    forces = rounding_scale(passive) - passive.terms
-    left = length(passive.residual, passive.n_rows)
-    if forces > FORCES_LIMIT * passive.terms:
-        return max(1.0, left / passive.terms)
+    """Return what is left of the load, in its lengths: zero, to rounding, if forces balance it."""
+    forces = min(rounding_scale(passive) - passive.terms, FORCES_LIMIT * passive.terms)
     scale = passive.terms + FORCES_COUNT * forces
-    return left / scale if scale > 0.0 else 0.0
+    return length(passive.residual, passive.n_rows) / scale if scale > 0.0 else 0.0
 
 
 @kernel
@@ -215,11 +211,7 @@ def cone_residual(contacts: ContactSet, friction: float, b: FloatArray, cone: Co
     passive = cone.passive
     n_generators = renumber_generators(contacts, cone)
     while 0 <= n_generators < GENERATOR_LIMIT:
-        if (
-            friction > 0.0
-            and not cone.is_corrected
-            and residual_in_loads(passive) <= BALANCED
-        ):
+        if friction > 0.0 and not cone.is_corrected and residual_in_loads(passive) <= BALANCED:
             break
         n_generators = add_generator(contacts, friction, b, n_generators, cone)
     return residual_in_loads(passive)

@@ -39,11 +39,10 @@ class ContactRow:
         Distance from the plane of the face, below zero inside, metres.
     group
         The first row of the same point and box; -1: flush faces of another box say all that this one does.
-    normal, arm
-        Outward unit normal, and the point as seen from the centre of gravity, in the world.
+    directions, arm
+        Outward unit normal and two tangents, rows, and the point as seen from the centre of gravity, in the world.
     columns
-        Scaled wrenches of a unit force along the normal and along two tangents. The contact pushes
-        along their negative.
+        Scaled wrenches of a unit force along these directions. The contact pushes along their negative.
     """
 
     point: int
@@ -52,7 +51,7 @@ class ContactRow:
     side: float
     gap: float
     group: int
-    normal: Annotated[FloatArray, 3]
+    directions: Annotated[FloatArray, 3, 3]
     arm: Annotated[FloatArray, 3]
     columns: Annotated[FloatArray, 3, 6]
 
@@ -105,7 +104,7 @@ def face_is_listed(contacts: ContactSet, first: int, point: int, normal: Vector)
     for i in range(first - 1, -1, -1):
         if contacts.rows[i].point != point:
             return False
-        if norm(minus(vector_from(contacts.rows[i].normal), normal)) <= SAME_NORMAL:
+        if norm(minus(vector_from(contacts.rows[i].directions[0]), normal)) <= SAME_NORMAL:
             return True
     return False
 
@@ -116,12 +115,12 @@ def append_contact(
 ) -> None:
     contact = contacts.rows[contacts.used[0]]
     contact.point, contact.box, contact.axis, contact.side = point, box, axis, side
-    normal = face_normal(placement, box, axis, side)
     for k in range(3):
-        contact.normal[k] = normal[k]
         contact.arm[k] = arm[k]
     for j in range(3):
-        direction = normal if j == 0 else face_normal(placement, box, (axis + j) % 3, 1.0)
+        direction = face_normal(placement, box, (axis + j) % 3, side if j == 0 else 1.0)
+        for k in range(3):
+            contact.directions[j, k] = direction[k]
         write_scaled_wrench(direction, cross(arm, direction), frame, contact.columns[j])
     contacts.used[0] += 1
 

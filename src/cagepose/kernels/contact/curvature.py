@@ -8,30 +8,28 @@ world), u_i the way of the object's material at a sticking one.
 
 from __future__ import annotations
 
-import math
-
-from cagepose.kernels.algebra.least_squares import inner
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.algebra.vector import Vector, cross, dot, plus, row, scaled, vector_from
-from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.algebra.second_order import add_coupling, add_turned_arm
+from cagepose.kernels.algebra.vector import plus, row, scaled, vector_from
+from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.metric import Frame, PhaseLoad, load_arm
 from cagepose.kernels.native.kernel import kernel
 
 
 @kernel
-def add_arm_curvature(force: Vector, arm: Vector, sign: float, frame: Frame, out: FloatArray) -> None:
-    """Add sign (sym(force arm') - (force . arm) 1) to the turning block: the second order of a turned arm."""
-    together = dot(force, arm)
-    for j in range(3):
-        for k in range(3):
-            value = 0.5 * (
-                dot(force, frame.axes[j]) * dot(arm, frame.axes[k])
-                + dot(force, frame.axes[k]) * dot(arm, frame.axes[j])
-            )
-            if j == k:
-                value -= together
-            out[3 + j, 3 + k] += sign * value / (frame.radii[j] * frame.radii[k])
+def clear_matrix(out: FloatArray) -> None:
+    for j in range(6):
+        for k in range(6):
+            out[j, k] = 0.0
+
+
+@kernel
+def add_face_curvature(contact: ContactRow, carried: float, frame: Frame, out: FloatArray) -> None:
+    """Add what a contact that slides, and carries so much, adds to S: -carried Hess g."""
+    normal, arm = vector_from(contact.directions[0]), vector_from(contact.arm)
+    add_turned_arm(normal, arm, -carried, frame.axes, frame.radii, out)
+    add_coupling(normal, -carried, frame.axes, frame.radii, out)
 
 
 @kernel
@@ -39,37 +37,16 @@ def write_curvature(
     contacts: ContactSet, load: PhaseLoad, quaternion: Quaternion, frame: Frame, out: FloatArray
 ) -> None:
     """Write S, (6, 6), for the forces of the contacts, and which of them stick."""
-    for j in range(6):
-        for k in range(6):
-            out[j, k] = 0.0
+    clear_matrix(out)
     for which in range(2):
         arm = load_arm(load, which, quaternion)
-        add_arm_curvature(row(load.forces_world, which), arm, -1.0, frame, out)
+        add_turned_arm(row(load.forces_world, which), arm, -1.0, frame.axes, frame.radii, out)
     for i in range(contacts.used[0]):
-        contact, forces = contacts.rows[i], contacts.states[i].forces
-        if forces[0] <= 0.0:
-            continue
-        normal, arm = vector_from(contact.normal), vector_from(contact.arm)
-        if contacts.states[i].is_sticking:
+        contact, state = contacts.rows[i], contacts.states[i]
+        if state.forces[0] > 0.0 and not state.is_sticking:
+            add_face_curvature(contact, state.forces[0], frame, out)
+        elif state.forces[0] > 0.0:
             force = (0.0, 0.0, 0.0)
             for j in range(3):
-                force = plus(force, scaled(vector_from(contact.columns[j]), forces[j]))
-            add_arm_curvature(force, arm, 1.0, frame, out)
-            continue
-        carried = forces[0]
-        add_arm_curvature(scaled(normal, carried), arm, -1.0, frame, out)
-        for j in range(3):
-            across = cross(normal, frame.axes[j])
-            for k in range(3):
-                value = -carried * across[k] / frame.radii[j]
-                out[k, 3 + j] += value
-                out[3 + j, k] += value
-
-
-@kernel
-def greatest_curvature(curvature: FloatArray) -> float:
-    """Return the Frobenius norm of S, a bound on all its curvatures."""
-    total = 0.0
-    for j in range(6):
-        total += inner(curvature[j], curvature[j], 6)
-    return math.sqrt(total)
+                force = plus(force, scaled(vector_from(contact.directions[j]), state.forces[j]))
+            add_turned_arm(force, vector_from(contact.arm), 1.0, frame.axes, frame.radii, out)

@@ -7,11 +7,10 @@ On an edge one face that holds or leaves is enough (2.4): a load is balanced if 
 from __future__ import annotations
 
 from cagepose.kernels.algebra.dense import remove_span
-from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, length
+from cagepose.kernels.algebra.least_squares import append_column, clear, length
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.contact.cone import BALANCED, HELD, ConeWorkspace, clear_cone, cone_residual, write_forces
+from cagepose.kernels.contact.cone import BALANCED, HELD, clear_cone, cone_residual, write_forces
 from cagepose.kernels.contact.contact_set import ContactSet
-from cagepose.kernels.contact.coulomb_newton import NewtonWorkspace
 from cagepose.kernels.contact.edges import (
     CHOICES_LIMIT,
     ONLY_CARRYING,
@@ -20,7 +19,9 @@ from cagepose.kernels.contact.edges import (
     next_choice,
     return_to_kept,
 )
-from cagepose.kernels.contact.metric import WRENCH, ScaledVector
+from cagepose.kernels.contact.metric import WRENCH, Frame
+from cagepose.kernels.contact.self_stress import OPPOSED, take_out_stopped
+from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
 HELD_WITHOUT_FRICTION, HELD_BY_FRICTION, UNSOLVED, MOVES = 0, 1, 2, 3
@@ -30,34 +31,6 @@ RESERVE = 1e-6
 """A balance that needs all but this part of the friction is at its limit."""
 AT_REST, ON_THE_WAY = 1.0, 0.1
 """Strictness. A pose on the way is looked at again when the run has got there: it must hold then, too."""
-
-
-class ContactWorkspace:
-    """Memory for one contact problem, and its answer; a record.
-
-    Attributes
-    ----------
-    load, load_terms
-        Given: the scaled wrench of the load, and the length of its terms (which may cancel).
-    cone, newton
-        See there. Without a balance ``cone.passive.residual`` is a scaled twist along which the load works and that no
-        contact force resists (5.6).
-    y, trial
-        Scaled twist of the motion, and that with one choice of faces.
-    span
-        Basis of all that the carrying contacts can push along, if none of them slips.
-    residual
-        What the contacts leave of the load, in its lengths: zero, to rounding, if the object is held.
-    """
-
-    load: ScaledVector
-    load_terms: float
-    cone: ConeWorkspace
-    newton: NewtonWorkspace
-    y: ScaledVector
-    trial: ScaledVector
-    span: PassiveSet
-    residual: float
 
 
 @kernel
@@ -136,11 +109,10 @@ def equilibrium_with_faces(
 
 
 @kernel
-def equilibrium(contacts: ContactSet, friction: float, strictness: float, work: ContactWorkspace) -> int:
+def equilibrium_with_edges(contacts: ContactSet, friction: float, strictness: float, work: ContactWorkspace) -> int:
     """Return the code of the load in ``work``, whichever faces count on edges: MOVES as soon as it is not balanced.
 
-    Filled: which faces are chosen, their forces, and the residual. For MOVES the faces are those that do not balance
-    it, and the next choices have not been asked.
+    For MOVES the faces are those that do not balance it, and the next choices have not been asked.
     """
     best_code, best_left = -1, 0.0
     first_choice(contacts)
@@ -158,3 +130,38 @@ def equilibrium(contacts: ContactSet, friction: float, strictness: float, work: 
     return_to_kept(contacts)
     work.residual = best_left
     return best_code
+
+
+@kernel
+def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness: float, work: ContactWorkspace) -> int:
+    """Return the code of the load in ``work``: held, MOVES as soon as one choice of faces does not balance it, or
+    UNSOLVED.
+
+    Filled: which faces are chosen, their forces, and the residual. Where it takes forces without bound, contacts
+    without play are asked to second order, see `self_stress`.
+
+    Parameters
+    ----------
+    contacts
+        At a pose, from `find_contacts`.
+    frame
+        The scaled coordinates there.
+    friction, strictness
+        Coefficient of friction; of the tolerance, AT_REST or ON_THE_WAY.
+    work
+        Given: the load. Filled: the answer.
+    """
+    clear(work.stopped, WRENCH, 1.0)
+    work.load_stopped = 0.0
+    code = equilibrium_with_edges(contacts, friction, strictness, work)
+    pushed = 0.0
+    for i in range(contacts.used[0]):
+        pushed += contacts.states[i].forces[0]
+    if code == MOVES or pushed * OPPOSED > work.load_terms:
+        keep_choice(contacts)
+        if take_out_stopped(contacts, frame, work):
+            code = equilibrium_with_edges(contacts, friction, strictness, work)
+            work.residual += work.load_stopped / work.load_terms
+        else:
+            return_to_kept(contacts)
+    return code

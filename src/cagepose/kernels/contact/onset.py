@@ -15,10 +15,11 @@ from cagepose.kernels.contact.equilibrium import (
     AT_REST,
     MOVES,
     UNSOLVED,
-    ContactWorkspace,
     equilibrium,
     equilibrium_with_faces,
 )
+from cagepose.kernels.contact.metric import Frame
+from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
 FASTER = 1.0 + 1e-9
@@ -36,14 +37,14 @@ def motion_with_faces(
 
 
 @kernel
-def onset(contacts: ContactSet, friction: float, work: ContactWorkspace) -> int:
+def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWorkspace) -> int:
     """Solve the onset of motion at a pose; return its code.
 
     Filled: which faces are chosen, their forces, and in ``work`` the motion y (zero if held) and the residual.
     """
     for k in range(6):
         work.y[k] = 0.0
-    code = equilibrium(contacts, friction, AT_REST, work)
+    code = equilibrium(contacts, frame, friction, AT_REST, work)
     if code != MOVES:
         return code
     fastest, left = -1.0, 0.0

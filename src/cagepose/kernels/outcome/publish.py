@@ -161,8 +161,8 @@ def publish_contacts(start: Start, at: ProofWorkspace, outcome: Outcome) -> None
         )
         contact.force_normal, contact.is_shared = forces[0], at.statuses[i].is_shared
         for k in range(3):
-            contact.normal[k] = found.normal[k]
-            contact.force_tangential[k] = -(forces[1] * found.columns[1, k] + forces[2] * found.columns[2, k])
+            contact.normal[k] = found.directions[0, k]
+            contact.force_tangential[k] = -(forces[1] * found.directions[1, k] + forces[2] * found.directions[2, k])
         outcome.counts[CONTACTS] += 1
 
 

@@ -9,16 +9,16 @@ the balance is unstable, rho is raised until the matrix is positive, and delta l
 
 from __future__ import annotations
 
-import math
 from typing import Annotated
 
+from cagepose.kernels.algebra.dense import add_across, cholesky, confine, frobenius_norm, solve_lower, solve_upper
 from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.contact_set import ContactSet
-from cagepose.kernels.contact.curvature import greatest_curvature
-from cagepose.kernels.contact.equilibrium import AT_REST, MOVES, ContactWorkspace, equilibrium_with_faces
+from cagepose.kernels.contact.equilibrium import AT_REST, MOVES, equilibrium_with_faces
 from cagepose.kernels.contact.metric import WRENCH, ScaledVector
 from cagepose.kernels.contact.onset import motion_with_faces
+from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
 RAISES = 12
@@ -59,74 +59,23 @@ def curvature_along(curvature: FloatArray, y: FloatArray) -> float:
 
 
 @kernel
-def cholesky(matrix: FloatArray, least_pivot: float) -> bool:
-    """Factor a symmetric (6, 6) matrix in place (lower half); False: a pivot is not above ``least_pivot``."""
-    for j in range(6):
-        pivot = matrix[j, j]
-        for k in range(j):
-            pivot -= matrix[j, k] * matrix[j, k]
-        if not pivot > least_pivot:
-            return False
-        matrix[j, j] = math.sqrt(pivot)
-        for i in range(j + 1, 6):
-            for k in range(j):
-                matrix[i, j] -= matrix[i, k] * matrix[j, k]
-            matrix[i, j] /= matrix[j, j]
-    return True
-
-
-@kernel
-def solve_lower(factor: FloatArray, vector: FloatArray, out: FloatArray) -> None:
-    """Write L^-1 vector."""
-    for j in range(6):
-        out[j] = vector[j]
-        for k in range(j):
-            out[j] -= factor[j, k] * out[k]
-        out[j] /= factor[j, j]
-
-
-@kernel
-def solve_upper(factor: FloatArray, vector: FloatArray) -> None:
-    """Replace a vector by L^-T vector."""
-    for j in range(5, -1, -1):
-        for k in range(j + 1, 6):
-            vector[j] -= factor[k, j] * vector[k]
-        vector[j] /= factor[j, j]
-
-
-@kernel
-def keep_along_faces(contacts: ContactSet, room: ImplicitStepWorkspace) -> float:
+def keep_along_faces(contacts: ContactSet, stopped: PassiveSet, room: ImplicitStepWorkspace) -> float:
     """Replace what S has across the faces (and, where contacts stick, along them) by the greatest curvature along them.
 
-    Nothing moves there, but it could make the matrix look as if it were not positive, or rounding of the forces as if
-    it moved the object. Return the least rho that stands out from the rounding.
+    Nothing moves there, nor where contacts without play stop it, but it could make the matrix look as if it were not
+    positive, or rounding of the forces as if it moved the object. Return the least rho that stands out from the
+    rounding.
     """
-    least_rho = LEAST_RHO * greatest_curvature(room.curvature)
-    held, curvature = room.held, room.curvature
-    clear(held, WRENCH, 1.0)
+    least_rho = LEAST_RHO * frobenius_norm(room.curvature)
+    clear(room.held, WRENCH, 1.0)
     for i in range(contacts.used[0]):
         state = contacts.states[i]
         if state.forces[0] > 0.0:
             for which in range(3 if state.is_sticking else 1):
-                append_column(held, contacts.rows[i].columns[which], which, 0.0)
-    for place in range(held.used):
-        across = held.basis[place]
-        for j in range(6):  # first every row, then every column
-            part = inner(curvature[j], across, 6)
-            for k in range(6):
-                curvature[j, k] -= part * across[k]
-        for k in range(6):
-            part = 0.0
-            for j in range(6):
-                part += across[j] * curvature[j, k]
-            for j in range(6):
-                curvature[j, k] -= part * across[j]
-    along = greatest_curvature(curvature)
-    for place in range(held.used):
-        across = held.basis[place]
-        for j in range(6):
-            for k in range(6):
-                curvature[j, k] += along * across[j] * across[k]
+                append_column(room.held, contacts.rows[i].columns[which], which, 0.0)
+    for place in range(stopped.used):
+        append_column(room.held, stopped.basis[place], place, 0.0)
+    add_across(room.curvature, room.held, confine(room.curvature, room.held))
     return least_rho
 
 
@@ -153,7 +102,7 @@ def implicit_step(
     Given are the explicit motion ``solver.y``, ``room.curvature`` along the faces, and which contacts stick; ``turned``
     is memory for the contacts in the step's coordinates.
     """
-    size = greatest_curvature(room.curvature)
+    size = frobenius_norm(room.curvature)
     for _ in range(RAISES):
         write_matrix(room, rho)
         if cholesky(room.factor, 1e-3 * rho):

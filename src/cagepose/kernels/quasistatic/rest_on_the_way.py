@@ -32,7 +32,7 @@ def is_held_on_the_way(setting: Setting, position: Vector, quaternion: Quaternio
             kept += 1
     work.ahead.used[0] = kept
     work.rooms[0].solver.load_terms = write_load(setting.load, quaternion, frame, work.rooms[0].solver.load)
-    return equilibrium(work.ahead, setting.friction, ON_THE_WAY, work.rooms[0].solver) <= HELD_BY_FRICTION
+    return equilibrium(work.ahead, frame, setting.friction, ON_THE_WAY, work.rooms[0].solver) <= HELD_BY_FRICTION
 
 
 @kernel
@@ -55,6 +55,9 @@ def move_contact(contacts: ContactSet, source: int, target: int) -> None:
     same_group = target > 0 and rows[target - 1].point == new.point and rows[target - 1].box == new.box
     new.group = -1 if old.group < 0 else rows[target - 1].group if same_group else target
     for j in range(3):
+        new.arm[j] = old.arm[j]
+        for k in range(3):
+            new.directions[j, k] = old.directions[j, k]
         for k in range(6):
             new.columns[j, k] = old.columns[j, k]
 

@@ -101,7 +101,7 @@ def next_twist(
     end = longest_step(velocity, spin, carries, turn_step_rad, setting.size_m)
     if end < math.inf:
         write_curvature(contacts, setting.load, quaternion, frame, room.stiff.curvature)
-        rho = max(keep_along_faces(contacts, room.stiff), 1.0 / end)
+        rho = max(keep_along_faces(contacts, room.solver.stopped, room.stiff), 1.0 / end)
         is_stiff = abs(curvature_along(room.stiff.curvature, y)) * end > STIFF
         if is_stiff and implicit_step(contacts, work.turned, setting.friction, rho, room.stiff, room.solver):
             velocity, spin = twist_of(room.stiff.delta, frame)
@@ -208,8 +208,9 @@ def next_step(
     code = UNSOLVED
     for _ in range(REFINEMENTS + 1):
         note_touching(work)
-        solver.load_terms = write_load(setting.load, quaternion, frame_at(setting.body, quaternion), solver.load)
-        code = onset(work.contacts, setting.friction, solver) if fits else UNSOLVED
+        frame = frame_at(setting.body, quaternion)
+        solver.load_terms = write_load(setting.load, quaternion, frame, solver.load)
+        code = onset(work.contacts, frame, setting.friction, solver) if fits else UNSOLVED
         is_rest = code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
         if not is_rest or n_refined == REFINEMENTS or gap_left(work.contacts) <= ON_FACE * setting.size_m:
             break

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
 from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement
 from cagepose.kernels.contact.contact_set import CONTACTS_PER_POINT, ContactSet, empty_contact_set
-from cagepose.kernels.contact.equilibrium import ContactWorkspace
+from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.outcome.trace import Trace, empty_trace
 from cagepose.kernels.quasistatic.along_twist import StepWorkspace, empty_step_workspace
 from cagepose.kernels.quasistatic.implicit_step import ImplicitStepWorkspace

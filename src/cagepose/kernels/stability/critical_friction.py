@@ -8,7 +8,8 @@ from cagepose.kernels.algebra.least_squares import length
 from cagepose.kernels.contact.cone import BALANCED, HELD, steepest_tangent, write_forces
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.edges import CHOICES_LIMIT, ONLY_CARRYING, first_choice, next_choice
-from cagepose.kernels.contact.equilibrium import ContactWorkspace, least_residual
+from cagepose.kernels.contact.equilibrium import least_residual
+from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.proof import ProofWorkspace
 

@@ -24,11 +24,11 @@ from cagepose.kernels.contact.equilibrium import (
     HELD_WITHOUT_FRICTION,
     MOVES,
     UNSOLVED,
-    ContactWorkspace,
     equilibrium,
     equilibrium_with_faces,
 )
 from cagepose.kernels.contact.metric import WRENCH, Body, Frame, PhaseLoad, ScaledVector, frame_at, write_load
+from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.second_order import (
     MARGINAL,
@@ -62,8 +62,6 @@ class AnalysisWorkspace:
         See there.
     rest
         Undetermined freedoms.
-    sum_only
-        A load of nothing but a sum of the normal forces.
     wedged
         Whether the contacts can press against each other without a load; asked only by `proof_search`.
     """
@@ -74,7 +72,6 @@ class AnalysisWorkspace:
     modes: ModesWorkspace
     sure: BoundWorkspace
     rest: StabilityWorkspace
-    sum_only: ScaledVector
     wedged: bool
 
 
@@ -93,13 +90,11 @@ class ProofWorkspace(NamedTuple):
 def empty_proof_workspace(geometry: Geometry) -> ProofWorkspace:
     """Return room for one proof (plain Python)."""
     n_contacts = CONTACTS_PER_POINT * len(geometry.points_world)
-    rooms = empty_rows(AnalysisWorkspace, 1)
-    rooms[0].sum_only[6] = 1.0
     return ProofWorkspace(
         empty_placement(geometry),
         empty_contact_set(n_contacts),
         empty_rows(ContactStatus, n_contacts),
-        rooms,
+        empty_rows(AnalysisWorkspace, 1),
         empty_system(max(N_COLUMNS, n_contacts)),
     )
 
@@ -154,7 +149,8 @@ def prove(
         at.rooms[0].solver.residual = 1.0  # no forces were asked for: all of the load is left
         return TOO_MANY_CONTACTS, STABLE_REST, 0
     contacts, room = at.contacts, at.rooms[0]
-    code = equilibrium(contacts, friction, AT_REST, room.solver)
+    frame = frame_at(body, quaternion)
+    code = equilibrium(contacts, frame, friction, AT_REST, room.solver)
     if code == MOVES:
         room.twist_residual = room.solver.residual
         for k in range(6):
@@ -163,16 +159,15 @@ def prove(
     left = room.solver.residual
     clear(room.rest.ways, WRENCH, 1.0)
     if code == UNSOLVED:
-        find_held(contacts, at.statuses, friction, room.rest, at.system)
+        find_held(contacts, at.statuses, friction, room.solver.stopped, room.rest, at.system)
         find_shared(contacts, at.statuses, room.rest)
         return TOO_MANY_CHOICES, MARGINAL, 0
-    frame = frame_at(body, quaternion)
     one_choice = has_one_choice(contacts)
     proof, steady = judge_faces(at, code, one_choice, friction, load, quaternion, frame, size_m)
     if not one_choice:
         return_to_kept(contacts)
         room.solver.residual = left
-        find_held(contacts, at.statuses, friction, room.rest, at.system)
+        find_held(contacts, at.statuses, friction, room.solver.stopped, room.rest, at.system)
     find_shared(contacts, at.statuses, room.rest)
     return proof, steady, room.rest.ways.used
 
@@ -200,7 +195,17 @@ def judge_faces(
         if not one_choice:
             code = equilibrium_with_faces(contacts, friction, AT_REST, solver.load, solver.load_terms, solver)
         with_these = stability(
-            contacts, at.statuses, friction, load, quaternion, frame, solver.load_terms, size_m, room.rest, at.system
+            contacts,
+            at.statuses,
+            friction,
+            solver.stopped,
+            load,
+            quaternion,
+            frame,
+            solver.load_terms,
+            size_m,
+            room.rest,
+            at.system,
         )
         steady = max(steady, with_these)
         if code != HELD_WITHOUT_FRICTION:

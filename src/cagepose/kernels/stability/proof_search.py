@@ -6,36 +6,23 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.geometry import Geometry
-from cagepose.kernels.contact.cone import HELD, N_ROWS, clear_cone, cone_residual
-from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.cone import HELD
 from cagepose.kernels.contact.edges import CHOICES_LIMIT, EVERY, first_choice, keep_choice, next_choice, return_to_kept
 from cagepose.kernels.contact.equilibrium import AT_REST, HELD_BY_FRICTION, MOVES, equilibrium_with_faces
-from cagepose.kernels.contact.metric import Body, PhaseLoad
+from cagepose.kernels.contact.metric import Body, Frame, PhaseLoad, frame_at
 from cagepose.kernels.contact.onset import onset
+from cagepose.kernels.contact.self_stress import self_stress
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.proof import (
     OTHER_ONSET,
     PROVEN_MOVES,
     PROVEN_UNIQUE,
     UNIQUENESS_NOT_SHOWN,
-    AnalysisWorkspace,
     ProofWorkspace,
     prove,
 )
 from cagepose.kernels.stability.uniqueness import OTHER_FOUND, UNIQUE, other_onset
 from cagepose.kernels.stability.uniqueness_bound import rest_is_unique
-
-
-@kernel
-def has_self_stress(contacts: ContactSet, friction: float, room: AnalysisWorkspace) -> bool:
-    """Whether contact forces other than zero, inside their cones, balance each other: a wedge (5.16).
-
-    The sum of their normal forces is asked to be 1, and nothing else.
-    """
-    cone = room.solver.cone
-    clear_cone(cone, room.sum_only, N_ROWS, 1.0)
-    left = cone_residual(contacts, friction, room.sum_only, cone)
-    return left <= HELD
 
 
 @kernel
@@ -80,12 +67,12 @@ def search_onsets(friction: float, at: ProofWorkspace) -> int:
     proof = search_faces(friction, at)
     return_to_kept(contacts)
     room.solver.residual = left
-    room.wedged = proof != PROVEN_UNIQUE and has_self_stress(contacts, friction, room)
+    room.wedged = proof != PROVEN_UNIQUE and self_stress(contacts, friction, room.solver.stress) <= HELD
     return proof
 
 
 @kernel
-def first_motion(friction: float, at: ProofWorkspace) -> None:
+def first_motion(frame: Frame, friction: float, at: ProofWorkspace) -> None:
     """Write into ``at.rooms[0].solver.y`` how an object begins to move that does so by `prove`.
 
     It is the onset that obeys Coulomb's law (5.7), and the residual is then the least that contact forces leave of the
@@ -93,13 +80,13 @@ def first_motion(friction: float, at: ProofWorkspace) -> None:
 
     Parameters
     ----------
-    friction
-        Coefficient of friction.
+    frame, friction
+        The scaled coordinates at the pose, and the coefficient of friction.
     at
         As left by the proof.
     """
     contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
-    if onset(contacts, friction, solver) != MOVES:
+    if onset(contacts, frame, friction, solver) != MOVES:
         solver.residual = room.twist_residual
         for k in range(6):
             solver.y[k] = room.twist[k]
@@ -126,5 +113,5 @@ def judge(
     if code == UNIQUENESS_NOT_SHOWN:
         code = search_onsets(friction, at)
     elif code == PROVEN_MOVES:
-        first_motion(friction, at)
+        first_motion(frame_at(body, quaternion), friction, at)
     return code, steady, n_undetermined

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal
 
+from cagepose.kernels.algebra.dense import frobenius_norm
 from cagepose.kernels.algebra.eigen import symmetric_eigen
 from cagepose.kernels.algebra.least_squares import (
-    ENOUGH_LEFT,
     PassiveSet,
     System,
     append_column,
@@ -15,12 +15,12 @@ from cagepose.kernels.algebra.least_squares import (
     inner,
     length,
     nonnegative_least_squares,
-    orthogonalise,
 )
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
+from cagepose.kernels.algebra.span import extend, write_complement, write_outside, write_reduced
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
-from cagepose.kernels.contact.curvature import greatest_curvature, write_curvature
+from cagepose.kernels.contact.curvature import write_curvature
 from cagepose.kernels.contact.metric import WRENCH, Frame, PhaseLoad, ScaledVector
 from cagepose.kernels.native.kernel import kernel
 
@@ -87,50 +87,23 @@ class StabilityWorkspace:
 
 
 @kernel
-def write_outside(basis: PassiveSet, column: FloatArray, out: FloatArray) -> bool:
-    """Write the part of a column outside the span of a basis; False: there is none, and zero is written."""
-    if basis.used < WRENCH:
-        for k in range(6):
-            out[k] = column[k]
-        size = inner(column, column, 6)
-        left = size
-        for _ in range(2):
-            before = left
-            for place in range(basis.used):
-                part = inner(basis.basis[place], out, 6)
-                for k in range(6):
-                    out[k] -= part * basis.basis[place, k]
-            left = inner(out, out, 6)
-            if left > ENOUGH_LEFT * before:
-                break
-        if left > IN_SPAN * IN_SPAN * size:
-            return True
-    for k in range(6):
-        out[k] = 0.0
-    return False
-
-
-@kernel
-def hold(basis: PassiveSet, column: FloatArray, room: StabilityWorkspace) -> None:
-    """Add a column to a basis unless it lies in its span."""
-    if write_outside(basis, column, room.rest):
-        size = length(room.rest, 6)
-        for k in range(6):
-            basis.basis[basis.used, k] = room.rest[k] / size
-        basis.used += 1
-
-
-@kernel
 def find_held(
-    contacts: ContactSet, statuses: Rows[ContactStatus], friction: float, room: StabilityWorkspace, system: System
+    contacts: ContactSet,
+    statuses: Rows[ContactStatus],
+    friction: float,
+    stopped: PassiveSet,
+    room: StabilityWorkspace,
+    system: System,
 ) -> bool:
-    """Find what the contacts hold; return whether one is at the limit of friction.
+    """Find what the contacts hold, with what they stop to second order; return whether one is at the limit of friction.
 
     A contact without force holds too if another balance loads it: then it cannot open without work. That is so where
     -a_j lies in the cone of the others, seen outside the span of those that carry.
     """
     at_limit = False
     clear(room.held, WRENCH, 1.0)
+    for place in range(stopped.used):
+        extend(room.held, stopped.basis[place], IN_SPAN)
     n = contacts.used[0]
     for i in range(n):
         state, status = contacts.states[i], statuses[i]
@@ -138,15 +111,15 @@ def find_held(
         status.is_equality = state.chosen and carried > 0.0
         status.is_implied = state.is_sticking = False
         if status.is_equality:
-            hold(room.held, contacts.rows[i].columns[0], room)
+            extend(room.held, contacts.rows[i].columns[0], IN_SPAN)
             if friction > 0.0:
                 tangential = math.sqrt(one * one + two * two)
                 state.is_sticking = tangential < (1.0 - AT_LIMIT) * friction * carried
                 at_limit = at_limit or not state.is_sticking
     for i in range(n):
         if contacts.states[i].is_sticking:
-            hold(room.held, contacts.rows[i].columns[1], room)
-            hold(room.held, contacts.rows[i].columns[2], room)
+            extend(room.held, contacts.rows[i].columns[1], IN_SPAN)
+            extend(room.held, contacts.rows[i].columns[2], IN_SPAN)
     found = True
     while found:
         found = False
@@ -154,7 +127,7 @@ def find_held(
             may_open = contacts.states[i].chosen and not statuses[i].is_equality
             if may_open and lies_in_cone(contacts, statuses, i, -1.0, room, system):
                 statuses[i].is_equality = True
-                hold(room.held, contacts.rows[i].columns[0], room)
+                extend(room.held, contacts.rows[i].columns[0], IN_SPAN)
                 found = True
     return at_limit
 
@@ -177,9 +150,9 @@ def lies_in_cone(
     for k in range(contacts.used[0]):
         may_open = contacts.states[k].chosen and not statuses[k].is_equality
         if k != i and may_open and not statuses[k].is_implied:
-            write_outside(room.held, contacts.rows[k].columns[0], system.columns[n_others])
+            write_outside(room.held, contacts.rows[k].columns[0], IN_SPAN, system.columns[n_others])
             n_others += 1
-    if not write_outside(room.held, contacts.rows[i].columns[0], system.right_side):
+    if not write_outside(room.held, contacts.rows[i].columns[0], IN_SPAN, system.right_side):
         return True
     for k in range(6):
         system.right_side[k] *= sign
@@ -210,7 +183,7 @@ def list_one_sided(
 @kernel
 def is_same_face(one: ContactRow, other: ContactRow) -> bool:
     """Whether two rows are flush faces of two boxes over one point."""
-    return one.point == other.point and inner(one.normal, other.normal, 3) > 1.0 - IN_SPAN
+    return one.point == other.point and inner(one.directions[0], other.directions[0], 3) > 1.0 - IN_SPAN
 
 
 @kernel
@@ -220,8 +193,8 @@ def find_shared(contacts: ContactSet, statuses: Rows[ContactStatus], room: Stabi
     clear(span, WRENCH, 1.0)
     for i in range(n):
         if contacts.states[i].is_sticking:
-            hold(span, rows[i].columns[1], room)
-            hold(span, rows[i].columns[2], room)
+            extend(span, rows[i].columns[1], IN_SPAN)
+            extend(span, rows[i].columns[2], IN_SPAN)
     n_tangential = span.used
     for i in range(n):
         statuses[i].is_shared = False
@@ -230,28 +203,8 @@ def find_shared(contacts: ContactSet, statuses: Rows[ContactStatus], room: Stabi
         span.used = n_tangential
         for k in range(n):
             if statuses[k].is_equality and not is_same_face(rows[k], rows[i]):
-                hold(span, rows[k].columns[0], room)
-        statuses[i].is_shared = not write_outside(span, rows[i].columns[0], room.rest)
-
-
-@kernel
-def find_free(room: StabilityWorkspace) -> int:
-    """Complete the basis of what is held; write what is added into ``free`` and return how many there are."""
-    n_held = int(room.held.used)
-    for place in range(n_held, 6):
-        best, best_size = 0, -1.0
-        for axis in range(6):
-            left = 1.0
-            for k in range(place):
-                left -= room.held.basis[k, axis] * room.held.basis[k, axis]
-            if left > best_size:
-                best, best_size = axis, left
-        for k in range(6):
-            room.held.columns[place, k] = 1.0 if k == best else 0.0
-        orthogonalise(room.held, place)
-        for k in range(6):
-            room.free[place - n_held, k] = room.held.basis[place, k]
-    return 6 - n_held
+                extend(span, rows[k].columns[0], IN_SPAN)
+        statuses[i].is_shared = not write_outside(span, rows[i].columns[0], IN_SPAN, room.rest)
 
 
 @kernel
@@ -272,7 +225,7 @@ def hold_some(contacts: ContactSet, n_one_sided: int, chosen: int, room: Stabili
     for k in range(n_one_sided):
         if (chosen >> k) & 1:
             column = contacts.rows[room.one_sided[k]].columns[0]
-            if not write_outside(room.held, column, room.rest):
+            if not write_outside(room.held, column, IN_SPAN, room.rest):
                 return False
             append_column(room.held, column, k, 0.0)
     return True
@@ -283,6 +236,7 @@ def stability(
     contacts: ContactSet,
     statuses: Rows[ContactStatus],
     friction: float,
+    stopped: PassiveSet,
     load: PhaseLoad,
     quaternion: Quaternion,
     frame: Frame,
@@ -297,12 +251,12 @@ def stability(
     On the cone of twists that close no contact, the least curvature is an eigenvalue over the span of one of its faces,
     and its eigenvector lies in that face. So all sets of contacts that may open are held in turn.
     """
-    at_limit = find_held(contacts, statuses, friction, room, system)
+    at_limit = find_held(contacts, statuses, friction, stopped, room, system)
     n_held = room.held.used
     n_one_sided = list_one_sided(contacts, statuses, room, system)
     code = MARGINAL if at_limit or n_one_sided < 0 else STABLE_REST
     write_curvature(contacts, load, quaternion, frame, room.curvature)
-    flat = FLAT * max(greatest_curvature(room.curvature), terms / size_m)
+    flat = FLAT * max(frobenius_norm(room.curvature), terms / size_m)
     for chosen in range(1 << max(n_one_sided, 0)):
         room.held.used = n_held
         if hold_some(contacts, n_one_sided, chosen, room):
@@ -314,12 +268,8 @@ def stability(
 @kernel
 def least_curvature(contacts: ContactSet, n_one_sided: int, flat: float, room: StabilityWorkspace) -> int:
     """Return the code of stability over the twists that what is held leaves free."""
-    n_free = find_free(room)
-    for i in range(n_free):
-        for j in range(n_free):
-            room.reduced[i, j] = 0.0
-            for k in range(6):
-                room.reduced[i, j] += room.free[i, k] * inner(room.curvature[k], room.free[j], 6)
+    n_free = write_complement(room.held, room.free)
+    write_reduced(room.curvature, room.free, n_free, room.reduced)
     symmetric_eigen(room.reduced, room.vectors, n_free)
     code = STABLE_REST
     for e in range(n_free):

@@ -23,11 +23,12 @@ from cagepose.kernels.algebra.least_squares import (
     rounding_scale,
 )
 from cagepose.kernels.algebra.record import FloatArray, IntArray
+from cagepose.kernels.algebra.span import extend, write_complement, write_outside
 from cagepose.kernels.contact.cone import HELD
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.metric import WRENCH, ScaledVector
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.stability.second_order import IN_SPAN, StabilityWorkspace, find_free, hold, write_outside
+from cagepose.kernels.stability.second_order import IN_SPAN, StabilityWorkspace
 
 SURELY = 1e-6
 """What a proof must have to spare, in lengths of the terms and in parts of the friction: a thousand times what rounding
@@ -222,12 +223,12 @@ def rest_is_unique(
     clear(rest.held, WRENCH, 1.0)
     for i in range(n):
         if contacts.states[i].chosen:
-            hold(rest.held, rows[i].columns[0], rest)
+            extend(rest.held, rows[i].columns[0], IN_SPAN)
     write_normals(contacts, friction, rest.held, system)
     n_sure = find_carrying(contacts, friction, b, room, system)
     if n_sure == 0:
         return False
-    n_free = find_free(rest)
+    n_free = write_complement(rest.held, rest.free)
     if write_shared_friction(contacts, n_sure, b, n_free, rest.free, room, system.right_side) > 1.0 - SURELY:
         return False
     left = room.pressed
@@ -240,10 +241,10 @@ def rest_is_unique(
     # Contacts that surely carry do not open, so their normals may take any part of the rest here, even a pull.
     clear(rest.held, WRENCH, 1.0)
     for place in range(n_sure):
-        hold(rest.held, rows[room.contacts[place]].columns[0], rest)
+        extend(rest.held, rows[room.contacts[place]].columns[0], IN_SPAN)
     for i in range(n):
         if contacts.states[i].chosen:
-            write_outside(rest.held, rows[i].columns[0], system.columns[i])
-    write_outside(rest.held, left, system.right_side)
+            write_outside(rest.held, rows[i].columns[0], IN_SPAN, system.columns[i])
+    write_outside(rest.held, left, IN_SPAN, system.right_side)
     clear(room.passive, WRENCH, terms)
     return nonnegative_least_squares(system, n, room.passive) <= HELD * rounding_scale(room.passive)

@@ -1,0 +1,76 @@
+"""Spans in six dimensions, as orthonormal rows of ``PassiveSet.basis``: what lies in one, and what is free of it."""
+
+from __future__ import annotations
+
+import math
+
+from cagepose.kernels.algebra.least_squares import ENOUGH_LEFT, PassiveSet, inner, orthogonalise
+from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.native.kernel import kernel
+
+N = 6
+
+
+@kernel
+def write_outside(basis: PassiveSet, vector: FloatArray, least: float, out: FloatArray) -> bool:
+    """Write the part of a vector outside the span; False: it is at most the fraction ``least``, and zero is written."""
+    if basis.used < N:
+        for k in range(N):
+            out[k] = vector[k]
+        size = inner(vector, vector, N)
+        left = size
+        for _ in range(2):
+            before = left
+            for place in range(basis.used):
+                part = inner(basis.basis[place], out, N)
+                for k in range(N):
+                    out[k] -= part * basis.basis[place, k]
+            left = inner(out, out, N)
+            if left > ENOUGH_LEFT * before:
+                break
+        if left > least * least * size:
+            return True
+    for k in range(N):
+        out[k] = 0.0
+    return False
+
+
+@kernel
+def extend(basis: PassiveSet, vector: FloatArray, least: float) -> None:
+    """Add a vector to the span unless it lies in it, but for the fraction ``least``."""
+    new = basis.basis[basis.used]
+    if write_outside(basis, vector, least, new):
+        size = math.sqrt(inner(new, new, N))
+        for k in range(N):
+            new[k] /= size
+        basis.used += 1
+
+
+@kernel
+def write_complement(basis: PassiveSet, free: FloatArray) -> int:
+    """Write a basis of all that is orthogonal to a span into the rows of ``free``, (6, 6); return their number."""
+    n_held = int(basis.used)
+    for place in range(n_held, N):
+        best, best_size = 0, -1.0
+        for axis in range(N):
+            left = 1.0
+            for k in range(place):
+                left -= basis.basis[k, axis] * basis.basis[k, axis]
+            if left > best_size:
+                best, best_size = axis, left
+        for k in range(N):
+            basis.columns[place, k] = 1.0 if k == best else 0.0
+        orthogonalise(basis, place)
+        for k in range(N):
+            free[place - n_held, k] = basis.basis[place, k]
+    return N - n_held
+
+
+@kernel
+def write_reduced(matrix: FloatArray, free: FloatArray, n_free: int, out: FloatArray) -> None:
+    """Write a symmetric (6, 6) matrix as it is seen by the first ``n_free`` rows of ``free``: F M F'."""
+    for i in range(n_free):
+        for j in range(n_free):
+            out[i, j] = 0.0
+            for k in range(N):
+                out[i, j] += free[i, k] * inner(matrix[k], free[j], N)

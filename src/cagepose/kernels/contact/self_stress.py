@@ -1,0 +1,132 @@
+"""Contacts without play: motions that they allow to first order and stop to second, equations (5.21) and (5.22).
+
+A plate between two opposite points that are as far apart as it is thick can tip, as far as velocities go: but it would
+have to be thinner. Contacts that can press against each other without a load (a self-stress sigma, sum sigma_i a_i = 0)
+keep their gaps at zero, and of the motions that do so those with sum sigma_i (second derivative of gap i) < 0 go in.
+They are taken out of the contact problem: the object does not begin to move that way, and what the load does there is
+carried by forces without bound.
+"""
+
+from __future__ import annotations
+
+import math
+
+from cagepose.kernels.algebra.dense import frobenius_norm, remove_span
+from cagepose.kernels.algebra.eigen import symmetric_eigen
+from cagepose.kernels.algebra.least_squares import PassiveSet, clear, inner, length
+from cagepose.kernels.algebra.span import extend, write_complement, write_outside, write_reduced
+from cagepose.kernels.contact.cone import N_ROWS, clear_cone, cone_residual
+from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.curvature import add_face_curvature, clear_matrix
+from cagepose.kernels.contact.edges import first_choice, last_of_group
+from cagepose.kernels.contact.metric import WRENCH, Frame
+from cagepose.kernels.contact.workspace import ContactWorkspace, SelfStressWorkspace
+from cagepose.kernels.native.kernel import kernel
+
+OPPOSED = 1e-5
+"""In lengths of the wrenches: what may be left of forces that cancel. A plate that touches on both sides, within the
+touch tolerance, can be tilted by up to the root of that tolerance; and its forces would be 1e5 loads and more."""
+STOPS = 1e-6
+"""In the greatest second derivative: a smaller one is rounding."""
+
+
+@kernel
+def self_stress(contacts: ContactSet, friction: float, stress: SelfStressWorkspace) -> float:
+    """Return what is left of the least imbalance of forces at the chosen contacts whose normal parts add up to 1; they
+    are in ``stress.cone``.
+    """
+    for k in range(WRENCH):
+        stress.twist[k] = 0.0
+    stress.twist[N_ROWS - 1] = 1.0
+    clear_cone(stress.cone, stress.twist, N_ROWS, 1.0)
+    return cone_residual(contacts, friction, stress.twist, stress.cone)
+
+
+@kernel
+def choose_opposed(contacts: ContactSet) -> bool:
+    """Choose the contacts on faces, not on edges, that another one has a part against; False: none has."""
+    rows, states = contacts.rows, contacts.states
+    first_choice(contacts)
+    found = False
+    for i in range(contacts.used[0]):
+        states[i].chosen = states[i].chosen and last_of_group(contacts, i) == i
+    for i in range(contacts.used[0]):
+        states[i].is_rejected = True
+        for j in range(contacts.used[0]):
+            if states[i].chosen and states[j].chosen and inner(rows[i].directions[0], rows[j].directions[0], 3) < 0.0:
+                states[i].is_rejected = False
+                break
+    for i in range(contacts.used[0]):
+        states[i].chosen = states[i].chosen and not states[i].is_rejected
+        found = found or states[i].chosen
+    return found
+
+
+@kernel
+def add_self_stress(contacts: ContactSet, frame: Frame, stress: SelfStressWorkspace) -> None:
+    """Add the normals of the self-stress in ``stress.cone`` to the span that is held, and its second derivatives to
+    the others'. Its contacts are not chosen any more.
+    """
+    passive = stress.cone.passive
+    for k in range(passive.used):
+        i = stress.cone.contacts[passive.labels[k]]
+        extend(stress.held, contacts.rows[i].columns[0], OPPOSED)
+        add_face_curvature(contacts.rows[i], passive.x[k], frame, stress.curvature)
+        contacts.states[i].chosen = False
+
+
+@kernel
+def find_stopped(stress: SelfStressWorkspace, stopped: PassiveSet) -> None:
+    """Write a basis of the motions that keep all the gaps held and that the second derivatives stop."""
+    n_free = write_complement(stress.held, stress.free)
+    write_reduced(stress.curvature, stress.free, n_free, stress.reduced)
+    symmetric_eigen(stress.reduced, stress.vectors, n_free)
+    least = STOPS * frobenius_norm(stress.curvature)
+    for e in range(n_free):
+        if stress.reduced[e, e] > least:
+            for k in range(WRENCH):
+                stress.twist[k] = 0.0
+                for i in range(n_free):
+                    stress.twist[k] += stress.vectors[i, e] * stress.free[i, k]
+            extend(stopped, stress.twist, OPPOSED)
+
+
+@kernel
+def take_out_stopped(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> bool:
+    """Find the motions that contacts without play stop to second order, and take them out of wrenches and load; False:
+    there are none.
+
+    Parameters
+    ----------
+    contacts
+        At a pose, from `find_contacts`. Which are chosen is lost.
+    frame
+        The scaled coordinates there.
+    work
+        Given: the load. Filled: ``stopped``, a basis of these motions.
+    """
+    stress, stopped = work.stress, work.stopped
+    clear(stopped, WRENCH, 1.0)
+    if contacts.used[0] < 2 or not choose_opposed(contacts):
+        return False
+    clear(stress.held, WRENCH, 1.0)
+    clear_matrix(stress.curvature)
+    while self_stress(contacts, 0.0, stress) <= OPPOSED:
+        add_self_stress(contacts, frame, stress)
+    if stress.held.used > 0:
+        find_stopped(stress, stopped)
+    if stopped.used == 0:
+        return False
+    before = length(work.load, WRENCH)
+    remove_span(work.load, stopped)
+    after = length(work.load, WRENCH)
+    work.load_stopped = math.sqrt(max((before - after) * (before + after), 0.0))
+    for i in range(contacts.used[0]):
+        columns = contacts.rows[i].columns
+        for j in range(3):
+            left = write_outside(stopped, columns[j], OPPOSED, stress.twist)
+            for k in range(WRENCH):
+                columns[j, k] = stress.twist[k]
+            if j == 0 and not left:  # it stops nothing that is not stopped already
+                contacts.rows[i].group = -1
+    return True
