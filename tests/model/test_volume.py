@@ -228,6 +228,19 @@ def test_boxes_along_the_axes_match_inclusion_and_exclusion(seed):
     assert_allclose(found.second_moment_m2, rotation @ second @ rotation.T, rtol=0.0, atol=1e-13)
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_a_box_turned_otherwise_inside_of_boxes_turned_alike_changes_nothing(seed):
+    """With it, they are cut up as polyhedra and not as boxes."""
+    rng = np.random.default_rng(seed)
+    rotation = random_rotation(rng)
+    half_sizes, positions = rng.integers(1, 5, (8, 3)) / 4.0, rng.integers(-3, 4, (8, 3)) / 4.0 @ rotation.T
+    alike = [(half, position, rotation) for half, position in zip(half_sizes, positions, strict=True)]
+    found, cut = moments(*alike), moments(*alike, ([0.1] * 3, positions[0], random_rotation(rng)))
+    assert_allclose(found.volume_m3, cut.volume_m3, rtol=1e-13)
+    assert_allclose(found.centroid_m, cut.centroid_m, rtol=0.0, atol=1e-13)
+    assert_allclose(found.second_moment_m2, cut.second_moment_m2, rtol=0.0, atol=1e-13)
+
+
 def test_an_l_of_two_bars_by_hand():
     """Bars of 4 x 1 x 1 and 1 x 3 x 1 (without the corner), centroids (2, 0.5) and (0.5, 2.5), so (19, 19) / 14.
 

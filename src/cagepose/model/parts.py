@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from cagepose.errors import SceneError
 from cagepose.model.checks import FloatArray, ProblemList, duplicates, finite_array
 from cagepose.model.pose import Pose
-from cagepose.model.volume import VolumeMoments, union_moments
+from cagepose.model.volume import BOX_SIGNS, VolumeMoments, union_moments
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -53,8 +53,7 @@ class Box:
 
     def corners_object(self) -> FloatArray:
         """The eight corners in the object's frame, (8, 3), metres."""
-        signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
-        return self.pose_object_box.transform(signs * self.size_m / 2.0)
+        return self.pose_object_box.transform(BOX_SIGNS * self.size_m / 2.0)
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -148,7 +147,7 @@ class Object:
 
     @cached_property
     def _union_moments(self) -> VolumeMoments:
-        """Taken once, and only where needed: 40 boxes take 0.4 s."""
+        """Taken once, and only where needed: 40 boxes that are turned in all ways take 0.6 s."""
         return union_moments(
             np.array([box.size_m for box in self.boxes]) / 2.0,
             np.array([box.pose_object_box.position_m for box in self.boxes]),

@@ -3,7 +3,8 @@
 Box after box, the part outside all earlier boxes is added up. To take one box out of a convex piece, the piece is cut
 at the box's six planes in turn; what lies beyond a plane is a new convex piece, and what is left after all six lies
 inside the box and is dropped. The moments of a convex piece come from the tetrahedra over its faces (divergence
-theorem), seen from one of its own corners, so that a far-away origin costs no digits.
+theorem), seen from one of its own corners, so that a far-away origin costs no digits. Boxes that are all turned alike
+are cut into boxes, thirty times as fast.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ ON_PLANE = 32.0 * float(np.finfo(np.float64).eps)
 Flush and identical boxes are then cut along their common plane and not into slivers. A larger value would lose volume:
 a layer of this thickness over a face may be counted twice or not at all."""
 
-_BOX_SIGNS = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+BOX_SIGNS = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+"""Corners of a box in half edge lengths, (8, 3)."""
 _BOX_FACES = ([0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3])
 
 
@@ -54,6 +56,10 @@ class _Piece:
     faces: tuple[list[int], ...]
 
 
+_Aligned = tuple[tuple[float, float], ...]
+"""A box along the axes: its middle and its half size along each."""
+
+
 def union_moments(half_sizes_m: FloatArray, positions_m: FloatArray, rotations: FloatArray) -> VolumeMoments:
     """Return the moments of the union of n boxes; parts that several boxes share count once.
 
@@ -76,21 +82,33 @@ def union_moments(half_sizes_m: FloatArray, positions_m: FloatArray, rotations: 
     unit_m = 2.0 ** float(np.frexp(max(half_sizes_m.max(), np.abs(positions_m - origin).max()))[1])
     half_sizes = half_sizes_m / unit_m
     centers = (positions_m - origin) / unit_m
+    # Large boxes first: they swallow small ones whole, which otherwise would cut them up (40 boxes: 0.4 s, not 2.4 s).
+    order = np.argsort(-half_sizes.prod(axis=1), kind="stable").tolist()
+    moments_of = _aligned_moments if (rotations == rotations[0]).all() else _turned_moments
+    volume, centroid, second_moment = moments_of(half_sizes[order], centers[order], rotations[order])
+    centroid_m = origin + centroid * unit_m
+    second_moment_m2 = (second_moment + second_moment.T) / 2.0 * unit_m**2  # its two sides are rounded differently
+    centroid_m.setflags(write=False)
+    second_moment_m2.setflags(write=False)
+    return VolumeMoments(volume * unit_m**3, centroid_m, second_moment_m2)
+
+
+def _turned_moments(
+    half_sizes: FloatArray, centers: FloatArray, rotations: FloatArray
+) -> tuple[float, FloatArray, FloatArray]:
+    """Return volume, centroid and second moment of boxes that are turned in any way."""
     boxes = [
-        _Piece(center + (_BOX_SIGNS * half) @ rotation.T, _BOX_FACES)
+        _Piece(center + (BOX_SIGNS * half) @ rotation.T, _BOX_FACES)
         for half, center, rotation in zip(half_sizes, centers, rotations, strict=True)
     ]
     tolerance = ON_PLANE * max(float(np.abs(box.points).max()) for box in boxes)
-    # Large boxes first: they swallow small ones whole, which otherwise would cut them up (40 boxes: 0.4 s, not 2.4 s).
-    order = np.argsort(-half_sizes.prod(axis=1), kind="stable").tolist()
     parts = []
-    for place, index in enumerate(order):
-        pieces = [boxes[index]]
-        for other in order[:place]:
-            cutter = (half_sizes[other], centers[other], rotations[other])
+    for place, box in enumerate(boxes):
+        pieces = [box]
+        for cutter in zip(half_sizes[:place], centers[:place], rotations[:place], strict=True):
             pieces = [left for piece in pieces for left in _outside(piece, *cutter, tolerance)]
-        if len(pieces) == 1 and pieces[0] is boxes[index]:
-            parts.append(_box_samples(boxes[index], half_sizes[index], centers[index]))
+        if len(pieces) == 1 and pieces[0] is box:
+            parts.append(_box_samples(box, half_sizes[place], centers[place]))
         else:
             parts += [_piece_samples(piece) for piece in pieces]
     weights = np.concatenate([part[0] for part in parts])
@@ -99,11 +117,55 @@ def union_moments(half_sizes_m: FloatArray, positions_m: FloatArray, rotations: 
     centroid = weights @ points / volume
     arms = points - centroid  # all terms of the second moment are then squares, and none takes digits from another
     second_moment = np.einsum("n,ni,nj->ij", weights, arms, arms) / volume
-    centroid_m = origin + centroid * unit_m
-    second_moment_m2 = (second_moment + second_moment.T) / 2.0 * unit_m**2  # its two sides are rounded differently
-    centroid_m.setflags(write=False)
-    second_moment_m2.setflags(write=False)
-    return VolumeMoments(volume * unit_m**3, centroid_m, second_moment_m2)
+    return volume, centroid, second_moment
+
+
+def _aligned_moments(
+    half_sizes: FloatArray, centers: FloatArray, rotations: FloatArray
+) -> tuple[float, FloatArray, FloatArray]:
+    """As `_turned_moments`, for boxes that are all turned alike."""
+    rotation = rotations[0]
+    centers = centers @ rotation
+    tolerance = ON_PLANE * float((np.abs(centers) + half_sizes).max())
+    boxes: list[_Aligned] = [
+        tuple(zip(*box, strict=True)) for box in zip(centers.tolist(), half_sizes.tolist(), strict=True)
+    ]
+    parts = list[_Aligned]()
+    for place, box in enumerate(boxes):
+        pieces = [box]
+        for cutter in boxes[:place]:
+            pieces = [left for piece in pieces for left in _outside_aligned(piece, cutter, tolerance)]
+        parts += pieces
+    middles, halves = np.moveaxis(np.array(parts), 2, 0)
+    volumes = 8.0 * halves.prod(axis=1)
+    volume = float(volumes.sum())
+    centroid = volumes @ middles / volume
+    arms = middles - centroid
+    second_moment = (arms.T * volumes @ arms + np.diag(volumes @ halves**2 / 3.0)) / volume
+    return volume, rotation @ centroid, rotation @ second_moment @ rotation.T
+
+
+def _outside_aligned(piece: _Aligned, box: _Aligned, tolerance: float) -> Iterator[_Aligned]:
+    """As `_outside`, for two boxes along the axes."""
+    for (middle, half), (box_middle, box_half) in zip(piece, box, strict=True):
+        if abs(middle - box_middle) >= half + box_half - tolerance:
+            yield piece
+            return
+    for axis in range(3):
+        (middle, half), (box_middle, box_half) = piece[axis], box[axis]
+        low, high = middle - half, middle + half
+        box_low, box_high = box_middle - box_half, box_middle + box_half
+        if high - box_high > tolerance:
+            yield _with_span(piece, axis, box_high, high)
+            high = box_high
+            piece = _with_span(piece, axis, low, high)
+        if box_low - low > tolerance:
+            yield _with_span(piece, axis, low, box_low)
+            piece = _with_span(piece, axis, box_low, high)
+
+
+def _with_span(box: _Aligned, axis: int, low: float, high: float) -> _Aligned:
+    return (*box[:axis], ((low + high) / 2.0, (high - low) / 2.0), *box[axis + 1 :])
 
 
 def _outside(
