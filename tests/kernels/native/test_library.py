@@ -93,6 +93,15 @@ def test_what_is_no_library_is_told_with_its_remedy(tmp_path, kind):
         Library(path)
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="only ELF files say where they end")
+@pytest.mark.parametrize("share", [0.01, 0.5, 0.999])
+def test_half_a_library_is_refused_before_it_can_end_the_process(tmp_path, share):
+    path, real = tmp_path / FILE_NAME, LIBRARY.read_bytes()
+    path.write_bytes(real[: int(share * len(real))])
+    with pytest.raises(KernelsError, match=r"the library of kernels cannot be loaded \(the file is cut off\); build"):
+        Library(path)
+
+
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
     """A copy of the program's sources and its library, as in a checkout."""

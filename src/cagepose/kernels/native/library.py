@@ -10,6 +10,7 @@ import ctypes
 import hashlib
 import json
 import os
+import struct
 import sys
 from collections.abc import Callable
 from functools import cache
@@ -47,6 +48,7 @@ class Library:
         if not path.exists():
             raise KernelsError(f"{path}: the library of kernels is missing; {REMEDY}")
         try:
+            _check_whole(path)
             self._library = ctypes.CDLL(str(path))
         except OSError as error:
             raise KernelsError(f"{path}: the library of kernels cannot be loaded ({error}); {REMEDY}") from None
@@ -72,6 +74,16 @@ class Library:
         """Return the machine code of an entry: ``int32_t name(int64_t *slots, double *the_same)``."""
         found: Callable[..., int] = self._library[f"{name}.{self.level}"]
         return found
+
+
+def _check_whole(path: Path) -> None:
+    """Refuse an ELF file (Linux) that ends before its table of sections: loading half a file ends the process."""
+    with path.open("rb") as file:
+        head = file.read(64)
+    if head.startswith(b"\x7fELF") and len(head) == 64:
+        (table,), (size, n_sections) = struct.unpack_from("<Q", head, 40), struct.unpack_from("<HH", head, 58)
+        if path.stat().st_size < table + size * n_sections:
+            raise OSError("the file is cut off")
 
 
 @cache
