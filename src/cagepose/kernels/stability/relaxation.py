@@ -47,7 +47,7 @@ WIDER = 1e-4
 """A twist is looked for that no force inside cones wider by this part drives, so that few generators are enough."""
 DRIVEN = 1e-14
 """Of a twist and a wrench of unit length: less power is rounding."""
-PROVEN = 1e-13
+PROVEN = 5e-13
 """The same of the sum of twists that is the proof."""
 NO_CUT = 1e-6
 """In lengths of the motion: what forces miss of it by less, they make."""
@@ -276,10 +276,14 @@ def keep_cut(room: Relaxation, system: System) -> bool:
     """Note the twist found; False: there is no room."""
     if room.n_cuts == CUT_LIMIT:
         return False
-    residual, cut = room.forces.residual, room.cuts[room.n_cuts]
-    size = length(residual, WRENCH)
+    passive, cut = room.forces, room.cuts[room.n_cuts]
+    for k in range(passive.used):  # once more: across the forces in use to rounding of its own length
+        part = inner(passive.basis[k], passive.residual, WRENCH)
+        for j in range(6):
+            passive.residual[j] -= part * passive.basis[k, j]
+    size = length(passive.residual, WRENCH)
     for k in range(6):
-        cut[k] = -residual[k] / size
+        cut[k] = -passive.residual[k] / size
         system.columns[room.n_velocities + room.n_cuts, k] = cut[k]
     room.n_cuts += 1
     return True
