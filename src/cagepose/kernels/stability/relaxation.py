@@ -33,7 +33,8 @@ from cagepose.kernels.native.kernel import kernel
 CONTACT_LIMIT = 24
 """More contacts than this: not asked."""
 UNDECIDED, CLOSED = -1, 3
-"""Codes beside those of what a contact does: not known yet; does not open, but whether it slips is not known yet."""
+"""Codes beside those of what a contact does. Whether it opens (OPENS, CLOSED) and whether it slips (STICKS, SLIPS) are
+decided each by itself: feet on a floor slip one way, however many of them carry."""
 CUT_LIMIT = 96
 """Twists that no force drives, of one node and of those above it."""
 N_COLUMNS = 6 * CONTACT_LIMIT + CUT_LIMIT
@@ -64,8 +65,8 @@ class Relaxation:
         Of each: scaled wrenches of its normal and its two tangents, the normal of length one.
     load
         Of length one.
-    modes, starts, widths, edges
-        What each does and, if it slips, from which angle on and over which, and the two tangents there.
+    openings, slips, starts, widths, edges
+        Whether each opens, whether it slips and, if so, from which angle on and over which, and the two tangents there.
     motion
         Least squares on the load: its residual is the motion. Label: a row of the system.
     forces
@@ -88,7 +89,8 @@ class Relaxation:
     contacts: Annotated[IntArray, CONTACT_LIMIT]
     wrenches: Annotated[FloatArray, CONTACT_LIMIT, 3, 6]
     load: ScaledVector
-    modes: Annotated[IntArray, CONTACT_LIMIT]
+    openings: Annotated[IntArray, CONTACT_LIMIT]
+    slips: Annotated[IntArray, CONTACT_LIMIT]
     starts: Annotated[FloatArray, CONTACT_LIMIT]
     widths: Annotated[FloatArray, CONTACT_LIMIT]
     edges: Annotated[FloatArray, CONTACT_LIMIT, 2, 2]
@@ -148,7 +150,7 @@ def steepest_friction(place: int, vector: FloatArray, room: Relaxation) -> tuple
     """Return (how far the friction lies along a vector that lies most along it, its direction)."""
     one, two = slip_along(place, vector, room)
     size = math.sqrt(one * one + two * two)
-    if room.modes[place] == SLIPS:
+    if room.slips[place] == SLIPS:
         first, last = room.edges[place, 0], room.edges[place, 1]
         if size == 0.0 or first[0] * two - first[1] * one < 0.0 or one * last[1] - two * last[0] < 0.0:
             at_first, at_last = one * first[0] + two * first[1], one * last[0] + two * last[1]
@@ -165,7 +167,7 @@ def most_driven(friction: float, vector: FloatArray, room: Relaxation) -> float:
     """Return the most that a unit normal force, with its friction, or the load turned round lies along a vector."""
     most = -inner(room.load, vector, WRENCH)
     for place in range(room.n_places):
-        if room.modes[place] != OPENS:
+        if room.openings[place] != OPENS:
             along = steepest_friction(place, vector, room)[0]
             most = max(most, inner(room.wrenches[place, 0], vector, WRENCH) + friction * along)
     return most
@@ -185,15 +187,14 @@ def write_velocities(room: Relaxation, system: System) -> None:
     """Write the velocities that the modes do not allow."""
     n = 0
     for place in range(room.n_places):
-        mode = room.modes[place]
         n = add_velocity(place, 1.0, 0.0, 0.0, n, room, system)
-        if mode not in (UNDECIDED, OPENS):
+        if room.openings[place] == CLOSED:
             n = add_velocity(place, -1.0, 0.0, 0.0, n, room, system)
-        if mode == STICKS:
+        if room.slips[place] == STICKS:
             for sign in range(-1, 2, 2):
                 n = add_velocity(place, 0.0, sign, 0.0, n, room, system)
                 n = add_velocity(place, 0.0, 0.0, sign, n, room, system)
-        elif mode == SLIPS:
+        elif room.slips[place] == SLIPS:
             first, last = room.edges[place, 0], room.edges[place, 1]
             n = add_velocity(place, 0.0, first[1], -first[0], n, room, system)
             n = add_velocity(place, 0.0, -last[1], last[0], n, room, system)
@@ -220,7 +221,7 @@ def add_generator(friction: float, number: int, room: Relaxation) -> int:
     if along > most:
         best, most = -1, along
     for place in range(room.n_places):
-        if room.modes[place] == OPENS:
+        if room.openings[place] == OPENS:
             continue
         along = steepest_friction(place, passive.residual, room)[0]
         used = (1.0 + WIDER) * friction if along > 0.0 else friction

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
-from cagepose.kernels.algebra.least_squares import System, length
+from cagepose.kernels.algebra.least_squares import System, inner, length
 from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.coulomb import coulomb_error, motion_left
@@ -85,50 +85,53 @@ def stand_at_node(node: int, tree: ModeTree) -> None:
     """Write the modes of a node: what it decides, and those above it of other contacts."""
     room = tree.relaxation
     for place in range(room.n_places):
-        room.modes[place] = UNDECIDED
+        room.openings[place] = room.slips[place] = UNDECIDED
     room.n_cuts = tree.n_cuts[node]
     while node > 0:
-        place = tree.places[node]
-        if room.modes[place] == UNDECIDED:
-            room.modes[place] = tree.modes[node]
+        place, mode = tree.places[node], tree.modes[node]
+        if mode in (OPENS, CLOSED):
+            room.openings[place] = mode
+        elif room.slips[place] == UNDECIDED:
+            room.slips[place] = mode
             room.starts[place], room.widths[place] = tree.starts[node], tree.widths[node]
-            if room.modes[place] == SLIPS:
+            if mode == SLIPS:
                 write_edges(place, room)
         node = tree.parents[node]
 
 
 @kernel
-def violation(friction: float, place: int, room: Relaxation) -> float:
-    """Return the power by which a contact violates Coulomb's law."""
-    y = room.motion.residual
-    one, two = slip_along(place, y, room)
-    friction_power = room.tangential_forces[place, 0] * one + room.tangential_forces[place, 1] * two
-    full = friction * room.normal_forces[place] * math.sqrt(one * one + two * two)
-    opening = 0.0
-    for k in range(6):
-        opening -= room.wrenches[place, 0, k] * y[k]
-    return max(0.0, room.normal_forces[place] * opening) + max(0.0, full - friction_power)
+def opening_power(place: int, room: Relaxation) -> float:
+    """Return the power by which a contact violates Coulomb's law: it carries and opens."""
+    power: float = room.normal_forces[place] * inner(room.wrenches[place, 0], room.motion.residual, WRENCH)
+    return max(0.0, -power)
 
 
 @kernel
-def worst_contact(friction: float, room: Relaxation) -> int:
-    """Return the contact to decide: the one that violates Coulomb's law most, or else any that is not decided.
+def slipping_power(friction: float, place: int, room: Relaxation) -> float:
+    """Return the power by which a contact violates Coulomb's law: friction is not full, or not along the slip."""
+    one, two = slip_along(place, room.motion.residual, room)
+    full = friction * room.normal_forces[place] * math.sqrt(one * one + two * two)
+    return max(0.0, full - room.tangential_forces[place, 0] * one - room.tangential_forces[place, 1] * two)
 
-    -1: all are, to the narrowest sector.
+
+@kernel
+def worst_contact(friction: float, room: Relaxation) -> tuple[int, bool]:
+    """Return (the contact to decide, whether it is to be decided if it opens): where Coulomb's law is violated most.
+
+    Contact -1: all is decided, to the narrowest sector.
     """
-    worst, most = -1, 0.0
+    worst, is_opening, most = -1, False, -1.0
     for place in range(room.n_places):
-        mode = room.modes[place]
-        if mode in (OPENS, STICKS) or (mode == SLIPS and room.widths[place] <= NARROWEST_RAD):
+        if room.openings[place] == OPENS:
             continue
-        amount = violation(friction, place, room)
-        if mode == SLIPS:
-            amount += 1e-12 * room.widths[place]
-        else:
-            amount += 1e-11
-        if amount > most:
-            worst, most = place, amount
-    return worst
+        power = opening_power(place, room)
+        if room.openings[place] == UNDECIDED and power > most:
+            worst, is_opening, most = place, True, power
+        power = slipping_power(friction, place, room)
+        slips = room.slips[place]
+        if power > most and (slips == UNDECIDED or (slips == SLIPS and room.widths[place] > NARROWEST_RAD)):
+            worst, is_opening, most = place, False, power
+    return worst, is_opening
 
 
 @kernel
@@ -144,14 +147,13 @@ def add_node(parent: int, place: int, mode: int, start: float, width: float, n_w
 
 
 @kernel
-def divide(node: int, place: int, n_waiting: int, tree: ModeTree) -> int:
+def divide(node: int, place: int, is_opening: bool, n_waiting: int, tree: ModeTree) -> int:
     """Decide more of one contact; return how many nodes wait. What the motion shows comes last, to be looked at first."""
     room = tree.relaxation
-    mode = room.modes[place]
-    if mode == UNDECIDED:
+    if is_opening:
         n_waiting = add_node(node, place, CLOSED, 0.0, 0.0, n_waiting, tree)
         return add_node(node, place, OPENS, 0.0, 0.0, n_waiting, tree)
-    if mode == SLIPS:
+    if room.slips[place] == SLIPS:
         start, half = room.starts[place], 0.5 * room.widths[place]
         n_waiting = add_node(node, place, SLIPS, start, half, n_waiting, tree)
         return add_node(node, place, SLIPS, start + half, half, n_waiting, tree)
@@ -172,7 +174,7 @@ def is_near(friction: float, room: Relaxation) -> bool:
         return False
     total = 0.0
     for place in range(room.n_places):
-        total += violation(friction, place, room)
+        total += opening_power(place, room) + slipping_power(friction, place, room)
     return total <= NEARLY * room.scale * power
 
 
@@ -234,8 +236,8 @@ def other_onset(
             continue
         if is_near(friction, room) and is_witnessed(contacts, friction, b, tree, newton):
             return OTHER_FOUND
-        place = worst_contact(friction, room)
+        place, is_opening = worst_contact(friction, room)
         if place < 0 or tree.n_nodes > NODE_LIMIT - SECTORS - 1:
             return NOT_SHOWN
-        n_waiting = divide(node, place, n_waiting, tree)
+        n_waiting = divide(node, place, is_opening, n_waiting, tree)
     return UNIQUE
