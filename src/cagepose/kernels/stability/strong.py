@@ -32,7 +32,7 @@ from cagepose.kernels.contact.metric import WRENCH
 
 UNIQUE, OTHER_FOUND, NOT_SHOWN = 0, 1, 2
 """Codes of the answer."""
-NODE_LIMIT = 4000
+NODE_LIMIT = 20000
 """Sets of modes after which the search is given up."""
 SECTORS = 4
 NARROWEST_RAD = 1e-4
