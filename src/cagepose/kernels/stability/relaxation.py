@@ -48,6 +48,9 @@ WIDER = 1e-4
 """A twist is looked for that no force inside cones wider by this part drives, so that few generators are enough."""
 DRIVEN = 1e-14
 """Of a twist and a wrench of unit length: less power is rounding."""
+HARDLY_DRIVEN = 1e-10
+"""The same where no generator helps any more, since they nearly depend on each other: what the proof makes of such a
+twist may still be small enough."""
 PROVEN = 5e-13
 """The same of the sum of twists that is the proof."""
 NO_CUT = 1e-6
@@ -269,7 +272,7 @@ def find_cut(friction: float, room: Relaxation) -> bool:
         if most_driven(friction, passive.residual, room) <= DRIVEN * left:
             return True
         number = add_generator(friction, number, room)
-    return False
+    return most_driven(friction, passive.residual, room) <= HARDLY_DRIVEN * length(passive.residual, WRENCH)
 
 
 @kernel
