@@ -60,6 +60,7 @@ class PassiveSet:
     n_rows: int
     used: int
     terms: float
+    dependent: float
     labels: Annotated[IntArray, MOST_ROWS + 1]
     columns: Annotated[FloatArray, MOST_ROWS + 1, MOST_ROWS]
     sizes: Annotated[FloatArray, MOST_ROWS + 1]
@@ -105,7 +106,7 @@ def length(a: FloatArray, n: int) -> float:
 @kernel
 def clear(passive: PassiveSet, n_rows: int, terms: float) -> None:
     """Start from no columns."""
-    passive.n_rows, passive.used, passive.terms = n_rows, 0, terms
+    passive.n_rows, passive.used, passive.terms, passive.dependent = n_rows, 0, terms, DEPENDENT
 
 
 @kernel
@@ -135,7 +136,7 @@ def orthogonalise_rows(passive: PassiveSet, place: int, n_rows: int) -> bool:
         left = inner(vector, vector, n_rows)
         if left > ENOUGH_LEFT * before:
             break
-    if left <= DEPENDENT * DEPENDENT * size:
+    if left <= passive.dependent * passive.dependent * size:
         return False
     passive.sizes[place] = math.sqrt(size)
     triangle[place, place] = 1.0 / math.sqrt(left)

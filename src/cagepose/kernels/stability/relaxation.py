@@ -42,10 +42,11 @@ ROUNDS = 12
 """Twists that are looked for at one node; then it is divided, which tells more."""
 GENERATOR_LIMIT = 80
 
-AT_REST = 1e-7
+AT_REST = 5e-7
 """Sine of the angle that a motion must make with those across the load. A motion of v loads makes at least v."""
 WIDER = 1e-4
 """A twist is looked for that no force inside cones wider by this part drives, so that few generators are enough."""
+HARDLY = 1e-13
 DRIVEN = 1e-14
 """Of a twist and a wrench of unit length: less power is rounding."""
 HARDLY_DRIVEN = 1e-10
@@ -348,6 +349,7 @@ def is_impossible(friction: float, room: Relaxation, system: System) -> bool:
     write_cuts(room, system)
     clear(room.motion, WRENCH, 1.0)
     clear(room.forces, WRENCH, 1.0)
+    room.forces.dependent = HARDLY
     for k in range(6):
         system.right_side[k] = room.load[k]
     for _ in range(ROUNDS):
