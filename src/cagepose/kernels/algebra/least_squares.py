@@ -18,14 +18,15 @@ from numpy.typing import NDArray
 from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.native.kernel import kernel
 
-MOST_ROWS = 13
-"""Of all systems that are solved with this: those of `cagepose.kernels.stability.uniqueness`."""
+MOST_ROWS = 7
+"""Of all systems that are solved with this: those of a wrench, and one more."""
 WRENCH_ROWS = 6
 """Of most of them."""
 ENOUGH_LEFT = 0.5
 """A vector of whose square one orthogonalisation leaves more is orthogonal to rounding."""
 DEPENDENT = 1e-10
-"""A column whose part outside the span of the others is smaller than this fraction of it depends on them."""
+"""A column whose part outside the span of the others is smaller than this fraction of it depends on them, where nothing
+else is said."""
 PRICE = 1e-14
 """In lengths of the terms of the residual: a column that points along the residual by less only meets rounding."""
 GIVES_WAY = 1e-11
@@ -43,6 +44,8 @@ class PassiveSet:
         The length of the columns, and how many are passive.
     terms
         Length of the terms of b: where they cancel, b is shorter.
+    dependent
+        A column of which less than this part lies outside the span of the others depends on them.
     labels
         Which column each one is.
     columns, sizes, basis

@@ -1,4 +1,4 @@
-"""Can a motion begin in one set of contact modes? Coulomb's law made convex, and a proof if not: (5.21) to (5.23).
+"""Can a motion begin in one set of contact modes? Coulomb's law made convex, and a proof if not: (5.18) to (5.20).
 
 With the modes of some contacts given and others left open, the motions y that the contacts allow make a convex cone,
 and so do those that the load, at any scale, and the contact forces can make. A motion takes power from the load: none
@@ -22,6 +22,7 @@ from cagepose.kernels.algebra.least_squares import (
     label_is_passive,
     length,
     nonnegative_least_squares,
+    rounding_scale,
     settle,
 )
 from cagepose.kernels.algebra.record import FloatArray, IntArray
@@ -43,17 +44,20 @@ ROUNDS = 12
 GENERATOR_LIMIT = 80
 
 AT_REST = 5e-7
-"""Sine of the angle that a motion must make with those across the load. A motion of v loads makes at least v."""
-WIDER = 1e-4
+"""Sine of the angle that no motion has above those across the load: rest. One of v loads has at least v."""
+ROUNDING = 1e-15
+"""In lengths of the terms of the residual."""
+WIDER = 1e-6
 """A twist is looked for that no force inside cones wider by this part drives, so that few generators are enough."""
-HARDLY = 1e-13
+DEPENDENT = 1e-13
+"""Forces that depend on each other by less make no twist."""
 DRIVEN = 1e-14
 """Of a twist and a wrench of unit length: less power is rounding."""
 HARDLY_DRIVEN = 1e-10
 """The same where no generator helps any more, since they nearly depend on each other: what the proof makes of such a
 twist may still be small enough."""
 PROVEN = 5e-13
-"""The same of the sum of twists that is the proof."""
+"""The same of z of the proof: with AT_REST, it leaves no motion above 1e-6 loads while forces add up to one load."""
 NO_CUT = 1e-6
 """In lengths of the motion: what forces miss of it by less, they make."""
 
@@ -349,12 +353,12 @@ def is_impossible(friction: float, room: Relaxation, system: System) -> bool:
     write_cuts(room, system)
     clear(room.motion, WRENCH, 1.0)
     clear(room.forces, WRENCH, 1.0)
-    room.forces.dependent = HARDLY
+    room.forces.dependent = DEPENDENT
     for k in range(6):
         system.right_side[k] = room.load[k]
     for _ in range(ROUNDS):
         left = nonnegative_least_squares(system, room.n_velocities + room.n_cuts, room.motion)
-        if left <= AT_REST:
+        if left + ROUNDING * rounding_scale(room.motion) <= AT_REST:
             if is_proven(friction, room):
                 return True
             break

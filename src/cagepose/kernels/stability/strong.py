@@ -28,7 +28,6 @@ from cagepose.kernels.stability.relaxation import (
     take_contacts,
     write_edges,
 )
-from cagepose.kernels.contact.metric import WRENCH
 
 UNIQUE, OTHER_FOUND, NOT_SHOWN = 0, 1, 2
 """Codes of the answer."""
@@ -39,7 +38,7 @@ NARROWEST_RAD = 1e-4
 """A sector that is narrower is not halved again."""
 MOVES_AT_ALL = 1e-6
 """In lengths of the load: a slower motion is not told from rest."""
-NEARLY = 0.05
+NEARLY = 0.2
 """Of the load's power: a motion that violates Coulomb's law by less power is tried by Newton's method."""
 SLOW = 1e-6
 """In lengths of the motion: a contact that moves more slowly stands still."""
@@ -102,8 +101,9 @@ def stand_at_node(node: int, tree: ModeTree) -> None:
 @kernel
 def opening_power(place: int, room: Relaxation) -> float:
     """Return the power by which a contact violates Coulomb's law: it carries and opens."""
-    power: float = room.normal_forces[place] * inner(room.wrenches[place, 0], room.motion.residual, WRENCH)
-    return max(0.0, -power)
+    closing = inner(room.wrenches[place, 0], room.motion.residual, WRENCH)
+    power: float = max(0.0, -room.normal_forces[place] * closing)
+    return power
 
 
 @kernel
@@ -111,7 +111,8 @@ def slipping_power(friction: float, place: int, room: Relaxation) -> float:
     """Return the power by which a contact violates Coulomb's law: friction is not full, or not along the slip."""
     one, two = slip_along(place, room.motion.residual, room)
     full = friction * room.normal_forces[place] * math.sqrt(one * one + two * two)
-    return max(0.0, full - room.tangential_forces[place, 0] * one - room.tangential_forces[place, 1] * two)
+    power: float = max(0.0, full - room.tangential_forces[place, 0] * one - room.tangential_forces[place, 1] * two)
+    return power
 
 
 @kernel
@@ -148,7 +149,7 @@ def add_node(parent: int, place: int, mode: int, start: float, width: float, n_w
 
 @kernel
 def divide(node: int, place: int, is_opening: bool, n_waiting: int, tree: ModeTree) -> int:
-    """Decide more of one contact; return how many nodes wait. What the motion shows comes last, to be looked at first."""
+    """Decide more of one contact; return how many nodes wait. What the motion shows comes last: it is next."""
     room = tree.relaxation
     if is_opening:
         n_waiting = add_node(node, place, CLOSED, 0.0, 0.0, n_waiting, tree)
@@ -169,19 +170,16 @@ def divide(node: int, place: int, is_opening: bool, n_waiting: int, tree: ModeTr
 @kernel
 def is_near(friction: float, room: Relaxation) -> bool:
     """Whether the motion of the convex problem nearly obeys Coulomb's law, and forces nearly make it."""
-    power = length(room.motion.residual, WRENCH)
     if room.scale <= 0.0 or length(room.forces.residual, WRENCH) > NEARLY:
         return False
     total = 0.0
     for place in range(room.n_places):
         total += opening_power(place, room) + slipping_power(friction, place, room)
-    return total <= NEARLY * room.scale * power
+    return total <= NEARLY * room.scale * inner(room.load, room.motion.residual, WRENCH)
 
 
 @kernel
-def is_witnessed(
-    contacts: ContactSet, friction: float, b: FloatArray, tree: ModeTree, newton: NewtonRoom
-) -> bool:
+def is_witnessed(contacts: ContactSet, friction: float, b: FloatArray, tree: ModeTree, newton: NewtonRoom) -> bool:
     """Whether Newton's method from the motion of the convex problem ends in one that obeys Coulomb's law.
 
     The forces of the contacts are those of that motion afterwards.
