@@ -34,6 +34,8 @@ UNIQUE, OTHER_FOUND, NOT_SHOWN = 0, 1, 2
 NODE_LIMIT = 20000
 """Sets of modes after which the search is given up."""
 SECTORS = 4
+BESIDE = 0.4
+"""Of a sector: how far from its edge the slip lies that is seen first, so that halving does not put an edge there."""
 NARROWEST_RAD = 1e-4
 """A sector that is narrower is not halved again."""
 MOVES_AT_ALL = 1e-6
@@ -160,7 +162,7 @@ def divide(node: int, place: int, is_opening: bool, n_waiting: int, tree: ModeTr
         return add_node(node, place, SLIPS, start + half, half, n_waiting, tree)
     one, two = slip_along(place, room.motion.residual, room)
     sector = 2.0 * math.pi / SECTORS
-    start = math.atan2(two, one) - 0.5 * sector
+    start = math.atan2(two, one) - BESIDE * sector
     n_waiting = add_node(node, place, STICKS, 0.0, 0.0, n_waiting, tree)
     for m in range(SECTORS, 0, -1):
         n_waiting = add_node(node, place, SLIPS, start + m * sector, sector, n_waiting, tree)
