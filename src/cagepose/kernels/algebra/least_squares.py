@@ -18,14 +18,15 @@ from numpy.typing import NDArray
 from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.native.kernel import kernel
 
-MOST_ROWS = 13
-"""Of all systems that are solved with this: those of `cagepose.kernels.stability.uniqueness`."""
+MOST_ROWS = 7
+"""Of all systems that are solved with this: those of a wrench, and one more."""
 WRENCH_ROWS = 6
 """Of most of them."""
 ENOUGH_LEFT = 0.5
 """A vector of whose square one orthogonalisation leaves more is orthogonal to rounding."""
 DEPENDENT = 1e-10
-"""A column whose part outside the span of the others is smaller than this fraction of it depends on them."""
+"""A column whose part outside the span of the others is smaller than this fraction of it depends on them, where nothing
+else is said."""
 PRICE = 1e-14
 """In lengths of the terms of the residual: a column that points along the residual by less only meets rounding."""
 GIVES_WAY = 1e-11
@@ -43,6 +44,8 @@ class PassiveSet:
         The length of the columns, and how many are passive.
     terms
         Length of the terms of b: where they cancel, b is shorter.
+    dependent
+        A column of which less than this part lies outside the span of the others depends on them.
     labels
         Which column each one is.
     columns, sizes, basis
@@ -60,6 +63,7 @@ class PassiveSet:
     n_rows: int
     used: int
     terms: float
+    dependent: float
     labels: Annotated[IntArray, MOST_ROWS + 1]
     columns: Annotated[FloatArray, MOST_ROWS + 1, MOST_ROWS]
     sizes: Annotated[FloatArray, MOST_ROWS + 1]
@@ -105,7 +109,7 @@ def length(a: FloatArray, n: int) -> float:
 @kernel
 def clear(passive: PassiveSet, n_rows: int, terms: float) -> None:
     """Start from no columns."""
-    passive.n_rows, passive.used, passive.terms = n_rows, 0, terms
+    passive.n_rows, passive.used, passive.terms, passive.dependent = n_rows, 0, terms, DEPENDENT
 
 
 @kernel
@@ -135,7 +139,7 @@ def orthogonalise_rows(passive: PassiveSet, place: int, n_rows: int) -> bool:
         left = inner(vector, vector, n_rows)
         if left > ENOUGH_LEFT * before:
             break
-    if left <= DEPENDENT * DEPENDENT * size:
+    if left <= passive.dependent * passive.dependent * size:
         return False
     passive.sizes[place] = math.sqrt(size)
     triangle[place, place] = 1.0 / math.sqrt(left)

@@ -188,7 +188,7 @@ def publish_proof(
             phase.undetermined[i, k] = room.rest.ways.basis[i, k]
     phase.motion = NONE
     if code in (PROVEN_MOVES, OTHER_ONSET):
-        y = room.solver.y if code == PROVEN_MOVES else room.modes.y
+        y = room.solver.y if code == PROVEN_MOVES else room.tree.y
         velocity, spin = twist_of(y, frame_at(part.body, quaternion))
         radii = part.body.radii
         begins = motion_of_twist(velocity, spin, position, max(radii[0], radii[1], radii[2]))

@@ -30,6 +30,7 @@ from cagepose.kernels.contact.equilibrium import (
 from cagepose.kernels.contact.metric import WRENCH, Body, Frame, PhaseLoad, ScaledVector, frame_at, write_load
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.stability.relaxation import N_COLUMNS
 from cagepose.kernels.stability.second_order import (
     MARGINAL,
     STABLE_REST,
@@ -39,8 +40,7 @@ from cagepose.kernels.stability.second_order import (
     find_shared,
     stability,
 )
-from cagepose.kernels.stability.uniqueness import N_COLUMNS, ModesWorkspace
-from cagepose.kernels.stability.uniqueness_bound import BoundWorkspace, rest_is_unique
+from cagepose.kernels.stability.strong import ModeTree
 
 PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE, OTHER_ONSET, UNIQUENESS_NOT_SHOWN = 0, 1, 2, 3
 TOO_MANY_CHOICES, PROVEN_MOVES, TOO_MANY_CONTACTS = 4, 5, 6
@@ -56,10 +56,8 @@ class AnalysisWorkspace:
         ``solver.residual``: what is left of the load; ``solver.y``: motion that begins, see `first_motion`.
     twist, twist_residual
         Scaled twist along which the load works and that no contact force resists (5.6), and what is left then.
-    modes
-        ``modes.y``: that of another onset that Coulomb's law allows.
-    sure
-        See there.
+    tree
+        The search for another onset. ``tree.y``: that of one that Coulomb's law allows.
     rest
         Undetermined freedoms.
     wedged
@@ -69,8 +67,7 @@ class AnalysisWorkspace:
     solver: ContactWorkspace
     twist: ScaledVector
     twist_residual: float
-    modes: ModesWorkspace
-    sure: BoundWorkspace
+    tree: ModeTree
     rest: StabilityWorkspace
     wedged: bool
 
@@ -131,8 +128,8 @@ def prove(
 ) -> tuple[int, int, int]:
     """Judge a pose; return (code of the proof, code of stability, number of undetermined freedoms).
 
-    What is rare and long has entries of its own, in `proof_search`, for those that want it: where uniqueness
-    is not shown here, `search_onsets` may still show it; where the object moves, `first_motion` says how.
+    Whether a rest that needs friction is the only onset is not asked here, but by `search_onsets` in `proof_search`;
+    where the object moves, `first_motion` says how.
 
     Parameters
     ----------
@@ -209,10 +206,7 @@ def judge_faces(
         )
         steady = max(steady, with_these)
         if code != HELD_WITHOUT_FRICTION:
-            is_sure = rest_is_unique(
-                contacts, friction, solver.load, solver.load_terms, room.sure, room.rest, at.system
-            )
-            proof = max(proof, PROVEN_UNIQUE if is_sure else UNIQUENESS_NOT_SHOWN)
+            proof = UNIQUENESS_NOT_SHOWN
         if not next_choice(contacts, EVERY):
             return proof, steady
     return (proof if proof == PROVEN_WITHOUT_FRICTION else UNIQUENESS_NOT_SHOWN), max(steady, MARGINAL)

@@ -1,4 +1,4 @@
-"""What a proof leaves open: whether rest is the only onset, by search, and how an object that moves begins to."""
+"""What a proof leaves open: whether rest is the only onset, and how an object that moves begins to."""
 
 from __future__ import annotations
 
@@ -21,33 +21,28 @@ from cagepose.kernels.stability.proof import (
     ProofWorkspace,
     prove,
 )
-from cagepose.kernels.stability.uniqueness import OTHER_FOUND, UNIQUE, other_onset
-from cagepose.kernels.stability.uniqueness_bound import rest_is_unique
+from cagepose.kernels.stability.strong import OTHER_FOUND, UNIQUE, other_onset
 
 
 @kernel
 def search_faces(friction: float, at: ProofWorkspace) -> int:
-    """Return the code of the proof, the least sure of all combinations of faces."""
+    """Return the code of the proof, that of the first combination of faces with which rest is not the only onset."""
     contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
-    proof = PROVEN_UNIQUE
     first_choice(contacts)
     for _ in range(CHOICES_LIMIT):
         code = equilibrium_with_faces(contacts, friction, AT_REST, solver.load, solver.load_terms, solver)
-        if code == HELD_BY_FRICTION and not rest_is_unique(
-            contacts, friction, solver.load, solver.load_terms, room.sure, room.rest, at.system
-        ):
-            answer = other_onset(contacts, friction, solver.load, room.modes, solver.newton, at.system)
-            if answer == OTHER_FOUND:
-                return OTHER_ONSET
-            proof = proof if answer == UNIQUE else UNIQUENESS_NOT_SHOWN
+        if code == HELD_BY_FRICTION:
+            answer = other_onset(contacts, friction, solver.load, room.tree, solver.newton, at.system)
+            if answer != UNIQUE:
+                return OTHER_ONSET if answer == OTHER_FOUND else UNIQUENESS_NOT_SHOWN
         if not next_choice(contacts, EVERY):
-            return proof
+            return PROVEN_UNIQUE
     return UNIQUENESS_NOT_SHOWN
 
 
 @kernel
 def search_onsets(friction: float, at: ProofWorkspace) -> int:
-    """Try all contact modes (5.13) where `prove` has not shown that rest is the only onset.
+    """Ask whether a rest that needs friction is the only onset (5.13).
 
     Parameters
     ----------
@@ -104,7 +99,7 @@ def judge(
     tolerances: KernelTolerances,
     at: ProofWorkspace,
 ) -> tuple[int, int, int]:
-    """Judge a pose, with the long search where it takes one, and the motion that begins where the object moves.
+    """Judge a pose, with the search for another onset where rest needs friction, and the motion where the object moves.
 
     Parameters and result as for `cagepose.kernels.stability.proof.prove`.
     """

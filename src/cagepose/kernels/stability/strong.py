@@ -1,0 +1,243 @@
+"""Is rest the only onset of motion that Coulomb's law allows? Strong stability, by branch and bound: equation (5.13).
+
+Friction can hold an object that could as well begin to move. Modes of contact are left undecided at first. A set of
+modes in which the convex problem of `relaxation` has no motion is closed, and with it all that are more definite; else
+the contact whose motion and force violate Coulomb's law most is decided: it opens or stays closed; it sticks or slips
+in a quarter; a quarter is halved. All sets closed: rest is the only onset, and the tree with a twist for each of its
+leaves is the proof. A motion that nearly obeys the law is taken to rounding by Newton's method: another onset.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+from cagepose.kernels.algebra.least_squares import System, inner, length
+from cagepose.kernels.algebra.record import FloatArray, IntArray
+from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.coulomb import coulomb_error, motion_left
+from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS, NewtonWorkspace, add_carrying, newton_on_modes
+from cagepose.kernels.contact.metric import WRENCH, ScaledVector
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.stability.relaxation import (
+    CLOSED,
+    UNDECIDED,
+    Relaxation,
+    is_impossible,
+    slip_along,
+    take_contacts,
+    write_edges,
+)
+
+UNIQUE, OTHER_FOUND, NOT_SHOWN = 0, 1, 2
+"""Codes of the answer."""
+NODE_LIMIT = 20000
+"""Sets of modes after which the search is given up."""
+SECTORS = 4
+BESIDE = 0.4
+"""Of a sector: how far from its edge the slip lies that is seen first, so that halving does not put an edge there."""
+NARROWEST_RAD = 1e-4
+"""A sector that is narrower is not halved again."""
+MOVES_AT_ALL = 1e-6
+"""In lengths of the load: a slower motion is not told from rest."""
+NEARLY = 0.2
+"""Of the load's power: a motion that violates Coulomb's law by less power is tried by Newton's method."""
+SLOW = 1e-6
+"""In lengths of the motion: a contact that moves more slowly stands still."""
+
+
+class ModeTree:
+    """The search, which is the proof if it ends without a motion; a record. Node 0 decides nothing.
+
+    Attributes
+    ----------
+    n_nodes
+        In use.
+    parents, places, modes, starts, widths
+        Of each node: the one that it divides, and what it decides of which contact.
+    n_cuts
+        Twists known from above.
+    is_closed, twists
+        Whether no motion can begin there, and z, which proves it.
+    waiting
+        Nodes still to be looked at.
+    relaxation
+        Of the present node.
+    y
+        Scaled twist of another onset, if one is found.
+    """
+
+    n_nodes: int
+    parents: Annotated[IntArray, NODE_LIMIT]
+    places: Annotated[IntArray, NODE_LIMIT]
+    modes: Annotated[IntArray, NODE_LIMIT]
+    starts: Annotated[FloatArray, NODE_LIMIT]
+    widths: Annotated[FloatArray, NODE_LIMIT]
+    n_cuts: Annotated[IntArray, NODE_LIMIT]
+    is_closed: Annotated[IntArray, NODE_LIMIT]
+    twists: Annotated[FloatArray, NODE_LIMIT, 6]
+    waiting: Annotated[IntArray, NODE_LIMIT]
+    relaxation: Relaxation
+    y: ScaledVector
+
+
+@kernel
+def stand_at_node(node: int, tree: ModeTree) -> None:
+    """Write the modes of a node: what it decides, and those above it of other contacts."""
+    room = tree.relaxation
+    for place in range(room.n_places):
+        room.openings[place] = room.slips[place] = UNDECIDED
+    room.n_cuts = tree.n_cuts[node]
+    while node > 0:
+        place, mode = tree.places[node], tree.modes[node]
+        if mode in (OPENS, CLOSED):
+            room.openings[place] = mode
+        elif room.slips[place] == UNDECIDED:
+            room.slips[place] = mode
+            room.starts[place], room.widths[place] = tree.starts[node], tree.widths[node]
+            if mode == SLIPS:
+                write_edges(place, room)
+        node = tree.parents[node]
+
+
+@kernel
+def opening_power(place: int, room: Relaxation) -> float:
+    """Return the power by which a contact violates Coulomb's law: it carries and opens."""
+    closing = inner(room.wrenches[place, 0], room.motion.residual, WRENCH)
+    power: float = max(0.0, -room.normal_forces[place] * closing)
+    return power
+
+
+@kernel
+def slipping_power(friction: float, place: int, room: Relaxation) -> float:
+    """Return the power by which a contact violates Coulomb's law: friction is not full, or not along the slip."""
+    one, two = slip_along(place, room.motion.residual, room)
+    full = friction * room.normal_forces[place] * math.sqrt(one * one + two * two)
+    power: float = max(0.0, full - room.tangential_forces[place, 0] * one - room.tangential_forces[place, 1] * two)
+    return power
+
+
+@kernel
+def worst_contact(friction: float, room: Relaxation) -> tuple[int, bool]:
+    """Return (the contact to decide, whether it is to be decided if it opens): where Coulomb's law is violated most.
+
+    Contact -1: all is decided, to the narrowest sector.
+    """
+    worst, is_opening, most = -1, False, -1.0
+    for place in range(room.n_places):
+        if room.openings[place] == OPENS:
+            continue
+        power = opening_power(place, room)
+        if room.openings[place] == UNDECIDED and power > most:
+            worst, is_opening, most = place, True, power
+        power = slipping_power(friction, place, room)
+        slips = room.slips[place]
+        if power > most and (slips == UNDECIDED or (slips == SLIPS and room.widths[place] > NARROWEST_RAD)):
+            worst, is_opening, most = place, False, power
+    return worst, is_opening
+
+
+@kernel
+def add_node(parent: int, place: int, mode: int, start: float, width: float, n_waiting: int, tree: ModeTree) -> int:
+    """Let a set of modes wait; return how many wait."""
+    node = tree.n_nodes
+    tree.parents[node], tree.places[node], tree.modes[node] = parent, place, mode
+    tree.starts[node], tree.widths[node] = start, width
+    tree.n_cuts[node], tree.is_closed[node] = tree.relaxation.n_cuts, 0
+    tree.waiting[n_waiting] = node
+    tree.n_nodes += 1
+    return n_waiting + 1
+
+
+@kernel
+def divide(node: int, place: int, is_opening: bool, n_waiting: int, tree: ModeTree) -> int:
+    """Decide more of one contact; return how many nodes wait. What the motion shows comes last: it is next."""
+    room = tree.relaxation
+    if is_opening:
+        n_waiting = add_node(node, place, CLOSED, 0.0, 0.0, n_waiting, tree)
+        return add_node(node, place, OPENS, 0.0, 0.0, n_waiting, tree)
+    if room.slips[place] == SLIPS:
+        start, half = room.starts[place], 0.5 * room.widths[place]
+        n_waiting = add_node(node, place, SLIPS, start, half, n_waiting, tree)
+        return add_node(node, place, SLIPS, start + half, half, n_waiting, tree)
+    one, two = slip_along(place, room.motion.residual, room)
+    sector = 2.0 * math.pi / SECTORS
+    start = math.atan2(two, one) - BESIDE * sector
+    n_waiting = add_node(node, place, STICKS, 0.0, 0.0, n_waiting, tree)
+    for m in range(SECTORS, 0, -1):
+        n_waiting = add_node(node, place, SLIPS, start + m * sector, sector, n_waiting, tree)
+    return n_waiting
+
+
+@kernel
+def is_near(friction: float, room: Relaxation) -> bool:
+    """Whether the motion of the convex problem nearly obeys Coulomb's law, and forces nearly make it."""
+    if room.scale <= 0.0 or length(room.forces.residual, WRENCH) > NEARLY:
+        return False
+    total = 0.0
+    for place in range(room.n_places):
+        total += opening_power(place, room) + slipping_power(friction, place, room)
+    return total <= NEARLY * room.scale * inner(room.load, room.motion.residual, WRENCH)
+
+
+@kernel
+def is_witnessed(contacts: ContactSet, friction: float, b: FloatArray, tree: ModeTree, newton: NewtonWorkspace) -> bool:
+    """Whether Newton's method from the motion of the convex problem ends in one that obeys Coulomb's law.
+
+    The forces of the contacts are those of that motion afterwards.
+    """
+    room = tree.relaxation
+    for i in range(contacts.used[0]):
+        for j in range(3):
+            contacts.states[i].forces[j] = 0.0
+    y, size = room.motion.residual, length(b, WRENCH)
+    slow = SLOW * length(y, WRENCH)
+    newton.n_carrying = 0
+    for place in range(room.n_places):
+        if room.normal_forces[place] <= 0.0:
+            continue
+        i = room.contacts[place]
+        one, two = slip_along(place, y, room)
+        add_carrying(newton, i, SLIPS if math.sqrt(one * one + two * two) > slow else STICKS)
+        share = size / (room.scale * length(contacts.rows[i].columns[0], WRENCH))
+        contacts.states[i].forces[0] = share * room.normal_forces[place]
+        contacts.states[i].forces[1] = share * room.tangential_forces[place, 0]
+        contacts.states[i].forces[2] = share * room.tangential_forces[place, 1]
+    motion_left(contacts, b, tree.y)
+    newton_on_modes(contacts, friction, b, tree.y, newton)
+    motion_left(contacts, b, tree.y)
+    if coulomb_error(contacts, friction, tree.y) > MOVES_AT_ALL * MOVES_AT_ALL * size:
+        return False
+    return length(tree.y, WRENCH) > MOVES_AT_ALL * size
+
+
+@kernel
+def other_onset(
+    contacts: ContactSet, friction: float, b: FloatArray, tree: ModeTree, newton: NewtonWorkspace, system: System
+) -> int:
+    """Return UNIQUE if Coulomb's law allows no onset but rest; OTHER_FOUND: one is in ``tree``; or NOT_SHOWN.
+
+    The forces of the contacts are lost.
+    """
+    room = tree.relaxation
+    tree.n_nodes = 0
+    if not take_contacts(contacts, b, room):
+        return NOT_SHOWN
+    room.n_cuts = 0
+    n_waiting = add_node(-1, -1, UNDECIDED, 0.0, 0.0, 0, tree)
+    while n_waiting > 0:
+        n_waiting -= 1
+        node = tree.waiting[n_waiting]
+        stand_at_node(node, tree)
+        if is_impossible(friction, room, system):
+            tree.is_closed[node] = 1
+            for k in range(6):
+                tree.twists[node, k] = room.twist[k]
+            continue
+        if is_near(friction, room) and is_witnessed(contacts, friction, b, tree, newton):
+            return OTHER_FOUND
+        place, is_opening = worst_contact(friction, room)
+        if place < 0 or tree.n_nodes > NODE_LIMIT - SECTORS - 1:
+            return NOT_SHOWN
+        n_waiting = divide(node, place, is_opening, n_waiting, tree)
+    return UNIQUE
