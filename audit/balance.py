@@ -29,18 +29,22 @@ from cagepose import Contact, PhaseRun, Pose, Run, Scene
 AT_REST = ("rests", "may rest")
 N_SIDES = 64
 """Of a pyramid: it differs from the round cone by 0.12 % of the friction."""
+FEW_SIDES = 12
+"""Of the one that is asked first: what it says settles most cases, at a fifth of the price."""
 MOST_FORCE = 1e6
 """Of one contact, in loads. A real part is flexible: a wedge that multiplies the load a million times yields."""
 REST = 1e-8
 """What may be left of the load at a rest, in loads."""
 EXACT = 1e-13
 """What may be left where this oracle says that a pose is balanced: rounding."""
-FALL = 1e-9
-"""How far the load may still fall at a rest, in sizes: the touch tolerance."""
+FALL = 1e-11
+"""How far the load may still fall at a rest, in sizes, by duality: forces times gaps. Rounding is below a tenth of it;
+a gap within the touch tolerance that was not closed is far above.
+"""
 CLOSED = 1e-13
 """Gap of a contact, in sizes, that is surely closed."""
-MOST_CHOICES = 32
-MOST_STARTS = 6
+MOST_CHOICES = 12
+MOST_STARTS = 3
 
 
 def balance(run: Run) -> Answer:
@@ -51,7 +55,9 @@ def balance(run: Run) -> Answer:
             asked = True
             acts = acting(run.scene, load_of(run.scene, phase.name))
             for chosen in choices(touches(run.scene, phase.pose), MOST_CHOICES, np.random.default_rng(0))[0]:
-                left = least_imbalance(run.scene, phase.pose, chosen, acts, outside=True)
+                left = least_imbalance(run.scene, phase.pose, chosen, acts, outside=False, n_sides=FEW_SIDES)
+                if left > REST:
+                    left = least_imbalance(run.scene, phase.pose, chosen, acts, outside=True)
                 if left > REST:
                     found.append(f"{phase.name}: {phase.verdict}, but at least {left:.1e} loads are left unbalanced")
                     break
@@ -73,8 +79,7 @@ def unbalance(run: Run) -> Answer:
             if not closed or not is_all:
                 continue
             asked = True
-            lefts = (least_imbalance(run.scene, pose, one, acts, outside=False) for one in chosen)
-            if all(left <= EXACT for left in lefts):
+            if all(_is_balanced(run.scene, pose, one, acts) for one in chosen):
                 found.append(f"{phase.name}: moves from a pose at which the contacts balance the load")
     return found if asked else None
 
@@ -103,13 +108,27 @@ def contacts(run: Run) -> Answer:
     return found if asked else None
 
 
-def least_imbalance(scene: Scene, pose: Pose, chosen: Sequence[Touch], acts: Sequence[Acting], *, outside: bool) -> float:
+def _is_balanced(scene: Scene, pose: Pose, chosen: Sequence[Touch], acts: Sequence[Acting]) -> bool:
+    if least_imbalance(scene, pose, chosen, acts, outside=True, n_sides=FEW_SIDES) > EXACT:
+        return False
+    return least_imbalance(scene, pose, chosen, acts, outside=False) <= EXACT
+
+
+def least_imbalance(
+    scene: Scene,
+    pose: Pose,
+    chosen: Sequence[Touch],
+    acts: Sequence[Acting],
+    *,
+    outside: bool,
+    n_sides: int = N_SIDES,
+) -> float:
     """What forces in the pyramids inside or around the cones leave of the load at least, in loads."""
     frame = _Frame(scene, pose, np.array([touch.place for touch in chosen]), acts)
     if not chosen:
         return 1.0
     mu = scene.friction_coefficient or 0.0
-    columns = np.vstack([_edges(frame, touch, mu, outside) for touch in chosen]).T
+    columns = np.vstack([_edges(frame, touch, mu, n_sides, outside) for touch in chosen]).T
     n_columns, b = columns.shape[1], -frame.load
     slack = np.hstack([np.eye(6), -np.eye(6)])
     answer = linprog(
@@ -139,19 +158,20 @@ class _Frame:
         self.length = 2.0 * float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())
         self.middle = places.mean(axis=0) if len(places) else points.mean(axis=0)
         total = np.sum([self.wrench(act.force, pose.transform(act.at_object)) for act in acts], axis=0)
-        self.magnitude = float(max(np.linalg.norm(total[:3]), np.linalg.norm(total[3:]), 1e-9 * load_size(acts)))
+        force, moment = float(np.linalg.norm(total[:3])), float(np.linalg.norm(total[3:]))
+        self.magnitude = max(force, moment, 1e-9 * load_size(acts))
         self.load = total / self.magnitude
 
     def wrench(self, force: FloatArray, at: FloatArray) -> FloatArray:
         return np.concatenate([force, np.cross(at - self.middle, force) / self.length])
 
 
-def _edges(frame: _Frame, touch: Touch, mu: float, outside: bool) -> FloatArray:
+def _edges(frame: _Frame, touch: Touch, mu: float, n_sides: int, outside: bool) -> FloatArray:
     """Wrenches of the edges of a pyramid with normal force 1, (edges, 6)."""
     if mu == 0.0:
         return frame.wrench(-touch.normal, touch.place)[None]
-    angles = 2 * np.pi * np.arange(N_SIDES) / N_SIDES
-    reach = mu / np.cos(np.pi / N_SIDES) if outside else mu
+    angles = 2 * np.pi * np.arange(n_sides) / n_sides
+    reach = mu / np.cos(np.pi / n_sides) if outside else mu
     rays = -touch.normal + reach * np.column_stack([np.cos(angles), np.sin(angles)]) @ tangents(touch.normal)
     return np.array([frame.wrench(ray, touch.place) for ray in rays])
 

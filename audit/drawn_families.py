@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
+import numpy as np
+
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, load_scene
 
 N_FRICTIONS = 401
@@ -23,8 +25,13 @@ def rail(index: int) -> Scene:
 
 
 def drawer(index: int) -> Scene:
-    """A drawer on rollers below, under stops above and between side rollers; pulled at the handle, beside its middle."""
+    """A drawer on rollers, under stops and between side rollers; closed at its middle, then beside it."""
     return _drawer().changed(friction_coefficient=friction_at(index))
+
+
+def table(index: int) -> Scene:
+    """A flat part over six points, two of them lower, its centre of gravity aside: it reaches two points at once."""
+    return _table().changed(friction_coefficient=friction_at(index))
 
 
 def dock(index: int) -> Scene:
@@ -39,13 +46,18 @@ def _rail() -> Scene:
 
 @cache
 def _drawer() -> Scene:
-    points = [(x, y, -0.5) for x in (-150, 150) for y in (-190, 190)]
+    points: list[tuple[float, float, float]] = [(x, y, -0.5) for x in (-150, 150) for y in (-190, 190)]
     points += [(x, y, 101) for x in (-180, -60) for y in (-190, 190)]
     points += [(x, y, 50) for x in (-150, 150) for y in (-200.5, 200.5)]
     points += [(-251, y, 50) for y in (-100, 100)]
     return Scene(
-        Object([Box((0.5, 0.4, 0.1), Pose((0, 0, 0.05)), "drawer"), Box((0.01, 0.42, 0.12), Pose((0.255, 0, 0.05)), "front")]),
-        Cage([(x * MM, y * MM, z * MM) for x, y, z in points]),
+        Object(
+            [
+                Box((0.5, 0.4, 0.1), Pose((0, 0, 0.05)), "drawer"),
+                Box((0.01, 0.42, 0.12), Pose((0.255, 0, 0.05)), "front"),
+            ]
+        ),
+        Cage(np.array(points) * MM),
         [
             Load("weight", gravity=(0, 0, -1)),
             Load("close", force=Force((-1, 0, 0), (0.26, 0, 0.05))),
@@ -56,13 +68,20 @@ def _drawer() -> Scene:
 
 
 @cache
+def _table() -> Scene:
+    points = [(180, 190, 0), (-20, 190, 0), (180, -190, 0), (-20, -190, 0), (-180, 190, -5), (-180, -190, -5)]
+    held = Object([Box((0.4, 0.4, 0.02), name="table")], (-0.06, 0.08, -0.02), pose=Pose((0, 0, 0.01025)))
+    return Scene(held, Cage(np.array(points) * MM), [Load("weight", gravity=(0, 0, -1))], name="table")
+
+
+@cache
 def _dock() -> Scene:
     lean = Pose(euler_zyx=(0.0, 0.35, 0.0))
-    points = [(-4.4, y, z) for y in (-30, 30) for z in (10, 60)]
+    points: list[tuple[float, float, float]] = [(-4.4, y, z) for y in (-30, 30) for z in (10, 60)]
     points += [(4.4, y, z) for y in (-30, 30) for z in (5, 15)]
     points += [(0, y, -0.3) for y in (-20, 20)]
     points += [(0, y, 8) for y in (-38, 38)]
-    placed = lean.transform([(x * MM, y * MM, z * MM) for x, y, z in points])
+    placed = lean.transform(np.array(points) * MM)
     return Scene(
         Object([Box((0.008, 0.075, 0.15), Pose((0, 0, 0.075)), "telephone")], pose=lean),
         Cage(placed),

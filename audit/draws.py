@@ -10,6 +10,8 @@ from audit.case import FloatArray
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene
 
 MM = 1e-3
+Sized = tuple[FloatArray, FloatArray]
+"""Size and position of a box."""
 FRICTIONS = (0.0, 0.1, 0.2, 0.4)
 Rng = np.random.Generator
 
@@ -38,7 +40,7 @@ def push(rng: Rng, reach_mm: FloatArray, name: str = "push", *, with_weight: boo
 
 
 def beside(rng: Rng, size_mm: FloatArray, axis: int, side: int, gap_mm: float, near_edge: float = 0.0) -> FloatArray:
-    """A point before one face of a box at the origin; with the chance ``near_edge``, exactly before one of its edges."""
+    """A point before one face of a box at the origin; with the chance ``near_edge``, before one of its edges."""
     point = rng.uniform(-0.45, 0.45, 3) * size_mm
     if rng.random() < near_edge:
         along = (axis + int(rng.integers(1, 3))) % 3
@@ -48,7 +50,7 @@ def beside(rng: Rng, size_mm: FloatArray, axis: int, side: int, gap_mm: float, n
 
 
 def around(rng: Rng, size_mm: FloatArray, counts: Sequence[int], gaps_mm: Sequence[float]) -> FloatArray:
-    """Points before the six faces of a box, ``counts`` of them in the order -x, +x, -y, ...; each at one of the gaps."""
+    """Points before the faces -x, +x, -y, ... of a box, ``counts`` of them; each at one of the gaps."""
     points = [
         beside(rng, size_mm, face // 2, 2 * (face % 2) - 1, float(rng.choice(gaps_mm)), 0.1)
         for face, count in enumerate(counts)
@@ -63,7 +65,7 @@ def any_turn(rng: Rng) -> Pose:
 
 
 def build(
-    boxes_mm: Sequence[tuple[FloatArray, FloatArray]],
+    boxes_mm: Sequence[Sized],
     points_mm: FloatArray,
     loads: Sequence[Load],
     mu: float,

@@ -32,6 +32,7 @@ NUMBERED: dict[str, Callable[[int], Scene]] = {
     "rail": drawn_families.rail,
     "drawer": drawn_families.drawer,
     "dock": drawn_families.dock,
+    "table": drawn_families.table,
 }
 """Families of one drawing each, whose index sets the friction."""
 

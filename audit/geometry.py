@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from math import prod
@@ -156,7 +156,3 @@ def tangents(normal: FloatArray) -> FloatArray:
     first = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
     first /= np.linalg.norm(first)
     return np.array([first, np.cross(normal, first)])
-
-
-def steps_between(poses: Sequence[Pose]) -> Iterator[tuple[Pose, Pose]]:
-    return zip(poses[:-1], poses[1:], strict=True)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from audit.case import FloatArray
 from audit.draws import MM, Rng, any_turn, around, beside, build, direction, friction, push, weight
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene
 
-ORIGIN = np.zeros(3)
+ORIGIN: FloatArray = np.zeros(3)
 
 
 def near_contact(rng: Rng) -> Scene:
@@ -25,8 +26,8 @@ def near_contact(rng: Rng) -> Scene:
 def grid(rng: Rng) -> Scene:
     """Whole numbers, as people draw: sizes of 20 mm, points and positions on a grid of 5 mm, loads along axes."""
     n_boxes = int(rng.integers(1, 4))
-    boxes = [(20.0 * rng.integers(1, 5, 3), ORIGIN)]
-    boxes += [(20.0 * rng.integers(1, 5, 3), 10.0 * rng.integers(-4, 5, 3)) for _ in range(n_boxes - 1)]
+    boxes = [(_whole(rng, 1, 4, 20.0), ORIGIN)]
+    boxes += [(_whole(rng, 1, 4, 20.0), _whole(rng, -4, 4, 10.0)) for _ in range(n_boxes - 1)]
     points = []
     for _ in range(int(rng.integers(4, 15))):
         size, at = boxes[rng.integers(n_boxes)]
@@ -39,9 +40,14 @@ def grid(rng: Rng) -> Scene:
     loads = [weight()]
     if rng.random() < 0.5:
         axis = np.eye(3)[rng.integers(3)] * rng.choice([-1.0, 1.0])
-        loads.append(Load("push", force=Force(axis, 5.0 * rng.integers(-4, 5, 3) * MM)))
-    center = 5.0 * rng.integers(-2, 3, 3)
+        loads.append(Load("push", force=Force(axis, _whole(rng, -4, 4, 5.0) * MM)))
+    center = _whole(rng, -2, 2, 5.0)
     return build(boxes, np.unique(points, axis=0), loads, friction(rng), center_mm=center)
+
+
+def _whole(rng: Rng, low: int, high: int, unit: float) -> FloatArray:
+    """Three whole multiples of a unit."""
+    return np.asarray(rng.integers(low, high + 1, 3) * unit, dtype=np.float64)
 
 
 def needle(rng: Rng) -> Scene:
@@ -49,7 +55,7 @@ def needle(rng: Rng) -> Scene:
     length = 10 ** rng.uniform(1.5, 3)
     size = np.array([length, rng.uniform(0.5, 2), rng.uniform(0.5, 2)])
     gaps = rng.uniform(0.01, 0.5, 8).tolist()
-    counts = [*rng.integers(0, 2, 2), *rng.integers(1, 4, 4)]
+    counts = [*rng.integers(0, 3, 2), *rng.integers(2, 5, 4)]
     points = around(rng, size, [int(count) for count in counts], gaps)
     loads = [weight(direction(rng)), push(rng, size / 2)][: int(rng.integers(1, 3))]
     return build([(size, ORIGIN)], points, loads, friction(rng), pose=any_turn(rng))
@@ -84,13 +90,15 @@ def wedge(rng: Rng) -> Scene:
 
 
 def floor(rng: Rng) -> Scene:
-    """A turned or flat part falls on three to twelve points at one height; sometimes a wall stands beside."""
+    """A turned or flat part falls on four to twelve points at one height; sometimes a wall stands beside."""
     size = rng.uniform(10, 60, 3)
-    n_points = int(rng.integers(3, 13))
-    points = np.column_stack([rng.uniform(-40, 40, (n_points, 2)), np.zeros(n_points)])
+    reach = 0.5 * size[:2].max()
+    rim = np.array([[x, y] for x in (-1, 1) for y in (-1, 1)]) * rng.uniform(0.3, 1.0, 2) * reach
+    ground = np.vstack([rim, rng.uniform(-reach, reach, (int(rng.integers(0, 9)), 2))])
+    points = np.column_stack([ground, np.zeros(len(ground))])
     if rng.random() < 0.5:
         points = np.vstack([points, [[60.0, y, z] for y in (-15.0, 15.0) for z in (5.0, 20.0)]])
-    pose = Pose((0, 0, 0.08), rng.normal(size=4) if rng.random() < 0.5 else None)
+    pose = Pose((0, 0, 0.06), rng.normal(size=4) if rng.random() < 0.4 else None)
     loads = [weight(np.array([rng.choice([0.0, 0.05, 0.2]), 0.0, -1.0])), push(rng, size / 2, with_weight=True)]
     center = rng.uniform(-0.3, 0.3, 3) * size
     held = Object([Box(size * MM, name="box1")], center * MM, pose=pose)

@@ -33,20 +33,25 @@ def renumbered(scene: Scene, rng: np.random.Generator) -> Scene:
     )
 
 
-def order(one: Run) -> Answer:
-    """Renumbered, the scene has the same verdicts and the same poses."""
+def order_of_verdicts(one: Run) -> Answer:
+    """Renumbered, the scene has the same verdicts."""
     if len(one.scene.cage.names) < 2:
         return None
-    other = run(renumbered(one.scene, np.random.default_rng(1)))
-    return differences(one, other, "renumbered")
+    told = [[phase.verdict for phase in each.phases] for each in (one, _again(one))]
+    return [f"renumbered: {told[1]} instead of {told[0]}"] if told[0] != told[1] else []
 
 
-def differences(one: Run, other: Run, what: str) -> list[str]:
-    verdicts = [[phase.verdict for phase in each.phases] for each in (one, other)]
-    if verdicts[0] != verdicts[1]:
-        return [f"{what}: {verdicts[1]} instead of {verdicts[0]}"]
+def order_of_poses(one: Run) -> Answer:
+    """Renumbered, and with the same verdicts, the scene has the same poses at the end of its phases."""
+    other = _again(one)
+    if [phase.verdict for phase in one.phases] != [phase.verdict for phase in other.phases]:
+        return None
     apart = max(farthest_move(one.scene, a.pose, b.pose) for a, b in zip(one.phases, other.phases, strict=True))
-    return [f"{what}: the same verdicts, but {apart:.1e} sizes apart"] if apart > SAME_POSE else []
+    return [f"renumbered: {one.verdict}, {apart:.1e} sizes away"] if apart > SAME_POSE else []
+
+
+def _again(one: Run) -> Run:
+    return run(renumbered(one.scene, np.random.default_rng(1)))
 
 
 def batch(one: Run) -> Answer:

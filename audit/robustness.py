@@ -14,9 +14,10 @@ OUT = 1e-7
 NEAR = 1e-5
 """Points within this of the part, in sizes, move; others are far enough away already."""
 TRAVEL = 1e-3
-"""How far the part may go, in sizes. Levers and wedges make more of the disturbance than it is: ten thousand times."""
+"""How far the part may go, in sizes: ten thousand times the disturbance, as levers and wedges make more of it."""
 TRAVEL_FOR_FORCE = 1e-5
-"""By virtual work, a contact with a force of F loads moves the load by F times its own way: a hundred times that too."""
+"""And a hundred times the disturbance for each load of force: by virtual work, F loads at a contact stand for a lever
+that moves the part F times as far as the contact."""
 
 
 def robustness(one: Run) -> Answer:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -16,7 +17,6 @@ from audit.geometry import (
     load_size,
     points_in_boxes,
     potential,
-    steps_between,
 )
 from cagepose import Event, Pose, Run, Scene
 
@@ -36,7 +36,7 @@ def potential_falls(run: Run) -> Answer:
         heights = [potential(acts, pose) / (load_size(acts) * run.scene.size_m) for pose in poses]
         # Far from the origin a height has fewer digits than a fall.
         rounding = 1e-14 * max(map(abs, heights))
-        rise = max((after - before for before, after in zip(heights[:-1], heights[1:], strict=True)), default=0.0)
+        rise = max((after - before for before, after in pairwise(heights)), default=0.0)
         if rise > RISE + rounding:
             found.append(f"{phase.name}: the potential rises by {rise:.1e} load times size in one step")
     return found
@@ -90,7 +90,7 @@ def escape(run: Run) -> Answer:
 def _deepest(run: Run, start: Pose, event: Event) -> float:
     """How deep a point gets on the way of one event, in sizes."""
     scene, stations = run.scene, [start, *(event.path or (event.pose_world_object,))]
-    way = sum(farthest_move(scene, one, other) for one, other in steps_between(stations)) * scene.size_m
+    way = sum(farthest_move(scene, one, other) for one, other in pairwise(stations)) * scene.size_m
     thin = float(half_sizes(scene).min())
     n_samples = int(np.clip(math.ceil(2.0 * way / thin), LEAST_SAMPLES, MOST_SAMPLES))
     poses = [run.pose_on_the_way(start, event, k / n_samples) for k in range(1, n_samples)]
@@ -98,7 +98,7 @@ def _deepest(run: Run, start: Pose, event: Event) -> float:
 
 
 def _met_on_the_line(scene: Scene, pose: Pose, down: FloatArray) -> str | None:
-    """Return the point that a travel along ``down`` takes into a box (shrunken by what counts as inside); None: none."""
+    """Return the point that a travel along ``down`` takes into a box, shrunken by what counts as inside; or None."""
     allowed = DEEP_ON_THE_WAY * scene.size_m
     places = points_in_boxes(scene, pose)
     for box, half, starts in zip(scene.object.boxes, half_sizes(scene), places, strict=True):
@@ -115,4 +115,3 @@ def _met_on_the_line(scene: Scene, pose: Pose, down: FloatArray) -> str | None:
         if len(hit):
             return scene.cage.names[int(hit[0])]
     return None
-
