@@ -5,7 +5,8 @@ in sizes of it. A start is a random corner of the displacements that the contact
 program: down the potential, with the gaps of the faces that count kept open to first order, inside a box. What counts
 at the end are exact gaps and the exact fall of the potential; a gap that is left closed too far is paid for with twice
 all contact forces, so that no depth can be taken for a fall. A true valley may be narrow (a contact near an edge), so a
-lower pose must be there at each radius.
+lower pose must be there at each radius. Gaps within the touch tolerance count as closed: what the load can fall through
+them is asked of the forces.
 """
 
 from __future__ import annotations
@@ -87,7 +88,7 @@ class _Valley:
             self.places.append(places[point])
             self.heights.append(float(normal @ middle) + part.size_m[axis] / 2 / self.size)
         self.normals = np.array(normals).reshape(-1, 3)
-        self.start = np.minimum(self.gaps(np.zeros(6)), 0.0)
+        self.start = self.gaps(np.zeros(6))
         carried = sum(contact.force_normal_n or 0.0 for contact in phase.contacts) / load
         self.price = 2.0 * (1.0 + carried)
         self.rounding = ROUNDING * (1.0 + carried) * (1.0 + float(np.abs(self.arms).max()))
