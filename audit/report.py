@@ -37,8 +37,12 @@ class Known:
     reason: str
 
 
-def read_known(path: Path = KNOWN) -> dict[tuple[str, int, str], Known]:
-    """Return the known failures by family, index and oracle."""
+KnownFailures = dict[tuple[str, int, str], Known]
+"""By family, index and oracle."""
+
+
+def read_known(path: Path = KNOWN) -> KnownFailures:
+    """Return the known failures of a file."""
     entries = YAML(typ="safe").load(path.read_text(encoding="utf-8"))["known"]
     found = [Known(**entry) for entry in entries]
     return {(entry.family, entry.index, entry.oracle): entry for entry in found}
@@ -90,9 +94,8 @@ def show_times(console: Console, findings: Sequence[Finding]) -> None:
         console.print(f"Time of a run: median {median:.3g} ms, 99.9th percentile {most:.3g} ms; slowest: {named}")
 
 
-def show_failures(console: Console, failures: Sequence[Failure], folder: Path, seed: int) -> bool:
+def show_failures(console: Console, failures: Sequence[Failure], folder: Path, seed: int, known: KnownFailures) -> bool:
     """List the failures, write their scenes, and return whether there is one that is not known."""
-    known = read_known() if seed == 0 else {}
     is_known = {failure: (failure.family, failure.index, failure.oracle) in known for failure in failures}
     lines = []
     for failure in failures:
@@ -117,11 +120,11 @@ def show_failures(console: Console, failures: Sequence[Failure], folder: Path, s
     return not all(is_known.values())
 
 
-def show_mended(console: Console, findings: Sequence[Finding]) -> None:
+def show_mended(console: Console, findings: Sequence[Finding], known: KnownFailures) -> None:
     """Name known failures that were asked about and fail no longer."""
     asked = {(finding.family, finding.index, name) for finding in findings for name in finding.asked}
     failed = {(failure.family, failure.index, failure.oracle) for finding in findings for failure in finding.failures}
-    for family, index, oracle in sorted((set(read_known()) & asked) - failed):
+    for family, index, oracle in sorted((set(known) & asked) - failed):
         console.print(f"{oracle} {family}:{index} fails no longer: remove it from {KNOWN.name}")
 
 
