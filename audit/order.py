@@ -81,7 +81,7 @@ def batch(one: Run) -> Answer:
             changed = _changed(scene, friction, position, None if directions is None else directions[row])
         except SceneError:  # a point has come inside, and `run_many` must say so
             if rows.phase_verdicts[row, 0] != "invalid":
-                found.append(f"run_many: {rows.phase_verdicts[row, 0]} of a scene that is refused")
+                found.append(f"run_many, row {row}: {rows.phase_verdicts[row, 0]} of a scene that is refused")
         else:
             found += _row_differs(rows, row, run(changed))
     return found
@@ -91,14 +91,14 @@ def _row_differs(rows: Runs, row: int, single: Run) -> list[str]:
     told = [str(verdict) for verdict in rows.phase_verdicts[row] if verdict]
     verdicts = [phase.verdict for phase in single.phases]
     if told != verdicts:
-        return [f"run_many: {told} instead of {verdicts}"]
+        return [f"run_many, row {row}: {told} instead of {verdicts}"]
     positions = np.array([phase.pose.position_m for phase in single.phases])
     turns = np.array([phase.pose.quaternion_wxyz for phase in single.phases])
     there, turned = rows.position_m[row, : len(told)], rows.quaternion_wxyz[row, : len(told)]
     if (there == positions).all() and (turned == turns).all():
         return []
     apart = max(np.abs(there - positions).max() / single.scene.size_m, np.abs(turned - turns).max())
-    return [f"run_many: {single.verdict}, but {apart:.1e} sizes or rad away"]
+    return [f"run_many, row {row}: {single.verdict}, but {apart:.1e} sizes or rad away"]
 
 
 def _changed(scene: Scene, friction: float, position: FloatArray, direction: FloatArray | None) -> Scene:

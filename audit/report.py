@@ -15,7 +15,7 @@ from ruamel.yaml import YAML
 from audit.case import Failure
 from audit.draws import FRICTIONS
 from audit.families import FAMILIES, make_case
-from audit.oracles import ENDING, NOT_SHOWN, ORACLES, TIME, Finding
+from audit.oracles import CRASH, ENDING, NOT_SHOWN, ORACLES, TIME, Finding
 from audit.scene_yaml import scene_yaml
 
 KNOWN = Path(__file__).parent / "known.yaml"
@@ -69,7 +69,7 @@ def show_endings(console: Console, findings: Sequence[Finding]) -> None:
 
 def show_oracles(console: Console, findings: Sequence[Finding]) -> None:
     """Cases that fail, by family and oracle: a point where all pass, nothing where none could be asked."""
-    names = (ENDING, TIME, *ORACLES)
+    names = (ENDING, TIME, CRASH, *ORACLES)
     table = Table(title="Cases that fail, by oracle (a point: none of those asked)", title_justify="left")
     table.add_column("family")
     for name in names:
