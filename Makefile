@@ -15,7 +15,7 @@ N ?= 20000
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test test-deep test-python lint format golden bench docs lock clean
+.PHONY: help setup run test test-deep test-python audit lint format golden bench docs lock clean
 
 help:  ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -56,6 +56,9 @@ test-deep: $(READY)  ## run the tests that draw random cases with many of them, 
 test-python: $(READY)  ## run the tests of kernels and of stepwise runs with kernels as plain Python
 	@CAGEPOSE_KERNELS=python $(BIN)/python -m pytest $(ON_ALL_CORES) tests/kernels tests/stepwise
 
+audit: $(READY)  ## ask independent oracles about seeded scenes, five minutes (N=510: so many; CASE=grid:12: that one)
+	@$(BIN)/python -m audit $(if $(filter file,$(origin N)),,--scenes $(N)) $(if $(CASE),--case $(CASE))
+
 lint: $(READY)  ## check style, types and the floors' import contract
 	@$(BIN)/ruff check
 	@$(BIN)/ruff format --check
@@ -93,4 +96,4 @@ lock:  ## renew requirements.lock from pyproject.toml
 
 clean:  ## remove .venv and all that was built
 	@rm -rf $(VENV) build dist docs/generated .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis
-	@find src tests docs bench -name __pycache__ -type d -prune -exec rm -rf {} +
+	@find src tests docs bench audit -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,1 @@
+"""Independent oracles over seeded families of scenes: `make audit`."""

@@ -1,0 +1,89 @@
+"""`python -m audit [--scenes N] [--family NAME] [--case FAMILY:INDEX]`: ask all oracles, print counts and failures."""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import os
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+from rich.console import Console
+
+from audit.case import Case
+from audit.families import FAMILIES, make_case
+from audit.oracles import Finding, examine
+from audit.report import read_known, show_endings, show_failures, show_mended, show_oracles, show_times
+
+DEFAULT_SCENES = 5100
+"""Five minutes on two cores."""
+OUT = Path("build/audit")
+CHUNK = 4
+WIDTH = 170
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="python -m audit", description=__doc__)
+    parser.add_argument(
+        "--scenes", type=int, default=DEFAULT_SCENES, metavar="N", help="in all, shared by the families"
+    )
+    parser.add_argument("--family", action="append", choices=FAMILIES, help="ask this family alone; may be repeated")
+    parser.add_argument("--case", action="append", metavar="FAMILY:INDEX", help="ask this case alone; may be repeated")
+    parser.add_argument("--seed", type=int, default=0, help="of all random draws")
+    parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--out", type=Path, default=OUT, help="folder for the scenes that fail")
+    given = parser.parse_args()
+    families = tuple(given.family or FAMILIES)
+    chosen = [_named(parser, text) for text in given.case or ()] or _all(families, given.scenes)
+
+    console = Console(width=WIDTH)
+    began = time.perf_counter()
+    findings = []
+    with console.status("") as status:
+        for finding in _examined(chosen, given.seed, given.processes):
+            findings.append(finding)
+            status.update(f"{len(findings)} of {len(chosen)} cases  ({time.perf_counter() - began:.0f} s)")
+    known = read_known() if given.seed == 0 else {}
+    findings.sort(key=lambda finding: (FAMILIES.index(finding.family), finding.index))
+    failures = sorted((f for finding in findings for f in finding.failures), key=lambda failure: failure.oracle)
+    show_endings(console, findings)
+    show_oracles(console, findings)
+    show_times(console, findings)
+    is_bad = show_failures(console, failures, given.out, given.seed, known)
+    show_mended(console, findings, known)
+    console.print(f"{len(findings)} cases, {len(failures)} failures, {time.perf_counter() - began:.0f} s")
+    return int(is_bad)
+
+
+def _all(families: Sequence[str], n_scenes: int) -> list[tuple[str, int]]:
+    """Family by family in turn, so that slow ones are spread over the processes."""
+    return [(family, index) for index in range(-(-n_scenes // len(families))) for family in families]
+
+
+def _named(parser: argparse.ArgumentParser, text: str) -> tuple[str, int]:
+    family, _, index = text.rpartition(":")
+    if family not in FAMILIES or not index.isdigit():
+        parser.error(f"--case {text}: give a family and a number, such as grid:12; families: {', '.join(FAMILIES)}")
+    return family, int(index)
+
+
+def _examined(chosen: Sequence[tuple[str, int]], seed: int, processes: int) -> Iterator[Finding]:
+    families, indices = zip(*chosen, strict=True)
+    seeds = [seed] * len(chosen)
+    if processes == 1:
+        yield from map(_examine, families, indices, seeds)
+        return
+    with ProcessPoolExecutor(processes, multiprocessing.get_context("spawn")) as pool:
+        yield from pool.map(_examine, families, indices, seeds, chunksize=CHUNK)
+
+
+def _examine(family: str, index: int, seed: int) -> Finding:
+    case: Case = make_case(family, index, seed)
+    return examine(case)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,218 @@
+"""Do contact forces balance the load? By linear programs (HiGHS) with pyramids inside and around the friction cones.
+
+Moments are taken about the middle of the contacts, over the object's diameter; the load is as large as the greater of
+its force and its moment there, so that a load on a long lever is weighed as its contacts feel it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.optimize import linprog
+
+from audit.case import Answer, FloatArray
+from audit.geometry import (
+    Acting,
+    Touch,
+    acting,
+    choices,
+    corners,
+    load_of,
+    load_size,
+    tangents,
+    touches,
+    touches_are_clear,
+)
+from cagepose import Contact, PhaseRun, Pose, Run, Scene
+
+AT_REST = ("rests", "may rest")
+N_SIDES = 64
+"""Of a pyramid: it differs from the round cone by 0.12 % of the friction."""
+FEW_SIDES = 12
+"""Of the one that is asked first: what it says settles most cases, at a fifth of the price."""
+MOST_FORCE = 1e6
+"""Of one contact, in loads. A real part is flexible: a wedge that multiplies the load a million times yields."""
+REST = 1e-8
+"""What may be left of the load at a rest, in loads."""
+EXACT = 1e-13
+"""What may be left where this oracle says that a pose is balanced: rounding."""
+FALL = 1e-11
+"""How far the load may still fall at a rest, in sizes, by duality: forces times gaps. Rounding is below a tenth of it;
+a gap within the touch tolerance that was not closed is far above.
+"""
+CLOSED = 1e-13
+"""Gap of a contact, in sizes, that is surely closed."""
+MOST_CHOICES = 12
+MOST_STARTS = 3
+
+
+def balance(run: Run) -> Answer:
+    """A rest is balanced at every choice of faces, by forces below `MOST_FORCE`."""
+    found, asked = [], False
+    for phase in run.phases:
+        if phase.verdict in AT_REST and touches_are_clear(run.scene, phase.pose):
+            asked = True
+            acts = acting(run.scene, load_of(run.scene, phase.name))
+            for chosen in choices(touches(run.scene, phase.pose), MOST_CHOICES, np.random.default_rng(0))[0]:
+                left = least_imbalance(run.scene, phase.pose, chosen, acts, outside=False, n_sides=FEW_SIDES)
+                if left > REST:
+                    left = least_imbalance(run.scene, phase.pose, chosen, acts, outside=True)
+                if left > REST:
+                    found.append(f"{phase.name}: {phase.verdict}, but at least {left:.1e} loads are left unbalanced")
+                    break
+    return found if asked else None
+
+
+def unbalance(run: Run) -> Answer:
+    """Where the run says that the part moves, no forces of the contacts that are surely closed balance the load."""
+    found, asked = [], False
+    for phase in run.phases:
+        acts = acting(run.scene, load_of(run.scene, phase.name))
+        starts = [phase.start_pose, *(event.pose_world_object for event in phase.events)]
+        moving = [start for start, event in zip(starts, phase.events, strict=False) if event.motion is not None]
+        if phase.proof.verdict == "moves":
+            moving.append(phase.pose)
+        for pose in moving[-MOST_STARTS:]:
+            closed = _surely_closed(run.scene, pose)
+            chosen, is_all = choices(closed, MOST_CHOICES, np.random.default_rng(0))
+            if not closed or not is_all:
+                continue
+            asked = True
+            if all(_is_balanced(run.scene, pose, one, acts) for one in chosen):
+                found.append(f"{phase.name}: moves from a pose at which the contacts balance the load")
+    return found if asked else None
+
+
+def forces(run: Run) -> Answer:
+    """The reported forces lie in their cones, balance the load, are not absurd, and have no gap to fall through."""
+    found, asked = [], False
+    for phase in run.phases:
+        if phase.verdict in AT_REST:
+            asked = True
+            found += [f"{phase.name}: {text}" for text in _wrong_forces(run.scene, phase)]
+    return found if asked else None
+
+
+def contacts(run: Run) -> Answer:
+    """The contacts at the end of each phase are those of (2.7)."""
+    found, asked = [], False
+    names, boxes = run.scene.cage.names, [box.name for box in run.scene.object.boxes]
+    for phase in run.phases:
+        if touches_are_clear(run.scene, phase.pose):
+            asked = True
+            expected = {(names[t.point], boxes[t.box]) for t in touches(run.scene, phase.pose)}
+            told = {(contact.point, contact.box) for contact in phase.contacts}
+            if told != expected:
+                found.append(f"{phase.name}: contacts {sorted(told)}, but {sorted(map(str, expected ^ told))} differ")
+    return found if asked else None
+
+
+def _surely_closed(scene: Scene, pose: Pose) -> list[Touch]:
+    """The contacts of points whose gap to every face of the box that they touch is rounding."""
+    found = touches(scene, pose)
+    ajar = {(t.point, t.box) for t in found if abs(t.gap) > CLOSED * scene.size_m}
+    return [t for t in found if (t.point, t.box) not in ajar]
+
+
+def _is_balanced(scene: Scene, pose: Pose, chosen: Sequence[Touch], acts: Sequence[Acting]) -> bool:
+    if least_imbalance(scene, pose, chosen, acts, outside=True, n_sides=FEW_SIDES) > EXACT:
+        return False
+    return least_imbalance(scene, pose, chosen, acts, outside=False) <= EXACT
+
+
+def least_imbalance(
+    scene: Scene,
+    pose: Pose,
+    chosen: Sequence[Touch],
+    acts: Sequence[Acting],
+    *,
+    outside: bool,
+    n_sides: int = N_SIDES,
+) -> float:
+    """What forces in the pyramids inside or around the cones leave of the load at least, in loads."""
+    frame = _Frame(scene, pose, np.array([touch.place for touch in chosen]), acts)
+    if not chosen:
+        return 1.0
+    mu = scene.friction_coefficient or 0.0
+    columns = np.vstack([_edges(frame, touch, mu, n_sides, outside) for touch in chosen]).T
+    n_columns, b = columns.shape[1], -frame.load
+    slack = np.hstack([np.eye(6), -np.eye(6)])
+    answer = linprog(
+        np.concatenate([np.zeros(n_columns), np.ones(12)]),
+        A_eq=np.hstack([columns, slack]),
+        b_eq=b,
+        bounds=[(0.0, MOST_FORCE)] * n_columns + [(0.0, None)] * 12,
+        method="highs-ds",
+        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
+    )
+    if answer.x is None:
+        return 1.0
+    carried = answer.x[:n_columns].clip(0.0)
+    left = float(np.abs(columns @ carried - b).max())
+    used = np.flatnonzero(carried > 1e-12)
+    polished = np.linalg.lstsq(columns[:, used], b, rcond=None)[0]
+    if len(used) and (polished >= 0.0).all() and polished.max() <= MOST_FORCE:
+        left = min(left, float(np.abs(columns[:, used] @ polished - b).max()))
+    return left
+
+
+class _Frame:
+    """Where wrenches are taken, and the load there: of magnitude 1."""
+
+    def __init__(self, scene: Scene, pose: Pose, places: FloatArray, acts: Sequence[Acting]) -> None:
+        points = corners(scene, pose)
+        self.length = 2.0 * float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())
+        self.middle = places.mean(axis=0) if len(places) else points.mean(axis=0)
+        total = np.sum([self.wrench(act.force, pose.transform(act.at_object)) for act in acts], axis=0)
+        force, moment = float(np.linalg.norm(total[:3])), float(np.linalg.norm(total[3:]))
+        self.magnitude = max(force, moment, 1e-9 * load_size(acts))
+        self.load = total / self.magnitude
+
+    def wrench(self, force: FloatArray, at: FloatArray) -> FloatArray:
+        return np.concatenate([force, np.cross(at - self.middle, force) / self.length])
+
+
+def _edges(frame: _Frame, touch: Touch, mu: float, n_sides: int, outside: bool) -> FloatArray:
+    """Wrenches of the edges of a pyramid with normal force 1, (edges, 6)."""
+    if mu == 0.0:
+        return frame.wrench(-touch.normal, touch.place)[None]
+    angles = 2 * np.pi * np.arange(n_sides) / n_sides
+    reach = mu / np.cos(np.pi / n_sides) if outside else mu
+    rays = -touch.normal + reach * np.column_stack([np.cos(angles), np.sin(angles)]) @ tangents(touch.normal)
+    return np.array([frame.wrench(ray, touch.place) for ray in rays])
+
+
+def _wrong_forces(scene: Scene, phase: PhaseRun) -> list[str]:
+    mu = scene.friction_coefficient or 0.0
+    acts = acting(scene, load_of(scene, phase.name))
+    world = dict(zip(scene.cage.names, scene.cage.points_world(), strict=True))
+    places = np.array([world[contact.point] for contact in phase.contacts])
+    frame = _Frame(scene, phase.pose, places, acts)
+    net, largest, fall = frame.load.copy(), 0.0, 0.0
+    found = []
+    for contact, place in zip(phase.contacts, places, strict=True):
+        if contact.force_normal_n is None or contact.force_tangential_n is None:
+            return [f"{phase.verdict} without the force of {contact.point}"]
+        normal_n, tangential = contact.force_normal_n / frame.magnitude, contact.force_tangential_n / frame.magnitude
+        net += frame.wrench(tangential - normal_n * contact.normal_world, place)
+        largest = max(largest, normal_n)
+        fall += normal_n * abs(contact.gap_m) / scene.size_m
+        found += _outside_its_cone(contact, normal_n, tangential, mu)
+    left = float(np.abs(net).max())
+    if left > REST:
+        found.append(f"the reported forces leave {left:.1e} loads")
+    if largest > MOST_FORCE:
+        found.append(f"a reported force of {largest:.1e} loads")
+    if fall > FALL:
+        found.append(f"forces times gaps let the load fall by {fall:.1e} sizes")
+    return found
+
+
+def _outside_its_cone(contact: Contact, normal_n: float, tangential: FloatArray, mu: float) -> list[str]:
+    beyond = float(np.linalg.norm(tangential)) - mu * normal_n
+    aslant = abs(float(tangential @ contact.normal_world))
+    allowed = 1e-9 * (1.0 + abs(normal_n))
+    if normal_n < -allowed or beyond > allowed or aslant > allowed:
+        return [f"the force of {contact.point} is outside its cone (normal {normal_n:.3g}, beyond {beyond:.1e} loads)"]
+    return []

@@ -1,0 +1,50 @@
+"""What is asked and what came of it: `Case`, an `Answer` of an oracle, and a `Failure`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose import Scene
+
+FloatArray = NDArray[np.float64]
+
+Answer = list[str] | None
+"""What an oracle finds wrong with a run, in words; None: the run holds nothing that it could ask about."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One scene of a family.
+
+    Attributes
+    ----------
+    family, index, seed
+        What makes the scene again.
+    scene
+        As `cagepose.run` takes it.
+    ending
+        The verdict that it must have, where the family knows it by hand.
+    """
+
+    family: str
+    index: int
+    seed: int
+    scene: Scene
+    ending: str | None = None
+
+    @property
+    def friction(self) -> float:
+        return self.scene.friction_coefficient or 0.0
+
+
+@dataclass(frozen=True)
+class Failure:
+    """What one oracle says against the run of one case."""
+
+    family: str
+    index: int
+    oracle: str
+    text: str

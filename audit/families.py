@@ -1,0 +1,54 @@
+"""The families by name, and any case of them by its index."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable
+
+import numpy as np
+
+from audit import drawn_families, exact_families, loose_families
+from audit.case import Case
+from cagepose import Scene, SceneError
+
+DRAWN: dict[str, Callable[[np.random.Generator], Scene]] = {
+    "near-contact": loose_families.near_contact,
+    "grid": loose_families.grid,
+    "needle": loose_families.needle,
+    "far-gravity": loose_families.far_gravity,
+    "wedge": loose_families.wedge,
+    "floor": loose_families.floor,
+    "many-loads": loose_families.many_loads,
+    "any-scale": loose_families.any_scale,
+    "twins": loose_families.twins,
+    "block": loose_families.block,
+    "slot": exact_families.slot,
+    "open-plate": exact_families.open_plate,
+    "stopped-plate": exact_families.stopped_plate,
+}
+"""Families of random scenes."""
+
+NUMBERED: dict[str, Callable[[int], Scene]] = {
+    "rail": drawn_families.rail,
+    "drawer": drawn_families.drawer,
+    "dock": drawn_families.dock,
+    "table": drawn_families.table,
+}
+"""Families of one drawing each, whose index sets the friction."""
+
+ENDINGS = {"open-plate": "escapes", "stopped-plate": "rests"}
+"""Verdicts that are known by hand."""
+
+FAMILIES = (*DRAWN, *NUMBERED)
+
+
+def make_case(family: str, index: int, seed: int = 0) -> Case:
+    """Return one case; a draw that is no scene (a point inside, two points on each other) is drawn again."""
+    if family in NUMBERED:
+        return Case(family, index, seed, NUMBERED[family](index))
+    rng = np.random.default_rng([seed, zlib.crc32(family.encode()), index])
+    while True:
+        try:
+            return Case(family, index, seed, DRAWN[family](rng), ENDINGS.get(family))
+        except SceneError:
+            continue

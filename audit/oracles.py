@@ -1,0 +1,81 @@
+"""All oracles by name, and what they say of one case."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from audit import balance, order, robustness, stability, uniqueness, way
+from audit.case import Answer, Case, Failure
+from cagepose import Run, run
+
+ORACLES: dict[str, Callable[[Run], Answer]] = {
+    "balance": balance.balance,
+    "moves": balance.unbalance,
+    "forces": balance.forces,
+    "contacts": balance.contacts,
+    "robust": robustness.robustness,
+    "valley": stability.stability,
+    "unique": uniqueness.uniqueness,
+    "falls": way.potential_falls,
+    "depth": way.depth,
+    "passes": way.passes,
+    "escape": way.escape,
+    "order": order.order_of_verdicts,
+    "poses": order.order_of_poses,
+    "batch": order.batch,
+}
+ENDING, TIME, CRASH = "ending", "time", "crash"
+"""Questions to every run: has it the right end? Did it take longer than `SLOW_S`? Was there an exception?"""
+SLOW_S = 1.0
+NOT_SHOWN = "not shown"
+"""A `may rest` for which no motion is named."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What came of one case: its verdict, how long its run took, which oracles could ask, and the failures."""
+
+    family: str
+    index: int
+    friction: float
+    verdict: str
+    solve_s: float
+    asked: tuple[str, ...]
+    failures: tuple[Failure, ...]
+
+
+def examine(case: Case) -> Finding:
+    """Run a case and ask all oracles; a slow run is asked nothing else, as most of them run it again."""
+    answers: dict[str, Answer] = {}
+    verdict, solve_s = "", math.nan
+    try:
+        found = run(case.scene)
+        solve_s = found.solve_s if found.solve_s <= SLOW_S else min(found.solve_s, run(case.scene).solve_s)
+        verdict = _verdict(found)
+        answers[ENDING] = _ending(found, case.ending)
+        answers[TIME] = [f"took {solve_s:.1f} s"] if solve_s > SLOW_S else []
+        if solve_s <= SLOW_S:
+            for name, oracle in ORACLES.items():
+                answers[name] = oracle(found)
+    except Exception as error:  # whatever it is, it must not end the audit, and is a failure
+        answers[CRASH] = [f"{type(error).__name__}: {error}"]
+    failures = [
+        Failure(case.family, case.index, name, text) for name, answer in answers.items() for text in answer or ()
+    ]
+    asked = tuple(name for name, answer in answers.items() if answer is not None)
+    return Finding(case.family, case.index, case.friction, verdict, solve_s, asked, tuple(failures))
+
+
+def _verdict(found: Run) -> str:
+    """The last verdict; `NOT_SHOWN` where the run has an end and one of its rests is that."""
+    if not found.failed and any(p.verdict == "may rest" and p.proof.motion is None for p in found.phases):
+        return NOT_SHOWN
+    return found.verdict
+
+
+def _ending(found: Run, expected: str | None) -> list[str]:
+    if found.failed:
+        return [f"{found.phases[-1].name}: {found.verdict}"]
+    return [f"{found.verdict} instead of {expected}"] if expected not in (None, found.verdict) else []

@@ -1,0 +1,232 @@
+"""Every oracle of the audit finds the fault that is planted in a right run, and nothing in the run itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from audit import balance, order, robustness, stability, uniqueness, way
+from audit.case import Case
+from audit.families import FAMILIES, make_case
+from audit.geometry import acting
+from audit.oracles import ENDING, ORACLES, TIME, examine
+from audit.scene_yaml import scene_yaml
+from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, load_scene, run
+
+FLOOR = [(x, y, 0.0) for x, y in ((-0.04, -0.03), (0.04, -0.03), (0.0, 0.04))]
+WEIGHT = Load("weight", gravity=(0, 0, -1))
+
+
+def block_on(points, *, friction=0.0, height=0.02, loads=(WEIGHT,), center=(0, 0, 0)):
+    held = Object([Box((0.1, 0.1, 0.02), name="block")], center, pose=Pose((0, 0, height)))
+    return Scene(held, Cage(points), loads, friction_coefficient=friction)
+
+
+def dropped(**changes):
+    return run(block_on(FLOOR, **changes))
+
+
+def with_phase(one, **changes):
+    return replace(one, phases=(*one.phases[:-1], replace(one.phases[-1], **changes)))
+
+
+def moved_end(one, position, euler_zyx=(0, 0, 0)):
+    """The same events, the last of them at another pose."""
+    phase = one.phases[-1]
+    events = (*phase.events[:-1], replace(phase.events[-1], pose_world_object=Pose(position, euler_zyx=euler_zyx)))
+    return with_phase(one, events=events)
+
+
+def with_force(one, **changes):
+    phase = one.phases[-1]
+    return with_phase(one, contacts=(replace(phase.contacts[0], **changes), *phase.contacts[1:]))
+
+
+def test_a_right_run_passes_all_oracles():
+    for scene in (block_on(FLOOR), block_on(FLOOR, friction=0.2)):
+        finding = examine(Case("floor", 0, 0, scene, "rests"))
+        assert not finding.failures
+        assert {ENDING, TIME, "balance", "forces", "contacts", "depth", "falls", "batch"} <= set(finding.asked)
+
+
+def test_a_rest_beside_its_supports_is_not_balanced():
+    one = dropped()
+    assert balance.balance(one) == []
+    (text,) = balance.balance(moved_end(one, (0.06, 0, 0.01)))
+    assert "unbalanced" in text
+
+
+def test_balance_by_forces_of_a_hundred_million_loads_is_none():
+    """Two opposite points a hair apart hold the moment of a plate by that lever alone."""
+    points = [(0.02, 0, -0.005), (0.02 + 1e-11, 0, 0.005), (0.02, 0.01, -0.005), (0.02, -0.01, -0.005)]
+    held = Object([Box((0.08, 0.04, 0.01), name="plate")], (0.01, 0, 0))
+    scene = Scene(held, Cage(points), [WEIGHT])
+    contacts = balance.touches(scene, Pose())
+    acts = acting(scene, WEIGHT)
+    assert len(contacts) == 4
+    assert balance.least_imbalance(scene, Pose(), contacts, acts, outside=True) > balance.REST
+
+
+def test_a_motion_from_a_balanced_pose_is_found():
+    one = dropped()
+    held, last = one.phases[-1].events[-2:]
+    away = replace(last, rule="slide", motion=held.motion, pose_world_object=Pose((0.01, 0, 0.01)))
+    assert balance.unbalance(one) in ([], None)
+    (text,) = balance.unbalance(with_phase(one, events=(*one.phases[-1].events[:-1], away)))
+    assert "balance the load" in text
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"force_normal_n": 0.3}, "leave"),
+        ({"force_normal_n": -0.3}, "outside its cone"),
+        ({"force_tangential_n": np.array([0.2, 0.0, 0.0])}, "outside its cone"),
+        ({"force_normal_n": 1e7}, "a reported force"),
+        ({"gap_m": 1e-6}, "fall"),
+        ({"force_normal_n": None}, "without the force"),
+    ],
+)
+def test_falsified_forces_are_found(changes, said):
+    one = dropped(friction=0.1)
+    assert balance.forces(one) == []
+    assert any(said in text for text in balance.forces(with_force(one, **changes)))
+
+
+def test_a_contact_that_is_missing_is_found():
+    one = dropped()
+    assert balance.contacts(one) == []
+    assert balance.contacts(with_phase(one, contacts=one.contacts[1:]))
+
+
+def test_a_stable_rest_that_a_disturbance_ends_is_found():
+    """A plate clamped between two opposite points by friction alone: it falls when they open."""
+    held = Object([Box((0.02, 0.1, 0.1), name="plate")])
+    scene = Scene(held, Cage([(-0.01, 0, 0), (0.01, 0, 0)]), [WEIGHT], friction_coefficient=0.5)
+    one = dropped(friction=0.2)
+    assert robustness.robustness(one) == []
+    clamped = run(scene)
+    proof = replace(one.phases[0].proof, verdict="rests", stability="stable")
+    found = robustness.robustness(with_phase(clamped, verdict="rests", proof=proof))
+    assert "escapes" in found[0]
+
+
+@pytest.mark.parametrize(("family", "index", "phase", "word"), [("rail", 0, 0, "unstable"), ("rail", 0, 1, "stable")])
+def test_a_saddle_that_is_called_a_valley_is_found_and_the_reverse(family, index, phase, word):
+    """Under its weight the smooth rail rests on a saddle: it leans on a stop, and is free to turn and to shift there.
+    Under the push it rests in a valley.
+    """
+    one = run(make_case(family, index).scene)
+    end = one.phases[phase]
+    alone = replace(one, phases=(end,))
+    assert (end.verdict, end.proof.stability) == ("rests", word)
+    assert stability.stability(alone) == []
+    other = replace(end.proof, stability={"stable": "unstable", "unstable": "stable"}[word])
+    assert stability.stability(with_phase(alone, proof=other))
+
+
+def test_onsets_beside_rest_are_found():
+    """Blocks that may rest, and for which another motion is named, are said to rest: most of them are found."""
+    runs = (run(make_case("block", index).scene) for index in range(60))
+    ambiguous = [one for one in runs if one.verdict == "may rest" and one.phases[-1].proof.motion is not None]
+    found = []
+    for one in ambiguous:
+        proof = replace(one.phases[-1].proof, verdict="rests", needs_friction=True)
+        found += uniqueness.uniqueness(with_phase(one, verdict="rests", proof=proof)) or []
+    assert len(ambiguous) >= 3
+    assert len(found) >= len(ambiguous) / 3
+    assert all("allows an onset" in text for text in found)
+
+
+def test_an_onset_that_breaks_coulombs_law_does_not_count():
+    rows = np.zeros((1, 3, 6))
+    rows[0, :, :3] = np.eye(3)
+    b = np.array([1.0, 0.5, 0, 0, 0, 0]) / np.sqrt(1.25)
+    right = np.array([[b[0], 0.2 * b[0], 0.0]])
+    assert uniqueness.violation(rows, b, 0.2, right) < 1e-15
+    for wrong in ([[b[0], 0.1 * b[0], 0.0]], [[0.5 * b[0], 0.0, 0.0]], [[b[0], 0.3 * b[0], 0.0]]):
+        assert uniqueness.violation(rows, b, 0.2, np.array(wrong)) > 1e-2
+
+
+def test_a_way_uphill_is_found():
+    one = dropped()
+    assert way.potential_falls(one) == []
+    assert way.potential_falls(moved_end(one, (0, 0, 0.0101)))
+
+
+def test_a_pose_inside_is_found():
+    one = dropped()
+    assert way.depth(one) == []
+    assert way.depth(moved_end(one, (0, 0, 0.0099)))
+
+
+def test_an_event_through_a_point_is_found():
+    """The block falls from above its floor to below it."""
+    one = dropped()
+    event = one.phases[0].events[0]
+    assert way.passes(one) == []
+    through = replace(event.motion, distance_m=0.05)
+    below = Pose((0, 0, -0.03))
+    phase = replace(one.phases[0], events=(replace(event, motion=through, pose_world_object=below, path=(below,)),))
+    (text,) = way.passes(replace(one, phases=(phase,)))
+    assert "through the part" in text
+
+
+def test_an_escape_towards_a_point_is_found():
+    one = run(block_on([(0.2, 0, 0)]))
+    assert one.verdict == "escapes"
+    assert way.escape(one) == []
+    assert way.escape(replace(one, scene=block_on([(0.04, 0, -0.5)])))
+
+
+def test_another_answer_after_renumbering_is_found():
+    one = dropped()
+    assert order.order_of_verdicts(one) == []
+    assert order.order_of_poses(one) == []
+    assert order.order_of_verdicts(with_phase(one, verdict="stalled"))
+    assert order.order_of_poses(moved_end(one, (1e-6, 0, 0.01)))
+
+
+def test_a_row_that_differs_in_the_last_bit_is_found():
+    one = dropped()
+    assert order.batch(one) == []
+    assert order.batch(moved_end(one, (0, 0, np.nextafter(one.pose.position_m[2], 1.0))))
+    assert order.batch(with_phase(one, verdict="escapes"))
+
+
+def test_a_wrong_end_is_found():
+    finding = examine(Case("floor", 0, 0, block_on(FLOOR), "escapes"))
+    assert [failure.oracle for failure in finding.failures] == [ENDING]
+
+
+def test_an_exception_is_a_failure(monkeypatch):
+    monkeypatch.setitem(ORACLES, "falls", lambda _: 1 / 0)
+    finding = examine(Case("floor", 0, 0, block_on(FLOOR)))
+    assert [failure.text for failure in finding.failures] == ["ZeroDivisionError: division by zero"]
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_a_case_comes_back_from_its_index_and_from_its_file(family, tmp_path):
+    for index in range(3):
+        scene = make_case(family, index).scene
+        path = tmp_path / f"{index}.yaml"
+        path.write_text(scene_yaml(scene, f"{family} {index}", ["a remark"]), encoding="utf-8")
+        for again in (make_case(family, index).scene, load_scene(path)):
+            assert again.cage.points_world() == pytest.approx(scene.cage.points_world(), abs=1e-15 * scene.size_m)
+            assert again.size_m == pytest.approx(scene.size_m, rel=1e-14)
+            assert again.friction_coefficient == (scene.friction_coefficient or 0.0)
+            assert [load.name for load in again.loads] == [load.name for load in scene.loads]
+
+
+def test_loads_are_weighed_as_the_theory_says():
+    push = Force((1, 0, 0), (0, 0, 0))
+    scene = block_on(FLOOR, loads=[Load("both", gravity=(0, 0, -9.81), force=push)])
+    assert [np.linalg.norm(act.force) for act in acting(scene, scene.loads[0])] == pytest.approx([1.0, 1e-6])
+    heavy = Scene(
+        Object(scene.object.boxes, mass_kg=2.0, pose=scene.object.pose_world_object),
+        scene.cage,
+        [Load("both", gravity=(0, 0, -10), force=Force((1, 0, 0), (0, 0, 0), 3.0))],
+    )
+    assert [np.linalg.norm(act.force) for act in acting(heavy, heavy.loads[0])] == pytest.approx([3.0, 20.0])
