@@ -13,9 +13,8 @@ from pathlib import Path
 
 from rich.console import Console
 
-from audit.case import Case
-from audit.families import FAMILIES, make_case
-from audit.oracles import Finding, examine
+from audit.families import FAMILIES
+from audit.oracles import Finding, examine_drawn
 from audit.report import read_known, show_endings, show_failures, show_mended, show_oracles, show_times
 
 DEFAULT_SCENES = 5100
@@ -74,15 +73,10 @@ def _examined(chosen: Sequence[tuple[str, int]], seed: int, processes: int) -> I
     families, indices = zip(*chosen, strict=True)
     seeds = [seed] * len(chosen)
     if processes == 1:
-        yield from map(_examine, families, indices, seeds)
+        yield from map(examine_drawn, families, indices, seeds)
         return
     with ProcessPoolExecutor(processes, multiprocessing.get_context("spawn")) as pool:
-        yield from pool.map(_examine, families, indices, seeds, chunksize=CHUNK)
-
-
-def _examine(family: str, index: int, seed: int) -> Finding:
-    case: Case = make_case(family, index, seed)
-    return examine(case)
+        yield from pool.map(examine_drawn, families, indices, seeds, chunksize=CHUNK)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from audit import balance, order, robustness, stability, uniqueness, way
 from audit.case import Answer, Case, Failure
+from audit.families import make_case
 from cagepose import Run, run
 
 ORACLES: dict[str, Callable[[Run], Answer]] = {
@@ -44,6 +45,11 @@ class Finding:
     solve_s: float
     asked: tuple[str, ...]
     failures: tuple[Failure, ...]
+
+
+def examine_drawn(family: str, index: int, seed: int) -> Finding:
+    """Draw a case, and examine it; for processes, which are given names."""
+    return examine(make_case(family, index, seed))
 
 
 def examine(case: Case) -> Finding:

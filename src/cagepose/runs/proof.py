@@ -46,8 +46,9 @@ class Proof:
     reason
         Why, in words.
     residual
-        What the contact forces leave of the load, as a fraction of the sum of the load's and the forces' magnitudes
-        (moments at the scale of the radii of gyration). Rounding is 1e-16 of this.
+        What the contact forces leave of the load, as a fraction of it (moments at the scale of the radii of gyration).
+        A balance leaves at most 1e-8, mostly below 1e-11. More is left at rest where contacts without play carry it to
+        second order: then the reason says so.
     needs_friction
         Whether there is a balance with friction only.
     stability

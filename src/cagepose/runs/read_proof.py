@@ -34,6 +34,9 @@ REASONS = {
 }
 NOT_SHOWN = "the contacts can balance the load with friction, but that the object cannot move was not shown"
 WEDGED = "; the contacts can press against each other without a load, as in a wedge"
+STOPPED = "; what they leave, contacts without play stop to second order, by forces without bound"
+LEFT = 1e-6
+"""Of the load: no balance of forces leaves so much. Where there is one, contacts without play carry the rest."""
 IN_SPAN = 1e-6
 """Sine of the angle below which a freedom lies in the span of the undetermined ones."""
 
@@ -60,7 +63,9 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
         found.append(
             Proof(
                 verdict="moves" if not held else "may rest" if is_open else "rests",
-                reason=REASONS.get(code, NOT_SHOWN) + (WEDGED if is_open and wedged else ""),
+                reason=REASONS.get(code, NOT_SHOWN)
+                + (WEDGED if is_open and wedged else "")
+                + (STOPPED if held and residual > LEFT else ""),
                 residual=residual,
                 needs_friction=held and code != PROVEN_WITHOUT_FRICTION,
                 stability=STABILITY_NAMES[stability] if held else None,

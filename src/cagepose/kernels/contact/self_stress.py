@@ -15,11 +15,12 @@ from cagepose.kernels.algebra.dense import frobenius_norm, remove_span
 from cagepose.kernels.algebra.eigen import symmetric_eigen
 from cagepose.kernels.algebra.least_squares import PassiveSet, clear, inner, length
 from cagepose.kernels.algebra.span import extend, write_complement, write_outside, write_reduced
+from cagepose.kernels.algebra.vector import cross, vector_from
 from cagepose.kernels.contact.cone import N_ROWS, clear_cone, cone_residual
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.curvature import add_face_curvature, clear_matrix
 from cagepose.kernels.contact.edges import first_choice, last_of_group
-from cagepose.kernels.contact.metric import WRENCH, Frame
+from cagepose.kernels.contact.metric import WRENCH, Frame, write_scaled_wrench
 from cagepose.kernels.contact.workspace import ContactWorkspace, SelfStressWorkspace
 from cagepose.kernels.native.kernel import kernel
 
@@ -63,25 +64,54 @@ def choose_opposed(contacts: ContactSet) -> bool:
 
 
 @kernel
-def add_self_stress(contacts: ContactSet, frame: Frame, stress: SelfStressWorkspace) -> None:
-    """Add the normals of the self-stress in ``stress.cone`` to the span that is held, and its second derivatives to
-    the others'. Its contacts are not chosen any more.
-    """
+def hold_stressed(contacts: ContactSet, stress: SelfStressWorkspace) -> None:
+    """Add the normals of the self-stress in ``stress.cone`` to the span that is held; they are not chosen any more."""
     passive = stress.cone.passive
     for k in range(passive.used):
         i = stress.cone.contacts[passive.labels[k]]
         extend(stress.held, contacts.rows[i].columns[0], OPPOSED)
-        add_face_curvature(contacts.rows[i], passive.x[k], frame, stress.curvature)
         contacts.states[i].chosen = False
 
 
 @kernel
+def add_second_order(contacts: ContactSet, frame: Frame, stress: SelfStressWorkspace) -> None:
+    """Add the second derivatives of the self-stress in ``stress.cone`` to those of the others."""
+    passive = stress.cone.passive
+    for k in range(passive.used):
+        contact = contacts.rows[stress.cone.contacts[passive.labels[k]]]
+        add_face_curvature(contact, passive.x[k], frame, stress.curvature)
+
+
+@kernel
+def hold_the_rest(contacts: ContactSet, stress: SelfStressWorkspace) -> None:
+    """Add to the span that is held what stress can reach beside it: self-stresses of the other contacts, seen outside
+    the span, to which those found can add what is missing. The normals' wrenches are lost.
+    """
+    while True:
+        for i in range(contacts.used[0]):
+            state, column = contacts.states[i], contacts.rows[i].columns[0]
+            if state.chosen:
+                state.chosen = write_outside(stress.held, column, OPPOSED, stress.twist)
+                for k in range(WRENCH):
+                    column[k] = stress.twist[k]
+        if self_stress(contacts, 0.0, stress) > OPPOSED:
+            return
+        hold_stressed(contacts, stress)
+
+
+@kernel
 def find_stopped(stress: SelfStressWorkspace, stopped: PassiveSet) -> None:
-    """Write a basis of the motions that keep all the gaps held and that the second derivatives stop."""
+    """Write a basis of the motions that keep all the gaps held and that the second derivatives stop.
+
+    Where those open a gap for other such motions, nothing is said: a little of one pays for some of the other.
+    """
     n_free = write_complement(stress.held, stress.free)
     write_reduced(stress.curvature, stress.free, n_free, stress.reduced)
     symmetric_eigen(stress.reduced, stress.vectors, n_free)
     least = STOPS * frobenius_norm(stress.curvature)
+    for e in range(n_free):
+        if stress.reduced[e, e] < -least:
+            return
     for e in range(n_free):
         if stress.reduced[e, e] > least:
             for k in range(WRENCH):
@@ -89,6 +119,29 @@ def find_stopped(stress: SelfStressWorkspace, stopped: PassiveSet) -> None:
                 for i in range(n_free):
                     stress.twist[k] += stress.vectors[i, e] * stress.free[i, k]
             extend(stopped, stress.twist, OPPOSED)
+
+
+@kernel
+def take_out(contacts: ContactSet, frame: Frame, stopped: PassiveSet, stress: SelfStressWorkspace) -> None:
+    """Write the wrenches anew, without what they do along the motions that are stopped.
+
+    Normals that then nearly lie in the span that is held are put into it, so that opposite ones are exactly opposite.
+    """
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        columns, arm = contact.columns, vector_from(contact.arm)
+        for j in range(3):
+            direction = vector_from(contact.directions[j])
+            write_scaled_wrench(direction, cross(arm, direction), frame, columns[j])
+            left = write_outside(stopped, columns[j], OPPOSED, stress.twist)
+            for k in range(WRENCH):
+                columns[j, k] = stress.twist[k]
+            if j == 0 and not left:  # it stops nothing that is not stopped already
+                contact.group = -1
+        write_outside(stress.held, columns[0], 0.0, stress.twist)
+        if length(stress.twist, WRENCH) <= OPPOSED * length(columns[0], WRENCH):
+            for k in range(WRENCH):
+                columns[0, k] -= stress.twist[k]
 
 
 @kernel
@@ -112,21 +165,15 @@ def take_out_stopped(contacts: ContactSet, frame: Frame, work: ContactWorkspace)
     clear(stress.held, WRENCH, 1.0)
     clear_matrix(stress.curvature)
     while self_stress(contacts, 0.0, stress) <= OPPOSED:
-        add_self_stress(contacts, frame, stress)
-    if stress.held.used > 0:
-        find_stopped(stress, stopped)
-    if stopped.used == 0:
+        add_second_order(contacts, frame, stress)
+        hold_stressed(contacts, stress)
+    if stress.held.used == 0:
         return False
+    hold_the_rest(contacts, stress)
+    find_stopped(stress, stopped)
+    take_out(contacts, frame, stopped, stress)
     before = length(work.load, WRENCH)
     remove_span(work.load, stopped)
     after = length(work.load, WRENCH)
     work.load_stopped = math.sqrt(max((before - after) * (before + after), 0.0))
-    for i in range(contacts.used[0]):
-        columns = contacts.rows[i].columns
-        for j in range(3):
-            left = write_outside(stopped, columns[j], OPPOSED, stress.twist)
-            for k in range(WRENCH):
-                columns[j, k] = stress.twist[k]
-            if j == 0 and not left:  # it stops nothing that is not stopped already
-                contacts.rows[i].group = -1
-    return True
+    return bool(stopped.used > 0)
