@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.optimize import linprog
 
-from audit.case import Answer, FloatArray
+from audit.case import Answer, FloatArray, is_held_by_forces
 from audit.geometry import (
     Acting,
     Touch,
@@ -51,7 +51,7 @@ def balance(run: Run) -> Answer:
     """A rest is balanced at every choice of faces, by forces below `MOST_FORCE`."""
     found, asked = [], False
     for phase in run.phases:
-        if phase.verdict in AT_REST and touches_are_clear(run.scene, phase.pose):
+        if phase.verdict in AT_REST and is_held_by_forces(phase) and touches_are_clear(run.scene, phase.pose):
             asked = True
             acts = acting(run.scene, load_of(run.scene, phase.name))
             for chosen in choices(touches(run.scene, phase.pose), MOST_CHOICES, np.random.default_rng(0))[0]:
@@ -88,7 +88,7 @@ def forces(run: Run) -> Answer:
     """The reported forces lie in their cones, balance the load, are not absurd, and have no gap to fall through."""
     found, asked = [], False
     for phase in run.phases:
-        if phase.verdict in AT_REST:
+        if phase.verdict in AT_REST and is_held_by_forces(phase):
             asked = True
             found += [f"{phase.name}: {text}" for text in _wrong_forces(run.scene, phase)]
     return found if asked else None

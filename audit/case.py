@@ -7,12 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose import Scene
+from cagepose import PhaseRun, Scene
 
 FloatArray = NDArray[np.float64]
 
 Answer = list[str] | None
 """What an oracle finds wrong with a run, in words; None: the run holds nothing that it could ask about."""
+
+BY_FORCES = 1e-6
+"""Of the load: forces that balance it leave less."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,13 @@ class Case:
     @property
     def friction(self) -> float:
         return self.scene.friction_coefficient or 0.0
+
+
+def is_held_by_forces(phase: PhaseRun) -> bool:
+    """Whether forces balance the load. Else contacts without play hold a part of it to second order, by forces without
+    bound, and the proof says so: then forces say nothing, and only a disturbance can tell.
+    """
+    return phase.proof.residual <= BY_FORCES or "to second order" not in phase.proof.reason
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from audit.balance import AT_REST
-from audit.case import Answer, FloatArray
+from audit.case import Answer, FloatArray, is_held_by_forces
 from audit.geometry import acting, farthest_move, half_sizes, load_of, load_size, points_in_boxes
 from cagepose import Cage, Object, PhaseRun, Pose, Run, Scene, run
 
@@ -18,6 +18,8 @@ TRAVEL = 1e-3
 TRAVEL_FOR_FORCE = 1e-5
 """And a hundred times the disturbance for each load of force: by virtual work, F loads at a contact stand for a lever
 that moves the part F times as far as the contact."""
+TRAVEL_WITH_PLAY: float = 10.0 * OUT**0.5
+"""What fits without play tips by the root of the play that it is given."""
 
 
 def robustness(one: Run) -> Answer:
@@ -67,6 +69,8 @@ def _outward(scene: Scene, pose: Pose) -> FloatArray:
 
 
 def _allowed(scene: Scene, phase: PhaseRun) -> float:
+    if not is_held_by_forces(phase):
+        return TRAVEL_WITH_PLAY
     load = load_size(acting(scene, load_of(scene, phase.name)))
     largest = max((contact.force_normal_n or 0.0 for contact in phase.contacts), default=0.0) / load
     return max(TRAVEL, TRAVEL_FOR_FORCE * largest)

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.optimize import linprog
 
-from audit.case import Answer, FloatArray
+from audit.case import Answer, FloatArray, is_held_by_forces
 from audit.geometry import Acting, acting, choices, corners, load_of, load_size, touches
 from cagepose import PhaseRun, Run, Scene
 
@@ -40,6 +40,8 @@ def stability(run: Run) -> Answer:
     found, asked = [], False
     for phase in run.phases:
         if phase.verdict != "rests" or phase.proof.stability not in ("stable", "unstable"):
+            continue
+        if not is_held_by_forces(phase):
             continue
         asked = True
         if phase.proof.stability == "stable":

@@ -20,7 +20,7 @@ from cagepose.kernels.contact.edges import (
     return_to_kept,
 )
 from cagepose.kernels.contact.metric import WRENCH, Frame
-from cagepose.kernels.contact.self_stress import OPPOSED, take_out_stopped
+from cagepose.kernels.contact.self_stress import OPPOSED, carried_without_bound, take_out_stopped
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
@@ -152,7 +152,6 @@ def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness:
         Given: the load. Filled: the answer.
     """
     clear(work.stopped, WRENCH, 1.0)
-    work.load_stopped = 0.0
     code = equilibrium_with_edges(contacts, friction, strictness, work)
     pushed = 0.0
     for i in range(contacts.used[0]):
@@ -161,7 +160,8 @@ def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness:
         keep_choice(contacts)
         if take_out_stopped(contacts, frame, work):
             code = equilibrium_with_edges(contacts, friction, strictness, work)
-            work.residual += work.load_stopped / work.load_terms
+            if code != MOVES:
+                work.residual = carried_without_bound(contacts, frame, work)
         else:
             return_to_kept(contacts)
     return code

@@ -9,8 +9,6 @@ carried by forces without bound.
 
 from __future__ import annotations
 
-import math
-
 from cagepose.kernels.algebra.dense import frobenius_norm, remove_span
 from cagepose.kernels.algebra.eigen import symmetric_eigen
 from cagepose.kernels.algebra.least_squares import PassiveSet, clear, inner, length
@@ -172,8 +170,23 @@ def take_out_stopped(contacts: ContactSet, frame: Frame, work: ContactWorkspace)
     hold_the_rest(contacts, stress)
     find_stopped(stress, stopped)
     take_out(contacts, frame, stopped, stress)
-    before = length(work.load, WRENCH)
+    for k in range(WRENCH):
+        work.whole_load[k] = work.load[k]
     remove_span(work.load, stopped)
-    after = length(work.load, WRENCH)
-    work.load_stopped = math.sqrt(max((before - after) * (before + after), 0.0))
     return bool(stopped.used > 0)
+
+
+@kernel
+def carried_without_bound(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> float:
+    """Return what the forces leave of the whole load, in its lengths: what contacts without play carry beside them."""
+    left, column = work.stress.twist, work.trial
+    for k in range(WRENCH):
+        left[k] = work.whole_load[k]
+    for i in range(contacts.used[0]):
+        arm, forces = vector_from(contacts.rows[i].arm), contacts.states[i].forces
+        for j in range(3):
+            direction = vector_from(contacts.rows[i].directions[j])
+            write_scaled_wrench(direction, cross(arm, direction), frame, column)
+            for k in range(WRENCH):
+                left[k] -= forces[j] * column[k]
+    return length(left, WRENCH) / work.load_terms

@@ -52,9 +52,9 @@ class ContactWorkspace:
         Scaled twist of the motion, and that with one choice of faces.
     span
         Basis of all that the carrying contacts can push along, if none of them slips.
-    stress, stopped, load_stopped
-        See `self_stress`: memory, a basis of the motions that contacts without play stop to second order, and the
-        length of what the load had along them.
+    stress, stopped, whole_load
+        See `self_stress`: memory, a basis of the motions that contacts without play stop to second order, and the load
+        before these were taken out of it.
     residual
         What the contacts leave of the load, in its lengths: zero, to rounding, if the object is held.
     """
@@ -68,5 +68,5 @@ class ContactWorkspace:
     span: PassiveSet
     stress: SelfStressWorkspace
     stopped: PassiveSet
-    load_stopped: float
+    whole_load: ScaledVector
     residual: float
