@@ -7,7 +7,7 @@ On an edge one face that holds or leaves is enough (2.4): a load is balanced if 
 from __future__ import annotations
 
 from cagepose.kernels.algebra.dense import remove_span
-from cagepose.kernels.algebra.least_squares import append_column, clear, length
+from cagepose.kernels.algebra.least_squares import append_column, clear, inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.cone import BALANCED, HELD, clear_cone, cone_residual, write_forces
 from cagepose.kernels.contact.contact_set import ContactSet
@@ -133,6 +133,20 @@ def equilibrium_with_edges(contacts: ContactSet, friction: float, strictness: fl
 
 
 @kernel
+def needs_second_order(contacts: ContactSet, code: int, friction: float, work: ContactWorkspace) -> bool:
+    """Whether contacts without play may stop what forces do not: where these do not balance the load, or are without
+    bound. Without friction contacts that carry do not press against each other, so another one must be closed as well.
+    """
+    pushed, n_idle = 0.0, 0
+    for i in range(contacts.used[0]):
+        pushed += contacts.states[i].forces[0]
+        opens = inner(contacts.rows[i].columns[0], work.cone.passive.residual, WRENCH) < -OPPOSED * work.load_terms
+        if contacts.states[i].forces[0] == 0.0 and not opens:
+            n_idle += 1
+    return pushed * OPPOSED > work.load_terms or (code == MOVES and (n_idle > 0 or friction > 0.0))
+
+
+@kernel
 def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness: float, work: ContactWorkspace) -> int:
     """Return the code of the load in ``work``: held, MOVES as soon as one choice of faces does not balance it, or
     UNSOLVED.
@@ -153,10 +167,7 @@ def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness:
     """
     clear(work.stopped, WRENCH, 1.0)
     code = equilibrium_with_edges(contacts, friction, strictness, work)
-    pushed = 0.0
-    for i in range(contacts.used[0]):
-        pushed += contacts.states[i].forces[0]
-    if code == MOVES or pushed * OPPOSED > work.load_terms:
+    if needs_second_order(contacts, code, friction, work):
         keep_choice(contacts)
         if take_out_stopped(contacts, frame, work):
             code = equilibrium_with_edges(contacts, friction, strictness, work)

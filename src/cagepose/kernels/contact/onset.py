@@ -37,17 +37,12 @@ def motion_with_faces(
 
 
 @kernel
-def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWorkspace) -> int:
-    """Solve the onset of motion at a pose; return its code.
+def freest_motion(contacts: ContactSet, friction: float, work: ContactWorkspace) -> int:
+    """Go on from `equilibrium` where it says MOVES: find the motion that begins; UNSOLVED: none was found.
 
-    Filled: which faces are chosen, their forces, and in ``work`` the motion y (zero if held) and the residual.
+    Filled: which faces are chosen, their forces, and in ``work`` the motion y and the residual.
     """
-    for k in range(6):
-        work.y[k] = 0.0
-    code = equilibrium(contacts, frame, friction, AT_REST, work)
-    if code != MOVES:
-        return code
-    fastest, left = -1.0, 0.0
+    code, fastest, left = MOVES, -1.0, 0.0
     for _ in range(CHOICES_LIMIT):
         if code == MOVES:
             solved = motion_with_faces(contacts, friction, work.load, work.trial, work)
@@ -65,6 +60,18 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
     return_to_kept(contacts)
     work.residual = left
     return MOVES if fastest > 0.0 else UNSOLVED
+
+
+@kernel
+def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWorkspace) -> int:
+    """Solve the onset of motion at a pose; return its code.
+
+    Filled: which faces are chosen, their forces, and in ``work`` the motion y (zero if held) and the residual.
+    """
+    for k in range(6):
+        work.y[k] = 0.0
+    code = equilibrium(contacts, frame, friction, AT_REST, work)
+    return freest_motion(contacts, friction, work) if code == MOVES else code
 
 
 @kernel

@@ -12,6 +12,7 @@ from __future__ import annotations
 from cagepose.kernels.algebra.dense import frobenius_norm, remove_span
 from cagepose.kernels.algebra.eigen import symmetric_eigen
 from cagepose.kernels.algebra.least_squares import PassiveSet, clear, inner, length
+from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.span import extend, write_complement, write_outside, write_reduced
 from cagepose.kernels.algebra.vector import cross, vector_from
 from cagepose.kernels.contact.cone import N_ROWS, clear_cone, cone_residual
@@ -42,13 +43,20 @@ def self_stress(contacts: ContactSet, friction: float, stress: SelfStressWorkspa
 
 
 @kernel
-def choose_opposed(contacts: ContactSet) -> bool:
-    """Choose the contacts on faces, not on edges, that another one has a part against; False: none has."""
+def choose_opposed(contacts: ContactSet, twist: FloatArray, load_terms: float) -> bool:
+    """Choose the contacts on faces, not on edges, that a scaled twist does not open and that another one has a part
+    against; False: there are none.
+
+    The twist separates, so that it closes no contact; and no self-stress works along it, so that it opens none of those
+    that are in one.
+    """
     rows, states = contacts.rows, contacts.states
     first_choice(contacts)
     found = False
     for i in range(contacts.used[0]):
-        states[i].chosen = states[i].chosen and last_of_group(contacts, i) == i
+        least = -OPPOSED * load_terms * length(rows[i].columns[0], WRENCH)
+        is_still = inner(rows[i].columns[0], twist, WRENCH) >= least
+        states[i].chosen = states[i].chosen and is_still and last_of_group(contacts, i) == i
     for i in range(contacts.used[0]):
         states[i].is_rejected = True
         for j in range(contacts.used[0]):
@@ -154,11 +162,11 @@ def take_out_stopped(contacts: ContactSet, frame: Frame, work: ContactWorkspace)
     frame
         The scaled coordinates there.
     work
-        Given: the load. Filled: ``stopped``, a basis of these motions.
+        Given: the load, and what is left of it. Filled: ``stopped``, a basis of these motions.
     """
     stress, stopped = work.stress, work.stopped
     clear(stopped, WRENCH, 1.0)
-    if contacts.used[0] < 2 or not choose_opposed(contacts):
+    if not choose_opposed(contacts, work.cone.passive.residual, work.load_terms):
         return False
     clear(stress.held, WRENCH, 1.0)
     clear_matrix(stress.curvature)

@@ -9,8 +9,8 @@ from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.contact.cone import HELD
 from cagepose.kernels.contact.edges import CHOICES_LIMIT, EVERY, first_choice, keep_choice, next_choice, return_to_kept
 from cagepose.kernels.contact.equilibrium import AT_REST, HELD_BY_FRICTION, MOVES, equilibrium_with_faces
-from cagepose.kernels.contact.metric import Body, Frame, PhaseLoad, frame_at
-from cagepose.kernels.contact.onset import onset
+from cagepose.kernels.contact.metric import Body, PhaseLoad
+from cagepose.kernels.contact.onset import freest_motion
 from cagepose.kernels.contact.self_stress import self_stress
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.proof import (
@@ -67,7 +67,7 @@ def search_onsets(friction: float, at: ProofWorkspace) -> int:
 
 
 @kernel
-def first_motion(frame: Frame, friction: float, at: ProofWorkspace) -> None:
+def first_motion(friction: float, at: ProofWorkspace) -> None:
     """Write into ``at.rooms[0].solver.y`` how an object begins to move that does so by `prove`.
 
     It is the onset that obeys Coulomb's law (5.7), and the residual is then the least that contact forces leave of the
@@ -75,13 +75,13 @@ def first_motion(frame: Frame, friction: float, at: ProofWorkspace) -> None:
 
     Parameters
     ----------
-    frame, friction
-        The scaled coordinates at the pose, and the coefficient of friction.
+    friction
+        Coefficient of friction.
     at
         As left by the proof.
     """
     contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
-    if onset(contacts, frame, friction, solver) != MOVES:
+    if freest_motion(contacts, friction, solver) != MOVES:
         solver.residual = room.twist_residual
         for k in range(6):
             solver.y[k] = room.twist[k]
@@ -108,5 +108,5 @@ def judge(
     if code == UNIQUENESS_NOT_SHOWN:
         code = search_onsets(friction, at)
     elif code == PROVEN_MOVES:
-        first_motion(frame_at(body, quaternion), friction, at)
+        first_motion(friction, at)
     return code, steady, n_undetermined
