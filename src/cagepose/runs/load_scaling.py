@@ -36,9 +36,7 @@ def scaled_load(scene: Scene, load: Load) -> ScaledLoad:
         return ScaledLoad(mass * load.gravity_world, none, in_newtons=True)
     magnitude = load.force.magnitude_n
     magnitudes = None if magnitude is None else np.array([magnitude])
-    gravity, force, in_newtons = scaled_pushes(
-        mass, load.gravity_world, load.force.direction_world[None], magnitudes
-    )
+    gravity, force, in_newtons = scaled_pushes(mass, load.gravity_world, load.force.direction_world[None], magnitudes)
     return ScaledLoad(gravity[0], force[0], in_newtons)
 
 

@@ -87,8 +87,8 @@ def run_many(
 ) -> Runs:
     """Run one scene many times with values that vary, or many scenes, on several threads without Python between runs.
 
-    Poses and verdicts are those of `cagepose.run`, to the last bit. Left out are events, contact forces, warnings, and what a proof says
-    beyond the verdict: run the few rows that matter one by one.
+    Poses and verdicts are those of `cagepose.run`, to the last bit. Left out are events, contact forces, warnings, and
+    what a proof says beyond the verdict: run the few rows that matter one by one.
 
     Parameters
     ----------
