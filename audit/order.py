@@ -119,6 +119,7 @@ def _changed(scene: Scene, friction: float, position: FloatArray, direction: Flo
         Cage(cage.points_cage, cage.names, Pose(position, cage.pose_world_cage.quaternion_wxyz)),
         loads,
         friction_coefficient=friction,
+        method=scene.method,
         metric=scene.metric,
         tolerances=scene.tolerances,
     )

@@ -73,9 +73,9 @@ def assert_same(found: many.Runs, row: int, scene: Scene, method: str) -> None:
     assert found.methods[row] == method
     for place, phase in enumerate(alone.phases):
         assert found.phase_verdicts[row, place] == phase.verdict
-        assert found.position_m[row, place] == pytest.approx(phase.pose.position_m, abs=1e-13)
-        assert found.quaternion_wxyz[row, place] == pytest.approx(phase.pose.quaternion_wxyz, abs=1e-12)
-        assert found.euler_zyx[row, place] == pytest.approx(phase.pose.euler_zyx, abs=1e-12)
+        assert found.position_m[row, place].tobytes() == phase.pose.position_m.tobytes()
+        assert found.quaternion_wxyz[row, place].tobytes() == phase.pose.quaternion_wxyz.tobytes()
+        assert found.euler_zyx[row, place] == pytest.approx(phase.pose.euler_zyx, abs=1e-15)
         names = {scene.cage.names[point] for point in np.flatnonzero(found.touching[row, place])}
         assert names == {contact.point for contact in phase.contacts}
     n_phases = len(alone.phases)
@@ -129,6 +129,28 @@ def test_all_that_varies_at_once_and_in_any_order_and_number_of_threads(method: 
     assert np.isfinite(found.position_m[valid, 1]).all(axis=1).mean() > 0.5
     for row in valid[:10]:
         assert_same(found, row, block(**{name: array[row] for name, array in values.items()}), method)
+
+
+ALONE = ("friction_coefficient", "object_position_m", "object_euler_zyx", "force_direction_world", "points_cage_m")
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(("mass_kg", "magnitude_n"), [(0.2, 3.0), (None, None)])
+def test_rows_among_others_have_the_bits_of_runs_alone(
+    mass_kg: float | None, magnitude_n: float | None, method: str
+) -> None:
+    """Directions of any length, and some that are of length one already."""
+    rng = np.random.default_rng(7)
+    values = {name: VARIED[name](rng, 100) for name in ALONE}
+    values["force_direction_world"][::3] /= np.linalg.norm(values["force_direction_world"][::3], axis=1, keepdims=True)
+    values["force_direction_world"][1::3] *= 10.0 ** rng.uniform(-300, 300, (33, 1))
+    scene = block(mass_kg=mass_kg, magnitude_n=magnitude_n)
+    found = run_many(scene, Variation(**values), method=method, threads=2)
+    valid = np.flatnonzero(found.verdict != "invalid")
+    assert len(valid) > 50
+    for row in valid:
+        changed = {name: array[row] for name, array in values.items()}
+        assert_same(found, row, block(mass_kg=mass_kg, magnitude_n=magnitude_n, **changed), method)
 
 
 def test_a_run_that_could_not_begin_is_named() -> None:

@@ -52,14 +52,25 @@ def unit_vector(value: ArrayLike, key: str) -> FloatArray:
         As `finite_array`; also for a vector of length zero, which has no direction.
     """
     vector = finite_array(value, (3,), key)
-    largest = float(np.abs(vector).max())
-    if largest == 0.0:
+    if not vector.any():
         raise SceneError([Problem((key,), "is zero, so it has no direction; give a vector of any other length")])
-    scaled = vector / largest  # so that the squares of tiny or huge components neither vanish nor overflow
-    # A vector that is unit to rounding is kept to the last digit, so that saved scenes come back unchanged.
-    is_unit = largest <= 1.0 and abs(float(np.linalg.norm(vector)) - 1.0) < 1e-15
-    unit: FloatArray = vector if is_unit else scaled / np.linalg.norm(scaled)
+    unit: FloatArray = unit_rows(vector[None])[0]
     unit.setflags(write=False)
+    return unit
+
+
+def unit_rows(vectors: FloatArray) -> FloatArray:
+    """Return each vector of (n, 3), none of which is zero, scaled to length one: number by number, so that a row among
+    others has the same bits as alone.
+
+    A vector that is unit to rounding is kept to the last digit, so that saved scenes come back unchanged.
+    """
+    largest = np.abs(vectors).max(axis=1, keepdims=True)
+    scaled = vectors / largest  # so that the squares of tiny or huge components neither vanish nor overflow
+    x, y, z = scaled.T
+    lengths = np.sqrt(x * x + y * y + z * z)[:, None]
+    is_unit = np.abs(largest * lengths - 1.0) < 1e-15
+    unit: FloatArray = np.where(is_unit, vectors, scaled / lengths)
     return unit
 
 

@@ -49,8 +49,7 @@ class Pose:
         if quaternion_wxyz is not None and euler_zyx is not None:
             raise SceneError([Problem((), "has both a quaternion and Euler angles; keep one of them")])
         if euler_zyx is not None:
-            yaw, pitch, roll = (float(angle) for angle in finite_array(euler_zyx, (3,), "euler_zyx"))
-            quaternion = np.array(kernel.quaternion_from_euler_zyx(yaw, pitch, roll))
+            quaternion = quaternions_of(finite_array(euler_zyx, (3,), "euler_zyx")[None])[0]
         elif quaternion_wxyz is not None:
             given = finite_array(quaternion_wxyz, (4,), "quat_wxyz")
             largest = float(np.abs(given).max())
@@ -111,3 +110,10 @@ class Pose:
         """Return the pose that undoes this one."""
         conjugate = self.quaternion_wxyz * (1.0, -1.0, -1.0, -1.0)
         return Pose(-(self.rotation.T @ self.position_m), conjugate)
+
+
+def quaternions_of(angles_zyx: FloatArray) -> FloatArray:
+    """Return the quaternions (n, 4), w >= 0, of rows of intrinsic ZYX angles (n, 3) in radians."""
+    found = np.empty((len(angles_zyx), 4))
+    kernel.write_quaternions(angles_zyx, found)
+    return found

@@ -8,19 +8,17 @@ from typing import cast
 
 import numpy as np
 
-from cagepose.kernels.algebra.pose import write_quaternions
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.contact.metric import PhaseLoad
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.cases import Cases
 from cagepose.kernels.outcome.endings import empty_endings
-from cagepose.model.checks import FloatArray
+from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.geometry import cage_sizes, object_size
-from cagepose.model.load import Force, Load
-from cagepose.model.pose import Pose
+from cagepose.model.pose import Pose, quaternions_of
 from cagepose.model.scene import FARTHEST_START, Scene
 from cagepose.runs.cases import cases_of, dead_loads, part_of
-from cagepose.runs.load_scaling import scaled_load
+from cagepose.runs.load_scaling import scaled_pushes
 from cagepose.runs.methods import Method
 from cagepose.runs.variation import Variation
 
@@ -89,11 +87,7 @@ def _owned(array: FloatArray) -> FloatArray:
 
 
 def _quaternions(angles: FloatArray | None, pose: Pose) -> FloatArray:
-    if angles is None:
-        return pose.quaternion_wxyz[None]
-    found = np.empty((len(angles), 4))
-    write_quaternions(_owned(angles), found)
-    return found
+    return pose.quaternion_wxyz[None] if angles is None else quaternions_of(angles)
 
 
 def _loads(scene: Scene, columns: dict[str, FloatArray]) -> Rows[Rows[PhaseLoad]]:
@@ -103,24 +97,14 @@ def _loads(scene: Scene, columns: dict[str, FloatArray]) -> Rows[Rows[PhaseLoad]
     if not varied:
         return cast(Rows[Rows[PhaseLoad]], loads)
     ((place, load, force),) = [(k, load, load.force) for k, load in enumerate(scene.loads) if load.force is not None]
-    magnitudes = np.ones(n_rows)
-    if "force_magnitude_n" in columns:  # of a force of 1 N: a scene may give none, and count no newtons then
-        magnitudes = columns["force_magnitude_n"]
-        force = Force(force.direction_world, force.at_object_m, 1.0)
-    weighed = scaled_load(scene, Load(load.name, gravity=load.gravity_world, force=force))
-    pushes = weighed.force[None]
+    directions, magnitudes = force.direction_world[None], columns.get("force_magnitude_n")
     if "force_direction_world" in columns:
-        pushes = np.linalg.norm(weighed.force) * _unit_rows(columns["force_direction_world"])
-    # Where newtons do not count, the weight is a part of the force.
-    weights = np.ones(n_rows) if weighed.in_newtons else magnitudes
-    loads["forces_world"][:, place, 0] = weights[:, None] * weighed.gravity
-    loads["forces_world"][:, place, 1] = magnitudes[:, None] * pushes
+        directions = unit_rows(columns["force_direction_world"])
+    if magnitudes is None and force.magnitude_n is not None:
+        magnitudes = np.array([force.magnitude_n])
+    weighed = scaled_pushes(scene.object.mass_kg, load.gravity_world, directions, magnitudes)
+    loads["forces_world"][:, place, 0] = weighed.gravity
+    loads["forces_world"][:, place, 1] = weighed.force
     if "force_at_object_m" in columns:
         loads["arms_object"][:, place, 1] = columns["force_at_object_m"] - scene.object.center_of_gravity_m
     return cast(Rows[Rows[PhaseLoad]], loads)
-
-
-def _unit_rows(vectors: FloatArray) -> FloatArray:
-    scaled = vectors / np.abs(vectors).max(axis=1, keepdims=True)  # so that squares neither vanish nor overflow
-    unit: FloatArray = scaled / np.linalg.norm(scaled, axis=1, keepdims=True)
-    return unit

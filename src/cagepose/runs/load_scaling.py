@@ -16,8 +16,8 @@ and gravity settles only what the force leaves open."""
 
 
 class ScaledLoad(NamedTuple):
-    """Gravity and force of one phase: vectors in the world, (3,). In newtons if all that needs is given, else per unit
-    load.
+    """Gravity and force of one phase: vectors in the world, (3,), or rows of them. In newtons if all that needs is
+    given, else per unit load.
     """
 
     gravity: FloatArray
@@ -35,10 +35,23 @@ def scaled_load(scene: Scene, load: Load) -> ScaledLoad:
             return ScaledLoad(unit_vector(load.gravity_world, "gravity"), none, in_newtons=False)
         return ScaledLoad(mass * load.gravity_world, none, in_newtons=True)
     magnitude = load.force.magnitude_n
-    force = load.force.direction_world * (1.0 if magnitude is None else magnitude)
-    if load.gravity_world is None:
-        return ScaledLoad(none, force, in_newtons=magnitude is not None)
-    if mass is not None and magnitude is not None:
-        return ScaledLoad(mass * load.gravity_world, force, in_newtons=True)
-    weight = WEIGHT_BESIDE_FORCE * float(np.linalg.norm(force))
-    return ScaledLoad(weight * unit_vector(load.gravity_world, "gravity"), force, in_newtons=False)
+    magnitudes = None if magnitude is None else np.array([magnitude])
+    gravity, force, in_newtons = scaled_pushes(mass, load.gravity_world, load.force.direction_world[None], magnitudes)
+    return ScaledLoad(gravity[0], force[0], in_newtons)
+
+
+def scaled_pushes(
+    mass_kg: float | None, gravity: FloatArray | None, directions: FloatArray, magnitudes: FloatArray | None
+) -> ScaledLoad:
+    """Return the two loads of phases that differ in their force, one row for each: unit vectors (n, 3) by (n,) newtons,
+    or None, of which each may also be one row for all. Number by number, so that a row has the same bits as alone.
+    """
+    lengths = np.ones((1, 1)) if magnitudes is None else magnitudes[:, None]
+    forces = lengths * directions
+    if gravity is None:
+        return ScaledLoad(np.zeros((1, 3)), forces, in_newtons=magnitudes is not None)
+    if mass_kg is not None and magnitudes is not None:
+        return ScaledLoad((mass_kg * gravity)[None], forces, in_newtons=True)
+    # Where newtons do not count, the weight is a part of the force.
+    weights = WEIGHT_BESIDE_FORCE * lengths * unit_vector(gravity, "gravity")
+    return ScaledLoad(weights, forces, in_newtons=False)

@@ -87,8 +87,8 @@ def run_many(
 ) -> Runs:
     """Run one scene many times with values that vary, or many scenes, on several threads without Python between runs.
 
-    Poses and verdicts are those of `cagepose.run`. Left out are events, contact forces, warnings, and what a proof says
-    beyond the verdict: run the few rows that matter one by one.
+    Poses and verdicts are those of `cagepose.run`, to the last bit. Left out are events, contact forces, warnings, and
+    what a proof says beyond the verdict: run the few rows that matter one by one.
 
     Parameters
     ----------
@@ -152,14 +152,12 @@ def _columns(methods: list[str], batches: Sequence[Batch], solve_s: float) -> Ru
     proofs = _stacked([found.proofs for found in endings], NOT_RUN)
     verdicts = names[codes]
     verdicts[(codes == RESTS) & np.isin(proofs, (OTHER_ONSET, UNIQUENESS_NOT_SHOWN, TOO_MANY_CHOICES))] = "may rest"
-    quaternions = _stacked([found.quaternions for found in endings], np.nan)
-    quaternions[quaternions[..., 0] < 0.0] *= -1.0  # as `Pose` has them
     return Runs(
         np.repeat(methods, [batch.n_runs for batch in batches]),
         verdicts,
         _stacked([found.n_events for found in endings], 0),
         _stacked([found.positions for found in endings], np.nan),
-        quaternions,
+        _stacked([found.quaternions for found in endings], np.nan),
         _stacked([found.touching for found in endings], False),
         solve_s,
     )

@@ -66,13 +66,20 @@ def quaternion_from_euler_zyx(yaw_rad: float, pitch_rad: float, roll_rad: float)
     return quaternion_product(about_z, quaternion_product(about_y, about_x))
 
 
+@kernel
+def write_upright(q: Quaternion, out: FloatArray) -> None:
+    """Write the one of the two quaternions of an orientation, q and -q, whose w is not below zero."""
+    sense = math.copysign(1.0, q[0])
+    for k in range(4):
+        out[k] = sense * q[k]
+
+
 @entry
 def write_quaternions(angles: FloatArray, quaternions: FloatArray) -> None:
-    """Write the quaternion (n, 4) of each row of yaw, pitch, roll (n, 3)."""
+    """Write the quaternion (n, 4), w >= 0, of each row of yaw, pitch, roll (n, 3)."""
     for index in range(len(angles)):
         found = quaternion_from_euler_zyx(angles[index, 0], angles[index, 1], angles[index, 2])
-        for k in range(4):
-            quaternions[index, k] = found[k]
+        write_upright(found, quaternions[index])
 
 
 @kernel

@@ -16,7 +16,7 @@ from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.native.kernel import kernel
 
 STICKING_LIMIT = 12
-"""More contacts than this that stick (or three times as many that slip): left to the sweeps."""
+"""More contacts than this that stick (or half as many again that slip): left to the sweeps."""
 UNKNOWNS = 6 + 3 * STICKING_LIMIT
 CARRYING_LIMIT = UNKNOWNS - 6
 NEWTON_STEPS = 8
@@ -40,6 +40,8 @@ class NewtonWorkspace:
         The system, right side last.
     order
         Which unknown each column holds.
+    changes
+        What a step adds to each unknown.
     """
 
     n_carrying: int
@@ -48,6 +50,7 @@ class NewtonWorkspace:
     first_unknowns: Annotated[IntArray, CARRYING_LIMIT]
     matrix: Annotated[FloatArray, UNKNOWNS, UNKNOWNS + 1]
     order: Annotated[IntArray, UNKNOWNS]
+    changes: Annotated[FloatArray, UNKNOWNS]
 
 
 @kernel
@@ -63,8 +66,10 @@ def add_carrying(newton: NewtonWorkspace, contact: int, mode: int) -> None:
 
 @kernel
 def n_forces(mode: int) -> int:
-    """Return how many unknown forces a contact has: the friction of one that slips follows from its normal force."""
-    return 1 if mode == SLIPS else 3
+    """Return how many unknown forces a contact has: one that slips has its normal force, and by how much its friction
+    turns with the slip.
+    """
+    return 2 if mode == SLIPS else 3
 
 
 @kernel
@@ -104,32 +109,47 @@ def write_system(
                     m[k, n] -= columns[j, k] * forces[j]
                 m[first + j, n] = -inner(columns[j], y, 6)
         else:
+            # The friction across is that along, times the change of the slip across, over the slip. That as a factor in
+            # the balance would be so great where the slip is slow that other equations seem singular beside it.
             slip, one, two = steepest_tangent(contact, y)
-            turning = forces[0] * friction / slip
+            along = friction * forces[0]
+            greater = max(abs(along), slip)
             for k in range(6):
                 generator = columns[0, k] + friction * (one * columns[1, k] + two * columns[2, k])
                 m[first, k] = columns[0, k]
                 m[k, first] = generator
                 m[k, n] -= generator * forces[0]
-                across = two * columns[1, k] - one * columns[2, k]
-                for j in range(6):
-                    m[k, j] += turning * across * (two * columns[1, j] - one * columns[2, j])
+                m[k, first + 1] = two * columns[1, k] - one * columns[2, k]
+                m[first + 1, k] = along / greater * m[k, first + 1]
+            m[first + 1, first + 1] = -slip / greater
             m[first, n] = -inner(columns[0], y, 6)
 
 
 @kernel
-def add_changes(contacts: ContactSet, y: FloatArray, n: int, newton: NewtonWorkspace) -> float:
-    """Add what the last step found to the motion and to the forces; return the greatest change."""
-    greatest = 0.0
+def add_changes(contacts: ContactSet, friction: float, y: FloatArray, n: int, newton: NewtonWorkspace) -> float:
+    """Add what the last step found to the motion and to the forces; return the greatest change.
+
+    The friction of a contact that slips turns as the step says, from the slip that the step began with: read off the
+    new motion, it would have the rounding of that over the slip, and a slow slip under a great force makes much of it.
+    """
+    greatest, changes = 0.0, newton.changes
     for row in range(n):
-        change, unknown = newton.matrix[row, n], newton.order[row]
-        greatest = max(greatest, abs(change))
-        if unknown < 6:
-            y[unknown] += change
-        for place in range(newton.n_carrying):
-            j = unknown - newton.first_unknowns[place]
-            if 0 <= j < n_forces(newton.modes[place]):
-                contacts.states[newton.contacts[place]].forces[j] += change
+        changes[newton.order[row]] = newton.matrix[row, n]
+        greatest = max(greatest, abs(newton.matrix[row, n]))
+    for place in range(newton.n_carrying):
+        contact, first = contacts.rows[newton.contacts[place]], newton.first_unknowns[place]
+        forces = contacts.states[newton.contacts[place]].forces
+        if newton.modes[place] == STICKS:
+            for j in range(3):
+                forces[j] += changes[first + j]
+        else:
+            _, one, two = steepest_tangent(contact, y)
+            aside = changes[first + 1]
+            forces[0] += changes[first]
+            forces[1] = friction * forces[0] * one + aside * two
+            forces[2] = friction * forces[0] * two - aside * one
+    for k in range(6):
+        y[k] += changes[k]
     return greatest
 
 
@@ -147,24 +167,18 @@ def newton_on_modes(
     for _ in range(NEWTON_STEPS):
         write_system(contacts, friction, b, y, n, newton)
         eliminate(newton.matrix, newton.order, n)
-        if add_changes(contacts, y, n, newton) <= STILL * length(b, 6):
+        if add_changes(contacts, friction, y, n, newton) <= STILL * length(b, 6):
             break
-    finish_forces(contacts, friction, y, newton)
+    let_open(contacts, newton)
 
 
 @kernel
-def finish_forces(contacts: ContactSet, friction: float, y: FloatArray, newton: NewtonWorkspace) -> None:
-    """Write what the modes say of the forces: contacts that open carry nothing, friction lies along the slip."""
+def let_open(contacts: ContactSet, newton: NewtonWorkspace) -> None:
+    """Contacts that open carry nothing."""
     place = 0
     for i in range(contacts.used[0]):
-        forces = contacts.states[i].forces
-        if place == newton.n_carrying or newton.contacts[place] != i:
-            for j in range(3):
-                forces[j] = 0.0
+        if place < newton.n_carrying and newton.contacts[place] == i:
+            place += 1
             continue
-        if newton.modes[place] == SLIPS:
-            slip, one, two = steepest_tangent(contacts.rows[i], y)
-            if slip > 0.0:
-                forces[1] = friction * forces[0] * one
-                forces[2] = friction * forces[0] * two
-        place += 1
+        for j in range(3):
+            contacts.states[i].forces[j] = 0.0

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.pose import Quaternion, write_upright
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.native.kernel import kernel
@@ -72,5 +72,4 @@ def write_ending(
     endings.n_events[case, phase] = n_events
     for k in range(3):
         endings.positions[case, phase, k] = placed[k]
-    for k in range(4):
-        endings.quaternions[case, phase, k] = quaternion[k]
+    write_upright(quaternion, endings.quaternions[case, phase])

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
-
-from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.pose import Quaternion, write_upright
 from cagepose.kernels.algebra.vector import Vector, vector_from
 from cagepose.kernels.collision.contacts import is_near_edge
 from cagepose.kernels.contact.metric import frame_at, twist_of
@@ -115,7 +113,6 @@ def publish_events(
             ),
         )
         placed = object_position(start, part, end, turned)
-        sense = math.copysign(1.0, turned[0])
         place = outcome.counts[STEPS]
         outcome.counts[STEPS] += 1
         outcome.steps[place] = record  # type: ignore[index]
@@ -123,8 +120,7 @@ def publish_events(
             outcome.order[place, point] = trace.order[step, point]
         for k in range(3):
             outcome.path[place, k] = placed[k]
-        for k in range(4):
-            outcome.path[place, 3 + k] = sense * turned[k]
+        write_upright(turned, outcome.path[place, 3:])
         if joins_steps and step + 1 < n_steps and goes_on(trace, step):
             continue
         event = outcome.events[outcome.counts[EVENTS]]
@@ -140,8 +136,7 @@ def publish_events(
         for k in range(3):
             event.position[k] = placed[k]
             event.along[k], event.through[k] = along[k], through[k] + start.origin_world[k]
-        for k in range(4):
-            event.quaternion[k] = sense * turned[k]
+        write_upright(turned, event.quaternion)
         for point in range(trace.hit.shape[1]):
             outcome.touching[outcome.counts[EVENTS], point] = trace.touching[step, point]
             outcome.hit[outcome.counts[EVENTS], point] = trace.hit[step, point]
