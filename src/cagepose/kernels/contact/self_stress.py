@@ -70,47 +70,50 @@ def choose_opposed(contacts: ContactSet, twist: FloatArray, load_terms: float) -
 
 
 @kernel
+def drop_stressed(contacts: ContactSet, stress: SelfStressWorkspace) -> None:
+    """Choose the contacts of the self-stress in ``stress.cone`` no longer."""
+    for k in range(stress.cone.passive.used):
+        contacts.states[stress.cone.contacts[stress.cone.passive.labels[k]]].chosen = False
+
+
+@kernel
 def hold_stressed(contacts: ContactSet, stress: SelfStressWorkspace) -> None:
-    """Add the normals of the self-stress in ``stress.cone`` to the span that is held; they are not chosen any more."""
-    passive = stress.cone.passive
-    for k in range(passive.used):
-        i = stress.cone.contacts[passive.labels[k]]
-        extend(stress.held, contacts.rows[i].columns[0], OPPOSED)
-        contacts.states[i].chosen = False
+    """Add the normals of the self-stresses of the chosen contacts to the span that is held.
 
-
-@kernel
-def add_second_order(contacts: ContactSet, frame: Frame, stress: SelfStressWorkspace) -> None:
-    """Add the second derivatives of the self-stress in ``stress.cone`` to those of the others."""
-    passive = stress.cone.passive
-    for k in range(passive.used):
-        contact = contacts.rows[stress.cone.contacts[passive.labels[k]]]
-        add_face_curvature(contact, passive.x[k], frame, stress.curvature)
-
-
-@kernel
-def hold_the_rest(contacts: ContactSet, stress: SelfStressWorkspace) -> None:
-    """Add to the span that is held what stress can reach beside it: self-stresses of the other contacts, seen outside
-    the span, to which those found can add what is missing. The normals' wrenches are lost.
+    Of the other contacts the part outside the span is asked again: what is missing inside, self-stresses that have been
+    found can add. The normals' wrenches are lost.
     """
-    while True:
+    clear(stress.held, WRENCH, 1.0)
+    while self_stress(contacts, 0.0, stress) <= OPPOSED:
+        for k in range(stress.cone.passive.used):
+            i = stress.cone.contacts[stress.cone.passive.labels[k]]
+            extend(stress.held, contacts.rows[i].columns[0], OPPOSED)
+        drop_stressed(contacts, stress)
         for i in range(contacts.used[0]):
             state, column = contacts.states[i], contacts.rows[i].columns[0]
             if state.chosen:
                 state.chosen = write_outside(stress.held, column, OPPOSED, stress.twist)
                 for k in range(WRENCH):
                     column[k] = stress.twist[k]
-        if self_stress(contacts, 0.0, stress) > OPPOSED:
-            return
-        hold_stressed(contacts, stress)
 
 
 @kernel
-def find_stopped(stress: SelfStressWorkspace, stopped: PassiveSet) -> None:
-    """Write a basis of the motions that keep all the gaps held and that the second derivatives stop.
+def write_wrench(contacts: ContactSet, i: int, j: int, frame: Frame, out: FloatArray) -> None:
+    """Write the scaled wrench of a unit force of contact i in its direction j, as `find_contacts` does."""
+    direction = vector_from(contacts.rows[i].directions[j])
+    write_scaled_wrench(direction, cross(vector_from(contacts.rows[i].arm), direction), frame, out)
 
-    Where those open a gap for other such motions, nothing is said: a little of one pays for some of the other.
+
+@kernel
+def add_stopped(contacts: ContactSet, frame: Frame, stopped: PassiveSet, stress: SelfStressWorkspace) -> None:
+    """Add what the self-stress in ``stress.cone`` stops of the motions that are neither held nor stopped; that is then
+    held, too. Where it opens a gap for others of them, it stops none: a little of one pays for some of another.
     """
+    passive = stress.cone.passive
+    clear_matrix(stress.curvature)
+    for k in range(passive.used):
+        contact = contacts.rows[stress.cone.contacts[passive.labels[k]]]
+        add_face_curvature(contact, passive.x[k], frame, stress.curvature)
     n_free = write_complement(stress.held, stress.free)
     write_reduced(stress.curvature, stress.free, n_free, stress.reduced)
     symmetric_eigen(stress.reduced, stress.vectors, n_free)
@@ -125,35 +128,56 @@ def find_stopped(stress: SelfStressWorkspace, stopped: PassiveSet) -> None:
                 for i in range(n_free):
                     stress.twist[k] += stress.vectors[i, e] * stress.free[i, k]
             extend(stopped, stress.twist, OPPOSED)
+    for place in range(stopped.used):
+        extend(stress.held, stopped.basis[place], OPPOSED)
 
 
 @kernel
-def take_out(contacts: ContactSet, frame: Frame, stopped: PassiveSet, stress: SelfStressWorkspace) -> None:
-    """Write the wrenches anew, without what they do along the motions that are stopped.
-
-    Normals that then nearly lie in the span that is held are put into it, so that opposite ones are exactly opposite.
+def find_stopped(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> bool:
+    """Write a basis of the motions that contacts without play stop to second order into ``work.stopped``; False: there
+    are none. Which contacts are chosen is lost.
     """
+    stress, stopped = work.stress, work.stopped
+    clear(stopped, WRENCH, 1.0)
+    if not choose_opposed(contacts, work.cone.passive.residual, work.load_terms):
+        return False
+    if self_stress(contacts, 0.0, stress) > OPPOSED:
+        return False
+    hold_stressed(contacts, stress)
     for i in range(contacts.used[0]):
-        contact = contacts.rows[i]
-        columns, arm = contact.columns, vector_from(contact.arm)
-        for j in range(3):
-            direction = vector_from(contact.directions[j])
-            write_scaled_wrench(direction, cross(arm, direction), frame, columns[j])
-            left = write_outside(stopped, columns[j], OPPOSED, stress.twist)
+        write_wrench(contacts, i, 0, frame, contacts.rows[i].columns[0])
+    before = -1
+    while stopped.used > before:  # what one self-stress stops may leave another with nothing that it opens
+        before = int(stopped.used)
+        choose_opposed(contacts, work.cone.passive.residual, work.load_terms)
+        while self_stress(contacts, 0.0, stress) <= OPPOSED:
+            add_stopped(contacts, frame, stopped, stress)
+            drop_stressed(contacts, stress)
+    return bool(stopped.used > 0)
+
+
+@kernel
+def take_out(contacts: ContactSet, i: int, j: int, work: ContactWorkspace) -> None:
+    """Take out of a wrench what it does along the motions that are stopped.
+
+    A normal that then nearly lies in the span that is held is put into it, so that opposite ones are exactly opposite.
+    """
+    column, stress = contacts.rows[i].columns[j], work.stress
+    is_group = contacts.rows[i].group == i and last_of_group(contacts, i) == i
+    if j == 0 and is_group and not write_outside(work.stopped, column, OPPOSED, stress.twist):
+        contacts.rows[i].group = -1  # it stops nothing that is not stopped already
+        return
+    remove_span(column, work.stopped)
+    if j == 0:
+        write_outside(stress.held, column, 0.0, stress.twist)
+        if length(stress.twist, WRENCH) <= OPPOSED * length(column, WRENCH):
             for k in range(WRENCH):
-                columns[j, k] = stress.twist[k]
-            if j == 0 and not left:  # it stops nothing that is not stopped already
-                contact.group = -1
-        write_outside(stress.held, columns[0], 0.0, stress.twist)
-        if length(stress.twist, WRENCH) <= OPPOSED * length(columns[0], WRENCH):
-            for k in range(WRENCH):
-                columns[0, k] -= stress.twist[k]
+                column[k] -= stress.twist[k]
 
 
 @kernel
 def take_out_stopped(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> bool:
-    """Find the motions that contacts without play stop to second order, and take them out of wrenches and load; False:
-    there are none.
+    """Take the motions that contacts without play stop to second order out of wrenches and load; False: there are none.
 
     Parameters
     ----------
@@ -164,24 +188,15 @@ def take_out_stopped(contacts: ContactSet, frame: Frame, work: ContactWorkspace)
     work
         Given: the load, and what is left of it. Filled: ``stopped``, a basis of these motions.
     """
-    stress, stopped = work.stress, work.stopped
-    clear(stopped, WRENCH, 1.0)
-    if not choose_opposed(contacts, work.cone.passive.residual, work.load_terms):
+    if not find_stopped(contacts, frame, work):
         return False
-    clear(stress.held, WRENCH, 1.0)
-    clear_matrix(stress.curvature)
-    while self_stress(contacts, 0.0, stress) <= OPPOSED:
-        add_second_order(contacts, frame, stress)
-        hold_stressed(contacts, stress)
-    if stress.held.used == 0:
-        return False
-    hold_the_rest(contacts, stress)
-    find_stopped(stress, stopped)
-    take_out(contacts, frame, stopped, stress)
     for k in range(WRENCH):
         work.whole_load[k] = work.load[k]
-    remove_span(work.load, stopped)
-    return bool(stopped.used > 0)
+    remove_span(work.load, work.stopped)
+    for i in range(contacts.used[0]):
+        for j in range(3):
+            take_out(contacts, i, j, work)
+    return True
 
 
 @kernel
@@ -191,10 +206,8 @@ def carried_without_bound(contacts: ContactSet, frame: Frame, work: ContactWorks
     for k in range(WRENCH):
         left[k] = work.whole_load[k]
     for i in range(contacts.used[0]):
-        arm, forces = vector_from(contacts.rows[i].arm), contacts.states[i].forces
         for j in range(3):
-            direction = vector_from(contacts.rows[i].directions[j])
-            write_scaled_wrench(direction, cross(arm, direction), frame, column)
+            write_wrench(contacts, i, j, frame, column)
             for k in range(WRENCH):
-                left[k] -= forces[j] * column[k]
+                left[k] -= contacts.states[i].forces[j] * column[k]
     return length(left, WRENCH) / work.load_terms

@@ -16,6 +16,7 @@ from cagepose.kernels.contact.edges import (
     EVERY,
     first_choice,
     has_one_choice,
+    keep_choice,
     next_choice,
     return_to_kept,
 )
@@ -28,6 +29,7 @@ from cagepose.kernels.contact.equilibrium import (
     equilibrium_with_faces,
 )
 from cagepose.kernels.contact.metric import WRENCH, Body, Frame, PhaseLoad, ScaledVector, frame_at, write_load
+from cagepose.kernels.contact.self_stress import find_stopped
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.relaxation import N_COLUMNS
@@ -170,6 +172,29 @@ def prove(
 
 
 @kernel
+def stability_of_rest(
+    at: ProofWorkspace, friction: float, load: PhaseLoad, quaternion: Quaternion, frame: Frame, size_m: float
+) -> int:
+    """Return the code of stability of a rest with these faces; where it is not stable to first order and by curvature,
+    what contacts without play stop counts as well.
+    """
+    contacts, rest, solver = at.contacts, at.rooms[0].rest, at.rooms[0].solver
+    n_ways = rest.ways.used
+    terms, code = solver.load_terms, STABLE_REST
+    for _ in range(2):
+        rest.ways.used = n_ways
+        code = stability(
+            contacts, at.statuses, friction, solver.stopped, load, quaternion, frame, terms, size_m, rest, at.system
+        )
+        if code == STABLE_REST or solver.stopped.used > 0 or not has_one_choice(contacts):
+            break
+        keep_choice(contacts)
+        find_stopped(contacts, frame, solver)
+        return_to_kept(contacts)
+    return code
+
+
+@kernel
 def judge_faces(
     at: ProofWorkspace,
     code: int,
@@ -191,20 +216,7 @@ def judge_faces(
     for _ in range(CHOICES_LIMIT):
         if not one_choice:
             code = equilibrium_with_faces(contacts, friction, AT_REST, solver.load, solver.load_terms, solver)
-        with_these = stability(
-            contacts,
-            at.statuses,
-            friction,
-            solver.stopped,
-            load,
-            quaternion,
-            frame,
-            solver.load_terms,
-            size_m,
-            room.rest,
-            at.system,
-        )
-        steady = max(steady, with_these)
+        steady = max(steady, stability_of_rest(at, friction, load, quaternion, frame, size_m))
         if code != HELD_WITHOUT_FRICTION:
             proof = UNIQUENESS_NOT_SHOWN
         if not next_choice(contacts, EVERY):
