@@ -156,14 +156,19 @@ def constrain_to_face(geometry: Geometry, placement: Placement, point: int, box:
 
 @kernel
 def constrain_contacts(
-    geometry: Geometry, placement: Placement, contacts: ContactSet, constraints: Constraints
+    geometry: Geometry, placement: Placement, contacts: ContactSet, closed_m: float, constraints: Constraints
 ) -> None:
-    """Constrain the contacts that carry to their faces, and where they stick also in the face."""
+    """Constrain the contacts that carry, and where they stick also in the face.
+
+    Gaps of up to ``closed_m`` are closed, others are kept: to close them could take work, or bring another point in.
+    """
     constraints.rooms[0].used = 0
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
         if contacts.states[i].forces[0] > 0.0:
             at = geometry.half_sizes[contact.box, contact.axis]
+            if abs(contact.gap) > closed_m:
+                at += contact.gap
             add_constraint(constraints, contact.point, contact.box, contact.axis, contact.side, at)
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
@@ -230,13 +235,13 @@ def stepped(
     hit_box: int,
     room: StepWorkspace,
 ) -> tuple[bool, Vector, Quaternion]:
-    """Move by ``amount`` and put the contacts that carry, and the one that is hit, on their faces.
+    """Move by ``amount``, keep the contacts that carry on their faces, and put the one that is hit on its own.
 
-    False: a point would be inside, a contact would not stay on its face, or the loads would do negative work. The
+    A contact that touches across a gap, within the touch tolerance, keeps the gap, as its gap rate of zero says. False: a point would be inside, a contact would not stay on its face, or the loads would do negative work. The
     placement is that of the new pose, or of the old one.
     """
     geometry = setting.geometry
-    constrain_contacts(geometry, placement, contacts, room.constraints)
+    constrain_contacts(geometry, placement, contacts, setting.tolerances.resolution_m, room.constraints)
     moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
     if hit_point >= 0:
         place_object(geometry, moved[0], moved[1], placement)
