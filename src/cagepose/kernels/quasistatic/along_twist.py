@@ -278,7 +278,8 @@ def stepped(
 ) -> tuple[bool, Vector, Quaternion]:
     """Move by ``amount``, keep the contacts that carry on their faces, and put the one that is hit on its own.
 
-    A contact that touches across a gap, within the touch tolerance, keeps the gap, as its gap rate of zero says. False: a point would be inside, a contact would not stay on its face, or the loads would do negative work. The
+    A contact that touches across a gap, within the touch tolerance, keeps the gap, as its gap rate of zero says.
+    False: a point would be inside, a contact would not stay on its face, or the loads would do negative work. The
     placement is that of the new pose, or of the old one.
     """
     geometry = setting.geometry
