@@ -21,6 +21,8 @@ from cagepose.kernels.native.kernel import kernel
 
 SAFE = 1.0 + 1e-12
 """So that rounding passes over nothing that is just in reach."""
+THIN = 0.5
+"""Of half the thickness of a box: no point may go deeper, or it could come out on the other side."""
 
 
 @kernel
@@ -148,18 +150,21 @@ def first_contact_screw(
     axis: Vector,
     angle_end_rad: float,
     skip_gap_m: float,
+    near_m: float,
+    near_depth_m: float,
     tolerances: KernelTolerances,
 ) -> tuple[float, int, int]:
     """Return (angle, point index, box index) of the first contact on a screw before ``angle_end_rad``; (inf, -1, -1):
     none.
 
     ``velocity`` is that of the object at ``center`` for each radian about the unit vector ``axis``, metres. Points
-    within ``skip_gap_m`` of a box are not asked about that box.
+    within ``skip_gap_m`` of a box are not asked about that box; others within ``near_m`` may go ``near_depth_m`` deep.
     """
     least, first_point, first_box = math.inf, -1, -1
     angle_end = angle_end_rad
     for box in range(len(geometry.half_sizes)):
         half_size = row(geometry.half_sizes, box)
+        near_depth = min(near_depth_m, THIN * min(half_size[0], half_size[1], half_size[2]))
         axis_box = vector_in_box(placement, box, axis)
         velocity_box = vector_in_box(placement, box, velocity)
         center_box = point_in_box(placement, box, center)
@@ -170,13 +175,16 @@ def first_contact_screw(
             # No point moves farther than its path is long, and a screw's path has a constant speed.
             if gap <= skip_gap_m or gap > norm(point_velocity) * angle_end:
                 continue
+            allowed = allowed_depth(placement.depths[point], tolerances)
+            if gap <= near_m:
+                allowed = max(allowed, near_depth)
             entry = screw_entry(
                 point_box,
                 point_velocity,
                 axis_box,
                 angle_end,
                 half_size,
-                allowed_depth(placement.depths[point], tolerances),
+                allowed,
                 tolerances.resolution_m,
             )
             if entry < least:

@@ -7,17 +7,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.pose import Quaternion, rotated
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.tolerances import KernelTolerances
-from cagepose.kernels.algebra.vector import Vector, norm, row, scaled
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, row, scaled
 from cagepose.kernels.collision.first_contact import allowed_depth, first_contact_screw, first_contact_travel
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.metric import Body, PhaseLoad, moved_along_twist, total_force, work_done
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
-from cagepose.kernels.quasistatic.projection import Constraints, add_constraint, empty_constraints, projected
+from cagepose.kernels.quasistatic.projection import Constraints, add_constraint, box_axis, empty_constraints, projected
 
 HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
@@ -27,6 +27,8 @@ ROUNDING = 1e-15
 """In lengths of the terms of a load: a slower motion may be no motion."""
 STRAIGHT = 1e-14
 """Radians for each length of the object: a motion that turns by less is a travel."""
+SUNK = 2.0
+"""Times the depth to which contacts sink: a point that was nearer than this is met because they sink."""
 
 
 class Setting(NamedTuple):
@@ -107,10 +109,38 @@ def longest_step(velocity: Vector, spin: Vector, slides: bool, turn_step_rad: fl
 
 
 @kernel
+def sunk(
+    geometry: Geometry, contacts: ContactSet, position: Vector, quaternion: Quaternion, twist: Twist, amount: float
+) -> float:
+    """Return how deep the contacts that carry sink on the screw of a twist before they are put back, metres."""
+    end, turned = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
+    back = (turned[0], -turned[1], -turned[2], -turned[3])
+    deepest = 0.0
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        if contacts.states[i].forces[0] > 0.0:
+            from_center = rotated(back, minus(row(geometry.points_world, contact.point), end))
+            from_box = minus(from_center, row(geometry.box_positions, contact.box))
+            along = contact.side * dot(box_axis(geometry, contact.box, contact.axis), from_box)
+            deepest = max(deepest, contact.gap - (along - geometry.half_sizes[contact.box, contact.axis]))
+    return deepest
+
+
+@kernel
 def first_contact(
-    setting: Setting, placement: Placement, position: Vector, twist: Twist, end: float
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
 ) -> tuple[float, int, int]:
-    """Return (amount, point, box) of the first contact along a twist, but for what touches already."""
+    """Return (amount, point, box) of the first contact along a twist, but for what touches already.
+
+    Contacts that carry sink on a screw, by the square of its length, and are put back afterwards. Where a point is met
+    because they sank, not because it came nearer, the contact is passed over: whether it is reached shows at the end.
+    """
+    end = twist.end
     touch_m = setting.tolerances.touch_m
     rate = norm(twist.spin)
     if rate == 0.0:
@@ -120,16 +150,27 @@ def first_contact(
         )
         amount = distance / speed
     else:
-        angle, point, box = first_contact_screw(
-            setting.geometry,
-            placement,
-            position,
-            scaled(twist.velocity, 1.0 / rate),
-            scaled(twist.spin, 1.0 / rate),
-            end * rate,
-            touch_m,
-            setting.tolerances,
-        )
+        near, near_depth = 0.0, SUNK * sunk(setting.geometry, contacts, position, quaternion, twist, end)
+        angle, point, box = math.inf, -1, -1
+        for _ in range(len(setting.geometry.points_world)):
+            angle, point, box = first_contact_screw(
+                setting.geometry,
+                placement,
+                position,
+                scaled(twist.velocity, 1.0 / rate),
+                scaled(twist.spin, 1.0 / rate),
+                end * rate,
+                touch_m,
+                near,
+                near_depth,
+                setting.tolerances,
+            )
+            if point < 0 or placement.gaps[box, point] <= near:
+                break
+            reach = SUNK * sunk(setting.geometry, contacts, position, quaternion, twist, angle / rate)
+            if placement.gaps[box, point] > reach:
+                break
+            near = reach
         amount = angle / rate
     if amount > end:
         return math.inf, -1, -1
@@ -156,14 +197,19 @@ def constrain_to_face(geometry: Geometry, placement: Placement, point: int, box:
 
 @kernel
 def constrain_contacts(
-    geometry: Geometry, placement: Placement, contacts: ContactSet, constraints: Constraints
+    geometry: Geometry, placement: Placement, contacts: ContactSet, closed_m: float, constraints: Constraints
 ) -> None:
-    """Constrain the contacts that carry to their faces, and where they stick also in the face."""
+    """Constrain the contacts that carry, and where they stick also in the face.
+
+    Gaps of up to ``closed_m`` are closed, others are kept: to close them could take work, or bring another point in.
+    """
     constraints.rooms[0].used = 0
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
         if contacts.states[i].forces[0] > 0.0:
             at = geometry.half_sizes[contact.box, contact.axis]
+            if abs(contact.gap) > closed_m:
+                at += contact.gap
             add_constraint(constraints, contact.point, contact.box, contact.axis, contact.side, at)
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
@@ -230,13 +276,14 @@ def stepped(
     hit_box: int,
     room: StepWorkspace,
 ) -> tuple[bool, Vector, Quaternion]:
-    """Move by ``amount`` and put the contacts that carry, and the one that is hit, on their faces.
+    """Move by ``amount``, keep the contacts that carry on their faces, and put the one that is hit on its own.
 
+    A contact that touches across a gap, within the touch tolerance, keeps the gap, as its gap rate of zero says.
     False: a point would be inside, a contact would not stay on its face, or the loads would do negative work. The
     placement is that of the new pose, or of the old one.
     """
     geometry = setting.geometry
-    constrain_contacts(geometry, placement, contacts, room.constraints)
+    constrain_contacts(geometry, placement, contacts, setting.tolerances.rounding_m, room.constraints)
     moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
     if hit_point >= 0:
         place_object(geometry, moved[0], moved[1], placement)
@@ -302,7 +349,7 @@ def furthest_step(
     nothing is ahead.
     """
     allow_depths(placement, setting.tolerances, room)
-    amount, hit_point, hit_box = first_contact(setting, placement, position, twist, twist.end)
+    amount, hit_point, hit_box = first_contact(setting, placement, contacts, position, quaternion, twist)
     edge_crossing = first_edge_crossing(
         setting.geometry,
         placement,

@@ -127,7 +127,7 @@ def refined(
     for i in range(work.contacts.used[0]):
         work.contacts.states[i].is_sticking = False
     allow_depths(work.placement, setting.tolerances, work.path)
-    constrain_contacts(setting.geometry, work.placement, work.contacts, work.path.constraints)
+    constrain_contacts(setting.geometry, work.placement, work.contacts, math.inf, work.path.constraints)
     done, new_position, new_quaternion = pushed_out(setting, work.placement, position, quaternion, work.path)
     if done:
         return new_position, new_quaternion
