@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,11 +9,11 @@ import numpy as np
 import pytest
 
 from cagepose import Box, Cage, Load, Object, Pose, Scene, load_scene, run
+from cagepose.kernels.outcome.trace import STALLED
 from cagepose.views.viewer.page_data import notes
 from cagepose.views.viewer.playback import ESCAPE, playback
 from cagepose.views.viewer.stage import Stage
 from cagepose.views.viewer.surface import nearest_on_object
-from random_scenes import random_scenes
 
 SCENES = Path(__file__).resolve().parents[3] / "scenes"
 
@@ -134,7 +133,10 @@ def test_the_exaggeration_proposed_shows_small_motions_and_leaves_large_ones_alo
 
 
 def test_a_run_without_progress_tells_after_which_event():
-    stalled = run(next(itertools.islice(random_scenes(152, seed=7), 151, None)))
+    stalled = run(load_scene(SCENES / "sample.yaml"))
+    records = stalled.solution.outcome.phases
+    records.flags.writeable = True
+    records["verdict"][-1] = STALLED  # before anything is read; no scene of ours stalls
     assert stalled.verdict == "stalled"
     film = playback(stalled)
     assert [row.verdict for row in film.rows] == [None] * (len(film.rows) - 1) + ["stalled"]

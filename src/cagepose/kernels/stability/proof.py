@@ -209,7 +209,7 @@ def judge_faces(
 
     Where there is one choice of faces only, its balance has this code, and its forces stay.
     """
-    contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
+    contacts, solver = at.contacts, at.rooms[0].solver
     proof, steady = PROVEN_WITHOUT_FRICTION, STABLE_REST
     if not one_choice:
         first_choice(contacts)
