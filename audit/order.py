@@ -44,11 +44,14 @@ def order_of_verdicts(one: Run) -> Answer:
 
 
 def order_of_poses(one: Run) -> Answer:
-    """Renumbered, and with the same verdicts, the scene has the same poses at the end of its phases."""
+    """Renumbered, and with the same verdicts, the scene has the same poses at the end of its phases, but for an escape:
+    that ends wherever nothing is in the way any more.
+    """
     other = _again(one)
     if [phase.verdict for phase in one.phases] != [phase.verdict for phase in other.phases]:
         return None
-    apart = max(farthest_move(one.scene, a.pose, b.pose) for a, b in zip(one.phases, other.phases, strict=True))
+    pairs = [(a, b) for a, b in zip(one.phases, other.phases, strict=True) if a.verdict != "escapes"]
+    apart = max((farthest_move(one.scene, a.pose, b.pose) for a, b in pairs), default=0.0)
     return [f"renumbered: {one.verdict}, {apart:.1e} sizes away"] if apart > SAME_POSE else []
 
 

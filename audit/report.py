@@ -29,15 +29,15 @@ OTHER = "other"
 
 @dataclass(frozen=True)
 class Known:
-    """A failure that is known, and why it is there."""
+    """A failure that is known, or with the index None all of a family's with one oracle, and why it is there."""
 
     family: str
-    index: int
+    index: int | None
     oracle: str
     reason: str
 
 
-KnownFailures = dict[tuple[str, int, str], Known]
+KnownFailures = dict[tuple[str, int | None, str], Known]
 """By family, index and oracle."""
 
 
@@ -96,10 +96,11 @@ def show_times(console: Console, findings: Sequence[Finding]) -> None:
 
 def show_failures(console: Console, failures: Sequence[Failure], folder: Path, seed: int, known: KnownFailures) -> bool:
     """List the failures, write their scenes, and return whether there is one that is not known."""
-    is_known = {failure: (failure.family, failure.index, failure.oracle) in known for failure in failures}
+    is_known = {failure: _known_as(failure, known) is not None for failure in failures}
     lines = []
     for failure in failures:
-        reason = f" (known: {known[failure.family, failure.index, failure.oracle].reason})" if is_known[failure] else ""
+        entry = _known_as(failure, known)
+        reason = f" (known: {entry.reason})" if entry else ""
         lines.append(f"{failure.oracle:9} {failure.family}:{failure.index}  {failure.text}{reason}")
     if failures:
         _write_scenes(failures, folder, seed)
@@ -120,11 +121,16 @@ def show_failures(console: Console, failures: Sequence[Failure], folder: Path, s
     return not all(is_known.values())
 
 
+def _known_as(failure: Failure, known: KnownFailures) -> Known | None:
+    one = known.get((failure.family, failure.index, failure.oracle))
+    return one or known.get((failure.family, None, failure.oracle))
+
+
 def show_mended(console: Console, findings: Sequence[Finding], known: KnownFailures) -> None:
     """Name known failures that were asked about and fail no longer."""
     asked = {(finding.family, finding.index, name) for finding in findings for name in finding.asked}
     failed = {(failure.family, failure.index, failure.oracle) for finding in findings for failure in finding.failures}
-    for family, index, oracle in sorted((set(known) & asked) - failed):
+    for family, index, oracle in sorted(key for key in asked - failed if key in known):
         console.print(f"{oracle} {family}:{index} fails no longer: remove it from {KNOWN.name}")
 
 
