@@ -201,14 +201,14 @@ def constrain_contacts(
 ) -> None:
     """Constrain the contacts that carry, and where they stick also in the face.
 
-    Gaps of up to ``closed_m`` are closed, others are kept: to close them could take work, or bring another point in.
+    Gaps above ``closed_m`` are kept: to close them could take work, or bring another point in.
     """
     constraints.rooms[0].used = 0
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
         if contacts.states[i].forces[0] > 0.0:
             at = geometry.half_sizes[contact.box, contact.axis]
-            if abs(contact.gap) > closed_m:
+            if contact.gap > closed_m:
                 at += contact.gap
             add_constraint(constraints, contact.point, contact.box, contact.axis, contact.side, at)
     for i in range(contacts.used[0]):
