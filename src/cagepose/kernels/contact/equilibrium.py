@@ -26,11 +26,15 @@ from cagepose.kernels.native.kernel import kernel
 
 HELD_WITHOUT_FRICTION, HELD_BY_FRICTION, UNSOLVED, MOVES = 0, 1, 2, 3
 """What the contacts do, from the least to the most that moves. Of a balance, MOVES says that there is none, and
-UNSOLVED that there are too many choices of faces to ask them all, and that those which were asked hold."""
+UNSOLVED that there are too many choices of faces to ask them all, and that those which were asked hold, or that it is
+not known."""
 RESERVE = 1e-6
 """A balance that needs all but this part of the friction is at its limit."""
 AT_REST, ON_THE_WAY = 1.0, 0.1
 """Strictness. A pose on the way is looked at again when the run has got there: it must hold then, too."""
+CARRIED_LIMIT = 10.0
+"""In loads: what contacts without play carry to second order is a part of the load and its moments. Where it is more,
+forces stand on opposite faces that are not quite parallel, and nothing is known."""
 
 
 @kernel
@@ -173,6 +177,8 @@ def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness:
             code = equilibrium_with_edges(contacts, friction, strictness, work)
             if code != MOVES:
                 work.residual = carried_without_bound(contacts, frame, work)
+                if work.residual > CARRIED_LIMIT:
+                    code = UNSOLVED
         else:
             return_to_kept(contacts)
     return code
