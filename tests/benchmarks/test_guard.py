@@ -47,13 +47,13 @@ def yardstick() -> Callable[[], None]:
     rng = np.random.default_rng(1)
     rows, bounds = program_rows(60)
     rows[:], bounds[:] = rng.normal(size=(60, 6)), rng.uniform(0.5, 1.0, 60)
-    room = empty_record(Program)
-    room.objective[:] = rng.normal(size=6)
-    solve = partial(solve_program, *[Slots(part) for part in (rows, bounds, room)])
+    work = empty_record(Program)
+    work.objective[:] = rng.normal(size=6)
+    solve = partial(solve_program, *[Slots(part) for part in (rows, bounds, work)])
 
     def solve_all() -> None:
         for _ in range(PROGRAMS):
-            room.passive.used = 0
+            work.passive.used = 0
             solve()
 
     return solve_all

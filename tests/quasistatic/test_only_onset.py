@@ -337,7 +337,7 @@ def held_blocks(random: np.random.Generator, friction: float) -> Iterator[Held]:
         case = start_of(0, part, cases_of(scene, friction, phase.pose), scene.cage.points_world())
         stand_at(case.geometry, part.body, case.position, case.quaternion, case.loads[0], case.tolerances.touch_m, at)
         rows = [at.contacts.rows[i] for i in range(at.contacts.used[0]) if at.contacts.states[i].chosen]
-        load = at.rooms[0].solver.load
+        load = at.scratch[0].solver.load
         yield Held(np.array([row.columns for row in rows]), friction, load / np.linalg.norm(load))
 
 

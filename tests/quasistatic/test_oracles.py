@@ -117,12 +117,12 @@ def test_the_frictionless_onset_obeys_the_optimality_conditions(cases):
     for number in range(cases(200, 2000)):
         n = int(rng.integers(1, 13))
         columns, b = contact_columns(rng, n), rng.normal(size=6)
-        room = empty_record(ConeWorkspace)
+        work = empty_record(ConeWorkspace)
         contacts, forces = contacts_with(columns)
-        clear_cone(room, b, WRENCH, np.linalg.norm(b))
-        residual(contacts, 0.0, b, room)
-        left = np.linalg.norm(room.passive.residual[:6])
-        write_forces(room, 0.0, contacts)
+        clear_cone(work, b, WRENCH, np.linalg.norm(b))
+        residual(contacts, 0.0, b, work)
+        left = np.linalg.norm(work.passive.residual[:6])
+        write_forces(work, 0.0, contacts)
         normals = columns[:, 0]
         y = b - normals.T @ forces[:, 0]
         scale = np.linalg.norm(b) + forces[:, 0] @ np.linalg.norm(normals, axis=1)

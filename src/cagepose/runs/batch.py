@@ -40,21 +40,21 @@ class Batch:
         self.endings = empty_endings(self.n_runs, len(scene.loads), len(scene.cage.names))
         self._part, self._cases = Slots(part_of(scene)), Slots(_varied(scene, method.friction(scene), columns))
         self._endings = Slots(self.endings)
-        self._idle_rooms = list[Callable[[int, int], None]]()
+        self._idle = list[Callable[[int, int], None]]()
 
     def run_piece(self, first: int, last: int) -> int:
         """Run ``first`` up to, without, ``last``, in any thread; return how many these are."""
         try:
-            run = self._idle_rooms.pop()
+            run = self._idle.pop()
         except IndexError:
-            run = self._room()
+            run = self._workspace()
         run(first, last)
         if last < self.n_runs:
-            self._idle_rooms.append(run)
+            self._idle.append(run)
         return last - first
 
-    def _room(self) -> Callable[[int, int], None]:
-        """Return a call of the kernel with room for one thread."""
+    def _workspace(self) -> Callable[[int, int], None]:
+        """Return a call of the kernel with a workspace for one thread."""
         rules = self._method.rules(self._scene)
         work = Slots(self._method.workspace(self._scene.geometry, rules.step_limit))
         return partial(_run, self._method, [self._part, self._cases, FARTHEST_START, Slots(rules), work, self._endings])

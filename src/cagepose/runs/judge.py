@@ -46,7 +46,7 @@ def critical_friction_at(scene: Scene, pose: Pose, phase: int) -> float:
 
 
 def _points_world(scene: Scene, phase: int) -> FloatArray:
-    """Return room for the cage points; kernels check nothing, so the phase is checked here."""
+    """Return a workspace for the cage points; kernels check nothing, so the phase is checked here."""
     if not 0 <= phase < len(scene.loads):
         raise IndexError(f"the scene has no phase {phase}; it has {len(scene.loads)}, counted from 0")
     return scene.cage.points_world()

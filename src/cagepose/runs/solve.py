@@ -42,14 +42,14 @@ def run_with(scene: Scene, method: Method, rules: Any) -> Run:
     """Run a scene by a method with other numbers than its own."""
     friction = method.friction(scene)
     part, cases = prepared(scene, friction)
-    room = _room(scene, method, rules.step_limit)
+    work = _workspace(scene, method, rules.step_limit)
     began = time.perf_counter()
-    method.run(part, cases, rules, room.work, room.outcome_slots)
+    method.run(part, cases, rules, work.work, work.outcome_slots)
     solve_s = time.perf_counter() - began
-    return Solution(scene, method, rules, friction, written(room.outcome)).run(solve_s)
+    return Solution(scene, method, rules, friction, written(work.outcome)).run(solve_s)
 
 
-class _Room(NamedTuple):
+class _Workspace(NamedTuple):
     """What one run at a time writes to: both for kernels, and the outcome to read."""
 
     work: Slots
@@ -57,25 +57,25 @@ class _Room(NamedTuple):
     outcome: Outcome
 
 
-class _Rooms(threading.local):
+class _Workspaces(threading.local):
     """Of one thread, the last used at the end."""
 
     def __init__(self) -> None:
-        self.by_size: OrderedDict[tuple[object, ...], _Room] = OrderedDict()
+        self.by_size: OrderedDict[tuple[object, ...], _Workspace] = OrderedDict()
 
 
-_ROOMS = _Rooms()
+_WORKSPACES = _Workspaces()
 
 
-def _room(scene: Scene, method: Method, step_limit: int) -> _Room:
+def _workspace(scene: Scene, method: Method, step_limit: int) -> _Workspace:
     n_phases, n_points = len(scene.loads), len(scene.cage.names)
     size = (method.name, n_phases, n_points, len(scene.geometry.half_sizes), step_limit)
-    rooms = _ROOMS.by_size
-    if size in rooms:
-        rooms.move_to_end(size)
-        return rooms[size]
-    if len(rooms) == WORKSPACES_KEPT:
-        rooms.popitem(last=False)
+    kept = _WORKSPACES.by_size
+    if size in kept:
+        kept.move_to_end(size)
+        return kept[size]
+    if len(kept) == WORKSPACES_KEPT:
+        kept.popitem(last=False)
     outcome = empty_outcome(n_phases, step_limit, n_points, 0 if method.joins_steps else n_points)
-    rooms[size] = _Room(Slots(method.workspace(scene.geometry, step_limit)), Slots(outcome), outcome)
-    return rooms[size]
+    kept[size] = _Workspace(Slots(method.workspace(scene.geometry, step_limit)), Slots(outcome), outcome)
+    return kept[size]

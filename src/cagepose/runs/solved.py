@@ -62,7 +62,7 @@ class Solution:
 
 
 def written(outcome: Outcome) -> Outcome:
-    """Return a copy of what is written of an outcome, whose room is used again."""
+    """Return a copy of what is written of an outcome, whose memory is used again."""
     n_phases, n_events, n_steps, n_contacts = outcome.counts.tolist()
     used = (4, n_phases, n_events, n_contacts, n_events, n_events, n_steps, n_steps, n_steps)
     arrays: tuple[Any, ...] = outcome

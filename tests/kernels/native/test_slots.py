@@ -49,9 +49,9 @@ def test_kinds_name_what_stands_in_the_slots(value, kinds):
 
 
 def test_a_record_is_its_address_and_counts_by_its_size():
-    room, rows = empty_record(Program), empty_rows(Program, 3)
+    work, rows = empty_record(Program), empty_rows(Program, 3)
     size = dtype_of(Program).itemsize
-    assert Slots(room).kinds == f"{{|V{size}}}"
+    assert Slots(work).kinds == f"{{|V{size}}}"
     assert Slots(rows).kinds == f"[|V{size},1]"
     first, second = (struct.unpack("=q", Slots(rows[index]).packed)[0] for index in (0, 1))
     assert (first, second) == (rows.ctypes.data, rows.ctypes.data + size)

@@ -55,7 +55,7 @@ class PassiveSet:
     costs
         Cost c of each column; zero for plain least squares.
     x, target, held
-        The present coefficients, those that the passive columns aim at, and room.
+        The present coefficients, those that the passive columns aim at, and scratch.
     residual
         b - A x at the target.
     """
@@ -77,7 +77,7 @@ class PassiveSet:
 
 
 class System(NamedTuple):
-    """Room for the columns of one problem, its right side, and which columns did not help: (n, rows), (rows,), (n,)."""
+    """Workspace for one problem: columns (n, rows), right side (rows,), and which columns did not help (n,)."""
 
     columns: FloatArray
     right_side: FloatArray
@@ -85,7 +85,7 @@ class System(NamedTuple):
 
 
 def empty_system(n_columns: int) -> System:
-    """Return room for ``n_columns`` columns (plain Python)."""
+    """Return a workspace for ``n_columns`` columns (plain Python)."""
     return System(np.zeros((n_columns, MOST_ROWS)), np.zeros(MOST_ROWS), np.zeros(n_columns, np.bool_))
 
 

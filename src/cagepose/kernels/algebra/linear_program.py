@@ -175,5 +175,5 @@ def solve_program(rows: FloatArray, bounds: FloatArray, program: Program) -> int
 
 
 def program_rows(n_rows: int) -> tuple[FloatArray, FloatArray]:
-    """Return room for the rows of a program (plain Python)."""
+    """Return a workspace for the rows of a program (plain Python)."""
     return np.zeros((n_rows, N_UNKNOWNS)), np.zeros(n_rows)

@@ -1,11 +1,11 @@
 """Records: memory of fixed size that kernels write to, one pointer each.
 
-A tuple of arrays is seven numbers for each of them. With some seventy arrays of room a kernel passed five hundred
+A tuple of arrays is seven numbers for each of them. With some seventy work arrays a kernel passed five hundred
 numbers to every kernel it called, and compiling all that copying took longer than compiling the mechanics. A record
 holds the arrays of fixed size, a row of records what there is for each contact, point or event.
 
 Python hands a large record to a kernel as an array of one: NumPy describes a record's fields anew whenever its memory
-is asked for, which took 40 us for the room of a proof; an array takes 0.2 us.
+is asked for, which took 40 us for the workspace of a proof; an array takes 0.2 us.
 """
 
 from __future__ import annotations

@@ -54,7 +54,7 @@ class Placement(NamedTuple):
         How deep each point lies in the object: the greatest depth over the boxes, below zero outside, (n_points,),
         metres.
     arms
-        Room for the squared distance of each point from the axis of a turn, (n_points,), square metres.
+        Memory for the squared distance of each point from the axis of a turn, (n_points,), square metres.
     """
 
     box_positions: FloatArray
@@ -67,7 +67,7 @@ class Placement(NamedTuple):
 
 
 def empty_placement(geometry: Geometry) -> Placement:
-    """Return room for one placement (plain Python: making arrays in compiled code is slow to compile)."""
+    """Return a workspace for one placement (plain Python: making arrays in compiled code is slow to compile)."""
     n_boxes = len(geometry.half_sizes)
     n_points = len(geometry.points_world)
     return Placement(

@@ -27,7 +27,7 @@ def judge_start(
     part, cases
         The scene.
     points_world, at
-        Room.
+        Scratch.
     outcome
         Filled: the phase's record and its contacts.
 

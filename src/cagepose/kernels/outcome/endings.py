@@ -43,7 +43,7 @@ class Endings(NamedTuple):
 
 
 def empty_endings(n_runs: int, n_phases: int, n_points: int) -> Endings:
-    """Return room for the ends of many runs (plain Python)."""
+    """Return memory for the ends of many runs (plain Python)."""
     return Endings(
         np.full((n_runs, n_phases), NOT_RUN),
         np.full((n_runs, n_phases), NOT_RUN),

@@ -174,16 +174,16 @@ def publish_proof(
     phase: PhaseRecord,
 ) -> None:
     """Write what a proof says of the pose at the end of a phase."""
-    room = at.rooms[0]
-    phase.proof, phase.stability, phase.wedged = code, stability, room.wedged
-    phase.residual = room.solver.residual
+    scratch = at.scratch[0]
+    phase.proof, phase.stability, phase.wedged = code, stability, scratch.wedged
+    phase.residual = scratch.solver.residual
     phase.n_undetermined = n_undetermined
     for i in range(n_undetermined):
         for k in range(6):
-            phase.undetermined[i, k] = room.rest.ways.basis[i, k]
+            phase.undetermined[i, k] = scratch.rest.ways.basis[i, k]
     phase.motion = NONE
     if code in (PROVEN_MOVES, OTHER_ONSET):
-        y = room.solver.y if code == PROVEN_MOVES else room.tree.y
+        y = scratch.solver.y if code == PROVEN_MOVES else scratch.tree.y
         velocity, spin = twist_of(y, frame_at(part.body, quaternion))
         radii = part.body.radii
         begins = motion_of_twist(velocity, spin, position, max(radii[0], radii[1], radii[2]))

@@ -85,7 +85,7 @@ class Trace(NamedTuple):
 
 
 def empty_trace(n_steps: int, n_points: int, n_ordered: int) -> Trace:
-    """Return room for the steps of a phase (plain Python); ``n_ordered``: all points, or none if no order is kept."""
+    """Return memory for the steps of a phase (plain Python); ``n_ordered``: all points, or none if no order is kept."""
     return Trace(
         empty_rows(StepRecord, n_steps),
         np.zeros((n_steps, n_points), np.bool_),

@@ -58,14 +58,14 @@ class Setting(NamedTuple):
 
 
 class StepWorkspace(NamedTuple):
-    """Room for one step: contacts to keep, and the depth allowed to each point, (n_points,), metres."""
+    """Workspace for one step: contacts to keep, and the depth allowed to each point, (n_points,), metres."""
 
     constraints: Constraints
     allowed: FloatArray
 
 
 def empty_step_workspace(n_points: int) -> StepWorkspace:
-    """Return room for ``n_points`` cage points (plain Python)."""
+    """Return a workspace for ``n_points`` cage points (plain Python)."""
     return StepWorkspace(empty_constraints(3 * n_points + POINTS_PUSHED), np.zeros(n_points))
 
 
@@ -203,7 +203,7 @@ def constrain_contacts(
 
     Gaps above ``closed_m`` are kept: to close them could take work, or bring another point in.
     """
-    constraints.rooms[0].used = 0
+    constraints.scratch[0].used = 0
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
         if contacts.states[i].forces[0] > 0.0:
@@ -244,23 +244,23 @@ def box_around(geometry: Geometry, placement: Placement, point: int) -> int:
 
 @kernel
 def pushed_out(
-    setting: Setting, placement: Placement, position: Vector, quaternion: Quaternion, room: StepWorkspace
+    setting: Setting, placement: Placement, position: Vector, quaternion: Quaternion, work: StepWorkspace
 ) -> tuple[bool, Vector, Quaternion]:
     """Make all constraints hold, and push points out of the object that this has brought in; placement is filled."""
     geometry = setting.geometry
     holds = True
     for _ in range(POINTS_PUSHED):
-        if room.constraints.rooms[0].used > 0:
+        if work.constraints.scratch[0].used > 0:
             holds, position, quaternion = projected(
-                geometry, setting.body, position, quaternion, room.constraints, setting.size_m
+                geometry, setting.body, position, quaternion, work.constraints, setting.size_m
             )
         place_object(geometry, position, quaternion, placement)
-        point = deepest_offender(placement, room.allowed)
+        point = deepest_offender(placement, work.allowed)
         if point < 0 or not holds:
             break
-        if not constrain_to_face(geometry, placement, point, box_around(geometry, placement, point), room.constraints):
+        if not constrain_to_face(geometry, placement, point, box_around(geometry, placement, point), work.constraints):
             return False, position, quaternion
-    return holds and deepest_offender(placement, room.allowed) < 0, position, quaternion
+    return holds and deepest_offender(placement, work.allowed) < 0, position, quaternion
 
 
 @kernel
@@ -274,7 +274,7 @@ def stepped(
     amount: float,
     hit_point: int,
     hit_box: int,
-    room: StepWorkspace,
+    work: StepWorkspace,
 ) -> tuple[bool, Vector, Quaternion]:
     """Move by ``amount``, keep the contacts that carry on their faces, and put the one that is hit on its own.
 
@@ -283,16 +283,15 @@ def stepped(
     placement is that of the new pose, or of the old one.
     """
     geometry = setting.geometry
-    constrain_contacts(geometry, placement, contacts, setting.tolerances.rounding_m, room.constraints)
+    constrain_contacts(geometry, placement, contacts, setting.tolerances.rounding_m, work.constraints)
     moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
     if hit_point >= 0:
         place_object(geometry, moved[0], moved[1], placement)
-        constrain_to_face(geometry, placement, hit_point, hit_box, room.constraints)
-    done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], room)
+        constrain_to_face(geometry, placement, hit_point, hit_box, work.constraints)
+    done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], work)
     if done:
-        work = work_done(setting.load, position, quaternion, new_position, new_quaternion)
         rounding = setting.tolerances.resolution_m * total_load(setting.load)
-        done = work >= -rounding
+        done = work_done(setting.load, position, quaternion, new_position, new_quaternion) >= -rounding
     if done:
         return True, new_position, new_quaternion
     place_object(geometry, position, quaternion, placement)
@@ -327,10 +326,10 @@ def nothing_ahead(setting: Setting, position: Vector) -> bool:
 
 
 @kernel
-def allow_depths(placement: Placement, tolerances: KernelTolerances, room: StepWorkspace) -> None:
+def allow_depths(placement: Placement, tolerances: KernelTolerances, work: StepWorkspace) -> None:
     """Write how deep each point may be after the step: no deeper than it is."""
-    for point in range(len(room.allowed)):
-        room.allowed[point] = allowed_depth(placement.depths[point], tolerances)
+    for point in range(len(work.allowed)):
+        work.allowed[point] = allowed_depth(placement.depths[point], tolerances)
 
 
 @kernel
@@ -341,14 +340,14 @@ def furthest_step(
     position: Vector,
     quaternion: Quaternion,
     twist: Twist,
-    room: StepWorkspace,
+    work: StepWorkspace,
 ) -> tuple[float, bool, Vector, Quaternion]:
     """Go along a twist to its end, the first contact or the edge of a face that carries, or less if need be.
 
     Return (amount, whether it went as far as it should, position, quaternion); amount 0: it could not move; inf:
     nothing is ahead.
     """
-    allow_depths(placement, setting.tolerances, room)
+    allow_depths(placement, setting.tolerances, work)
     amount, hit_point, hit_box = first_contact(setting, placement, contacts, position, quaternion, twist)
     edge_crossing = first_edge_crossing(
         setting.geometry,
@@ -368,7 +367,7 @@ def furthest_step(
         return amount, True, position, quaternion
     for halving in range(HALVINGS):
         done, new_position, new_quaternion = stepped(
-            setting, placement, contacts, position, quaternion, twist, amount, hit_point, hit_box, room
+            setting, placement, contacts, position, quaternion, twist, amount, hit_point, hit_box, work
         )
         if done:
             return amount, halving == 0, new_position, new_quaternion

@@ -28,7 +28,7 @@ LEAST_RHO = 1e-9
 
 
 class ImplicitStepWorkspace:
-    """Room for one step; a record.
+    """Workspace for one step; a record.
 
     Attributes
     ----------
@@ -59,33 +59,33 @@ def curvature_along(curvature: FloatArray, y: FloatArray) -> float:
 
 
 @kernel
-def keep_along_faces(contacts: ContactSet, stopped: PassiveSet, room: ImplicitStepWorkspace) -> float:
+def keep_along_faces(contacts: ContactSet, stopped: PassiveSet, work: ImplicitStepWorkspace) -> float:
     """Replace what S has across the faces (and, where contacts stick, along them) by the greatest curvature along them.
 
     Nothing moves there, nor where contacts without play stop it, but it could make the matrix look as if it were not
     positive, or rounding of the forces as if it moved the object. Return the least rho that stands out from the
     rounding.
     """
-    least_rho = LEAST_RHO * frobenius_norm(room.curvature)
-    clear(room.held, WRENCH, 1.0)
+    least_rho = LEAST_RHO * frobenius_norm(work.curvature)
+    clear(work.held, WRENCH, 1.0)
     for i in range(contacts.used[0]):
         state = contacts.states[i]
         if state.forces[0] > 0.0:
             for which in range(3 if state.is_sticking else 1):
-                append_column(room.held, contacts.rows[i].columns[which], which, 0.0)
+                append_column(work.held, contacts.rows[i].columns[which], which, 0.0)
     for place in range(stopped.used):
-        append_column(room.held, stopped.basis[place], place, 0.0)
-    add_across(room.curvature, room.held, confine(room.curvature, room.held))
+        append_column(work.held, stopped.basis[place], place, 0.0)
+    add_across(work.curvature, work.held, confine(work.curvature, work.held))
     return least_rho
 
 
 @kernel
-def write_matrix(room: ImplicitStepWorkspace, rho: float) -> None:
+def write_matrix(work: ImplicitStepWorkspace, rho: float) -> None:
     """Write rho 1 + S."""
     for j in range(6):
         for k in range(6):
-            room.factor[j, k] = room.curvature[j, k]
-        room.factor[j, j] += rho
+            work.factor[j, k] = work.curvature[j, k]
+        work.factor[j, j] += rho
 
 
 @kernel
@@ -94,18 +94,18 @@ def implicit_step(
     turned: ContactSet,
     friction: float,
     rho: float,
-    room: ImplicitStepWorkspace,
+    work: ImplicitStepWorkspace,
     solver: ContactWorkspace,
 ) -> bool:
-    """Write the step into ``room.delta``, and what the contacts carry on it; False: take the explicit step.
+    """Write the step into ``work.delta``, and what the contacts carry on it; False: take the explicit step.
 
-    Given are the explicit motion ``solver.y``, ``room.curvature`` along the faces, and which contacts stick; ``turned``
+    Given are the explicit motion ``solver.y``, ``work.curvature`` along the faces, and which contacts stick; ``turned``
     is memory for the contacts in the step's coordinates.
     """
-    size = frobenius_norm(room.curvature)
+    size = frobenius_norm(work.curvature)
     for _ in range(RAISES):
-        write_matrix(room, rho)
-        if cholesky(room.factor, 1e-3 * rho):
+        write_matrix(work, rho)
+        if cholesky(work.factor, 1e-3 * rho):
             break
         rho = max(4.0 * rho, 1e-3 * size)
     else:
@@ -114,15 +114,15 @@ def implicit_step(
     for i in range(contacts.used[0]):
         turned.states[i].chosen = contacts.states[i].chosen
         for j in range(3):
-            solve_lower(room.factor, contacts.rows[i].columns[j], turned.rows[i].columns[j])
-    solve_lower(room.factor, solver.load, room.b)
-    terms = solver.load_terms * length(room.b, 6) / length(solver.load, 6)
-    if equilibrium_with_faces(turned, friction, AT_REST, room.b, terms, solver) != MOVES:
+            solve_lower(work.factor, contacts.rows[i].columns[j], turned.rows[i].columns[j])
+    solve_lower(work.factor, solver.load, work.b)
+    terms = solver.load_terms * length(work.b, 6) / length(solver.load, 6)
+    if equilibrium_with_faces(turned, friction, AT_REST, work.b, terms, solver) != MOVES:
         return False
-    if not motion_with_faces(turned, friction, room.b, room.delta, solver):
+    if not motion_with_faces(turned, friction, work.b, work.delta, solver):
         return False
-    solve_upper(room.factor, room.delta)
-    if inner(room.delta, solver.y, 6) <= 0.0:
+    solve_upper(work.factor, work.delta)
+    if inner(work.delta, solver.y, 6) <= 0.0:
         return False
     for i in range(contacts.used[0]):
         state = contacts.states[i]

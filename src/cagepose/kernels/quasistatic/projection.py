@@ -52,7 +52,7 @@ class PositionConstraint:
 
 
 class ProjectionWorkspace:
-    """How many constraints there are, and room for one wrench, a scaled twist and the constraints' basis; a record."""
+    """How many constraints there are; one wrench, a scaled twist and the constraints' basis; a record."""
 
     used: int
     column: ScaledVector
@@ -61,21 +61,21 @@ class ProjectionWorkspace:
 
 
 class Constraints(NamedTuple):
-    """Constraints 0 to rooms[0].used - 1 of ``rows`` are to hold."""
+    """Constraints 0 to scratch[0].used - 1 of ``rows`` are to hold."""
 
-    rooms: Rows[ProjectionWorkspace]
+    scratch: Rows[ProjectionWorkspace]
     rows: Rows[PositionConstraint]
 
 
 def empty_constraints(n_constraints: int) -> Constraints:
-    """Return room for ``n_constraints`` (plain Python)."""
+    """Return a workspace for ``n_constraints`` (plain Python)."""
     return Constraints(empty_rows(ProjectionWorkspace, 1), empty_rows(PositionConstraint, n_constraints))
 
 
 @kernel
 def add_constraint(constraints: Constraints, point: int, box: int, axis: int, side: float, target: float) -> bool:
     """Add a constraint; False: there is no room, or it is there already."""
-    n = constraints.rooms[0].used
+    n = constraints.scratch[0].used
     if n == len(constraints.rows):
         return False
     for i in range(n):
@@ -90,7 +90,7 @@ def add_constraint(constraints: Constraints, point: int, box: int, axis: int, si
         side,
         target,
     )
-    constraints.rooms[0].used = n + 1
+    constraints.scratch[0].used = n + 1
     return True
 
 
@@ -109,35 +109,35 @@ def projected(
 
     Those that depend on others follow from them: where they do not, that shows as a point inside the object later.
     """
-    room, rows = constraints.rooms[0], constraints.rows
+    work, rows = constraints.scratch[0], constraints.rows
     worst_before = math.inf
     for _ in range(ROUNDS):
         frame = frame_at(body, quaternion)
         back = (quaternion[0], -quaternion[1], -quaternion[2], -quaternion[3])
-        clear(room.basis, WRENCH, 1.0)
+        clear(work.basis, WRENCH, 1.0)
         worst = 0.0
-        for i in range(room.used):
+        for i in range(work.used):
             constraint = rows[i]
             axis_object = scaled(box_axis(geometry, constraint.box, constraint.axis), constraint.side)
             arm = minus(row(geometry.points_world, constraint.point), position)
             from_box = minus(rotated(back, arm), row(geometry.box_positions, constraint.box))
             direction = rotated(quaternion, axis_object)
-            write_scaled_wrench(direction, cross(arm, direction), frame, room.column)
-            place = room.basis.used
-            if append_column(room.basis, room.column, i, 0.0):
+            write_scaled_wrench(direction, cross(arm, direction), frame, work.column)
+            place = work.basis.used
+            if append_column(work.basis, work.column, i, 0.0):
                 rows[place].value = dot(axis_object, from_box) - constraint.target
                 worst = max(worst, abs(rows[place].value))
         if worst <= ON_FACE * size_m or worst >= worst_before:
             return worst <= 1e3 * ON_FACE * size_m, position, quaternion
         worst_before = worst
         for k in range(6):
-            room.y[k] = 0.0
-        for i in range(room.basis.used):
+            work.y[k] = 0.0
+        for i in range(work.basis.used):
             for j in range(i):
-                rows[i].value -= room.basis.triangle[i, j] * rows[j].value
-            rows[i].value *= room.basis.triangle[i, i]
+                rows[i].value -= work.basis.triangle[i, j] * rows[j].value
+            rows[i].value *= work.basis.triangle[i, i]
             for k in range(6):
-                room.y[k] += rows[i].value * room.basis.basis[i, k]
-        velocity, spin = twist_of(room.y, frame)
+                work.y[k] += rows[i].value * work.basis.basis[i, k]
+        velocity, spin = twist_of(work.y, frame)
         position, quaternion = moved_along_twist(position, quaternion, velocity, spin, 1.0)
     return False, position, quaternion

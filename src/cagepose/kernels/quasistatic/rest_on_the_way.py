@@ -31,8 +31,8 @@ def is_held_on_the_way(setting: Setting, position: Vector, quaternion: Quaternio
             move_contact(work.ahead, i, kept)
             kept += 1
     work.ahead.used[0] = kept
-    work.rooms[0].solver.load_terms = write_load(setting.load, quaternion, frame, work.rooms[0].solver.load)
-    return equilibrium(work.ahead, frame, setting.friction, ON_THE_WAY, work.rooms[0].solver) <= HELD_BY_FRICTION
+    work.scratch[0].solver.load_terms = write_load(setting.load, quaternion, frame, work.scratch[0].solver.load)
+    return equilibrium(work.ahead, frame, setting.friction, ON_THE_WAY, work.scratch[0].solver) <= HELD_BY_FRICTION
 
 
 @kernel

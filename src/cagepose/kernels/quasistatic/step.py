@@ -92,19 +92,19 @@ def next_twist(
     setting: Setting, quaternion: Quaternion, frame: Frame, turn_step_rad: float, work: QuasistaticWorkspace
 ) -> Twist:
     """Return the twist to follow from a pose that moves; forces and sticking are then those of the step."""
-    contacts, room = work.contacts, work.rooms[0]
-    y = room.solver.y
-    find_sticking(contacts, setting.friction, room.solver.load_terms, y)
+    contacts, scratch = work.contacts, work.scratch[0]
+    y = scratch.solver.y
+    find_sticking(contacts, setting.friction, scratch.solver.load_terms, y)
     carries = carried_by(contacts) != FREE
     velocity, spin = twist_of(y, frame)
-    spin = straightened(velocity, spin, setting.body.reach_m, room.solver.load_terms)
+    spin = straightened(velocity, spin, setting.body.reach_m, scratch.solver.load_terms)
     end = longest_step(velocity, spin, carries, turn_step_rad, setting.size_m)
     if end < math.inf:
-        write_curvature(contacts, setting.load, quaternion, frame, room.stiff.curvature)
-        rho = max(keep_along_faces(contacts, room.solver.stopped, room.stiff), 1.0 / end)
-        is_stiff = abs(curvature_along(room.stiff.curvature, y)) * end > STIFF
-        if is_stiff and implicit_step(contacts, work.turned, setting.friction, rho, room.stiff, room.solver):
-            velocity, spin = twist_of(room.stiff.delta, frame)
+        write_curvature(contacts, setting.load, quaternion, frame, scratch.stiff.curvature)
+        rho = max(keep_along_faces(contacts, scratch.solver.stopped, scratch.stiff), 1.0 / end)
+        is_stiff = abs(curvature_along(scratch.stiff.curvature, y)) * end > STIFF
+        if is_stiff and implicit_step(contacts, work.turned, setting.friction, rho, scratch.stiff, scratch.solver):
+            velocity, spin = twist_of(scratch.stiff.delta, frame)
             end = min(1.0, longest_step(velocity, spin, carries, turn_step_rad, setting.size_m))
     return Twist(velocity, spin, end)
 
@@ -200,7 +200,7 @@ def next_step(
     work
         See there.
     """
-    solver = work.rooms[0].solver
+    solver = work.scratch[0].solver
     position, quaternion, n_refined = state.position, state.quaternion, state.n_refined
     write_state(work.trace.rows[step], state)
 

@@ -18,7 +18,7 @@ from cagepose.kernels.stability.proof import ProofWorkspace, empty_proof_workspa
 
 
 class SolverWorkspace:
-    """Room of fixed size: what the solvers need; a record."""
+    """Workspace of fixed size: what the solvers need; a record."""
 
     solver: ContactWorkspace
     stiff: ImplicitStepWorkspace
@@ -32,13 +32,13 @@ class QuasistaticWorkspace(NamedTuple):
     placement, contacts
         The state at the present pose.
     ahead
-        Room for contacts at a pose that is tried.
+        Workspace for the contacts at a pose that is tried.
     turned
-        Room for the contacts in the coordinates of an implicit step.
-    rooms
-        One room of fixed size.
+        Workspace for the contacts in the coordinates of an implicit step.
+    scratch
+        One workspace of fixed size.
     path
-        Room of the steps.
+        Workspace of the steps.
     touched
         Which points touched before the step, (n_points,).
     trace
@@ -46,14 +46,14 @@ class QuasistaticWorkspace(NamedTuple):
     points_world
         Cage points of the case that is run, (n_points, 3).
     proof
-        Room for the proof of a phase's end.
+        Workspace for the proof of a phase's end.
     """
 
     placement: Placement
     contacts: ContactSet
     ahead: ContactSet
     turned: ContactSet
-    rooms: Rows[SolverWorkspace]
+    scratch: Rows[SolverWorkspace]
     path: StepWorkspace
     touched: NDArray[np.bool_]
     trace: Trace
@@ -62,7 +62,7 @@ class QuasistaticWorkspace(NamedTuple):
 
 
 def empty_quasistatic_workspace(geometry: Geometry, step_limit: int) -> QuasistaticWorkspace:
-    """Return room for one run at a time (plain Python)."""
+    """Return a workspace for one run at a time (plain Python)."""
     n_points = len(geometry.points_world)
     n_contacts = CONTACTS_PER_POINT * n_points
     return QuasistaticWorkspace(

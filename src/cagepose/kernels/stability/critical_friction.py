@@ -79,7 +79,7 @@ def least_friction_of_faces(at: ProofWorkspace) -> float:
     inf: none; NaN: there are too many choices of faces to ask them all.
     """
     least = 0.0
-    contacts, work = at.contacts, at.rooms[0].solver
+    contacts, work = at.contacts, at.scratch[0].solver
     first_choice(contacts)
     for _ in range(CHOICES_LIMIT):
         least = max(least, least_friction(contacts, work))

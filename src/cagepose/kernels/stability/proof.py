@@ -50,7 +50,7 @@ TOO_MANY_CHOICES, PROVEN_MOVES, TOO_MANY_CONTACTS = 4, 5, 6
 
 
 class AnalysisWorkspace:
-    """Room of fixed size, and the answer; a record.
+    """Workspace of fixed size, and the answer; a record.
 
     Attributes
     ----------
@@ -75,19 +75,19 @@ class AnalysisWorkspace:
 
 
 class ProofWorkspace(NamedTuple):
-    """Room for one proof: what is at the pose, where ``contacts`` hold the forces of a rest, one room for all else,
+    """Workspace for one proof: what is at the pose, where ``contacts`` hold the forces of a rest, scratch for all else,
     and that of a system.
     """
 
     placement: Placement
     contacts: ContactSet
     statuses: Rows[ContactStatus]
-    rooms: Rows[AnalysisWorkspace]
+    scratch: Rows[AnalysisWorkspace]
     system: System
 
 
 def empty_proof_workspace(geometry: Geometry) -> ProofWorkspace:
-    """Return room for one proof (plain Python)."""
+    """Return a workspace for one proof (plain Python)."""
     n_contacts = CONTACTS_PER_POINT * len(geometry.points_world)
     return ProofWorkspace(
         empty_placement(geometry),
@@ -111,7 +111,7 @@ def stand_at(
     """Fill placement, contacts and load at a pose; False: too many contacts."""
     frame = frame_at(body, quaternion)
     place_object(geometry, position, quaternion, at.placement)
-    solver = at.rooms[0].solver
+    solver = at.scratch[0].solver
     solver.load_terms = write_load(load, quaternion, frame, solver.load)
     return find_contacts(geometry, at.placement, position, frame, touch_m, at.contacts)
 
@@ -145,30 +145,30 @@ def prove(
         Filled: the proof.
     """
     if not stand_at(geometry, body, position, quaternion, load, tolerances.touch_m, at):
-        at.rooms[0].solver.residual = 1.0  # no forces were asked for: all of the load is left
+        at.scratch[0].solver.residual = 1.0  # no forces were asked for: all of the load is left
         return TOO_MANY_CONTACTS, STABLE_REST, 0
-    contacts, room = at.contacts, at.rooms[0]
+    contacts, scratch = at.contacts, at.scratch[0]
     frame = frame_at(body, quaternion)
-    code = equilibrium(contacts, frame, friction, AT_REST, room.solver)
+    code = equilibrium(contacts, frame, friction, AT_REST, scratch.solver)
     if code == MOVES:
-        room.twist_residual = room.solver.residual
+        scratch.twist_residual = scratch.solver.residual
         for k in range(6):
-            room.twist[k] = room.solver.cone.passive.residual[k]
+            scratch.twist[k] = scratch.solver.cone.passive.residual[k]
         return PROVEN_MOVES, STABLE_REST, 0
-    left = room.solver.residual
-    clear(room.rest.ways, WRENCH, 1.0)
+    left = scratch.solver.residual
+    clear(scratch.rest.ways, WRENCH, 1.0)
     if code == UNSOLVED:
-        find_held(contacts, at.statuses, friction, room.solver.stopped, room.rest, at.system)
-        find_shared(contacts, at.statuses, room.rest)
+        find_held(contacts, at.statuses, friction, scratch.solver.stopped, scratch.rest, at.system)
+        find_shared(contacts, at.statuses, scratch.rest)
         return TOO_MANY_CHOICES, MARGINAL, 0
     one_choice = has_one_choice(contacts)
     proof, steady = judge_faces(at, code, one_choice, friction, load, quaternion, frame, size_m)
     if not one_choice:
         return_to_kept(contacts)
-        room.solver.residual = left
-        find_held(contacts, at.statuses, friction, room.solver.stopped, room.rest, at.system)
-    find_shared(contacts, at.statuses, room.rest)
-    return proof, steady, room.rest.ways.used
+        scratch.solver.residual = left
+        find_held(contacts, at.statuses, friction, scratch.solver.stopped, scratch.rest, at.system)
+    find_shared(contacts, at.statuses, scratch.rest)
+    return proof, steady, scratch.rest.ways.used
 
 
 @kernel
@@ -178,7 +178,7 @@ def stability_of_rest(
     """Return the code of stability of a rest with these faces; where it is not stable to first order and by curvature,
     what contacts without play stop counts as well.
     """
-    contacts, rest, solver = at.contacts, at.rooms[0].rest, at.rooms[0].solver
+    contacts, rest, solver = at.contacts, at.scratch[0].rest, at.scratch[0].solver
     n_ways = rest.ways.used
     terms, code = solver.load_terms, STABLE_REST
     for _ in range(2):
@@ -209,7 +209,7 @@ def judge_faces(
 
     Where there is one choice of faces only, its balance has this code, and its forces stay.
     """
-    contacts, solver = at.contacts, at.rooms[0].solver
+    contacts, solver = at.contacts, at.scratch[0].solver
     proof, steady = PROVEN_WITHOUT_FRICTION, STABLE_REST
     if not one_choice:
         first_choice(contacts)

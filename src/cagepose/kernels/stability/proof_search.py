@@ -27,12 +27,12 @@ from cagepose.kernels.stability.strong import OTHER_FOUND, UNIQUE, other_onset
 @kernel
 def search_faces(friction: float, at: ProofWorkspace) -> int:
     """Return the code of the proof, that of the first combination of faces with which rest is not the only onset."""
-    contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
+    contacts, work, solver = at.contacts, at.scratch[0], at.scratch[0].solver
     first_choice(contacts)
     for _ in range(CHOICES_LIMIT):
         code = equilibrium_with_faces(contacts, friction, AT_REST, solver.load, solver.load_terms, solver)
         if code == HELD_BY_FRICTION:
-            answer = other_onset(contacts, friction, solver.load, room.tree, solver.newton, at.system)
+            answer = other_onset(contacts, friction, solver.load, work.tree, solver.newton, at.system)
             if answer != UNIQUE:
                 return OTHER_ONSET if answer == OTHER_FOUND else UNIQUENESS_NOT_SHOWN
         if not next_choice(contacts, EVERY):
@@ -56,19 +56,19 @@ def search_onsets(friction: float, at: ProofWorkspace) -> int:
     int
         PROVEN_UNIQUE, OTHER_ONSET or UNIQUENESS_NOT_SHOWN.
     """
-    contacts, room = at.contacts, at.rooms[0]
-    left = room.solver.residual
+    contacts, work = at.contacts, at.scratch[0]
+    left = work.solver.residual
     keep_choice(contacts)
     proof = search_faces(friction, at)
     return_to_kept(contacts)
-    room.solver.residual = left
-    room.wedged = proof != PROVEN_UNIQUE and self_stress(contacts, friction, room.solver.stress) <= HELD
+    work.solver.residual = left
+    work.wedged = proof != PROVEN_UNIQUE and self_stress(contacts, friction, work.solver.stress) <= HELD
     return proof
 
 
 @kernel
 def first_motion(friction: float, at: ProofWorkspace) -> None:
-    """Write into ``at.rooms[0].solver.y`` how an object begins to move that does so by `prove`.
+    """Write into ``at.scratch[0].solver.y`` how an object begins to move that does so by `prove`.
 
     It is the onset that obeys Coulomb's law (5.7), and the residual is then the least that contact forces leave of the
     load. Where none is found, it is the twist of the proof (5.6), with the residual of that.
@@ -80,11 +80,11 @@ def first_motion(friction: float, at: ProofWorkspace) -> None:
     at
         As left by the proof.
     """
-    contacts, room, solver = at.contacts, at.rooms[0], at.rooms[0].solver
+    contacts, work, solver = at.contacts, at.scratch[0], at.scratch[0].solver
     if freest_motion(contacts, friction, solver) != MOVES:
-        solver.residual = room.twist_residual
+        solver.residual = work.twist_residual
         for k in range(6):
-            solver.y[k] = room.twist[k]
+            solver.y[k] = work.twist[k]
 
 
 @kernel
@@ -103,7 +103,7 @@ def judge(
 
     Parameters and result as for `cagepose.kernels.stability.proof.prove`.
     """
-    at.rooms[0].wedged = False
+    at.scratch[0].wedged = False
     code, steady, n_undetermined = prove(geometry, body, position, quaternion, load, friction, size_m, tolerances, at)
     if code == UNIQUENESS_NOT_SHOWN:
         code = search_onsets(friction, at)

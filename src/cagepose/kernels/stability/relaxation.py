@@ -63,7 +63,7 @@ NO_CUT = 1e-6
 
 
 class Relaxation:
-    """Room for one node, and its answer; a record.
+    """Workspace for one node, and its answer; a record.
 
     Attributes
     ----------
@@ -118,48 +118,48 @@ class Relaxation:
 
 
 @kernel
-def take_contacts(contacts: ContactSet, b: FloatArray, room: Relaxation) -> bool:
+def take_contacts(contacts: ContactSet, b: FloatArray, work: Relaxation) -> bool:
     """Take the contacts that are chosen, and the load; False: too many."""
-    room.n_places = 0
+    work.n_places = 0
     for i in range(contacts.used[0]):
         if not contacts.states[i].chosen:
             continue
-        place = room.n_places
+        place = work.n_places
         if place == CONTACT_LIMIT:
             return False
         columns = contacts.rows[i].columns
         size = length(columns[0], WRENCH)
         for j in range(3):
             for k in range(6):
-                room.wrenches[place, j, k] = columns[j, k] / size
-        room.contacts[place] = i
-        room.n_places += 1
+                work.wrenches[place, j, k] = columns[j, k] / size
+        work.contacts[place] = i
+        work.n_places += 1
     size = length(b, WRENCH)
     for k in range(6):
-        room.load[k] = b[k] / size
+        work.load[k] = b[k] / size
     return True
 
 
 @kernel
-def write_edges(place: int, room: Relaxation) -> None:
+def write_edges(place: int, work: Relaxation) -> None:
     for side in range(2):
-        angle = room.starts[place] + side * room.widths[place]
-        room.edges[place, side, 0], room.edges[place, side, 1] = math.cos(angle), math.sin(angle)
+        angle = work.starts[place] + side * work.widths[place]
+        work.edges[place, side, 0], work.edges[place, side, 1] = math.cos(angle), math.sin(angle)
 
 
 @kernel
-def slip_along(place: int, vector: FloatArray, room: Relaxation) -> tuple[float, float]:
+def slip_along(place: int, vector: FloatArray, work: Relaxation) -> tuple[float, float]:
     """Return the tangential part of a scaled twist at a contact."""
-    return inner(room.wrenches[place, 1], vector, WRENCH), inner(room.wrenches[place, 2], vector, WRENCH)
+    return inner(work.wrenches[place, 1], vector, WRENCH), inner(work.wrenches[place, 2], vector, WRENCH)
 
 
 @kernel
-def steepest_friction(place: int, vector: FloatArray, room: Relaxation) -> tuple[float, float, float]:
+def steepest_friction(place: int, vector: FloatArray, work: Relaxation) -> tuple[float, float, float]:
     """Return (how far the friction lies along a vector that lies most along it, its direction)."""
-    one, two = slip_along(place, vector, room)
+    one, two = slip_along(place, vector, work)
     size = math.sqrt(one * one + two * two)
-    if room.slips[place] == SLIPS:
-        first, last = room.edges[place, 0], room.edges[place, 1]
+    if work.slips[place] == SLIPS:
+        first, last = work.edges[place, 0], work.edges[place, 1]
         if size == 0.0 or first[0] * two - first[1] * one < 0.0 or one * last[1] - two * last[0] < 0.0:
             at_first, at_last = one * first[0] + two * first[1], one * last[0] + two * last[1]
             if at_first >= at_last:
@@ -171,121 +171,121 @@ def steepest_friction(place: int, vector: FloatArray, room: Relaxation) -> tuple
 
 
 @kernel
-def most_driven(friction: float, vector: FloatArray, room: Relaxation) -> float:
+def most_driven(friction: float, vector: FloatArray, work: Relaxation) -> float:
     """Return the most that a unit normal force, with its friction, or the load turned round lies along a vector."""
-    most = -inner(room.load, vector, WRENCH)
-    for place in range(room.n_places):
-        if room.openings[place] != OPENS:
-            along = steepest_friction(place, vector, room)[0]
-            most = max(most, inner(room.wrenches[place, 0], vector, WRENCH) + friction * along)
+    most = -inner(work.load, vector, WRENCH)
+    for place in range(work.n_places):
+        if work.openings[place] != OPENS:
+            along = steepest_friction(place, vector, work)[0]
+            most = max(most, inner(work.wrenches[place, 0], vector, WRENCH) + friction * along)
     return most
 
 
 @kernel
-def add_velocity(place: int, normal: float, one: float, two: float, n: int, room: Relaxation, system: System) -> int:
+def add_velocity(place: int, normal: float, one: float, two: float, n: int, work: Relaxation, system: System) -> int:
     """Add a velocity at a contact that is not allowed; return the number of columns."""
-    wrenches, column = room.wrenches[place], system.columns[n]
+    wrenches, column = work.wrenches[place], system.columns[n]
     for k in range(6):
         column[k] = normal * wrenches[0, k] + one * wrenches[1, k] + two * wrenches[2, k]
     return n + 1
 
 
 @kernel
-def write_velocities(room: Relaxation, system: System) -> None:
+def write_velocities(work: Relaxation, system: System) -> None:
     """Write the velocities that the modes do not allow."""
     n = 0
-    for place in range(room.n_places):
-        n = add_velocity(place, 1.0, 0.0, 0.0, n, room, system)
-        if room.openings[place] == CLOSED:
-            n = add_velocity(place, -1.0, 0.0, 0.0, n, room, system)
-        if room.slips[place] == STICKS:
+    for place in range(work.n_places):
+        n = add_velocity(place, 1.0, 0.0, 0.0, n, work, system)
+        if work.openings[place] == CLOSED:
+            n = add_velocity(place, -1.0, 0.0, 0.0, n, work, system)
+        if work.slips[place] == STICKS:
             for sign in range(-1, 2, 2):
-                n = add_velocity(place, 0.0, sign, 0.0, n, room, system)
-                n = add_velocity(place, 0.0, 0.0, sign, n, room, system)
-        elif room.slips[place] == SLIPS:
-            first, last = room.edges[place, 0], room.edges[place, 1]
-            n = add_velocity(place, 0.0, first[1], -first[0], n, room, system)
-            n = add_velocity(place, 0.0, -last[1], last[0], n, room, system)
-    room.n_velocities = n
+                n = add_velocity(place, 0.0, sign, 0.0, n, work, system)
+                n = add_velocity(place, 0.0, 0.0, sign, n, work, system)
+        elif work.slips[place] == SLIPS:
+            first, last = work.edges[place, 0], work.edges[place, 1]
+            n = add_velocity(place, 0.0, first[1], -first[0], n, work, system)
+            n = add_velocity(place, 0.0, -last[1], last[0], n, work, system)
+    work.n_velocities = n
 
 
 @kernel
-def write_cuts(room: Relaxation, system: System) -> None:
+def write_cuts(work: Relaxation, system: System) -> None:
     """Write the twists known from above behind the velocities."""
-    for cut in range(room.n_cuts):
+    for cut in range(work.n_cuts):
         for k in range(6):
-            system.columns[room.n_velocities + cut, k] = room.cuts[cut, k]
+            system.columns[work.n_velocities + cut, k] = work.cuts[cut, k]
 
 
 @kernel
-def add_generator(friction: float, number: int, room: Relaxation) -> int:
+def add_generator(friction: float, number: int, work: Relaxation) -> int:
     """Let the generator of cones a little wider in that lies most along the residual; return the next number.
 
     -1: there is none.
     """
-    passive = room.forces
+    passive = work.forces
     best, most = -2, 0.0
-    along = -inner(room.load, passive.residual, WRENCH)
+    along = -inner(work.load, passive.residual, WRENCH)
     if along > most:
         best, most = -1, along
-    for place in range(room.n_places):
-        if room.openings[place] == OPENS:
+    for place in range(work.n_places):
+        if work.openings[place] == OPENS:
             continue
-        along = steepest_friction(place, passive.residual, room)[0]
+        along = steepest_friction(place, passive.residual, work)[0]
         used = (1.0 + WIDER) * friction if along > 0.0 else friction
-        along = inner(room.wrenches[place, 0], passive.residual, WRENCH) + used * along
+        along = inner(work.wrenches[place, 0], passive.residual, WRENCH) + used * along
         if along > most:
             best, most = place, along
     if best == -2 or number == GENERATOR_LIMIT:
         return -1
-    room.places[number] = best
+    work.places[number] = best
     for k in range(6):
-        room.generator[k] = -room.load[k]
+        work.generator[k] = -work.load[k]
     if best >= 0:
-        along, one, two = steepest_friction(best, passive.residual, room)
+        along, one, two = steepest_friction(best, passive.residual, work)
         used = (1.0 + WIDER) * friction if along > 0.0 else friction
-        room.directions[number, 0], room.directions[number, 1] = used * one, used * two
-        wrenches = room.wrenches[best]
+        work.directions[number, 0], work.directions[number, 1] = used * one, used * two
+        wrenches = work.wrenches[best]
         for k in range(6):
-            room.generator[k] = wrenches[0, k] + used * (one * wrenches[1, k] + two * wrenches[2, k])
-    if append_column(passive, room.generator, number, 0.0):
-        settle(passive, room.aimed)
+            work.generator[k] = wrenches[0, k] + used * (one * wrenches[1, k] + two * wrenches[2, k])
+    if append_column(passive, work.generator, number, 0.0):
+        settle(passive, work.aimed)
     return number + 1 if label_is_passive(passive, number) else -1
 
 
 @kernel
-def find_cut(friction: float, room: Relaxation) -> bool:
+def find_cut(friction: float, work: Relaxation) -> bool:
     """Look for a twist that no force drives, and against which the motion goes; False: forces make the motion.
 
     Forces go on from those of the last motion.
     """
-    passive, motion = room.forces, room.motion.residual
+    passive, motion = work.forces, work.motion.residual
     size = length(motion, WRENCH)
     for k in range(6):
-        room.aimed[k] = -motion[k] / size
+        work.aimed[k] = -motion[k] / size
     for k in range(passive.used):
         label = passive.labels[k]
-        room.places[k] = room.places[label]
-        room.directions[k, 0], room.directions[k, 1] = room.directions[label, 0], room.directions[label, 1]
+        work.places[k] = work.places[label]
+        work.directions[k, 0], work.directions[k, 1] = work.directions[label, 0], work.directions[label, 1]
         passive.labels[k] = k
-    keep_above(passive, room.aimed, 0.0)
+    keep_above(passive, work.aimed, 0.0)
     number = WRENCH
     while number >= 0:
         left = length(passive.residual, WRENCH)
         if left <= NO_CUT:
             return False
-        if most_driven(friction, passive.residual, room) <= DRIVEN * left:
+        if most_driven(friction, passive.residual, work) <= DRIVEN * left:
             return True
-        number = add_generator(friction, number, room)
-    return most_driven(friction, passive.residual, room) <= HARDLY_DRIVEN * length(passive.residual, WRENCH)
+        number = add_generator(friction, number, work)
+    return most_driven(friction, passive.residual, work) <= HARDLY_DRIVEN * length(passive.residual, WRENCH)
 
 
 @kernel
-def keep_cut(room: Relaxation, system: System) -> bool:
-    """Note the twist found; False: there is no room."""
-    if room.n_cuts == CUT_LIMIT:
+def keep_cut(work: Relaxation, system: System) -> bool:
+    """Note the twist found; False: there is no work."""
+    if work.n_cuts == CUT_LIMIT:
         return False
-    passive, cut = room.forces, room.cuts[room.n_cuts]
+    passive, cut = work.forces, work.cuts[work.n_cuts]
     for k in range(passive.used):  # once more: across the forces in use to rounding of its own length
         part = inner(passive.basis[k], passive.residual, WRENCH)
         for j in range(6):
@@ -293,77 +293,77 @@ def keep_cut(room: Relaxation, system: System) -> bool:
     size = length(passive.residual, WRENCH)
     for k in range(6):
         cut[k] = -passive.residual[k] / size
-        system.columns[room.n_velocities + room.n_cuts, k] = cut[k]
-    room.n_cuts += 1
+        system.columns[work.n_velocities + work.n_cuts, k] = cut[k]
+    work.n_cuts += 1
     return True
 
 
 @kernel
-def is_proven(friction: float, room: Relaxation) -> bool:
+def is_proven(friction: float, work: Relaxation) -> bool:
     """Write z of the proof; return whether no force drives it, rounding included."""
-    passive = room.motion
+    passive = work.motion
     for k in range(6):
-        room.twist[k] = room.aimed[k] = 0.0
+        work.twist[k] = work.aimed[k] = 0.0
     for j in range(passive.used):
-        cut = passive.labels[j] - room.n_velocities
+        cut = passive.labels[j] - work.n_velocities
         if cut >= 0:
             for k in range(6):
-                room.twist[k] += passive.x[j] * room.cuts[cut, k]
-                room.aimed[k] -= passive.x[j] * room.cuts[cut, k]
-    return most_driven(friction, room.aimed, room) <= PROVEN
+                work.twist[k] += passive.x[j] * work.cuts[cut, k]
+                work.aimed[k] -= passive.x[j] * work.cuts[cut, k]
+    return most_driven(friction, work.aimed, work) <= PROVEN
 
 
 @kernel
-def drop_cuts(n_before: int, room: Relaxation) -> None:
+def drop_cuts(n_before: int, work: Relaxation) -> None:
     """Of the twists found at this node, keep those in use."""
     n_kept = n_before
-    for cut in range(n_before, room.n_cuts):
-        if label_is_passive(room.motion, room.n_velocities + cut):
+    for cut in range(n_before, work.n_cuts):
+        if label_is_passive(work.motion, work.n_velocities + cut):
             for k in range(6):
-                room.cuts[n_kept, k] = room.cuts[cut, k]
+                work.cuts[n_kept, k] = work.cuts[cut, k]
             n_kept += 1
-    room.n_cuts = n_kept
+    work.n_cuts = n_kept
 
 
 @kernel
-def read_forces(room: Relaxation) -> None:
-    passive = room.forces
-    room.scale = 0.0
-    for place in range(room.n_places):
-        room.normal_forces[place] = room.tangential_forces[place, 0] = room.tangential_forces[place, 1] = 0.0
+def read_forces(work: Relaxation) -> None:
+    passive = work.forces
+    work.scale = 0.0
+    for place in range(work.n_places):
+        work.normal_forces[place] = work.tangential_forces[place, 0] = work.tangential_forces[place, 1] = 0.0
     for k in range(passive.used):
         label = passive.labels[k]
-        place, x = room.places[label], passive.x[k]
+        place, x = work.places[label], passive.x[k]
         if place < 0:
-            room.scale = x
+            work.scale = x
         else:
-            room.normal_forces[place] += x
-            room.tangential_forces[place, 0] += x * room.directions[label, 0]
-            room.tangential_forces[place, 1] += x * room.directions[label, 1]
+            work.normal_forces[place] += x
+            work.tangential_forces[place, 0] += x * work.directions[label, 0]
+            work.tangential_forces[place, 1] += x * work.directions[label, 1]
 
 
 @kernel
-def is_impossible(friction: float, room: Relaxation, system: System) -> bool:
+def is_impossible(friction: float, work: Relaxation, system: System) -> bool:
     """Whether it is proven that no motion can begin with the present modes; ``twist`` is the proof then.
 
     Else ``motion.residual`` and the forces are a motion of the convex problem, as far as it was solved.
     """
-    n_before = room.n_cuts
-    write_velocities(room, system)
-    write_cuts(room, system)
-    clear(room.motion, WRENCH, 1.0)
-    clear(room.forces, WRENCH, 1.0)
-    room.forces.dependent = DEPENDENT
+    n_before = work.n_cuts
+    write_velocities(work, system)
+    write_cuts(work, system)
+    clear(work.motion, WRENCH, 1.0)
+    clear(work.forces, WRENCH, 1.0)
+    work.forces.dependent = DEPENDENT
     for k in range(6):
-        system.right_side[k] = room.load[k]
+        system.right_side[k] = work.load[k]
     for _ in range(ROUNDS):
-        left = nonnegative_least_squares(system, room.n_velocities + room.n_cuts, room.motion)
-        if left + ROUNDING * rounding_scale(room.motion) <= AT_REST:
-            if is_proven(friction, room):
+        left = nonnegative_least_squares(system, work.n_velocities + work.n_cuts, work.motion)
+        if left + ROUNDING * rounding_scale(work.motion) <= AT_REST:
+            if is_proven(friction, work):
                 return True
             break
-        if not find_cut(friction, room) or not keep_cut(room, system):
+        if not find_cut(friction, work) or not keep_cut(work, system):
             break
-    read_forces(room)
-    drop_cuts(n_before, room)
+    read_forces(work)
+    drop_cuts(n_before, work)
     return False

@@ -57,7 +57,7 @@ class ContactStatus:
 
 
 class StabilityWorkspace:
-    """Room for one rest, and the answer; a record.
+    """Workspace for one rest, and the answer; a record.
 
     Attributes
     ----------
@@ -66,13 +66,13 @@ class StabilityWorkspace:
     one_sided
         Contacts that may open and that no others make superfluous.
     rest
-        Room for one vector.
+        Memory for one vector.
     curvature, reduced, vectors
         S, its part over the free twists, and its eigenvectors.
     ways
         Basis of the free twists without curvature.
     scratch
-        Room.
+        Scratch.
     """
 
     held: PassiveSet
@@ -92,7 +92,7 @@ def find_held(
     statuses: Rows[ContactStatus],
     friction: float,
     stopped: PassiveSet,
-    room: StabilityWorkspace,
+    work: StabilityWorkspace,
     system: System,
 ) -> bool:
     """Find what the contacts hold, with what they stop to second order; return whether one is at the limit of friction.
@@ -101,9 +101,9 @@ def find_held(
     -a_j lies in the cone of the others, seen outside the span of those that carry.
     """
     at_limit = False
-    clear(room.held, WRENCH, 1.0)
+    clear(work.held, WRENCH, 1.0)
     for place in range(stopped.used):
-        extend(room.held, stopped.basis[place], IN_SPAN)
+        extend(work.held, stopped.basis[place], IN_SPAN)
     n = contacts.used[0]
     for i in range(n):
         state, status = contacts.states[i], statuses[i]
@@ -111,23 +111,23 @@ def find_held(
         status.is_equality = state.chosen and carried > 0.0
         status.is_implied = state.is_sticking = False
         if status.is_equality:
-            extend(room.held, contacts.rows[i].columns[0], IN_SPAN)
+            extend(work.held, contacts.rows[i].columns[0], IN_SPAN)
             if friction > 0.0:
                 tangential = math.sqrt(one * one + two * two)
                 state.is_sticking = tangential < (1.0 - AT_LIMIT) * friction * carried
                 at_limit = at_limit or not state.is_sticking
     for i in range(n):
         if contacts.states[i].is_sticking:
-            extend(room.held, contacts.rows[i].columns[1], IN_SPAN)
-            extend(room.held, contacts.rows[i].columns[2], IN_SPAN)
+            extend(work.held, contacts.rows[i].columns[1], IN_SPAN)
+            extend(work.held, contacts.rows[i].columns[2], IN_SPAN)
     found = True
     while found:
         found = False
         for i in range(n):
             may_open = contacts.states[i].chosen and not statuses[i].is_equality
-            if may_open and lies_in_cone(contacts, statuses, i, -1.0, room, system):
+            if may_open and lies_in_cone(contacts, statuses, i, -1.0, work, system):
                 statuses[i].is_equality = True
-                extend(room.held, contacts.rows[i].columns[0], IN_SPAN)
+                extend(work.held, contacts.rows[i].columns[0], IN_SPAN)
                 found = True
     return at_limit
 
@@ -138,7 +138,7 @@ def lies_in_cone(
     statuses: Rows[ContactStatus],
     i: int,
     sign: float,
-    room: StabilityWorkspace,
+    work: StabilityWorkspace,
     system: System,
 ) -> bool:
     """Whether ``sign`` times a contact's wrench lies in the cone of the others that may open, seen outside the span of
@@ -150,32 +150,32 @@ def lies_in_cone(
     for k in range(contacts.used[0]):
         may_open = contacts.states[k].chosen and not statuses[k].is_equality
         if k != i and may_open and not statuses[k].is_implied:
-            write_outside(room.held, contacts.rows[k].columns[0], IN_SPAN, system.columns[n_others])
+            write_outside(work.held, contacts.rows[k].columns[0], IN_SPAN, system.columns[n_others])
             n_others += 1
-    if not write_outside(room.held, contacts.rows[i].columns[0], IN_SPAN, system.right_side):
+    if not write_outside(work.held, contacts.rows[i].columns[0], IN_SPAN, system.right_side):
         return True
     for k in range(6):
         system.right_side[k] *= sign
     size = length(system.right_side, 6)
-    clear(room.scratch, WRENCH, size)
-    return nonnegative_least_squares(system, n_others, room.scratch) <= IN_SPAN * size
+    clear(work.scratch, WRENCH, size)
+    return nonnegative_least_squares(system, n_others, work.scratch) <= IN_SPAN * size
 
 
 @kernel
 def list_one_sided(
-    contacts: ContactSet, statuses: Rows[ContactStatus], room: StabilityWorkspace, system: System
+    contacts: ContactSet, statuses: Rows[ContactStatus], work: StabilityWorkspace, system: System
 ) -> int:
     """List the contacts that may open and that no others make superfluous; return how many, -1: too many."""
     n_one_sided = 0
     for i in range(contacts.used[0]):
         if not contacts.states[i].chosen or statuses[i].is_equality:
             continue
-        if lies_in_cone(contacts, statuses, i, 1.0, room, system):
+        if lies_in_cone(contacts, statuses, i, 1.0, work, system):
             statuses[i].is_implied = True
             continue
         if n_one_sided == ONE_SIDED_LIMIT:
             return -1
-        room.one_sided[n_one_sided] = i
+        work.one_sided[n_one_sided] = i
         n_one_sided += 1
     return n_one_sided
 
@@ -187,9 +187,9 @@ def is_same_face(one: ContactRow, other: ContactRow) -> bool:
 
 
 @kernel
-def find_shared(contacts: ContactSet, statuses: Rows[ContactStatus], room: StabilityWorkspace) -> None:
+def find_shared(contacts: ContactSet, statuses: Rows[ContactStatus], work: StabilityWorkspace) -> None:
     """Mark the contacts whose normal force could be another: their wrench lies in the span of the rest."""
-    rows, n, span = contacts.rows, contacts.used[0], room.scratch
+    rows, n, span = contacts.rows, contacts.used[0], work.scratch
     clear(span, WRENCH, 1.0)
     for i in range(n):
         if contacts.states[i].is_sticking:
@@ -204,30 +204,30 @@ def find_shared(contacts: ContactSet, statuses: Rows[ContactStatus], room: Stabi
         for k in range(n):
             if statuses[k].is_equality and not is_same_face(rows[k], rows[i]):
                 extend(span, rows[k].columns[0], IN_SPAN)
-        statuses[i].is_shared = not write_outside(span, rows[i].columns[0], IN_SPAN, room.rest)
+        statuses[i].is_shared = not write_outside(span, rows[i].columns[0], IN_SPAN, work.rest)
 
 
 @kernel
 def is_feasible(
-    contacts: ContactSet, n_one_sided: int, twist: FloatArray, sign: float, room: StabilityWorkspace
+    contacts: ContactSet, n_one_sided: int, twist: FloatArray, sign: float, work: StabilityWorkspace
 ) -> bool:
     """Whether a scaled twist closes none of the contacts that may open."""
     for k in range(n_one_sided):
-        column = contacts.rows[room.one_sided[k]].columns[0]
+        column = contacts.rows[work.one_sided[k]].columns[0]
         if sign * inner(column, twist, 6) > IN_SPAN * length(column, 6):
             return False
     return True
 
 
 @kernel
-def hold_some(contacts: ContactSet, n_one_sided: int, chosen: int, room: StabilityWorkspace) -> bool:
+def hold_some(contacts: ContactSet, n_one_sided: int, chosen: int, work: StabilityWorkspace) -> bool:
     """Hold those of the one-sided contacts whose bit is set, too; False: they depend on each other."""
     for k in range(n_one_sided):
         if (chosen >> k) & 1:
-            column = contacts.rows[room.one_sided[k]].columns[0]
-            if not write_outside(room.held, column, IN_SPAN, room.rest):
+            column = contacts.rows[work.one_sided[k]].columns[0]
+            if not write_outside(work.held, column, IN_SPAN, work.rest):
                 return False
-            append_column(room.held, column, k, 0.0)
+            append_column(work.held, column, k, 0.0)
     return True
 
 
@@ -242,48 +242,48 @@ def stability(
     frame: Frame,
     terms: float,
     size_m: float,
-    room: StabilityWorkspace,
+    work: StabilityWorkspace,
     system: System,
 ) -> int:
     """Return the code of stability of a rest with the forces in ``contacts``; free twists without curvature are added
-    to ``room.ways``.
+    to ``work.ways``.
 
     On the cone of twists that close no contact, the least curvature is an eigenvalue over the span of one of its faces,
     and its eigenvector lies in that face. So all sets of contacts that may open are held in turn.
     """
-    at_limit = find_held(contacts, statuses, friction, stopped, room, system)
-    n_held = room.held.used
-    n_one_sided = list_one_sided(contacts, statuses, room, system)
+    at_limit = find_held(contacts, statuses, friction, stopped, work, system)
+    n_held = work.held.used
+    n_one_sided = list_one_sided(contacts, statuses, work, system)
     code = MARGINAL if at_limit or n_one_sided < 0 else STABLE_REST
-    write_curvature(contacts, load, quaternion, frame, room.curvature)
-    flat = FLAT * max(frobenius_norm(room.curvature), terms / size_m)
+    write_curvature(contacts, load, quaternion, frame, work.curvature)
+    flat = FLAT * max(frobenius_norm(work.curvature), terms / size_m)
     for chosen in range(1 << max(n_one_sided, 0)):
-        room.held.used = n_held
-        if hold_some(contacts, n_one_sided, chosen, room):
-            code = max(code, least_curvature(contacts, n_one_sided, flat, room))
-    room.held.used = n_held
+        work.held.used = n_held
+        if hold_some(contacts, n_one_sided, chosen, work):
+            code = max(code, least_curvature(contacts, n_one_sided, flat, work))
+    work.held.used = n_held
     return code
 
 
 @kernel
-def least_curvature(contacts: ContactSet, n_one_sided: int, flat: float, room: StabilityWorkspace) -> int:
+def least_curvature(contacts: ContactSet, n_one_sided: int, flat: float, work: StabilityWorkspace) -> int:
     """Return the code of stability over the twists that what is held leaves free."""
-    n_free = write_complement(room.held, room.free)
-    write_reduced(room.curvature, room.free, n_free, room.reduced)
-    symmetric_eigen(room.reduced, room.vectors, n_free)
+    n_free = write_complement(work.held, work.free)
+    write_reduced(work.curvature, work.free, n_free, work.reduced)
+    symmetric_eigen(work.reduced, work.vectors, n_free)
     code = STABLE_REST
     for e in range(n_free):
-        if room.reduced[e, e] > flat:
+        if work.reduced[e, e] > flat:
             continue
         for k in range(6):
-            room.rest[k] = 0.0
+            work.rest[k] = 0.0
             for i in range(n_free):
-                room.rest[k] += room.vectors[i, e] * room.free[i, k]
-        forward = is_feasible(contacts, n_one_sided, room.rest, 1.0, room)
-        if not forward and not is_feasible(contacts, n_one_sided, room.rest, -1.0, room):
+                work.rest[k] += work.vectors[i, e] * work.free[i, k]
+        forward = is_feasible(contacts, n_one_sided, work.rest, 1.0, work)
+        if not forward and not is_feasible(contacts, n_one_sided, work.rest, -1.0, work):
             continue
-        if room.reduced[e, e] < -flat:
+        if work.reduced[e, e] < -flat:
             return UNSTABLE
         code = MARGINAL
-        append_column(room.ways, room.rest, e, 0.0)
+        append_column(work.ways, work.rest, e, 0.0)
     return code

@@ -84,55 +84,55 @@ class ModeTree:
 @kernel
 def stand_at_node(node: int, tree: ModeTree) -> None:
     """Write the modes of a node: what it decides, and those above it of other contacts."""
-    room = tree.relaxation
-    for place in range(room.n_places):
-        room.openings[place] = room.slips[place] = UNDECIDED
-    room.n_cuts = tree.n_cuts[node]
+    work = tree.relaxation
+    for place in range(work.n_places):
+        work.openings[place] = work.slips[place] = UNDECIDED
+    work.n_cuts = tree.n_cuts[node]
     while node > 0:
         place, mode = tree.places[node], tree.modes[node]
         if mode in (OPENS, CLOSED):
-            room.openings[place] = mode
-        elif room.slips[place] == UNDECIDED:
-            room.slips[place] = mode
-            room.starts[place], room.widths[place] = tree.starts[node], tree.widths[node]
+            work.openings[place] = mode
+        elif work.slips[place] == UNDECIDED:
+            work.slips[place] = mode
+            work.starts[place], work.widths[place] = tree.starts[node], tree.widths[node]
             if mode == SLIPS:
-                write_edges(place, room)
+                write_edges(place, work)
         node = tree.parents[node]
 
 
 @kernel
-def opening_power(place: int, room: Relaxation) -> float:
+def opening_power(place: int, work: Relaxation) -> float:
     """Return the power by which a contact violates Coulomb's law: it carries and opens."""
-    closing = inner(room.wrenches[place, 0], room.motion.residual, WRENCH)
-    power: float = max(0.0, -room.normal_forces[place] * closing)
+    closing = inner(work.wrenches[place, 0], work.motion.residual, WRENCH)
+    power: float = max(0.0, -work.normal_forces[place] * closing)
     return power
 
 
 @kernel
-def slipping_power(friction: float, place: int, room: Relaxation) -> float:
+def slipping_power(friction: float, place: int, work: Relaxation) -> float:
     """Return the power by which a contact violates Coulomb's law: friction is not full, or not along the slip."""
-    one, two = slip_along(place, room.motion.residual, room)
-    full = friction * room.normal_forces[place] * math.sqrt(one * one + two * two)
-    power: float = max(0.0, full - room.tangential_forces[place, 0] * one - room.tangential_forces[place, 1] * two)
+    one, two = slip_along(place, work.motion.residual, work)
+    full = friction * work.normal_forces[place] * math.sqrt(one * one + two * two)
+    power: float = max(0.0, full - work.tangential_forces[place, 0] * one - work.tangential_forces[place, 1] * two)
     return power
 
 
 @kernel
-def worst_contact(friction: float, room: Relaxation) -> tuple[int, bool]:
+def worst_contact(friction: float, work: Relaxation) -> tuple[int, bool]:
     """Return (the contact to decide, whether it is to be decided if it opens): where Coulomb's law is violated most.
 
     Contact -1: all is decided, to the narrowest sector.
     """
     worst, is_opening, most = -1, False, -1.0
-    for place in range(room.n_places):
-        if room.openings[place] == OPENS:
+    for place in range(work.n_places):
+        if work.openings[place] == OPENS:
             continue
-        power = opening_power(place, room)
-        if room.openings[place] == UNDECIDED and power > most:
+        power = opening_power(place, work)
+        if work.openings[place] == UNDECIDED and power > most:
             worst, is_opening, most = place, True, power
-        power = slipping_power(friction, place, room)
-        slips = room.slips[place]
-        if power > most and (slips == UNDECIDED or (slips == SLIPS and room.widths[place] > NARROWEST_RAD)):
+        power = slipping_power(friction, place, work)
+        slips = work.slips[place]
+        if power > most and (slips == UNDECIDED or (slips == SLIPS and work.widths[place] > NARROWEST_RAD)):
             worst, is_opening, most = place, False, power
     return worst, is_opening
 
@@ -152,15 +152,15 @@ def add_node(parent: int, place: int, mode: int, start: float, width: float, n_w
 @kernel
 def divide(node: int, place: int, is_opening: bool, n_waiting: int, tree: ModeTree) -> int:
     """Decide more of one contact; return how many nodes wait. What the motion shows comes last: it is next."""
-    room = tree.relaxation
+    work = tree.relaxation
     if is_opening:
         n_waiting = add_node(node, place, CLOSED, 0.0, 0.0, n_waiting, tree)
         return add_node(node, place, OPENS, 0.0, 0.0, n_waiting, tree)
-    if room.slips[place] == SLIPS:
-        start, half = room.starts[place], 0.5 * room.widths[place]
+    if work.slips[place] == SLIPS:
+        start, half = work.starts[place], 0.5 * work.widths[place]
         n_waiting = add_node(node, place, SLIPS, start, half, n_waiting, tree)
         return add_node(node, place, SLIPS, start + half, half, n_waiting, tree)
-    one, two = slip_along(place, room.motion.residual, room)
+    one, two = slip_along(place, work.motion.residual, work)
     sector = 2.0 * math.pi / SECTORS
     start = math.atan2(two, one) - BESIDE * sector
     n_waiting = add_node(node, place, STICKS, 0.0, 0.0, n_waiting, tree)
@@ -170,14 +170,14 @@ def divide(node: int, place: int, is_opening: bool, n_waiting: int, tree: ModeTr
 
 
 @kernel
-def is_near(friction: float, room: Relaxation) -> bool:
+def is_near(friction: float, work: Relaxation) -> bool:
     """Whether the motion of the convex problem nearly obeys Coulomb's law, and forces nearly make it."""
-    if room.scale <= 0.0 or length(room.forces.residual, WRENCH) > NEARLY:
+    if work.scale <= 0.0 or length(work.forces.residual, WRENCH) > NEARLY:
         return False
     total = 0.0
-    for place in range(room.n_places):
-        total += opening_power(place, room) + slipping_power(friction, place, room)
-    return total <= NEARLY * room.scale * inner(room.load, room.motion.residual, WRENCH)
+    for place in range(work.n_places):
+        total += opening_power(place, work) + slipping_power(friction, place, work)
+    return total <= NEARLY * work.scale * inner(work.load, work.motion.residual, WRENCH)
 
 
 @kernel
@@ -186,23 +186,23 @@ def is_witnessed(contacts: ContactSet, friction: float, b: FloatArray, tree: Mod
 
     The forces of the contacts are those of that motion afterwards.
     """
-    room = tree.relaxation
+    work = tree.relaxation
     for i in range(contacts.used[0]):
         for j in range(3):
             contacts.states[i].forces[j] = 0.0
-    y, size = room.motion.residual, length(b, WRENCH)
+    y, size = work.motion.residual, length(b, WRENCH)
     slow = SLOW * length(y, WRENCH)
     newton.n_carrying = 0
-    for place in range(room.n_places):
-        if room.normal_forces[place] <= 0.0:
+    for place in range(work.n_places):
+        if work.normal_forces[place] <= 0.0:
             continue
-        i = room.contacts[place]
-        one, two = slip_along(place, y, room)
+        i = work.contacts[place]
+        one, two = slip_along(place, y, work)
         add_carrying(newton, i, SLIPS if math.sqrt(one * one + two * two) > slow else STICKS)
-        share = size / (room.scale * length(contacts.rows[i].columns[0], WRENCH))
-        contacts.states[i].forces[0] = share * room.normal_forces[place]
-        contacts.states[i].forces[1] = share * room.tangential_forces[place, 0]
-        contacts.states[i].forces[2] = share * room.tangential_forces[place, 1]
+        share = size / (work.scale * length(contacts.rows[i].columns[0], WRENCH))
+        contacts.states[i].forces[0] = share * work.normal_forces[place]
+        contacts.states[i].forces[1] = share * work.tangential_forces[place, 0]
+        contacts.states[i].forces[2] = share * work.tangential_forces[place, 1]
     motion_left(contacts, b, tree.y)
     newton_on_modes(contacts, friction, b, tree.y, newton)
     motion_left(contacts, b, tree.y)
@@ -219,24 +219,24 @@ def other_onset(
 
     The forces of the contacts are lost.
     """
-    room = tree.relaxation
+    work = tree.relaxation
     tree.n_nodes = 0
-    if not take_contacts(contacts, b, room):
+    if not take_contacts(contacts, b, work):
         return NOT_SHOWN
-    room.n_cuts = 0
+    work.n_cuts = 0
     n_waiting = add_node(-1, -1, UNDECIDED, 0.0, 0.0, 0, tree)
     while n_waiting > 0:
         n_waiting -= 1
         node = tree.waiting[n_waiting]
         stand_at_node(node, tree)
-        if is_impossible(friction, room, system):
+        if is_impossible(friction, work, system):
             tree.is_closed[node] = 1
             for k in range(6):
-                tree.twists[node, k] = room.twist[k]
+                tree.twists[node, k] = work.twist[k]
             continue
-        if is_near(friction, room) and is_witnessed(contacts, friction, b, tree, newton):
+        if is_near(friction, work) and is_witnessed(contacts, friction, b, tree, newton):
             return OTHER_FOUND
-        place, is_opening = worst_contact(friction, room)
+        place, is_opening = worst_contact(friction, work)
         if place < 0 or tree.n_nodes > NODE_LIMIT - SECTORS - 1:
             return NOT_SHOWN
         n_waiting = divide(node, place, is_opening, n_waiting, tree)

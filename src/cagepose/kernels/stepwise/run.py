@@ -273,7 +273,7 @@ class StepwiseWorkspace(NamedTuple):
     points_world
         Cage points of the case that is run, (n_points, 3).
     proof
-        Room for the proof of a phase's end.
+        Workspace for the proof of a phase's end.
     """
 
     placement: Placement
@@ -284,7 +284,7 @@ class StepwiseWorkspace(NamedTuple):
 
 
 def empty_stepwise_workspace(geometry: Geometry, step_limit: int) -> StepwiseWorkspace:
-    """Return room for one run at a time (plain Python)."""
+    """Return a workspace for one run at a time (plain Python)."""
     n_points = len(geometry.points_world)
     return StepwiseWorkspace(
         empty_placement(geometry),

@@ -35,7 +35,7 @@ class Touching(NamedTuple):
     is_tie
         Whether the point lies on an edge whose faces make the same angle with the load, (n_points,).
     chosen
-        Room for the contacts that a rule works on, (n_points,).
+        Memory for the contacts that a rule works on, (n_points,).
     """
 
     order: NDArray[np.int64]
@@ -49,7 +49,7 @@ class Touching(NamedTuple):
 
 
 def empty_touching(n_points: int) -> Touching:
-    """Return room for the contacts of one pose, none of them touching yet (plain Python)."""
+    """Return a workspace for the contacts of one pose, none of them touching yet (plain Python)."""
     return Touching(
         np.empty(n_points, np.int64),
         np.zeros(1, np.int64),
