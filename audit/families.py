@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from audit import drawn_families, exact_families, loose_families
+from audit import drawn_families, exact_families, loose_families, prism_families
 from audit.case import Case
 from cagepose import Scene, SceneError
 
@@ -25,6 +25,8 @@ DRAWN: dict[str, Callable[[np.random.Generator], Scene]] = {
     "slot": exact_families.slot,
     "open-plate": exact_families.open_plate,
     "stopped-plate": exact_families.stopped_plate,
+    "prism": prism_families.prism,
+    "stopped-prism": prism_families.stopped_prism,
 }
 """Families of random scenes."""
 
@@ -36,7 +38,7 @@ NUMBERED: dict[str, Callable[[int], Scene]] = {
 }
 """Families of one drawing each, whose index sets the friction."""
 
-ENDINGS = {"open-plate": "escapes", "stopped-plate": "rests"}
+ENDINGS = {"open-plate": "escapes", "stopped-plate": "rests", "prism": "escapes"}
 """Verdicts that are known by hand."""
 
 FAMILIES = (*DRAWN, *NUMBERED)

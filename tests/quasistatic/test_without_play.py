@@ -68,6 +68,37 @@ def test_pairs_that_hold_to_first_order_leave_nothing():
     assert "second order" not in found.proof.reason
 
 
+def test_contacts_that_hold_each_other_in_turn_are_marginal():
+    """One pair keeps a bar from rolling, so that two points at different places along it are opposite: without play it
+    cannot tip over them; with a play of p it rolls by the root of p, and tips by the root of that.
+    """
+    bars = [Box((0.06, 0.013, 0.01), Pose((0.0, side * 0.0085, 0.0))) for side in (-1.0, 1.0)]
+    held = Object(bars, center_of_gravity_m=(0.005, 0.003, 0.0))
+    pair, apart = [(0.0, -15.0, 2.5), (0.0, -2.0, 2.5)], [(-10.0, 8.5, -5.0), (-10.0, -12.5, 5.0)]
+    stops = [(33.0, -11.75, 0.0), (33.0, -5.25, 0.0)]
+    load = Load("weight", gravity=(0.1, 0.0, -1.0))
+    found = run(Scene(held, Cage(np.array([*pair, *apart, *stops]) / 1e3), [load])).phases[0]
+    assert (found.verdict, found.proof.stability) == ("rests", "marginal")
+    assert "in turn" in found.proof.reason
+    play = np.array([(0.0, -1e-4, 0.0), (0.0, 1e-4, 0.0), (0.0, 0.0, -1e-4), (0.0, 0.0, 1e-4)])
+    loose = np.array([*(np.array([*pair, *apart]) + play), *stops]) / 1e3
+    turned = run(Scene(held, Cage(loose), [load])).phases[0]
+    assert turned.verdict == "escapes" or np.abs(turned.pose.quaternion_wxyz[1:]).max() > 1e-2
+
+
+def test_no_force_stands_on_a_tilt():
+    """An angle between three pairs, of which only one is on one line: a run turns it by rounding, and forces of a
+    hundred million loads would balance its weight on that.
+    """
+    legs = [Box((0.1, 0.02, 0.006), Pose((0.0, 0.0, -0.007))), Box((0.1, 0.006, 0.014), Pose((0.0, -0.007, 0.003)))]
+    pairs = [(-10, 10, -7), (-10, -10, -7), (-20, -4, 5.15), (-20, -10, -6.9), (-20, 0, -10), (-20, -6.38, 10)]
+    stops = [(53, -5, -7), (53, 5, -7)]
+    held = Object(legs, center_of_gravity_m=(0.02, 0.0, 0.0))
+    found = run(Scene(held, Cage(np.array([*pairs, *stops]) / 1e3), [Load("slope", gravity=(1.0, 0.0, 0.0))])).phases[0]
+    assert found.verdict == "rests"
+    assert max(contact.force_normal_n or 0.0 for contact in found.contacts) < 10.0
+
+
 def test_a_fork_around_opposite_points_may_turn():
     """The other way round the second order opens: a fork as wide as a pair of points turns until a face stops it."""
     arms = [Box((0.1, 0.01, 0.02), Pose((0.0, side * 0.01, 0.0))) for side in (-1.0, 1.0)]

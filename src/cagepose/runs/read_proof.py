@@ -35,8 +35,7 @@ REASONS = {
 NOT_SHOWN = "the contacts can balance the load with friction, but that the object cannot move was not shown"
 WEDGED = "; the contacts can press against each other without a load, as in a wedge"
 STOPPED = "; what they leave, contacts without play stop to second order, by forces without bound"
-LEFT = 1e-6
-"""Of the load: no balance of forces leaves so much. Where there is one, contacts without play carry the rest."""
+CHAINED = "; contacts without play hold each other in turn: the least play frees it"
 IN_SPAN = 1e-6
 """Sine of the angle below which a freedom lies in the span of the undetermined ones."""
 
@@ -49,6 +48,8 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
         phases["stability"].tolist(),
         phases["residual"].tolist(),
         phases["wedged"].tolist(),
+        phases["is_second_order"].tolist(),
+        phases["is_chained"].tolist(),
         phases["n_undetermined"].tolist(),
         phases["undetermined"],
         _free_motions(phases),
@@ -57,7 +58,7 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
         strict=True,
     )
     found = list[Proof]()
-    for code, stability, residual, wedged, n_undetermined, undetermined, motion, end, names in columns:
+    for code, stability, residual, wedged, second, chained, n_undetermined, undetermined, motion, end, names in columns:
         held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
         is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
         found.append(
@@ -65,7 +66,8 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
                 verdict="moves" if not held else "may rest" if is_open else "rests",
                 reason=REASONS.get(code, NOT_SHOWN)
                 + (WEDGED if is_open and wedged else "")
-                + (STOPPED if held and residual > LEFT else ""),
+                + (STOPPED if held and second else "")
+                + (CHAINED if held and chained else ""),
                 residual=residual,
                 needs_friction=held and code != PROVEN_WITHOUT_FRICTION,
                 stability=STABILITY_NAMES[stability] if held else None,

@@ -162,7 +162,7 @@ def add_generator(contacts: ContactSet, friction: float, b: FloatArray, number: 
         price, is_steeper = generator_price(contacts, i, friction, cone)
         if price <= 0.0:
             continue
-        size = length(contacts.rows[i].columns[0], 6)
+        size = length(contacts.rows[i].columns[0], 6) + (1.0 if passive.n_rows == N_ROWS else 0.0)
         if price > best_price * size and price > (STEEPER * left if is_steeper else PRICE * scale) * size:
             best, best_price = i, price / size
     if best < 0:

@@ -42,7 +42,8 @@ class ContactRow:
     directions, arm
         Outward unit normal and two tangents, rows, and the point as seen from the centre of gravity, in the world.
     columns
-        Scaled wrenches of a unit force along these directions. The contact pushes along their negative.
+        Scaled wrenches of a unit force along these directions. The contact pushes along their negative. What contacts
+        without play lock is taken out of them, see `self_stress`.
     """
 
     point: int
@@ -67,6 +68,8 @@ class ContactState:
         What the contact carries along its columns.
     is_sticking
         Whether it carries and does not slip.
+    is_locked
+        Whether its gap stays as it is because contacts without play press against each other, see `self_stress`.
     slip_speed, is_rejected
         Of the problem with round cones: De Saxce's correction (5.7), and whether its generator did not help.
     has_carried
@@ -78,6 +81,7 @@ class ContactState:
     chosen: bool
     forces: Annotated[FloatArray, 3]
     is_sticking: bool
+    is_locked: bool
     slip_speed: float
     is_rejected: bool
     has_carried: bool
@@ -96,6 +100,18 @@ class ContactSet(NamedTuple):
 def empty_contact_set(n_rows: int) -> ContactSet:
     """Return a set with memory for ``n_rows`` contacts (plain Python)."""
     return ContactSet(np.zeros(1, np.int64), empty_rows(ContactRow, n_rows), empty_rows(ContactState, n_rows))
+
+
+@kernel
+def stays_on_face(contacts: ContactSet, i: int) -> bool:
+    """Whether a contact keeps its gap in a motion that begins: it carries, or is locked."""
+    return contacts.states[i].forces[0] > 0.0 or contacts.states[i].is_locked
+
+
+@kernel
+def unlock(contacts: ContactSet) -> None:
+    for i in range(contacts.used[0]):
+        contacts.states[i].is_locked = False
 
 
 @kernel

@@ -10,7 +10,7 @@ from cagepose.kernels.algebra.dense import remove_span
 from cagepose.kernels.algebra.least_squares import append_column, clear, inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.cone import BALANCED, HELD, clear_cone, cone_residual, write_forces
-from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.contact_set import ContactSet, unlock
 from cagepose.kernels.contact.edges import (
     CHOICES_LIMIT,
     ONLY_CARRYING,
@@ -20,21 +20,17 @@ from cagepose.kernels.contact.edges import (
     return_to_kept,
 )
 from cagepose.kernels.contact.metric import WRENCH, Frame
-from cagepose.kernels.contact.self_stress import OPPOSED, carried_without_bound, take_out_stopped
+from cagepose.kernels.contact.self_stress import OPPOSED, carry_by_locked, take_out_stopped, write_residual
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
 HELD_WITHOUT_FRICTION, HELD_BY_FRICTION, UNSOLVED, MOVES = 0, 1, 2, 3
 """What the contacts do, from the least to the most that moves. Of a balance, MOVES says that there is none, and
-UNSOLVED that there are too many choices of faces to ask them all, and that those which were asked hold, or that it is
-not known."""
+UNSOLVED that there are too many choices of faces to ask them all, and that those which were asked hold."""
 RESERVE = 1e-6
 """A balance that needs all but this part of the friction is at its limit."""
 AT_REST, ON_THE_WAY = 1.0, 0.1
 """Strictness. A pose on the way is looked at again when the run has got there: it must hold then, too."""
-CARRIED_LIMIT = 10.0
-"""In loads: what contacts without play carry to second order is a part of the load and its moments. Where it is more,
-forces stand on opposite faces that are not quite parallel, and nothing is known."""
 
 
 @kernel
@@ -170,15 +166,13 @@ def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness:
         Given: the load. Filled: the answer.
     """
     clear(work.stopped, WRENCH, 1.0)
+    clear(work.locked, WRENCH, 1.0)
+    work.is_second_order = work.is_chained = False
+    unlock(contacts)
     code = equilibrium_with_edges(contacts, friction, strictness, work)
-    if needs_second_order(contacts, code, friction, work):
-        keep_choice(contacts)
-        if take_out_stopped(contacts, frame, work):
-            code = equilibrium_with_edges(contacts, friction, strictness, work)
-            if code != MOVES:
-                work.residual = carried_without_bound(contacts, frame, work)
-                if work.residual > CARRIED_LIMIT:
-                    code = UNSOLVED
-        else:
-            return_to_kept(contacts)
+    if needs_second_order(contacts, code, friction, work) and take_out_stopped(contacts, frame, friction, work):
+        code = equilibrium_with_edges(contacts, friction, strictness, work)
+        if code != MOVES:
+            carry_by_locked(contacts, frame, work)
+            write_residual(work)
     return code

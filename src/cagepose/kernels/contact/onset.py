@@ -19,6 +19,7 @@ from cagepose.kernels.contact.equilibrium import (
     equilibrium_with_faces,
 )
 from cagepose.kernels.contact.metric import Frame
+from cagepose.kernels.contact.self_stress import carry_by_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
@@ -71,7 +72,11 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
     for k in range(6):
         work.y[k] = 0.0
     code = equilibrium(contacts, frame, friction, AT_REST, work)
-    return freest_motion(contacts, friction, work) if code == MOVES else code
+    if code == MOVES:
+        code = freest_motion(contacts, friction, work)
+        if work.locked.used > 0:
+            carry_by_locked(contacts, frame, work)
+    return code
 
 
 @kernel

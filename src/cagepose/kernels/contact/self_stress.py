@@ -2,25 +2,26 @@
 
 A plate between two opposite points that are as far apart as it is thick can tip, as far as velocities go: but it would
 have to be thinner. Contacts that can press against each other without a load (a self-stress sigma, sum sigma_i a_i = 0)
-keep their gaps at zero, and of the motions that do so those with sum sigma_i (second derivative of gap i) < 0 go in.
-They are taken out of the contact problem: the object does not begin to move that way, and what the load does there is
-carried by forces without bound.
+keep their gaps at zero: they are locked. Of the motions that do so, those with sum sigma_i (second derivative of gap i)
+< 0 go in. What is locked can push and pull alike, as more of the self-stress adds to all of its forces, so the object
+does not begin to move along its normals, and the others only have to do with what is free beside that. They may be
+opposite there, too, and so on.
 """
 
 from __future__ import annotations
 
 from cagepose.kernels.algebra.dense import frobenius_norm, remove_span
 from cagepose.kernels.algebra.eigen import symmetric_eigen
-from cagepose.kernels.algebra.least_squares import PassiveSet, clear, inner, length
+from cagepose.kernels.algebra.least_squares import clear, inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.span import extend, write_complement, write_outside, write_reduced
 from cagepose.kernels.algebra.vector import cross, vector_from
-from cagepose.kernels.contact.cone import N_ROWS, clear_cone, cone_residual
+from cagepose.kernels.contact.cone import N_ROWS, ConeWorkspace, clear_cone, cone_residual
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.curvature import add_face_curvature, clear_matrix
-from cagepose.kernels.contact.edges import first_choice, last_of_group
+from cagepose.kernels.contact.edges import keep_choice, last_of_group, return_to_kept
 from cagepose.kernels.contact.metric import WRENCH, Frame, write_scaled_wrench
-from cagepose.kernels.contact.workspace import ContactWorkspace, SelfStressWorkspace
+from cagepose.kernels.contact.workspace import STRESS_LIMIT, ContactWorkspace, SelfStressWorkspace
 from cagepose.kernels.native.kernel import kernel
 
 OPPOSED = 1e-5
@@ -28,6 +29,11 @@ OPPOSED = 1e-5
 touch tolerance, can be tilted by up to the root of that tolerance; and its forces would be 1e5 loads and more."""
 STOPS = 1e-6
 """In the greatest second derivative: a smaller one is rounding."""
+PLAY = 1e-11
+"""In radii of gyration: a contact with a wider gap, though it touches, has play. A fork that turns around two opposite
+points opens by the square of its turn."""
+CARRIES = 1e-6
+"""In lengths of the load: so much along the motions that are stopped is more than rounding."""
 
 
 @kernel
@@ -43,61 +49,6 @@ def self_stress(contacts: ContactSet, friction: float, stress: SelfStressWorkspa
 
 
 @kernel
-def choose_opposed(contacts: ContactSet, twist: FloatArray, load_terms: float) -> bool:
-    """Choose the contacts on faces, not on edges, that a scaled twist does not open and that another one has a part
-    against; False: there are none.
-
-    The twist separates, so that it closes no contact; and no self-stress works along it, so that it opens none of those
-    that are in one.
-    """
-    rows, states = contacts.rows, contacts.states
-    first_choice(contacts)
-    found = False
-    for i in range(contacts.used[0]):
-        least = -OPPOSED * load_terms * length(rows[i].columns[0], WRENCH)
-        is_still = inner(rows[i].columns[0], twist, WRENCH) >= least
-        states[i].chosen = states[i].chosen and is_still and last_of_group(contacts, i) == i
-    for i in range(contacts.used[0]):
-        states[i].is_rejected = True
-        for j in range(contacts.used[0]):
-            if states[i].chosen and states[j].chosen and inner(rows[i].directions[0], rows[j].directions[0], 3) < 0.0:
-                states[i].is_rejected = False
-                break
-    for i in range(contacts.used[0]):
-        states[i].chosen = states[i].chosen and not states[i].is_rejected
-        found = found or states[i].chosen
-    return found
-
-
-@kernel
-def drop_stressed(contacts: ContactSet, stress: SelfStressWorkspace) -> None:
-    """Choose the contacts of the self-stress in ``stress.cone`` no longer."""
-    for k in range(stress.cone.passive.used):
-        contacts.states[stress.cone.contacts[stress.cone.passive.labels[k]]].chosen = False
-
-
-@kernel
-def hold_stressed(contacts: ContactSet, stress: SelfStressWorkspace) -> None:
-    """Add the normals of the self-stresses of the chosen contacts to the span that is held.
-
-    Of the other contacts the part outside the span is asked again: what is missing inside, self-stresses that have been
-    found can add. The normals' wrenches are lost.
-    """
-    clear(stress.held, WRENCH, 1.0)
-    while self_stress(contacts, 0.0, stress) <= OPPOSED:
-        for k in range(stress.cone.passive.used):
-            i = stress.cone.contacts[stress.cone.passive.labels[k]]
-            extend(stress.held, contacts.rows[i].columns[0], OPPOSED)
-        drop_stressed(contacts, stress)
-        for i in range(contacts.used[0]):
-            state, column = contacts.states[i], contacts.rows[i].columns[0]
-            if state.chosen:
-                state.chosen = write_outside(stress.held, column, OPPOSED, stress.twist)
-                for k in range(WRENCH):
-                    column[k] = stress.twist[k]
-
-
-@kernel
 def write_wrench(contacts: ContactSet, i: int, j: int, frame: Frame, out: FloatArray) -> None:
     """Write the scaled wrench of a unit force of contact i in its direction j, as `find_contacts` does."""
     direction = vector_from(contacts.rows[i].directions[j])
@@ -105,19 +56,50 @@ def write_wrench(contacts: ContactSet, i: int, j: int, frame: Frame, out: FloatA
 
 
 @kernel
-def add_stopped(contacts: ContactSet, frame: Frame, stopped: PassiveSet, stress: SelfStressWorkspace) -> None:
-    """Add what the self-stress in ``stress.cone`` stops of the motions that are neither held nor stopped; that is then
-    held, too. Where it opens a gap for others of them, it stops none: a little of one pays for some of another.
+def balance_by_locked(contacts: ContactSet, wrench: FloatArray, frame: Frame, work: ContactWorkspace) -> None:
+    """Balance, with the locked contacts, what a wrench does along their normals: their forces are in
+    ``work.stress.reaction``. Which contacts are chosen is lost.
+
+    Only the parts of their wrenches count that made them locked: a tilt of 1e-6 between opposite faces carries nothing.
     """
-    passive = stress.cone.passive
-    clear_matrix(stress.curvature)
-    for k in range(passive.used):
-        contact = contacts.rows[stress.cone.contacts[passive.labels[k]]]
-        add_face_curvature(contact, passive.x[k], frame, stress.curvature)
-    n_free = write_complement(stress.held, stress.free)
-    write_reduced(stress.curvature, stress.free, n_free, stress.reduced)
+    stress = work.stress
+    for k in range(WRENCH):
+        stress.twist[k] = 0.0
+        for place in range(stress.pressed.used):
+            stress.twist[k] += inner(stress.pressed.basis[place], wrench, WRENCH) * stress.pressed.basis[place, k]
+    for i in range(contacts.used[0]):
+        state, column = contacts.states[i], contacts.rows[i].columns[0]
+        state.chosen = state.is_locked
+        if state.is_locked:
+            write_wrench(contacts, i, 0, frame, work.trial)
+            write_outside(stress.pressed, work.trial, 0.0, column)
+            for k in range(WRENCH):
+                column[k] = work.trial[k] - column[k]
+    clear_cone(stress.reaction, stress.twist, WRENCH, length(stress.twist, WRENCH))
+    cone_residual(contacts, 0.0, stress.twist, stress.reaction)
+    for i in range(contacts.used[0]):
+        if contacts.states[i].is_locked:
+            for k in range(WRENCH):
+                contacts.rows[i].columns[0, k] = 0.0
+
+
+@kernel
+def add_second_order(contacts: ContactSet, cone: ConeWorkspace, frame: Frame, out: FloatArray) -> None:
+    """Add -sum sigma_i Hess g_i of the forces in ``cone``."""
+    for k in range(cone.passive.used):
+        add_face_curvature(contacts.rows[cone.contacts[cone.passive.labels[k]]], cone.passive.x[k], frame, out)
+
+
+@kernel
+def stop(curvature: FloatArray, work: ContactWorkspace) -> None:
+    """Add what a self-stress with this second order stops, of the motions that are still free. Where it opens a gap for
+    others of them, it stops none: a little of one pays for some of another.
+    """
+    stress = work.stress
+    n_free = write_complement(work.locked, stress.free)
+    write_reduced(curvature, stress.free, n_free, stress.reduced)
     symmetric_eigen(stress.reduced, stress.vectors, n_free)
-    least = STOPS * frobenius_norm(stress.curvature)
+    least = STOPS * frobenius_norm(curvature)
     for e in range(n_free):
         if stress.reduced[e, e] < -least:
             return
@@ -127,87 +109,198 @@ def add_stopped(contacts: ContactSet, frame: Frame, stopped: PassiveSet, stress:
                 stress.twist[k] = 0.0
                 for i in range(n_free):
                     stress.twist[k] += stress.vectors[i, e] * stress.free[i, k]
-            extend(stopped, stress.twist, OPPOSED)
-    for place in range(stopped.used):
-        extend(stress.held, stopped.basis[place], OPPOSED)
+            extend(work.stopped, stress.twist, OPPOSED)
+            extend(work.locked, stress.twist, OPPOSED)
 
 
 @kernel
-def find_stopped(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> bool:
-    """Write a basis of the motions that contacts without play stop to second order into ``work.stopped``; False: there
-    are none. Which contacts are chosen is lost.
+def lock(contacts: ContactSet, frame: Frame, n_stresses: int, work: ContactWorkspace) -> None:
+    """Lock the contacts of the self-stress in ``stress.cone``, number ``n_stresses``, and write its second order.
+
+    It balances outside of what is locked already: there, locked contacts make up for the rest.
     """
-    stress, stopped = work.stress, work.stopped
-    clear(stopped, WRENCH, 1.0)
-    if not choose_opposed(contacts, work.cone.passive.residual, work.load_terms):
-        return False
-    if self_stress(contacts, 0.0, stress) > OPPOSED:
-        return False
-    hold_stressed(contacts, stress)
+    stress = work.stress
+    passive, curvature = stress.cone.passive, stress.curvatures[n_stresses]
+    clear_matrix(curvature)
+    add_second_order(contacts, stress.cone, frame, curvature)
+    for k in range(WRENCH):
+        stress.imbalance[k] = 0.0
+    for j in range(passive.used):
+        write_wrench(contacts, stress.cone.contacts[passive.labels[j]], 0, frame, work.trial)
+        for k in range(WRENCH):
+            stress.imbalance[k] -= passive.x[j] * work.trial[k]
+    balance_by_locked(contacts, stress.imbalance, frame, work)
+    add_second_order(contacts, stress.reaction, frame, curvature)
+    for k in range(passive.used):
+        i = stress.cone.contacts[passive.labels[k]]
+        column = contacts.rows[i].columns[0]
+        size = length(column, WRENCH)
+        if size == 0.0 or passive.x[k] * size > OPPOSED:  # else it carries only what the others leave, to rounding
+            contacts.states[i].is_locked = True
+            extend(stress.pressed, column, OPPOSED)
+            extend(work.locked, column, OPPOSED)
+
+
+@kernel
+def stop_all(n_stresses: int, work: ContactWorkspace) -> bool:
+    """Add what the self-stresses stop; return whether that is any more. What one of them stops may leave another with
+    nothing that it opens.
+    """
+    n_before, n_last = work.stopped.used, -1
+    while work.stopped.used > n_last:
+        n_last = int(work.stopped.used)
+        for n in range(n_stresses):
+            stop(work.stress.curvatures[n], work)
+    return bool(work.stopped.used > n_before)
+
+
+@kernel
+def take_out_locked(contacts: ContactSet, work: ContactWorkspace) -> None:
+    """Take what is locked out of the normals' wrenches; what hardly anything is left of has no part outside."""
     for i in range(contacts.used[0]):
-        write_wrench(contacts, i, 0, frame, contacts.rows[i].columns[0])
-    before = -1
-    while stopped.used > before:  # what one self-stress stops may leave another with nothing that it opens
-        before = int(stopped.used)
-        choose_opposed(contacts, work.cone.passive.residual, work.load_terms)
-        while self_stress(contacts, 0.0, stress) <= OPPOSED:
-            add_stopped(contacts, frame, stopped, stress)
-            drop_stressed(contacts, stress)
-    return bool(stopped.used > 0)
+        column = contacts.rows[i].columns[0]
+        write_outside(work.locked, column, OPPOSED, work.stress.twist)
+        for k in range(WRENCH):
+            column[k] = work.stress.twist[k]
 
 
 @kernel
-def take_out(contacts: ContactSet, i: int, j: int, work: ContactWorkspace) -> None:
-    """Take out of a wrench what it does along the motions that are stopped.
-
-    A normal that then nearly lies in the span that is held is put into it, so that opposite ones are exactly opposite.
-    """
-    column, stress = contacts.rows[i].columns[j], work.stress
-    is_group = contacts.rows[i].group == i and last_of_group(contacts, i) == i
-    if j == 0 and is_group and not write_outside(work.stopped, column, OPPOSED, stress.twist):
-        contacts.rows[i].group = -1  # it stops nothing that is not stopped already
-        return
-    remove_span(column, work.stopped)
-    if j == 0:
-        write_outside(stress.held, column, 0.0, stress.twist)
-        if length(stress.twist, WRENCH) <= OPPOSED * length(column, WRENCH):
-            for k in range(WRENCH):
-                column[k] -= stress.twist[k]
-
-
-@kernel
-def take_out_stopped(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> bool:
-    """Take the motions that contacts without play stop to second order out of wrenches and load; False: there are none.
+def find_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> None:
+    """Find the contacts on faces, not on edges, that are in self-stresses, and what these stop to second order.
 
     Parameters
     ----------
     contacts
-        At a pose, from `find_contacts`. Which are chosen is lost.
+        At a pose, from `find_contacts`, none locked. Filled: which are, and what is left of the normals' wrenches.
+        Which are chosen is lost.
     frame
         The scaled coordinates there.
     work
-        Given: the load, and what is left of it. Filled: ``stopped``, a basis of these motions.
+        Filled: ``stopped``, ``locked`` and ``is_chained``.
     """
-    if not find_stopped(contacts, frame, work):
+    clear(work.stress.pressed, WRENCH, 1.0)
+    clear(work.stopped, WRENCH, 1.0)
+    clear(work.locked, WRENCH, 1.0)
+    n_stresses, n_locked = 0, 0
+    while n_stresses < STRESS_LIMIT:
+        for i in range(contacts.used[0]):
+            is_on_face = contacts.rows[i].group == i and last_of_group(contacts, i) == i
+            is_closed = contacts.rows[i].gap <= PLAY * max(frame.radii[0], frame.radii[1], frame.radii[2])
+            contacts.states[i].chosen = is_on_face and is_closed and not contacts.states[i].is_locked
+        if self_stress(contacts, 0.0, work.stress) <= OPPOSED:
+            lock(contacts, frame, n_stresses, work)
+            n_stresses += 1
+        elif not stop_all(n_stresses, work):
+            break
+        elif n_locked == 0:
+            n_locked = int(work.locked.used)
+        take_out_locked(contacts, work)
+    work.is_chained = 0 < n_locked < work.locked.used
+
+
+@kernel
+def restore_wrenches(contacts: ContactSet, frame: Frame) -> None:
+    """Write the wrenches as `find_contacts` does, and lock nothing."""
+    for i in range(contacts.used[0]):
+        contacts.states[i].is_locked = False
+        for j in range(3):
+            write_wrench(contacts, i, j, frame, contacts.rows[i].columns[j])
+
+
+@kernel
+def write_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> None:
+    """Write a basis of what contacts without play lock into ``work.locked``; the contacts stay as they are."""
+    keep_choice(contacts)
+    find_locked(contacts, frame, work)
+    restore_wrenches(contacts, frame)
+    return_to_kept(contacts)
+
+
+@kernel
+def take_out_stopped(contacts: ContactSet, frame: Frame, friction: float, work: ContactWorkspace) -> bool:
+    """Take what contacts without play lock out of wrenches and load; False: they stop nothing to second order.
+
+    Parameters
+    ----------
+    contacts
+        At a pose, from `find_contacts`.
+    frame
+        The scaled coordinates there.
+    friction
+        With friction locked contacts count in the contact problem, as friction is less than their normal forces make
+        it: only what is stopped is taken out, and of their normals what keeps them from being exactly opposite.
+    work
+        Given: the load. Filled: ``stopped`` and ``locked``, bases of the motions in question.
+    """
+    keep_choice(contacts)
+    find_locked(contacts, frame, work)
+    if work.stopped.used == 0:
+        restore_wrenches(contacts, frame)
+        return_to_kept(contacts)
         return False
+    if friction > 0.0:
+        clear(work.locked, WRENCH, 1.0)
+        for place in range(work.stopped.used):
+            extend(work.locked, work.stopped.basis[place], 0.0)
+        restore_wrenches(contacts, frame)
+        for i in range(contacts.used[0]):
+            take_out(contacts, i, work)
     for k in range(WRENCH):
         work.whole_load[k] = work.load[k]
-    remove_span(work.load, work.stopped)
-    for i in range(contacts.used[0]):
-        for j in range(3):
-            take_out(contacts, i, j, work)
+    remove_span(work.load, work.locked)
     return True
 
 
 @kernel
-def carried_without_bound(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> float:
-    """Return what the forces leave of the whole load, in its lengths: what contacts without play carry beside them."""
-    left, column = work.stress.twist, work.trial
+def take_out(contacts: ContactSet, i: int, work: ContactWorkspace) -> None:
+    """Take what is stopped out of the wrenches of a contact with friction; a normal that then nearly lies in the span
+    of the locked ones is put into it.
+    """
+    row, outside = contacts.rows[i], work.stress.twist
+    if not write_outside(work.stopped, row.columns[0], OPPOSED, outside):
+        row.group = -1  # it stops nothing that is not stopped already
+        return
+    for j in range(3):
+        remove_span(row.columns[j], work.stopped)
+    write_outside(work.stress.pressed, row.columns[0], 0.0, outside)
+    if length(outside, WRENCH) <= OPPOSED * length(row.columns[0], WRENCH):
+        for k in range(WRENCH):
+            row.columns[0, k] -= outside[k]
+
+
+@kernel
+def carry_by_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> None:
+    """Write the forces of the locked contacts beside those of the others, and what all of them leave of the whole load
+    into ``work.stress.imbalance``.
+    """
+    reaction, left = work.stress.reaction, work.stress.imbalance
+    write_left(contacts, frame, left, work)
+    keep_choice(contacts)
+    balance_by_locked(contacts, left, frame, work)
+    return_to_kept(contacts)
+    for k in range(reaction.passive.used):
+        contacts.states[reaction.contacts[reaction.passive.labels[k]]].forces[0] = reaction.passive.x[k]
+    write_left(contacts, frame, left, work)
+
+
+@kernel
+def write_residual(work: ContactWorkspace) -> None:
+    """Write what the forces leave of the load at rest, and whether it is carried by contacts without play, along what
+    they stop.
+    """
+    left = work.stress.imbalance
+    work.residual = length(left, WRENCH) / work.load_terms
+    remove_span(left, work.stopped)
+    work.is_second_order = work.residual - length(left, WRENCH) / work.load_terms > CARRIES
+
+
+@kernel
+def write_left(contacts: ContactSet, frame: Frame, left: FloatArray, work: ContactWorkspace) -> None:
+    """Write what the forces of the contacts leave of the whole load."""
     for k in range(WRENCH):
         left[k] = work.whole_load[k]
     for i in range(contacts.used[0]):
         for j in range(3):
-            write_wrench(contacts, i, j, frame, column)
+            write_wrench(contacts, i, j, frame, work.trial)
             for k in range(WRENCH):
-                left[k] -= contacts.states[i].forces[j] * column[k]
-    return length(left, WRENCH) / work.load_terms
+                left[k] -= contacts.states[i].forces[j] * work.trial[k]

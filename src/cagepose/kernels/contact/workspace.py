@@ -10,32 +10,38 @@ from cagepose.kernels.contact.cone import ConeWorkspace
 from cagepose.kernels.contact.coulomb_newton import NewtonWorkspace
 from cagepose.kernels.contact.metric import ScaledVector
 
+STRESS_LIMIT = 24
+"""Self-stresses that are asked for, each of contacts that are not in one before it."""
+
 
 class SelfStressWorkspace:
     """Memory for self-stresses and their second order; a record.
 
     Attributes
     ----------
-    cone
-        One self-stress.
-    held
-        Span of the normals of all.
-    curvature, reduced, vectors
-        Their second derivatives, what the free twists see of them, and the eigenvectors of that.
+    cone, reaction
+        One self-stress, and the forces of contacts that are locked already.
+    pressed
+        Span of the normals of the locked contacts.
+    curvatures
+        Second derivatives of each self-stress.
+    reduced, vectors
+        What the free twists see of one of them, and its eigenvectors.
     free
-        Scaled twists that keep all the gaps, rows.
-    twist
-        One of them.
+        Scaled twists that are not locked, rows.
+    twist, imbalance
+        One of them, and a wrench.
     """
 
     cone: ConeWorkspace
-    held: PassiveSet
-
-    curvature: Annotated[FloatArray, 6, 6]
+    reaction: ConeWorkspace
+    pressed: PassiveSet
+    curvatures: Annotated[FloatArray, STRESS_LIMIT, 6, 6]
     reduced: Annotated[FloatArray, 6, 6]
     vectors: Annotated[FloatArray, 6, 6]
     free: Annotated[FloatArray, 6, 6]
     twist: ScaledVector
+    imbalance: ScaledVector
 
 
 class ContactWorkspace:
@@ -52,11 +58,15 @@ class ContactWorkspace:
         Scaled twist of the motion, and that with one choice of faces.
     span
         Basis of all that the carrying contacts can push along, if none of them slips.
-    stress, stopped, whole_load
-        See `self_stress`: memory, a basis of the motions that contacts without play stop to second order, and the load
-        before these were taken out of it.
+    stress, stopped, locked, whole_load
+        See `self_stress`: memory, bases of the motions that contacts without play stop to second order and of all that
+        is taken out of the problem with them, and the load before that.
     residual
-        What the contacts leave of the load, in its lengths: zero, to rounding, if the object is held.
+        What the contacts leave of the load, in its lengths: zero, to rounding, if the object is held by forces.
+    is_second_order
+        Whether a rest leaves more, along what contacts without play stop.
+    is_chained
+        Whether some contacts without play are locked only because others stop motions to second order.
     """
 
     load: ScaledVector
@@ -68,5 +78,8 @@ class ContactWorkspace:
     span: PassiveSet
     stress: SelfStressWorkspace
     stopped: PassiveSet
+    locked: PassiveSet
     whole_load: ScaledVector
     residual: float
+    is_second_order: bool
+    is_chained: bool

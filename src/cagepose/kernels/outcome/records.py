@@ -23,6 +23,8 @@ class PhaseRecord:
         What the contact forces leave of the load, in lengths of the terms.
     wedged
         Whether the contacts can press against each other without a load.
+    is_second_order, is_chained
+        Whether contacts without play carry a part of the load, and whether some are held by what others stop.
     n_undetermined, undetermined
         Scaled twists along which the load does not tell poses apart, rows.
     motion, along, through, pitch
@@ -36,6 +38,8 @@ class PhaseRecord:
     stability: int
     residual: float
     wedged: bool
+    is_second_order: bool
+    is_chained: bool
     n_undetermined: int
     undetermined: Annotated[FloatArray, 6, 6]
     motion: int

@@ -7,17 +7,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cagepose.kernels.algebra.pose import Quaternion, rotated
+from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.tolerances import KernelTolerances
-from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, row, scaled
+from cagepose.kernels.algebra.vector import Vector, norm, row, scaled
 from cagepose.kernels.collision.first_contact import allowed_depth, first_contact_screw, first_contact_travel
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
-from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
 from cagepose.kernels.contact.metric import Body, PhaseLoad, moved_along_twist, total_force, work_done
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
-from cagepose.kernels.quasistatic.projection import Constraints, add_constraint, box_axis, empty_constraints, projected
+from cagepose.kernels.quasistatic.projection import Constraints, add_constraint, empty_constraints, projected
+from cagepose.kernels.quasistatic.straying import STRAYED, strayed
 
 HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
@@ -27,8 +28,6 @@ ROUNDING = 1e-15
 """In lengths of the terms of a load: a slower motion may be no motion."""
 STRAIGHT = 1e-14
 """Radians for each length of the object: a motion that turns by less is a travel."""
-SUNK = 2.0
-"""Times the depth to which contacts sink: a point that was nearer than this is met because they sink."""
 
 
 class Setting(NamedTuple):
@@ -109,24 +108,6 @@ def longest_step(velocity: Vector, spin: Vector, slides: bool, turn_step_rad: fl
 
 
 @kernel
-def sunk(
-    geometry: Geometry, contacts: ContactSet, position: Vector, quaternion: Quaternion, twist: Twist, amount: float
-) -> float:
-    """Return how deep the contacts that carry sink on the screw of a twist before they are put back, metres."""
-    end, turned = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
-    back = (turned[0], -turned[1], -turned[2], -turned[3])
-    deepest = 0.0
-    for i in range(contacts.used[0]):
-        contact = contacts.rows[i]
-        if contacts.states[i].forces[0] > 0.0:
-            from_center = rotated(back, minus(row(geometry.points_world, contact.point), end))
-            from_box = minus(from_center, row(geometry.box_positions, contact.box))
-            along = contact.side * dot(box_axis(geometry, contact.box, contact.axis), from_box)
-            deepest = max(deepest, contact.gap - (along - geometry.half_sizes[contact.box, contact.axis]))
-    return deepest
-
-
-@kernel
 def first_contact(
     setting: Setting,
     placement: Placement,
@@ -137,8 +118,9 @@ def first_contact(
 ) -> tuple[float, int, int]:
     """Return (amount, point, box) of the first contact along a twist, but for what touches already.
 
-    Contacts that carry sink on a screw, by the square of its length, and are put back afterwards. Where a point is met
-    because they sank, not because it came nearer, the contact is passed over: whether it is reached shows at the end.
+    Contacts that stay on their faces stray on a screw, by the square of its length, and are put back afterwards. Where
+    a point is met because of that, not because it came nearer, it is passed over: whether it is reached shows at the
+    end.
     """
     end = twist.end
     touch_m = setting.tolerances.touch_m
@@ -150,7 +132,10 @@ def first_contact(
         )
         amount = distance / speed
     else:
-        near, near_depth = 0.0, SUNK * sunk(setting.geometry, contacts, position, quaternion, twist, end)
+        near, near_depth = (
+            0.0,
+            STRAYED * strayed(setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end),
+        )
         angle, point, box = math.inf, -1, -1
         for _ in range(len(setting.geometry.points_world)):
             angle, point, box = first_contact_screw(
@@ -167,7 +152,8 @@ def first_contact(
             )
             if point < 0 or placement.gaps[box, point] <= near:
                 break
-            reach = SUNK * sunk(setting.geometry, contacts, position, quaternion, twist, angle / rate)
+            met = angle / rate
+            reach = STRAYED * strayed(setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, met)
             if placement.gaps[box, point] > reach:
                 break
             near = reach
@@ -199,14 +185,14 @@ def constrain_to_face(geometry: Geometry, placement: Placement, point: int, box:
 def constrain_contacts(
     geometry: Geometry, placement: Placement, contacts: ContactSet, closed_m: float, constraints: Constraints
 ) -> None:
-    """Constrain the contacts that carry, and where they stick also in the face.
+    """Constrain the contacts that stay on their faces, and where they stick also in the face.
 
     Gaps above ``closed_m`` are kept: to close them could take work, or bring another point in.
     """
     constraints.scratch[0].used = 0
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
-        if contacts.states[i].forces[0] > 0.0:
+        if stays_on_face(contacts, i):
             at = geometry.half_sizes[contact.box, contact.axis]
             if contact.gap > closed_m:
                 at += contact.gap
@@ -354,6 +340,7 @@ def furthest_step(
         placement,
         contacts,
         position,
+        quaternion,
         twist.velocity,
         twist.spin,
         twist.end,

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
+from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled
 from cagepose.kernels.collision.geometry import Geometry, Placement, box_point, point_in_box, vector_in_box
 from cagepose.kernels.collision.screw import next_below
-from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.quasistatic.straying import STRAYED, strayed
 
 CLEAR = 2.0
 """In touch tolerances: how far beyond the edge a contact is let go, so that it does not touch the next face too."""
@@ -28,17 +30,21 @@ def first_edge_crossing(
     placement: Placement,
     contacts: ContactSet,
     center: Vector,
+    quaternion: Quaternion,
     velocity: Vector,
     spin: Vector,
     end: float,
     touch_m: float,
 ) -> float:
-    """Return the amount of a twist, up to ``end``, after which a contact that carries leaves its face; inf: none."""
+    """Return the amount of a twist, up to ``end``, after which a contact leaves the face that it stays on; inf: none.
+
+    Where it would only because contacts stray, by the square of the way, it is passed over: they are put back.
+    """
     first = math.inf
     rate = norm(spin)
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
-        if contacts.states[i].forces[0] <= 0.0:
+        if not stays_on_face(contacts, i):
             continue
         box = contact.box
         half_size = row(geometry.half_sizes, box)
@@ -60,5 +66,9 @@ def first_edge_crossing(
             lever = cross(across, axis)
             for side in (1.0, -1.0):
                 wave = (limit - side * point_box[k], -side * lever[k], side * across[k], side * rise[k])
-                first = min(first, next_below(wave, 0.0, end * rate) / rate)
+                crossing = next_below(wave, 0.0, end * rate) / rate
+                if crossing < first and crossing <= end:
+                    reach = STRAYED * strayed(geometry, contacts, center, quaternion, velocity, spin, crossing)
+                    if wave[0] > reach:
+                        first = crossing
     return first if first <= end else math.inf

@@ -59,10 +59,10 @@ def curvature_along(curvature: FloatArray, y: FloatArray) -> float:
 
 
 @kernel
-def keep_along_faces(contacts: ContactSet, stopped: PassiveSet, work: ImplicitStepWorkspace) -> float:
+def keep_along_faces(contacts: ContactSet, locked: PassiveSet, work: ImplicitStepWorkspace) -> float:
     """Replace what S has across the faces (and, where contacts stick, along them) by the greatest curvature along them.
 
-    Nothing moves there, nor where contacts without play stop it, but it could make the matrix look as if it were not
+    Nothing moves there, nor where contacts without play lock it, but it could make the matrix look as if it were not
     positive, or rounding of the forces as if it moved the object. Return the least rho that stands out from the
     rounding.
     """
@@ -73,8 +73,8 @@ def keep_along_faces(contacts: ContactSet, stopped: PassiveSet, work: ImplicitSt
         if state.forces[0] > 0.0:
             for which in range(3 if state.is_sticking else 1):
                 append_column(work.held, contacts.rows[i].columns[which], which, 0.0)
-    for place in range(stopped.used):
-        append_column(work.held, stopped.basis[place], place, 0.0)
+    for place in range(locked.used):
+        append_column(work.held, locked.basis[place], place, 0.0)
     add_across(work.curvature, work.held, confine(work.curvature, work.held))
     return least_rho
 
@@ -126,6 +126,8 @@ def implicit_step(
         return False
     for i in range(contacts.used[0]):
         state = contacts.states[i]
+        if state.is_locked:
+            continue
         for j in range(3):
             state.forces[j] = turned.states[i].forces[j]
         state.is_sticking = state.is_sticking and state.forces[0] > 0.0

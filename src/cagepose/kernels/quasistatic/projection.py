@@ -7,16 +7,17 @@ of steps.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear
 from cagepose.kernels.algebra.pose import Quaternion, rotated
-from cagepose.kernels.algebra.record import Rows, empty_rows
-from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, row, scaled
+from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, plus, row, scaled, transposed_times
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.contact.metric import (
     WRENCH,
     Body,
+    Frame,
     ScaledVector,
     frame_at,
     moved_along_twist,
@@ -28,6 +29,11 @@ from cagepose.kernels.native.kernel import kernel
 ROUNDS = 12
 ON_FACE = 4e-16
 """In sizes of the scene: a gap that is rounding."""
+
+
+DEPENDENT = 1e-5
+"""Constraints that depend on others, but for such a part of their wrench, follow from them: faces of a plate without
+play can be tilted by the root of rounding, and to make up for that would take long ways."""
 
 
 class PositionConstraint:
@@ -52,9 +58,22 @@ class PositionConstraint:
 
 
 class ProjectionWorkspace:
-    """How many constraints there are; one wrench, a scaled twist and the constraints' basis; a record."""
+    """How many constraints there are, and scratch; a record.
+
+    Attributes
+    ----------
+    used, n_stopped
+        How many constraints, and motions that contacts without play stop to second order.
+    stopped_forces, stopped_moments
+        Those motions y have s . y = 0 with these wrenches s, about the world's origin.
+    column, y, basis
+        One wrench, a scaled twist, and the constraints' basis.
+    """
 
     used: int
+    n_stopped: int
+    stopped_forces: Annotated[FloatArray, WRENCH, 3]
+    stopped_moments: Annotated[FloatArray, WRENCH, 3]
     column: ScaledVector
     y: ScaledVector
     basis: PassiveSet
@@ -95,6 +114,20 @@ def add_constraint(constraints: Constraints, point: int, box: int, axis: int, si
 
 
 @kernel
+def keep_stopped(stopped: PassiveSet, position: Vector, frame: Frame, constraints: Constraints) -> None:
+    """Let no projection move along what contacts without play stop: their gaps do not show it, to first order."""
+    work = constraints.scratch[0]
+    work.n_stopped = stopped.used
+    for place in range(stopped.used):
+        s, radii = stopped.basis[place], frame.radii
+        force = (s[0], s[1], s[2])
+        moment = transposed_times(frame.axes, (radii[0] * s[3], radii[1] * s[4], radii[2] * s[5]))
+        moment = plus(moment, cross(position, force))
+        for k in range(3):
+            work.stopped_forces[place, k], work.stopped_moments[place, k] = force[k], moment[k]
+
+
+@kernel
 def box_axis(geometry: Geometry, box: int, axis: int) -> Vector:
     """Return an axis of a box in the object's frame."""
     r = geometry.box_rotations
@@ -115,6 +148,13 @@ def projected(
         frame = frame_at(body, quaternion)
         back = (quaternion[0], -quaternion[1], -quaternion[2], -quaternion[3])
         clear(work.basis, WRENCH, 1.0)
+        work.basis.dependent = DEPENDENT
+        for i in range(work.n_stopped):
+            force = row(work.stopped_forces, i)
+            moment = minus(row(work.stopped_moments, i), cross(position, force))
+            write_scaled_wrench(force, moment, frame, work.column)
+            rows[work.basis.used].value = 0.0
+            append_column(work.basis, work.column, i, 0.0)
         worst = 0.0
         for i in range(work.used):
             constraint = rows[i]

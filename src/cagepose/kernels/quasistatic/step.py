@@ -15,7 +15,7 @@ from typing import NamedTuple
 from cagepose.kernels.algebra.pose import Quaternion, turned_by
 from cagepose.kernels.algebra.vector import Vector, minus, norm, vector_from
 from cagepose.kernels.collision.geometry import place_object
-from cagepose.kernels.contact.contact_set import ContactSet, find_contacts
+from cagepose.kernels.contact.contact_set import ContactSet, find_contacts, stays_on_face
 from cagepose.kernels.contact.curvature import write_curvature
 from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, HELD_WITHOUT_FRICTION, MOVES, UNSOLVED
 from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, write_load
@@ -34,7 +34,7 @@ from cagepose.kernels.quasistatic.along_twist import (
     straightened,
 )
 from cagepose.kernels.quasistatic.implicit_step import curvature_along, implicit_step, keep_along_faces
-from cagepose.kernels.quasistatic.projection import ON_FACE
+from cagepose.kernels.quasistatic.projection import ON_FACE, keep_stopped
 from cagepose.kernels.quasistatic.rest_on_the_way import first_rest, is_held_on_the_way
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
@@ -82,7 +82,7 @@ def carried_by(contacts: ContactSet) -> int:
     """Return the rule of a motion: FREE, SLIDE or PIVOT."""
     rule = FREE
     for i in range(contacts.used[0]):
-        if contacts.states[i].forces[0] > 0.0:
+        if stays_on_face(contacts, i):
             rule = max(rule, PIVOT if contacts.states[i].is_sticking else SLIDE)
     return rule
 
@@ -101,7 +101,7 @@ def next_twist(
     end = longest_step(velocity, spin, carries, turn_step_rad, setting.size_m)
     if end < math.inf:
         write_curvature(contacts, setting.load, quaternion, frame, scratch.stiff.curvature)
-        rho = max(keep_along_faces(contacts, scratch.solver.stopped, scratch.stiff), 1.0 / end)
+        rho = max(keep_along_faces(contacts, scratch.solver.locked, scratch.stiff), 1.0 / end)
         is_stiff = abs(curvature_along(scratch.stiff.curvature, y)) * end > STIFF
         if is_stiff and implicit_step(contacts, work.turned, setting.friction, rho, scratch.stiff, scratch.solver):
             velocity, spin = twist_of(scratch.stiff.delta, frame)
@@ -111,10 +111,10 @@ def next_twist(
 
 @kernel
 def gap_left(contacts: ContactSet) -> float:
-    """Return the greatest distance, to either side, of a contact that carries from its face."""
+    """Return the greatest distance, to either side, of a contact that stays on its face from it."""
     greatest = 0.0
     for i in range(contacts.used[0]):
-        if contacts.states[i].forces[0] > 0.0:
+        if stays_on_face(contacts, i):
             greatest = max(greatest, abs(contacts.rows[i].gap))
     return greatest
 
@@ -211,6 +211,7 @@ def next_step(
         frame = frame_at(setting.body, quaternion)
         solver.load_terms = write_load(setting.load, quaternion, frame, solver.load)
         code = onset(work.contacts, frame, setting.friction, solver) if fits else UNSOLVED
+        keep_stopped(solver.stopped, position, frame, work.path.constraints)
         is_rest = code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
         if not is_rest or n_refined == REFINEMENTS or gap_left(work.contacts) <= ON_FACE * setting.size_m:
             break

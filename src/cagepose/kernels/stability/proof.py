@@ -16,7 +16,6 @@ from cagepose.kernels.contact.edges import (
     EVERY,
     first_choice,
     has_one_choice,
-    keep_choice,
     next_choice,
     return_to_kept,
 )
@@ -29,7 +28,7 @@ from cagepose.kernels.contact.equilibrium import (
     equilibrium_with_faces,
 )
 from cagepose.kernels.contact.metric import WRENCH, Body, Frame, PhaseLoad, ScaledVector, frame_at, write_load
-from cagepose.kernels.contact.self_stress import find_stopped
+from cagepose.kernels.contact.self_stress import write_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.relaxation import N_COLUMNS
@@ -158,7 +157,7 @@ def prove(
     left = scratch.solver.residual
     clear(scratch.rest.ways, WRENCH, 1.0)
     if code == UNSOLVED:
-        find_held(contacts, at.statuses, friction, scratch.solver.stopped, scratch.rest, at.system)
+        find_held(contacts, at.statuses, friction, scratch.solver.locked, scratch.rest, at.system)
         find_shared(contacts, at.statuses, scratch.rest)
         return TOO_MANY_CHOICES, MARGINAL, 0
     one_choice = has_one_choice(contacts)
@@ -166,7 +165,7 @@ def prove(
     if not one_choice:
         return_to_kept(contacts)
         scratch.solver.residual = left
-        find_held(contacts, at.statuses, friction, scratch.solver.stopped, scratch.rest, at.system)
+        find_held(contacts, at.statuses, friction, scratch.solver.locked, scratch.rest, at.system)
     find_shared(contacts, at.statuses, scratch.rest)
     return proof, steady, scratch.rest.ways.used
 
@@ -184,14 +183,12 @@ def stability_of_rest(
     for _ in range(2):
         rest.ways.used = n_ways
         code = stability(
-            contacts, at.statuses, friction, solver.stopped, load, quaternion, frame, terms, size_m, rest, at.system
+            contacts, at.statuses, friction, solver.locked, load, quaternion, frame, terms, size_m, rest, at.system
         )
-        if code == STABLE_REST or solver.stopped.used > 0 or not has_one_choice(contacts):
+        if code == STABLE_REST or solver.locked.used > 0 or not has_one_choice(contacts):
             break
-        keep_choice(contacts)
-        find_stopped(contacts, frame, solver)
-        return_to_kept(contacts)
-    return code
+        write_locked(contacts, frame, solver)
+    return max(code, MARGINAL) if solver.is_chained else code
 
 
 @kernel

@@ -282,7 +282,7 @@ def find_cut(friction: float, work: Relaxation) -> bool:
 
 @kernel
 def keep_cut(work: Relaxation, system: System) -> bool:
-    """Note the twist found; False: there is no work."""
+    """Note the twist found; False: there are too many."""
     if work.n_cuts == CUT_LIMIT:
         return False
     passive, cut = work.forces, work.cuts[work.n_cuts]

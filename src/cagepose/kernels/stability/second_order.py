@@ -91,19 +91,19 @@ def find_held(
     contacts: ContactSet,
     statuses: Rows[ContactStatus],
     friction: float,
-    stopped: PassiveSet,
+    locked: PassiveSet,
     work: StabilityWorkspace,
     system: System,
 ) -> bool:
-    """Find what the contacts hold, with what they stop to second order; return whether one is at the limit of friction.
+    """Find what the contacts hold, with what those without play lock; return whether one is at the limit of friction.
 
     A contact without force holds too if another balance loads it: then it cannot open without work. That is so where
     -a_j lies in the cone of the others, seen outside the span of those that carry.
     """
     at_limit = False
     clear(work.held, WRENCH, 1.0)
-    for place in range(stopped.used):
-        extend(work.held, stopped.basis[place], IN_SPAN)
+    for place in range(locked.used):
+        extend(work.held, locked.basis[place], IN_SPAN)
     n = contacts.used[0]
     for i in range(n):
         state, status = contacts.states[i], statuses[i]
@@ -236,7 +236,7 @@ def stability(
     contacts: ContactSet,
     statuses: Rows[ContactStatus],
     friction: float,
-    stopped: PassiveSet,
+    locked: PassiveSet,
     load: PhaseLoad,
     quaternion: Quaternion,
     frame: Frame,
@@ -251,7 +251,7 @@ def stability(
     On the cone of twists that close no contact, the least curvature is an eigenvalue over the span of one of its faces,
     and its eigenvector lies in that face. So all sets of contacts that may open are held in turn.
     """
-    at_limit = find_held(contacts, statuses, friction, stopped, work, system)
+    at_limit = find_held(contacts, statuses, friction, locked, work, system)
     n_held = work.held.used
     n_one_sided = list_one_sided(contacts, statuses, work, system)
     code = MARGINAL if at_limit or n_one_sided < 0 else STABLE_REST

@@ -1,0 +1,38 @@
+"""How far contacts stray from their faces on a screw: it leaves curved constraints by the square of its length."""
+
+from __future__ import annotations
+
+from cagepose.kernels.algebra.pose import Quaternion, rotated
+from cagepose.kernels.algebra.vector import Vector, dot, minus, row
+from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
+from cagepose.kernels.contact.metric import moved_along_twist
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.quasistatic.projection import box_axis
+
+STRAYED = 2.0
+"""Times the way that contacts stray: a point or an edge that was nearer than this is met because they do."""
+
+
+@kernel
+def strayed(
+    geometry: Geometry,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    velocity: Vector,
+    spin: Vector,
+    amount: float,
+) -> float:
+    """Return how far the contacts that stay on their faces leave them on a screw, until they are put back, metres."""
+    end, turned = moved_along_twist(position, quaternion, velocity, spin, amount)
+    back = (turned[0], -turned[1], -turned[2], -turned[3])
+    farthest = 0.0
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        if stays_on_face(contacts, i):
+            from_center = rotated(back, minus(row(geometry.points_world, contact.point), end))
+            from_box = minus(from_center, row(geometry.box_positions, contact.box))
+            along = contact.side * dot(box_axis(geometry, contact.box, contact.axis), from_box)
+            farthest = max(farthest, abs(along - geometry.half_sizes[contact.box, contact.axis] - contact.gap))
+    return farthest
