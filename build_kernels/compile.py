@@ -36,6 +36,17 @@ def compile_kernel(function: Callable[..., Any]) -> Any:
     return numba.njit(_nrt=False, **options)(function)
 
 
+_is_stopped = types.ExternalFunction("cagepose_is_stopped", types.int32())
+"""In ``interrupt.c``."""
+
+
+@compile_kernel
+def heed_interrupt() -> None:
+    """End the call of a kernel if it is to end: each function that calls another hands its exception on."""
+    if _is_stopped() != 0:
+        raise InterruptedError
+
+
 class Module(NamedTuple):
     """LLVM's module of all entries, not yet optimised, and their signatures."""
 

@@ -146,14 +146,14 @@ def lies_in_cone(
 
     With -1 no free twist opens it; with +1 no free twist that the others allow closes it.
     """
+    if not write_outside(work.held, contacts.rows[i].columns[0], IN_SPAN, system.right_side):
+        return True
     n_others = 0
     for k in range(contacts.used[0]):
         may_open = contacts.states[k].chosen and not statuses[k].is_equality
         if k != i and may_open and not statuses[k].is_implied:
             write_outside(work.held, contacts.rows[k].columns[0], IN_SPAN, system.columns[n_others])
             n_others += 1
-    if not write_outside(work.held, contacts.rows[i].columns[0], IN_SPAN, system.right_side):
-        return True
     for k in range(6):
         system.right_side[k] *= sign
     size = length(system.right_side, 6)
@@ -187,23 +187,44 @@ def is_same_face(one: ContactRow, other: ContactRow) -> bool:
 
 
 @kernel
-def find_shared(contacts: ContactSet, statuses: Rows[ContactStatus], work: StabilityWorkspace) -> None:
-    """Mark the contacts whose normal force could be another: their wrench lies in the span of the rest."""
-    rows, n, span = contacts.rows, contacts.used[0], work.scratch
+def extend_by_equalities(contacts: ContactSet, statuses: Rows[ContactStatus], without: int, span: PassiveSet) -> None:
+    """Write the span of what sticking contacts carry along their faces and of the normals that may carry, without that
+    of one face (-1: of all); labels say which contact's normal each basis vector is, -1: none.
+    """
+    rows = contacts.rows
     clear(span, WRENCH, 1.0)
-    for i in range(n):
+    for i in range(contacts.used[0]):
         if contacts.states[i].is_sticking:
             extend(span, rows[i].columns[1], IN_SPAN)
             extend(span, rows[i].columns[2], IN_SPAN)
-    n_tangential = span.used
+    for place in range(span.used):
+        span.labels[place] = -1
+    for i in range(contacts.used[0]):
+        if statuses[i].is_equality and not (without >= 0 and is_same_face(rows[i], rows[without])):
+            span.labels[span.used] = i
+            extend(span, rows[i].columns[0], IN_SPAN)
+
+
+@kernel
+def find_shared(contacts: ContactSet, statuses: Rows[ContactStatus], work: StabilityWorkspace) -> None:
+    """Mark the contacts whose normal force could be another: their wrench lies in the span of the rest.
+
+    One that adds nothing to the span of all lies in the span of those that do; only for these the rest has to be asked.
+    """
+    rows, n, whole = contacts.rows, contacts.used[0], work.scratch
+    extend_by_equalities(contacts, statuses, -1, whole)
     for i in range(n):
         statuses[i].is_shared = False
         if not statuses[i].is_equality:
             continue
-        span.used = n_tangential
-        for k in range(n):
-            if statuses[k].is_equality and not is_same_face(rows[k], rows[i]):
-                extend(span, rows[k].columns[0], IN_SPAN)
+        adds = False
+        for place in range(whole.used):
+            k = whole.labels[place]
+            adds = adds or (k >= 0 and is_same_face(rows[k], rows[i]))
+        span = whole
+        if adds:
+            span = work.held
+            extend_by_equalities(contacts, statuses, i, span)
         statuses[i].is_shared = not write_outside(span, rows[i].columns[0], IN_SPAN, work.rest)
 
 
