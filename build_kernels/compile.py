@@ -21,6 +21,7 @@ from numba.core import codegen
 from numba.extending import intrinsic
 from numba.np.numpy_support import from_dtype
 
+from cagepose.kernels.native import interrupt, kernel
 from cagepose.kernels.native.slots import Slots
 
 Signature = tuple[str, str]
@@ -45,6 +46,11 @@ def heed_interrupt() -> None:
     """End the call of a kernel if it is to end: each function that calls another hands its exception on."""
     if _is_stopped() != 0:
         raise InterruptedError
+
+
+def take_over() -> None:
+    """Put what the build makes in the place of what kernels import, before the first of them is imported."""
+    kernel.compiler, interrupt.heed_interrupt = compile_kernel, heed_interrupt
 
 
 class Module(NamedTuple):
