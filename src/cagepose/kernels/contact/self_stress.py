@@ -16,7 +16,7 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.span import extend, write_complement, write_outside, write_reduced
 from cagepose.kernels.algebra.vector import cross, vector_from
 from cagepose.kernels.contact.cone import N_ROWS, clear_cone, cone_residual
-from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.curvature import add_face_curvature, clear_matrix
 from cagepose.kernels.contact.edges import first_choice, last_of_group
 from cagepose.kernels.contact.metric import WRENCH, Frame, write_scaled_wrench
@@ -43,6 +43,16 @@ def self_stress(contacts: ContactSet, friction: float, stress: SelfStressWorkspa
 
 
 @kernel
+def is_parallel(one: ContactRow, other: ContactRow) -> bool:
+    """Whether two contacts have the same normal, to the last digit."""
+    return bool(
+        one.directions[0, 0] == other.directions[0, 0]
+        and one.directions[0, 1] == other.directions[0, 1]
+        and one.directions[0, 2] == other.directions[0, 2]
+    )
+
+
+@kernel
 def choose_opposed(contacts: ContactSet, twist: FloatArray, load_terms: float) -> bool:
     """Choose the contacts on faces, not on edges, that a scaled twist does not open and that another one has a part
     against; False: there are none.
@@ -58,6 +68,9 @@ def choose_opposed(contacts: ContactSet, twist: FloatArray, load_terms: float) -
         is_still = inner(rows[i].columns[0], twist, WRENCH) >= least
         states[i].chosen = states[i].chosen and is_still and last_of_group(contacts, i) == i
     for i in range(contacts.used[0]):
+        if i > 0 and states[i].chosen and states[i - 1].chosen and is_parallel(rows[i], rows[i - 1]):
+            states[i].is_rejected = states[i - 1].is_rejected  # of thousands on one face, one is asked
+            continue
         states[i].is_rejected = True
         for j in range(contacts.used[0]):
             if states[i].chosen and states[j].chosen and inner(rows[i].directions[0], rows[j].directions[0], 3) < 0.0:
