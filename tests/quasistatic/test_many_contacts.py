@@ -1,4 +1,4 @@
-"""A plate on thousands of points: what is proven of it takes time in proportion to them, not to their square: some 15 ms."""
+"""A plate on thousands of points: what is proven of it takes time in proportion to them, not to their square."""
 
 from __future__ import annotations
 
