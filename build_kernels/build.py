@@ -6,17 +6,17 @@ import os
 from pathlib import Path
 
 from cagepose.errors import KernelsError
-from cagepose.kernels.native import kernel, library
+from cagepose.kernels.native import library
 
 
 def build(target: Path = library.LIBRARY) -> Path:
     """Compile all kernels and write the library; return where."""
     # Numba shall neither optimise what LLVM optimises as a whole later, nor call Intel's library.
     os.environ.update(NUMBA_OPT="0", NUMBA_DISABLE_INTEL_SVML="1")
-    from build_kernels.compile import compile_kernel, module_of
+    from build_kernels.compile import module_of, take_over
     from build_kernels.link import link
 
-    kernel.compiler = compile_kernel
+    take_over()
     from build_kernels.entries import entries  # the first import of a kernel
 
     link(module_of(entries()), library.sources_hash(), target)

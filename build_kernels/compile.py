@@ -21,6 +21,7 @@ from numba.core import codegen
 from numba.extending import intrinsic
 from numba.np.numpy_support import from_dtype
 
+from cagepose.kernels.native import interrupt, kernel
 from cagepose.kernels.native.slots import Slots
 
 Signature = tuple[str, str]
@@ -34,6 +35,22 @@ def compile_kernel(function: Callable[..., Any]) -> Any:
     """
     options = {"nogil": True, "error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
     return numba.njit(_nrt=False, **options)(function)
+
+
+_is_stopped = types.ExternalFunction("cagepose_is_stopped", types.int32())
+"""In ``interrupt.c``."""
+
+
+@compile_kernel
+def heed_interrupt() -> None:
+    """End the call of a kernel if it is to end: each function that calls another hands its exception on."""
+    if _is_stopped() != 0:
+        raise InterruptedError
+
+
+def take_over() -> None:
+    """Put what the build makes in the place of what kernels import, before the first of them is imported."""
+    kernel.compiler, interrupt.heed_interrupt = compile_kernel, heed_interrupt
 
 
 class Module(NamedTuple):

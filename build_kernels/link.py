@@ -45,7 +45,7 @@ def link(module: Module, sources_hash: str, target: Path) -> None:
             "-fPIC",
             "-O1",
             f"-I{folder}",
-            str(HERE / "best_level.c"),
+            *map(str, sorted(HERE.glob("*.c"))),
             *objects,
         ]
         subprocess.run([*command, "-lm", "-o", str(made)], check=True)

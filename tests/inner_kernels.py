@@ -72,9 +72,9 @@ def _build(target: Path, level: str) -> None:
     """Build as `build_kernels.build.build` does, other entries and one level of processors."""
     os.environ.update(NUMBA_OPT="0", NUMBA_DISABLE_INTEL_SVML="1")
     from build_kernels import link
-    from build_kernels.compile import compile_kernel, module_of
+    from build_kernels.compile import module_of, take_over
 
-    kernel.compiler = compile_kernel
+    take_over()
     link.LEVELS = (level,)
     link.link(module_of(entries()), sources_hash(), target)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -270,3 +271,20 @@ def test_names_cannot_break_the_one_line_of_a_problem(
     assert answer.err.count("\n") == 1
     assert "\x1b" not in answer.err
     assert "give a name of visible characters" in answer.err
+
+
+def test_hundreds_of_points_at_one_place_or_with_a_size_that_is_mistyped_are_told_at_once(
+    command: Callable[..., Any], in_folder: Path, sample_text: str
+) -> None:
+    """Both have been quartic in the number of points: 300 took two minutes."""
+    rows = "".join(f"    C{index}: [0, 0, -9]\n" for index in range(5, 505))
+    (in_folder / "scene.yaml").write_text(
+        sample_text.replace("loads:", rows + "loads:").replace("  C5: [0, 0, -9]", "  C5: [0, 0, -8]"), encoding="utf-8"
+    )
+    began = time.perf_counter()
+    assert command("check", "scene.yaml").err.count("so they are one point") == 498
+    assert (
+        command("check", "scene.yaml", "--set", "object.boxes[0].size[0]=1e12").err.count("so they are one point")
+        == 503
+    )
+    assert time.perf_counter() - began < 5.0

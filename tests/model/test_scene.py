@@ -36,6 +36,29 @@ def test_all_problems_are_found_at_once():
     assert places == ["loads[1].name", "friction", "object.boxes[1].size[2]", "cage.points.C2", "cage.points.C3"]
 
 
+def test_points_at_one_place_are_each_told_once():
+    points = [(5, 0, 0)] * 300 + [(0, 5, 0)] * 2
+    found = problems_of(lambda: Scene(Object([Box((2, 2, 2))]), Cage(points), [DOWN]))
+    assert len(found) == 299 + 1
+    assert found[0] == "cage.points.C2: lies 0 mm from C1, so they are one point; remove or move one"
+    assert {problem.split(" ")[0] for problem in found} == {f"cage.points.C{n}:" for n in [*range(2, 301), 302]}
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_two_points_within_the_tolerance_of_each_other_are_one_in_whatever_order(seed):
+    """Clusters of a tolerance's width: who stays is nobody's business, but those who stay are all apart."""
+    rng = np.random.default_rng(seed)
+    points = rng.integers(-3, 3, (40, 3)) + rng.uniform(-0.6, 0.6, (40, 3)) * 1e-4 * 8
+    tolerances = Tolerances(touch=1e-4)
+    make = lambda kept: Scene(Object([Box((9, 9, 1), Pose((0, 0, 40)))]), Cage(kept), [DOWN], tolerances=tolerances)  # noqa: E731
+    told = [
+        int(problem.split(":")[0].removeprefix("cage.points.C")) - 1 for problem in problems_of(lambda: make(points))
+    ]
+    assert len(set(told)) == len(told)
+    apart = make(np.delete(points, told, axis=0))
+    assert len(apart.cage.names) + len(told) == 40
+
+
 def test_a_point_on_the_surface_or_within_the_tolerance_may_start():
     for depth in (0.0, 1e-9, -1e-9):
         Scene(Object([Box((2, 2, 2))]), Cage([*FAR, (1.0 - depth, 0, 0)]), [DOWN])

@@ -6,11 +6,12 @@ import os
 from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 from pydantic import ValidationError
 
-from cagepose.errors import FileProblem, Problem, SceneError, SceneFileError
+from cagepose.errors import FileProblem, Key, Problem, SceneError, SceneFileError
 from cagepose.files.build import build_scene
 from cagepose.files.key_path import Path as KeyPath
 from cagepose.files.key_path import parse_key_path, resolved, set_value, value_at
@@ -230,7 +231,7 @@ class _Places:
     def place(self, finding: Finding) -> FileProblem:
         path, message = finding.problem.path, finding.problem.message
         place = self._in_data(path)
-        if finding not in self.unset.findings:
+        if finding not in self._found_unset:
             source = self._setting(place)
             if source is not None:
                 return FileProblem(path, message, source)
@@ -242,19 +243,25 @@ class _Places:
 
     def _in_data(self, path: KeyPath) -> KeyPath:
         """Point names as indices, where the points stand in rows."""
-        if path[:2] != POINTS_KEY[:2] or len(path) < 3 or not isinstance(path[2], str) or path == POINTS_KEY:
+        if path[:2] != POINTS_KEY[:2] or len(path) < 3 or path == POINTS_KEY or path[2] not in self._rows:
             return path
-        table = self.attempt.table
-        if table is not None:
-            names = list(table.names or [f"C{index + 1}" for index in range(len(table.points))])
-        elif isinstance(value_at(self.yaml.data, path[:2]), list):
-            names = [f"C{index + 1}" for index in range(len(value_at(self.yaml.data, path[:2])))]
+        return (*path[:2], self._rows[path[2]], *path[3:])
+
+    @cached_property
+    def _rows(self) -> dict[Key, int]:
+        """The row of each point, by its name; of one name the last counts."""
+        table, points = self.attempt.table, value_at(self.yaml.data, POINTS_KEY[:2])
+        if table is not None and table.names is not None:
+            names = table.names
         else:
-            return path
-        if path[2] not in names:
-            return path
-        last = len(names) - 1 - names[::-1].index(path[2])
-        return (*path[:2], last, *path[3:])
+            rows = points if table is None else table.points
+            names = tuple(f"C{index + 1}" for index in range(len(rows) if isinstance(rows, list) else 0))
+        return {name: row for row, name in enumerate(names)}
+
+    @cached_property
+    def _found_unset(self) -> frozenset[Finding]:
+        """What is wrong without any ``--set``; a set, as thousands may be asked for."""
+        return frozenset(self.unset.findings)
 
     def _setting(self, place: KeyPath) -> str | None:
         """The ``--set`` argument to blame for a problem that is not there without any; None: it is the file's."""

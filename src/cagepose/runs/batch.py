@@ -7,6 +7,7 @@ from functools import partial
 from typing import cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.contact.metric import PhaseLoad
@@ -40,6 +41,7 @@ class Batch:
         self.endings = empty_endings(self.n_runs, len(scene.loads), len(scene.cage.names))
         self._part, self._cases = Slots(part_of(scene)), Slots(_varied(scene, method.friction(scene), columns))
         self._endings = Slots(self.endings)
+        self._is_stopped = np.zeros(1, np.int64)
         self._idle = list[Callable[[int, int], None]]()
 
     def run_piece(self, first: int, last: int) -> int:
@@ -53,15 +55,24 @@ class Batch:
             self._idle.append(run)
         return last - first
 
+    def stop(self) -> None:
+        """Let all pieces that run now end, with KeyboardInterrupt."""
+        self._is_stopped[0] = 1
+
     def _workspace(self) -> Callable[[int, int], None]:
         """Return a call of the kernel with a workspace for one thread."""
         rules = self._method.rules(self._scene)
         work = Slots(self._method.workspace(self._scene.geometry, rules.step_limit))
-        return partial(_run, self._method, [self._part, self._cases, FARTHEST_START, Slots(rules), work, self._endings])
+        return partial(
+            _run,
+            self._method,
+            self._is_stopped,
+            [self._part, self._cases, FARTHEST_START, Slots(rules), work, self._endings],
+        )
 
 
-def _run(method: Method, arguments: list[object], first: int, last: int) -> None:
-    method.run_cases(first, last, *arguments)
+def _run(method: Method, is_stopped: NDArray[np.int64], arguments: list[object], first: int, last: int) -> None:
+    method.run_cases.until(is_stopped, first, last, *arguments)
 
 
 def _varied(scene: Scene, friction: float, columns: dict[str, FloatArray]) -> Cases:

@@ -25,7 +25,7 @@ from cagepose.runs.methods import chosen_method
 from cagepose.runs.variation import Variation
 
 LONGEST_PIECE = 256
-"""Runs of one call of a kernel: some 10 ms of work, so that progress is seen and Ctrl-C is heard."""
+"""Runs of one call of a kernel: some 10 ms of work, so that progress is seen."""
 PIECES_FOR_A_THREAD = 8
 """At least, if there are so many runs: so that all threads end at about the same time."""
 
@@ -107,6 +107,8 @@ def run_many(
     ------
     SceneError
         An unknown method, no scene, a variation of several scenes, or one that no scene could have.
+    KeyboardInterrupt
+        Ctrl-C was pressed; no thread goes on.
     """
     all_scenes = [scenes] if isinstance(scenes, Scene) else list(scenes)
     if not all_scenes:
@@ -139,6 +141,10 @@ def _run_all(batches: Sequence[Batch], n_threads: int, progress: Callable[[float
             n_done += piece.result()
             if progress is not None:
                 progress(n_done / n_runs)
+    except BaseException:  # Ctrl-C is heard here, not in the threads
+        for batch in batches:
+            batch.stop()
+        raise
     finally:
         executor.shutdown(cancel_futures=True)
 

@@ -44,7 +44,11 @@ def run_with(scene: Scene, method: Method, rules: Any) -> Run:
     part, cases = prepared(scene, friction)
     work = _workspace(scene, method, rules.step_limit)
     began = time.perf_counter()
-    method.run(part, cases, rules, work.work, work.outcome_slots)
+    try:
+        method.run(part, cases, rules, work.work, work.outcome_slots)
+    except KeyboardInterrupt:
+        _WORKSPACES.by_size.clear()  # half written
+        raise
     solve_s = time.perf_counter() - began
     return Solution(scene, method, rules, friction, written(work.outcome)).run(solve_s)
 

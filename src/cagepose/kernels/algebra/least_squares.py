@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray
+from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import kernel
 
 MOST_ROWS = 7
@@ -322,6 +323,7 @@ def nonnegative_least_squares(system: System, n_columns: int, passive: PassiveSe
         Where to start from, and the solution: `clear` it for a cold start; columns from an earlier call with
         the same ``columns`` and another ``b`` are a warm one.
     """
+    heed_interrupt()
     columns, b, rejected = system
     for k in range(passive.used):  # a warm start is any set of columns; from zero, `settle` finds which may stay
         passive.x[k] = 0.0

@@ -27,6 +27,7 @@ from cagepose.kernels.algebra.least_squares import (
     settle,
 )
 from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import entry, kernel
 
 N_UNKNOWNS = 6
@@ -141,6 +142,7 @@ def solve_program(rows: FloatArray, bounds: FloatArray, program: Program) -> int
     int
         OPTIMAL, UNBOUNDED, INFEASIBLE, or FAILED: too many steps, as rounding turns them in a circle.
     """
+    heed_interrupt()
     passive, x = program.passive, program.x
     start_from_last(rows, bounds, program)
     outcome = OPTIMAL

@@ -9,6 +9,7 @@ import numpy as np
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Matrix, Vector, matrix, minus, plus, row, times, transposed_times
+from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import entry, kernel
 
 
@@ -90,6 +91,7 @@ def box_gap(point_box: Vector, half_size: Vector) -> float:
 @entry
 def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, placement: Placement) -> None:
     """Fill ``placement`` for the object at the given pose."""
+    heed_interrupt()
     rotation = matrix_from_quaternion(quaternion)
     n_points = len(geometry.points_world)
     points, depths = placement.points_object, placement.depths

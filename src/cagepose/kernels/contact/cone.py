@@ -27,6 +27,7 @@ from cagepose.kernels.algebra.least_squares import (
 from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.metric import ScaledVector
+from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import kernel
 
 BALANCED = 1e-11
@@ -208,6 +209,7 @@ def cone_residual(contacts: ContactSet, friction: float, b: FloatArray, cone: Co
         Zero, to rounding: the forces balance the load. Else the residual in ``cone.passive`` separates the load from
         all that the contacts can carry.
     """
+    heed_interrupt()
     passive = cone.passive
     n_generators = renumber_generators(contacts, cone)
     while 0 <= n_generators < GENERATOR_LIMIT:

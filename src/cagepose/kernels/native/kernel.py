@@ -12,7 +12,11 @@ from ctypes import create_string_buffer
 from functools import cached_property, update_wrapper
 from typing import Any, Generic, TypeVar
 
-from cagepose.kernels.native.library import Library, kernel_library
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.kernels.native.interrupt import is_heard_here
+from cagepose.kernels.native.library import STOPPED, Library, Machine, kernel_library
 from cagepose.kernels.native.slots import Slots
 
 F = TypeVar("F", bound=Callable[..., object])
@@ -38,12 +42,26 @@ class Entry(Generic[R]):
         """Where its machine code is; None: it is plain Python."""
 
     @cached_property
-    def _native(self) -> tuple[Callable[..., int], str, struct.Struct]:
+    def _native(self) -> tuple[Machine, str, struct.Struct]:
         assert self.library is not None
         takes, gives = self.library.signatures[self.name]
         return self.library.function(self.name), takes, struct.Struct("=" + gives)
 
     def __call__(self, *arguments: Any) -> R:
+        return self.until(None, *arguments)
+
+    def until(self, stop: NDArray[np.int64] | None, *arguments: Any) -> R:
+        """Call the kernel, from any thread, until it ends or ``stop``, (1,), is not zero.
+
+        Without ``stop`` a call from the main thread ends with Ctrl-C.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            It was stopped. What it was to fill is half filled.
+        TypeError
+            Arguments that it does not take.
+        """
         if self.library is None:
             return self.python(*[part.value if type(part) is Slots else part for part in arguments])
         function, takes, gives = self._native
@@ -53,7 +71,15 @@ class Entry(Generic[R]):
             raise TypeError(f"the kernel {self.name} takes {takes}, and was given {kinds}")
         packed = b"".join([part.packed for part in taken])
         memory = create_string_buffer(packed, len(packed) + gives.size)
-        if function(memory, memory):
+        if stop is not None:
+            status = self.library.call_until(stop.ctypes.data, function, memory)
+        elif is_heard_here():
+            status = self.library.call_until_interrupt(function, memory)
+        else:
+            status = function(memory, memory)
+        if status == STOPPED:
+            raise KeyboardInterrupt
+        if status:
             raise RuntimeError(f"the kernel {self.name} failed: it raised an exception")
         found = gives.unpack_from(memory, len(packed))
         return found[0] if len(found) == 1 else found or None  # type: ignore[return-value]

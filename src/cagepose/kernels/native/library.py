@@ -25,6 +25,10 @@ PLAIN_PYTHON = "python"
 KERNELS = Path(__file__).resolve().parent.parent
 FILE_NAME = {"win32": "kernels.dll", "darwin": "kernels.dylib"}.get(sys.platform, "kernels.so")
 LIBRARY = Path(__file__).resolve().parent / FILE_NAME
+Machine = Callable[..., int]
+"""Machine code of an entry: ``int32_t name(int64_t *slots, double *the_same)``."""
+STOPPED = -130
+"""Status of a call that was stopped, see ``build_kernels/interrupt.c``."""
 REMEDY = f"build it with `make setup` (`pip install` does too), or set {VARIABLE}={PLAIN_PYTHON} for slow plain Python"
 
 
@@ -37,6 +41,9 @@ class Library:
         For each entry what it takes, as `Slots.kinds`, and what it gives, as letters of `struct`.
     level
         Whose machine code is used.
+    call_until, call_until_interrupt
+        Call a function of `function` until a number in memory is not zero, or until Ctrl-C is pressed:
+        ``(address, function, slots)`` and ``(function, slots)``; either gives its status, or STOPPED.
 
     Raises
     ------
@@ -69,10 +76,16 @@ class Library:
                 f"{VARIABLE}={level} is not for this processor; choose {PLAIN_PYTHON} or one of {', '.join(can_run)}"
             )
         self.level = level or can_run[-1]
+        self.call_until, self.call_until_interrupt = (
+            self._library.cagepose_call_until,
+            self._library.cagepose_call_until_interrupt,
+        )
+        self.call_until.argtypes = [ctypes.c_void_p] * 3
+        self.call_until_interrupt.argtypes = [ctypes.c_void_p] * 2
 
-    def function(self, name: str) -> Callable[..., int]:
-        """Return the machine code of an entry: ``int32_t name(int64_t *slots, double *the_same)``."""
-        found: Callable[..., int] = self._library[f"{name}.{self.level}"]
+    def function(self, name: str) -> Machine:
+        """Return the machine code of an entry."""
+        found: Machine = self._library[f"{name}.{self.level}"]
         return found
 
 

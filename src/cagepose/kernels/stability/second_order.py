@@ -34,6 +34,11 @@ IN_SPAN = 1e-9
 """A wrench whose part outside a span is smaller than this fraction of it lies in it."""
 FLAT = 1e-9
 """In greatest curvatures (or loads for each size of the scene): a smaller one is rounding."""
+SEPARATES, OPENS = 1e-11, 1e-6
+"""In lengths of wrench and twist: a twist that closes every contact by less than the one opens those that it opens by
+more than the other, and no forces on the rest stand against that but such of a hundred thousand times their size."""
+FEW = 32
+"""Contacts that are asked first whether another one lies in their cone."""
 ONE_SIDED_LIMIT = 10
 """Contacts that may open, of which all sets are asked for; with more, a rest is called marginal at best."""
 
@@ -49,11 +54,14 @@ class ContactStatus:
         Whether the others that may open keep it from closing.
     is_shared
         Whether its normal force could be another.
+    opens
+        Whether a free twist is known that opens it and closes no other.
     """
 
     is_equality: bool
     is_implied: bool
     is_shared: bool
+    opens: bool
 
 
 class StabilityWorkspace:
@@ -65,6 +73,8 @@ class StabilityWorkspace:
         Basis of what the carrying contacts hold, and then of all; scaled twists that are free, rows.
     one_sided
         Contacts that may open and that no others make superfluous.
+    few, n_few
+        Contacts in whose cone others were found to lie, and how many.
     rest
         Memory for one vector.
     curvature, reduced, vectors
@@ -78,6 +88,8 @@ class StabilityWorkspace:
     held: PassiveSet
     free: Annotated[FloatArray, 6, 6]
     one_sided: Annotated[IntArray, ONE_SIDED_LIMIT]
+    few: Annotated[IntArray, FEW]
+    n_few: int
     rest: ScaledVector
     curvature: Annotated[FloatArray, 6, 6]
     reduced: Annotated[FloatArray, 6, 6]
@@ -109,7 +121,7 @@ def find_held(
         state, status = contacts.states[i], statuses[i]
         carried, one, two = state.forces
         status.is_equality = state.chosen and carried > 0.0
-        status.is_implied = state.is_sticking = False
+        status.is_implied = status.opens = state.is_sticking = False
         if status.is_equality:
             extend(work.held, contacts.rows[i].columns[0], IN_SPAN)
             if friction > 0.0:
@@ -124,12 +136,37 @@ def find_held(
     while found:
         found = False
         for i in range(n):
-            may_open = contacts.states[i].chosen and not statuses[i].is_equality
-            if may_open and lies_in_cone(contacts, statuses, i, -1.0, work, system):
+            if statuses[i].opens or not may_open(contacts, statuses, i):
+                continue
+            if lies_in_cone(contacts, statuses, i, -1.0, work, system):
                 statuses[i].is_equality = True
                 extend(work.held, contacts.rows[i].columns[0], IN_SPAN)
                 found = True
+            else:
+                note_opened(contacts, statuses, work.scratch.residual)
     return at_limit
+
+
+@kernel
+def may_open(contacts: ContactSet, statuses: Rows[ContactStatus], i: int) -> bool:
+    """Whether a contact is chosen and no balance is known that loads it."""
+    return bool(contacts.states[i].chosen and not statuses[i].is_equality)
+
+
+@kernel
+def note_opened(contacts: ContactSet, statuses: Rows[ContactStatus], twist: FloatArray) -> None:
+    """Mark all contacts that a twist opens, if it closes none: none of them is in any balance, so that n contacts are
+    not n problems of n columns.
+    """
+    size = length(twist, WRENCH)
+    for i in range(contacts.used[0]):
+        column = contacts.rows[i].columns[0]
+        if may_open(contacts, statuses, i) and inner(column, twist, 6) > SEPARATES * size * length(column, 6):
+            return
+    for i in range(contacts.used[0]):
+        column = contacts.rows[i].columns[0]
+        if inner(column, twist, 6) < -OPENS * size * length(column, 6):
+            statuses[i].opens = True
 
 
 @kernel
@@ -146,14 +183,13 @@ def lies_in_cone(
 
     With -1 no free twist opens it; with +1 no free twist that the others allow closes it.
     """
-    n_others = 0
-    for k in range(contacts.used[0]):
-        may_open = contacts.states[k].chosen and not statuses[k].is_equality
-        if k != i and may_open and not statuses[k].is_implied:
-            write_outside(work.held, contacts.rows[k].columns[0], IN_SPAN, system.columns[n_others])
-            n_others += 1
     if not write_outside(work.held, contacts.rows[i].columns[0], IN_SPAN, system.right_side):
         return True
+    n_others = 0
+    for k in range(contacts.used[0]):
+        if k != i and may_open(contacts, statuses, k) and not statuses[k].is_implied:
+            write_outside(work.held, contacts.rows[k].columns[0], IN_SPAN, system.columns[n_others])
+            n_others += 1
     for k in range(6):
         system.right_side[k] *= sign
     size = length(system.right_side, 6)
@@ -162,15 +198,62 @@ def lies_in_cone(
 
 
 @kernel
+def lies_in_cone_of_few(
+    contacts: ContactSet, statuses: Rows[ContactStatus], i: int, work: StabilityWorkspace, system: System
+) -> bool:
+    """Whether a contact's wrench lies in the cone of few others; False: it is not known.
+
+    What is outside of their cone points to the contact that widens it most, which joins them: most of thousands of
+    contacts are then told by the few at the outline.
+    """
+    if not write_outside(work.held, contacts.rows[i].columns[0], IN_SPAN, system.right_side):
+        return True
+    size = length(system.right_side, 6)
+    for _ in range(FEW):
+        n_others, vacant = 0, work.n_few
+        for place in range(work.n_few):
+            k = work.few[place]
+            if statuses[k].is_implied:
+                vacant = place
+            elif k != i:
+                write_outside(work.held, contacts.rows[k].columns[0], IN_SPAN, system.columns[n_others])
+                n_others += 1
+        clear(work.scratch, WRENCH, size)
+        if nonnegative_least_squares(system, n_others, work.scratch) <= IN_SPAN * size:
+            return True
+        widest = farthest_along(contacts, statuses, i, work.scratch.residual)
+        if widest < 0 or vacant == FEW:
+            return False
+        work.few[vacant] = widest
+        work.n_few = max(work.n_few, vacant + 1)
+    return False
+
+
+@kernel
+def farthest_along(contacts: ContactSet, statuses: Rows[ContactStatus], i: int, twist: FloatArray) -> int:
+    """Return which of the other contacts that may open points most along a twist; -1: none does."""
+    farthest, most = -1, IN_SPAN * length(twist, WRENCH)
+    for k in range(contacts.used[0]):
+        if k != i and may_open(contacts, statuses, k) and not statuses[k].is_implied:
+            column = contacts.rows[k].columns[0]
+            size = length(column, 6)  # zero: it is locked
+            if inner(column, twist, 6) > most * size:
+                farthest, most = k, inner(column, twist, 6) / size
+    return farthest
+
+
+@kernel
 def list_one_sided(
     contacts: ContactSet, statuses: Rows[ContactStatus], work: StabilityWorkspace, system: System
 ) -> int:
     """List the contacts that may open and that no others make superfluous; return how many, -1: too many."""
-    n_one_sided = 0
+    n_one_sided = work.n_few = 0
     for i in range(contacts.used[0]):
-        if not contacts.states[i].chosen or statuses[i].is_equality:
+        if not may_open(contacts, statuses, i):
             continue
-        if lies_in_cone(contacts, statuses, i, 1.0, work, system):
+        if lies_in_cone_of_few(contacts, statuses, i, work, system) or lies_in_cone(
+            contacts, statuses, i, 1.0, work, system
+        ):
             statuses[i].is_implied = True
             continue
         if n_one_sided == ONE_SIDED_LIMIT:
@@ -187,23 +270,44 @@ def is_same_face(one: ContactRow, other: ContactRow) -> bool:
 
 
 @kernel
-def find_shared(contacts: ContactSet, statuses: Rows[ContactStatus], work: StabilityWorkspace) -> None:
-    """Mark the contacts whose normal force could be another: their wrench lies in the span of the rest."""
-    rows, n, span = contacts.rows, contacts.used[0], work.scratch
+def extend_by_equalities(contacts: ContactSet, statuses: Rows[ContactStatus], without: int, span: PassiveSet) -> None:
+    """Write the span of what sticking contacts carry along their faces and of the normals that may carry, without that
+    of one face (-1: of all); labels say which contact's normal each basis vector is, -1: none.
+    """
+    rows = contacts.rows
     clear(span, WRENCH, 1.0)
-    for i in range(n):
+    for i in range(contacts.used[0]):
         if contacts.states[i].is_sticking:
             extend(span, rows[i].columns[1], IN_SPAN)
             extend(span, rows[i].columns[2], IN_SPAN)
-    n_tangential = span.used
+    for place in range(span.used):
+        span.labels[place] = -1
+    for i in range(contacts.used[0]):
+        if statuses[i].is_equality and not (without >= 0 and is_same_face(rows[i], rows[without])):
+            span.labels[span.used] = i
+            extend(span, rows[i].columns[0], IN_SPAN)
+
+
+@kernel
+def find_shared(contacts: ContactSet, statuses: Rows[ContactStatus], work: StabilityWorkspace) -> None:
+    """Mark the contacts whose normal force could be another: their wrench lies in the span of the rest.
+
+    One that adds nothing to the span of all lies in the span of those that do; only for these the rest has to be asked.
+    """
+    rows, n, whole = contacts.rows, contacts.used[0], work.scratch
+    extend_by_equalities(contacts, statuses, -1, whole)
     for i in range(n):
         statuses[i].is_shared = False
         if not statuses[i].is_equality:
             continue
-        span.used = n_tangential
-        for k in range(n):
-            if statuses[k].is_equality and not is_same_face(rows[k], rows[i]):
-                extend(span, rows[k].columns[0], IN_SPAN)
+        adds = False
+        for place in range(whole.used):
+            k = whole.labels[place]
+            adds = adds or (k >= 0 and is_same_face(rows[k], rows[i]))
+        span = whole
+        if adds:
+            span = work.held
+            extend_by_equalities(contacts, statuses, i, span)
         statuses[i].is_shared = not write_outside(span, rows[i].columns[0], IN_SPAN, work.rest)
 
 
