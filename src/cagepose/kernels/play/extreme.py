@@ -13,7 +13,7 @@ from cagepose.kernels.play.goal import Goal, write_slope
 from cagepose.kernels.play.polytope import N_TRUST, START, PlayWorkspace
 from cagepose.kernels.play.tolerances import PRICELESS
 
-REACHED, OPEN, NOT_FOUND = range(3)
+REACHED, OPEN, NOT_FOUND, UNFINISHED = range(4)
 
 
 class Limits:

@@ -51,6 +51,8 @@ class PlayWorkspace(NamedTuple):
         Extents of the polytope, (6,).
     is_rejected
         For non-negative least squares over the rows, (n_pairs,).
+    is_turned
+        Whether a point has been let around an edge, (n_pairs,).
     program, newton
         See there.
     """
@@ -67,6 +69,7 @@ class PlayWorkspace(NamedTuple):
     least: FloatArray
     greatest: FloatArray
     is_rejected: NDArray[np.bool_]
+    is_turned: NDArray[np.bool_]
     program: Program
     newton: NewtonStep
 
@@ -89,6 +92,7 @@ def empty_play_workspace(geometry: Geometry) -> PlayWorkspace:
         least=np.zeros(6),
         greatest=np.zeros(6),
         is_rejected=np.zeros(n_pairs, np.bool_),
+        is_turned=np.zeros(n_pairs, np.bool_),
         program=empty_record(Program),
         newton=empty_record(NewtonStep),
     )
