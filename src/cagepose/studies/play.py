@@ -50,9 +50,9 @@ class PlayEnd:
     certified
         No motion inside the cage passes this (7.7); None: not proven.
     status
-        "local": no motion nearby goes farther, as the limiting gaps prove (7.14); "proven": besides, no motion inside
-        the cage goes farther by more than a hundredth, as `certified` says; "not converged": the end lies beyond
-        `reached`, or there; "open": there is no end.
+        "local": no motion nearby goes farther, to first order (7.14); "proven": besides, `certified` says that none
+        inside the cage goes farther by more than a hundredth; "not converged": neither is known, and the end may lie
+        beyond `reached`; "open": there is no end.
     """
 
     linear: float | None

@@ -1,4 +1,4 @@
-"""Whether a search has come to an end: no point inside, and no first-order motion along which the value grows (7.14)."""
+"""Whether a search has come to an end: no point inside, and no way on which the value grows to first order (7.14)."""
 
 from __future__ import annotations
 
@@ -18,8 +18,10 @@ from cagepose.kernels.play.polytope import (
     Motion,
     PlayWorkspace,
     farthest_face,
+    gap_at,
     gap_beyond,
     place,
+    write_farthest_faces,
     write_rows,
     write_touching_rows,
     write_trust_region,
@@ -68,16 +70,17 @@ def find_prices(geometry: Geometry, goal: Goal, motion: Motion, work: PlayWorksp
 
 
 @kernel
-def stay_beyond_farthest(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> bool:
-    """Let each point stay beyond the face that it is farthest beyond; True: for some it is another one than before.
+def change_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> bool:
+    """Let points stay beyond the faces that they are farther beyond than their own; True: some do.
 
-    A point that is inside keeps its face: the nearest one may be the opposite, and the way there leads through the box.
+    None changes that is inside: it may come out behind the box, or have cut its edge.
     """
     place(geometry, motion, work)
     changed = False
     for pair in range(len(work.faces)):
         best = farthest_face(geometry, pair, work)
-        if best != work.faces[pair] and gap_beyond(geometry, pair, best, work) + work.spare[pair] >= -ROUNDING:
+        gap = gap_at(geometry, pair, work)
+        if gap >= -ROUNDING and gap_beyond(geometry, pair, best, work) + work.spare[pair] > gap + TOUCHES:
             work.faces[pair] = best
             changed = True
     return changed
@@ -111,7 +114,7 @@ def turn_around_edges(geometry: Geometry, goal: Goal, motion: Motion, work: Play
                 face = face_around_edge(geometry, turns, work)
         if face < 0:
             if turn > 0:
-                stay_beyond_farthest(geometry, motion, work)
+                write_farthest_faces(geometry, motion, work)
                 find_prices(geometry, goal, motion, work)
             break
         work.faces[turns], work.is_turned[turns] = face, True

@@ -12,18 +12,18 @@ import math
 from cagepose.kernels.algebra.least_squares import aim, inner, least_target
 from cagepose.kernels.algebra.linear_program import OPTIMAL, renew_rows, solve_program, write_corner
 from cagepose.kernels.algebra.pose import euler_zyx_from_quaternion
-from cagepose.kernels.algebra.record import FloatArray, Rows
+from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.algebra.vector import norm, vector_from
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.ends import (
+    change_faces,
     find_prices,
     moved,
     note_extreme,
     note_open,
     put_on_faces,
     start_beyond_others,
-    stay_beyond_farthest,
     turn_around_edges,
 )
 from cagepose.kernels.play.extreme import (
@@ -45,6 +45,7 @@ from cagepose.kernels.play.polytope import (
     gap_at,
     least_gap,
     place,
+    write_farthest_faces,
     write_rows,
     write_start,
     write_trust_region,
@@ -144,6 +145,12 @@ def moved_along_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -
 
 
 @kernel
+def copy_faces(faces: IntArray, copy: IntArray) -> None:
+    for pair in range(len(faces)):
+        copy[pair] = faces[pair]
+
+
+@kernel
 def climb(geometry: Geometry, goal: Goal, start: Motion, work: PlayWorkspace, extreme: Extreme) -> None:
     """Follow linear programs in a trust region to a greatest value (7.5), from a pose beyond all points.
 
@@ -153,24 +160,24 @@ def climb(geometry: Geometry, goal: Goal, start: Motion, work: PlayWorkspace, ex
     motion = last_motion = start
     radius = longest = FIRST_RADIUS  # of the program's steps, and of Newton's
     penalty, has_arrived, goes_on, turned_at = 0.0, False, False, -math.inf
+    copy_faces(work.faces, work.last_faces)
     for _ in range(MOST_PROGRAMS):
         size = size_of(motion)
 
         # Here the search ends, unless points that limit the value here may go around edges: there it goes on, once.
         if has_arrived or radius < max(LAST_RADIUS * size, SHORTEST):
             motion = put_on_faces(geometry, motion, work)
+            changed = change_faces(geometry, motion, work)
             factor, rate = find_prices(geometry, goal, motion, work)
             if least_gap(geometry, work) < -ROUNDING:
                 break
             note_extreme(goal, motion, UNFINISHED, extreme)
-            if rate > STATIONARY:
-                break
-            if not turn_around_edges(geometry, goal, motion, work):
+            if rate <= STATIONARY and not turn_around_edges(geometry, goal, motion, work):
                 if note_extreme(goal, motion, REACHED, extreme):
                     write_limits(program.passive, len(work.faces), factor, extreme.limits)
                 break
             value = value_at(goal, motion)
-            if value <= turned_at + ROUNDING:
+            if (rate > STATIONARY and not changed) or value <= turned_at + ROUNDING:
                 break
             turned_at = value
             radius = longest = FIRST_RADIUS
@@ -182,13 +189,13 @@ def climb(geometry: Geometry, goal: Goal, start: Motion, work: PlayWorkspace, ex
         factor = write_slope(goal, motion, program.objective)
         if inside == 0.0:
             note_extreme(goal, motion, UNFINISHED, extreme)
-            if is_out(goal, motion) or (size > 1.0 and travels_without_end(work)):
-                note_open(goal, extreme)
-                break
+        if inside <= TOUCHES and (is_out(goal, motion) or (size > 1.0 and travels_without_end(work))):
+            note_open(goal, extreme)
+            break
         write_trust_region(work, radius)
         if solve_program(work.rows, work.bounds, program) != OPTIMAL:
             motion, goes_on = last_motion, False
-            stay_beyond_farthest(geometry, motion, work)
+            copy_faces(work.last_faces, work.faces)
             radius = longest = 0.25 * radius
             continue
 
@@ -220,6 +227,7 @@ def climb(geometry: Geometry, goal: Goal, start: Motion, work: PlayWorkspace, ex
         longest = min(FIRST_RADIUS, 2.0 * longest) if newton_gain > 0.0 else shorter
 
         # Take the better of the two steps, if it is good at all.
+        copy_faces(work.faces, work.last_faces)
         goes_on = newton_gain > max(linear_gain, 0.0)
         if goes_on:
             last_motion, motion = motion, newton_motion
@@ -228,7 +236,7 @@ def climb(geometry: Geometry, goal: Goal, start: Motion, work: PlayWorkspace, ex
             last_motion, motion = motion, linear_motion
         else:
             continue
-        goes_on = not stay_beyond_farthest(geometry, motion, work) and goes_on
+        goes_on = not change_faces(geometry, motion, work) and goes_on
 
 
 @entry
@@ -248,8 +256,7 @@ def find_play(geometry: Geometry, goals: Rows[Goal], extremes: Rows[Extreme], wo
     write_start(geometry, work)
     for i in range(len(goals)):
         goal, extreme = goals[i], extremes[i]
-        for pair in range(len(work.faces)):
-            work.faces[pair] = work.start_faces[pair]
+        copy_faces(work.start_faces, work.faces)
         write_rows(geometry, START, work)
         write_trust_region(work, math.inf)
         find_linear(goal, work.rows, work.bounds, work.program, extreme)
@@ -293,5 +300,5 @@ def find_play_from(
             if value > farthest:
                 best, farthest = motion, value
         if farthest > goal.sign * extreme.value + TOUCHES:
-            stay_beyond_farthest(geometry, best, work)
+            write_farthest_faces(geometry, best, work)
             climb(geometry, goal, best, work, extreme)
