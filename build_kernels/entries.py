@@ -26,7 +26,7 @@ from cagepose.kernels.play.escape import Station, grow_tree
 from cagepose.kernels.play.extreme import Extreme, find_linear_play
 from cagepose.kernels.play.goal import Goal
 from cagepose.kernels.play.polytope import empty_play_workspace, write_start
-from cagepose.kernels.play.search import find_play
+from cagepose.kernels.play.search import find_play, find_play_from
 from cagepose.kernels.quasistatic.run import (
     QuasistaticRules,
     repeat_quasistatic,
@@ -86,6 +86,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     play_work, goals, extremes = empty_play_workspace(geometry), empty_rows(Goal, 1), empty_rows(Extreme, 1)
     yield write_start, (geometry, play_work)
     yield find_play, (geometry, goals, extremes, play_work)
+    yield find_play_from, (geometry, goals, extremes, vectors, quaternions, play_work)
     yield find_limiting_gaps, (geometry, goals[0], extremes[0], empty_rows(LimitingGap, 1), play_work)
     yield find_linear_play, (goals, rows, bounds, program, extremes)
     yield certify, (geometry, 0.0, goals, numbers, play_work, empty_certificate_workspace(1))

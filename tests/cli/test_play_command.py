@@ -5,11 +5,14 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from cagepose import load_scene, play
+from cagepose.cli.play_report import print_play
 from rails import exact_tilt_deg
 
 Command = Callable[..., Any]
@@ -24,6 +27,8 @@ def test_the_document_of_the_rail(command: Command) -> None:
     pitch = document["freedoms"]["pitch"]
     assert pitch["linear"] == pytest.approx([-math.degrees(0.5 / 91.5), math.degrees(0.5 / 91.5)], rel=1e-9)
     assert pitch["exact"] == pytest.approx([-exact_tilt_deg(1, 183), exact_tilt_deg(1, 183)], rel=1e-9)
+    assert (pitch["reached"], pitch["status"]) == (pitch["exact"], ["local", "local"])
+    assert document["freedoms"]["x"]["status"] == ["proven", "proven"]  # 1.001362, and certified within 1.006645
     assert pitch["certified"][0] < pitch["exact"][0] < pitch["exact"][1] < pitch["certified"][1]
     assert document["freedoms"]["z"]["linear"] == pytest.approx([-0.5, 0.5], rel=1e-9)
     (point,) = document["points"]
@@ -58,6 +63,17 @@ def test_the_tables_name_what_limits_each_end(command: Command) -> None:
 def test_a_load_that_finds_no_rest_nearby_is_not_shown_at_one(command: Command, sample: str) -> None:
     (line,) = [line for line in command("play", sample).out.splitlines() if line.startswith("gravity ")]
     assert line.startswith("gravity finds no rest nearby; to first order")
+
+
+def test_the_table_marks_ends_that_are_proven_and_those_that_are_not_found(capsys: pytest.CaptureFixture[str]) -> None:
+    found = play(load_scene(RAIL))
+    x, y = (found.freedoms[name] for name in ("x", "y"))
+    y = replace(y, high=replace(y.high, status="not converged"))
+    print_play(replace(found, freedoms={"x": x, "y": y}), (), "mm")
+    printed = capsys.readouterr().out
+    assert "-1.00136* to 1.00136*" in printed
+    assert "-0.533663 to past 0.533663" in printed
+    assert y.high.exact is None
 
 
 def test_a_point_far_from_the_object_is_refused(command: Command) -> None:

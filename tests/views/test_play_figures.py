@@ -31,7 +31,7 @@ def test_an_open_end_is_an_arrow_and_no_bar_is_certified() -> None:
     bars = [patch for patch in figure.axes[0].patches if isinstance(patch, Rectangle)]
     assert len(bars) == 6
     assert any(line.get_marker() == ">" for line in figure.axes[0].lines)
-    assert [text.get_text() for text in figure.axes[2].texts] == ["no end in some directions"]
+    assert [text.get_text() for text in figure.axes[2].texts] == ["no end, or none found, in some directions"]
 
 
 def test_the_certified_outline_holds_the_exact_one() -> None:

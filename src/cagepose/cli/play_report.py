@@ -21,7 +21,10 @@ MOST_CLEARANCES = 4
 """Of those that limit an end, so many are printed; the document has all."""
 ALIKE = 0.99
 """Clearances worth this part of the best one are as good to close; slopes say no more of a whole gap."""
-MEANING = "exact: no motion nearby goes farther; certified: no motion at all inside the cage does"
+MEANING = (
+    "exact: no motion nearby goes farther (*: none inside the cage by more than a hundredth); past: so far, and perhaps"
+    " farther; certified: no motion at all inside the cage does"
+)
 NO_PLAY = 1e-12
 """Metres or radians: an end that is nearer is at the start but for rounding."""
 STYLES = {"caged": "bold green", "not certified": "bold yellow", "escapes": "bold red"}
@@ -105,7 +108,8 @@ def _value(value: float | None, is_length: bool, unit: LengthUnit) -> str:
 
 
 def _exact(end: PlayEnd, is_length: bool, unit: LengthUnit) -> str:
-    return "not found" if end.exact is None and not end.is_open else _value(end.exact, is_length, unit)
+    value = _value(end.reached, is_length, unit)
+    return f"past {value}" if end.status == "not converged" else f"{value}*" if end.status == "proven" else value
 
 
 def _limits(end: PlayEnd, is_length: bool, unit: LengthUnit) -> tuple[str, str, str, str]:

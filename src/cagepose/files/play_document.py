@@ -58,6 +58,8 @@ def _ends(ends: PlayRange | PointPlay, is_length: bool, unit: LengthUnit) -> dic
         "linear": linear,
         "exact": exact,
         "certified": None if None in certified else certified,
+        "reached": [_shown(end.reached, is_length, unit) for end in (ends.low, ends.high)],
+        "status": [ends.low.status, ends.high.status],
         "is_open": [ends.low.is_open, ends.high.is_open],
         "poses": [_pose(ends.low.pose_world_object, unit), _pose(ends.high.pose_world_object, unit)],
         "limits": [_limits(ends.low, is_length, unit), _limits(ends.high, is_length, unit)],

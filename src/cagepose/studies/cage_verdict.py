@@ -71,18 +71,20 @@ def judge_cage(
     free_directions: tuple[str, ...],
     search_s: float,
     progress: Callable[[float], None] | None,
-) -> CageVerdict:
-    """Return the verdict; a search for a way out follows where there is no proof."""
+) -> tuple[CageVerdict, np.ndarray]:
+    """Return the verdict, and the stations of a search that found no way out; it follows where there is no proof."""
     if proof.certificate.outcome == CAGED:
-        return CageVerdict("caged", "every pose on the way out puts a point inside the object", (), None, None, 0)
+        reason = "every pose on the way out puts a point inside the object"
+        return CageVerdict("caged", reason, (), None, None, 0), np.asarray(empty_rows(Station, 0))
     stations, n_stations, is_out, n_tried = search_way_out(scene, frame, search_s, progress)
     if is_out:
         path = _path(frame, stations, n_stations - 1)
         reason = f"a way out of {len(path)} {'motion' if len(path) == 1 else 'motions'} was found"
-        return CageVerdict("escapes", reason, free_directions, path, None, n_tried)
+        return CageVerdict("escapes", reason, free_directions, path, None, n_tried), np.asarray(stations)[:0]
     reason, leaves_at = _reason(scene, frame, proof, free_directions)
     searched = "no way out was found" if n_tried else "no way out was looked for"
-    return CageVerdict("not certified", f"{reason}; {searched}", free_directions, None, leaves_at, n_tried)
+    verdict = CageVerdict("not certified", f"{reason}; {searched}", free_directions, None, leaves_at, n_tried)
+    return verdict, np.asarray(stations)[:n_stations]
 
 
 def _reason(

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from time import perf_counter
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +18,7 @@ from cagepose.kernels.play.certificate import CAGED, certify, empty_certificate_
 from cagepose.kernels.play.extreme import OPEN, REACHED, Extreme
 from cagepose.kernels.play.goal import SHIFT, Goal
 from cagepose.kernels.play.polytope import empty_play_workspace
-from cagepose.kernels.play.search import find_play
+from cagepose.kernels.play.search import find_play, find_play_from
 from cagepose.model.checks import FloatArray, finite_array, unit_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import FARTHEST_START, Scene, millimetres
@@ -25,6 +26,13 @@ from cagepose.studies.cage_verdict import CageVerdict, judge_cage
 from cagepose.studies.play_frame import FREEDOMS, PlayFrame, range_goals
 from cagepose.studies.play_limits import Clearance, limiting_clearances
 
+EndStatus = Literal["proven", "local", "not converged", "open"]
+MOST_STARTS = 2000
+"""Poses of the search for a way out that ends are looked for from: a millisecond, and as many on any machine."""
+MOST_ROUNDS = 5
+"""Of searches from the ends of others. One round that finds nothing is usual."""
+PROVEN_WITHIN = 0.01
+"""Of an end: one that no motion can pass by more is proven. Certified bounds include more than the end itself."""
 SEARCH_S = 2.0
 """Seconds that the search for a way out may take, if the object is not proven to be caged."""
 
@@ -37,24 +45,36 @@ class PlayEnd:
     ----------
     linear
         Over the polytope (7.1); None: without end, or not found.
-    exact
-        Locally optimal (7.5); None: without end, or not found.
+    reached
+        The farthest that the searches came (7.5), beyond all points; None: without end.
     certified
         No motion inside the cage passes this (7.7); None: not proven.
-    is_open
-        Whether the exact end is known to lie nowhere.
+    status
+        "local": no motion nearby goes farther, to first order (7.14); "proven": besides, `certified` says that none
+        inside the cage goes farther by more than a hundredth; "not converged": neither is known, and the end may lie
+        beyond `reached`; "open": there is no end.
     """
 
     linear: float | None
-    exact: float | None
+    reached: float | None
     certified: float | None
-    is_open: bool
+    status: EndStatus
     _find_pose: Callable[[], Pose | None] = field(repr=False)
     _find_clearances: Callable[[], tuple[Clearance, ...]] = field(repr=False)
 
+    @property
+    def exact(self) -> float | None:
+        """The end, local or proven; None: without end, or not converged."""
+        return self.reached if self.status in ("local", "proven") else None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the end is known to lie nowhere."""
+        return self.status == "open"
+
     @cached_property
     def pose_world_object(self) -> Pose | None:
-        """Reaches the exact end; None: there is none."""
+        """Has the value ``reached``; None: there is no end."""
         return self._find_pose()
 
     @cached_property
@@ -140,12 +160,14 @@ def play(
     shifts = [(point, direction) for point in points for direction in along]
     frame = PlayFrame(scene)
     found = _Found(scene, frame, range_goals(frame, shifts))
+    cage, stations = judge_cage(scene, frame, found.proof, found.free_directions(), search_s, progress)
+    found.search_from(stations[:MOST_STARTS])
     ranges = found.ranges()
     return Play(
         scene,
         {name: PlayRange(*ranges[index]) for index, name in enumerate(FREEDOMS)},
         tuple(PointPlay(*shift, *ends) for shift, ends in zip(shifts, ranges[len(FREEDOMS) :], strict=True)),
-        judge_cage(scene, frame, found.proof, found.free_directions(), search_s, progress),
+        cage,
         found.analysis_s,
         found.certificate_s,
     )
@@ -171,7 +193,7 @@ class _Found:
         self.bounds = np.full(len(goals), np.inf)
         work = empty_play_workspace(frame.geometry)
         self.proof = empty_certificate_workspace(len(work.faces))
-        geometry, workspace = Slots(frame.geometry), Slots(work)
+        geometry, workspace = self._given = Slots(frame.geometry), Slots(work)
         touch = scene.tolerances.touch * scene.size_m / frame.length_m
         started = perf_counter()
         find_play(geometry, goals, self.extremes, workspace)
@@ -181,22 +203,44 @@ class _Found:
         self.certificate_s = perf_counter() - analysed
         self.is_caged = bool(self.proof.certificate.outcome == CAGED)
 
+    def search_from(self, stations: np.ndarray) -> None:
+        """Search for ends again, from the farthest of all other ends and of these poses.
+
+        Where a freedom has no end the object leaves its cage, and out there nothing has one: no search starts there.
+        """
+        geometry, workspace = self._given
+        ends = np.asarray(self.extremes)
+        started = perf_counter()
+        for _ in range(MOST_ROUNDS):
+            starts, before = [ends[ends["outcome"] != OPEN], stations], ends["value"].copy()
+            positions, quaternions = (np.concatenate([rows[k] for rows in starts]) for k in ("position", "quaternion"))
+            find_play_from(geometry, self.goals, self.extremes, positions, quaternions, workspace)
+            if (ends["value"] == before).all():
+                break
+        self.analysis_s += perf_counter() - started
+
     def ranges(self) -> list[tuple[PlayEnd, PlayEnd]]:
         goals, found = np.asarray(self.goals), np.asarray(self.extremes)
         units = np.where(goals["kind"] == SHIFT, self.frame.length_m, 1.0)
         linear = _known(units * found["linear"], found["linear_outcome"] == REACHED)
-        exact = _known(units * found["value"], found["outcome"] == REACHED)
+        reached = _known(units * found["value"], found["outcome"] != OPEN)
         certified = _known(units * goals["sign"] * self.bounds, self.is_caged & np.isfinite(self.bounds))
-        is_open = (found["outcome"] == OPEN).tolist()
         ends = [
-            PlayEnd(*values, partial(self._pose, index), partial(self._clearances, index))
-            for index, values in enumerate(zip(linear, exact, certified, is_open, strict=True))
+            PlayEnd(*values, self._status(index), partial(self._pose, index), partial(self._clearances, index))
+            for index, values in enumerate(zip(linear, reached, certified, strict=True))
         ]
         return list(zip(ends[::2], ends[1::2], strict=True))
 
+    def _status(self, index: int) -> EndStatus:
+        extreme = self.extremes[index]
+        if extreme.outcome != REACHED:
+            return "open" if extreme.outcome == OPEN else "not converged"
+        is_proven = self.is_caged and self.bounds[index] <= (1.0 + PROVEN_WITHIN) * abs(extreme.value)
+        return "proven" if is_proven else "local"
+
     def _pose(self, index: int) -> Pose | None:
         extreme = self.extremes[index]
-        return self.frame.pose_after(extreme.position, extreme.quaternion) if extreme.outcome == REACHED else None
+        return None if extreme.outcome == OPEN else self.frame.pose_after(extreme.position, extreme.quaternion)
 
     def _clearances(self, index: int) -> tuple[Clearance, ...]:
         goal, extreme = self.goals[index], self.extremes[index]

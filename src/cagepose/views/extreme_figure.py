@@ -58,11 +58,12 @@ def extreme_figure(play: Play, length_unit: LengthUnit = "mm") -> Figure:
 
 
 def _amount(end: PlayEnd, name: str, length_unit: LengthUnit) -> str:
-    if end.exact is None:
+    if end.reached is None:
         return "no end"
+    word = "past " if end.exact is None else ""
     if name in ("x", "y", "z"):
-        return f"{float(from_metres(end.exact, length_unit)):.4g} {length_unit}"
-    return f"{math.degrees(end.exact):.4g} deg"
+        return f"{word}{float(from_metres(end.reached, length_unit)):.4g} {length_unit}"
+    return f"{word}{math.degrees(end.reached):.4g} deg"
 
 
 def _corners(scene: Scene) -> FloatArray:

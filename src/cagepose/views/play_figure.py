@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from cagepose.files.units import LengthUnit, from_metres
-from cagepose.studies.play import Play, PlayRange
+from cagepose.studies.play import Play, PlayEnd, PlayRange
 from cagepose.studies.play_outline import PointOutline, point_outlines
 from cagepose.views.style import BLUE, GREY, ORANGE, PAGE_WIDTH_IN, PALE, VERMILLION, Look, styled
 
@@ -34,7 +34,8 @@ WORDS = {"certified": "certified: cannot be passed", "exact": "exact", "linear":
 def play_figure(play: Play, at: Sequence[ArrayLike] = (), length_unit: LengthUnit = "mm") -> Figure:
     """Draw the range of each freedom, and for each point ``at`` of the object (metres, in its frame) how far it goes.
 
-    A bar that ends in an arrow has no end. A point's way is seen along the three axes of the cage.
+    A bar that ends in an arrow has no end, and of one with a question mark none was found. A point's way is seen along
+    the three axes of the cage.
     """
     with styled():
         rows = 1 + len(at)
@@ -64,15 +65,17 @@ def _draw_bars(panel: Axes, play: Play, names: tuple[str, ...], unit: float) -> 
     for row, name in enumerate(names):
         ends = play.freedoms[name]
         for kind, look in BARS.items():
-            low, high = getattr(ends.low, kind), getattr(ends.high, kind)
+            low, high = (_end(end, kind) for end in (ends.low, ends.high))
             if kind == "certified" and (low is None or high is None):
                 continue
             left = -reach if low is None else unit * low
             right = reach if high is None else unit * high
             panel.barh(row, right - left, left=left, height=HEIGHTS[kind], **look)
         for end, tip, marker in ((ends.low, -reach, "<"), (ends.high, reach, ">")):
-            if end.exact is None:
+            if end.is_open:
                 panel.plot([tip], [row], marker=marker, color=VERMILLION, markersize=7.0, clip_on=False, zorder=5)
+            elif end.exact is None and end.reached is not None:
+                panel.plot([unit * end.reached], [row], marker="$?$", color=VERMILLION, markersize=9.0, zorder=5)
     panel.axvline(0.0, color=GREY, linewidth=0.8)
     panel.set_xlim(-reach, reach)
     panel.set_yticks(range(len(names)), names)
@@ -81,14 +84,27 @@ def _draw_bars(panel: Axes, play: Play, names: tuple[str, ...], unit: float) -> 
     panel.set_axisbelow(True)
 
 
+def _end(end: PlayEnd, kind: str) -> float | None:
+    """Return where a bar ends; None: nowhere."""
+    value: float | None = end.reached if kind == "exact" else getattr(end, kind)
+    return value
+
+
 def _all_ends(ends: PlayRange) -> list[float]:
-    values = [getattr(end, kind) for end in (ends.low, ends.high) for kind in BARS]
+    values = [_end(end, kind) for end in (ends.low, ends.high) for kind in BARS]
     return [value for value in values if value is not None]
 
 
 def _draw_outline(panel: Axes, outline: PointOutline, length_unit: LengthUnit) -> None:
     if outline.exact is None:
-        panel.text(0.5, 0.7, "no end in some directions", transform=panel.transAxes, ha="center", color=VERMILLION)
+        panel.text(
+            0.5,
+            0.7,
+            "no end, or none found, in some directions",
+            transform=panel.transAxes,
+            ha="center",
+            color=VERMILLION,
+        )
     else:
         panel.fill(
             *from_metres(outline.exact, length_unit).T, facecolor=BLUE, edgecolor=BLUE, alpha=0.45, linewidth=1.2

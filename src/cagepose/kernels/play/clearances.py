@@ -17,7 +17,14 @@ from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.extreme import Extreme
 from cagepose.kernels.play.goal import Goal, write_slope
-from cagepose.kernels.play.polytope import START, PlayWorkspace, farthest_face, gap_beyond, place, write_touching_rows
+from cagepose.kernels.play.polytope import (
+    START,
+    PlayWorkspace,
+    gap_beyond,
+    place,
+    write_farthest_faces,
+    write_touching_rows,
+)
 from cagepose.kernels.play.tolerances import PRICELESS, SAME_ROW
 
 REACH = 1e3
@@ -97,9 +104,7 @@ def find_limiting_gaps(
     """
     q = extreme.quaternion
     motion = (vector_from(extreme.position), (q[0], q[1], q[2], q[3]))
-    place(geometry, motion, work)
-    for pair in range(len(work.faces)):
-        work.faces[pair] = farthest_face(geometry, pair, work)
+    write_farthest_faces(geometry, motion, work)
     write_touching_rows(geometry, motion, REACH, work)
     factor = write_slope(goal, motion, work.program.objective)
     n_found = 0

@@ -13,7 +13,7 @@ from cagepose.kernels.play.goal import Goal, write_slope
 from cagepose.kernels.play.polytope import N_TRUST, START, PlayWorkspace
 from cagepose.kernels.play.tolerances import PRICELESS
 
-REACHED, OPEN, NOT_FOUND = range(3)
+REACHED, OPEN, NOT_FOUND, UNFINISHED = range(4)
 
 
 class Limits:
@@ -33,7 +33,8 @@ class Extreme:
         By the linear program at the start: REACHED, OPEN (no end) or NOT_FOUND; the value, radians or lengths of the
         scene; a twist that reaches it, and what limits it.
     outcome, value, position, quaternion, limits
-        The same exactly, and the motion that reaches it.
+        The same exactly: REACHED, OPEN, or UNFINISHED, where the value is the farthest known but no end (7.14); and the
+        motion that reaches it.
     """
 
     linear_outcome: int

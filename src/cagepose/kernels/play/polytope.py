@@ -37,9 +37,9 @@ class PlayWorkspace(NamedTuple):
         Of each pair, (n_pairs,).
     placement
         Of the boxes at the motion that is asked.
-    faces, start_faces
-        For each pair the face that the point is to stay beyond, now and at the start: axis, or 3 + axis for the
-        negative side, (n_pairs,).
+    faces, last_faces, start_faces
+        For each pair the face that the point is to stay beyond, now, before the last step and at the start: axis, or
+        3 + axis for the negative side, (n_pairs,).
     spare
         What is added to each gap so that none is below zero at the start: a start that touches may be inside by
         rounding, (n_pairs,).
@@ -51,6 +51,8 @@ class PlayWorkspace(NamedTuple):
         Extents of the polytope, (6,).
     is_rejected
         For non-negative least squares over the rows, (n_pairs,).
+    is_turned
+        Whether a point has been let around an edge, (n_pairs,).
     program, newton
         See there.
     """
@@ -59,6 +61,7 @@ class PlayWorkspace(NamedTuple):
     boxes: IntArray
     placement: Placement
     faces: IntArray
+    last_faces: IntArray
     start_faces: IntArray
     spare: FloatArray
     arms: FloatArray
@@ -67,6 +70,7 @@ class PlayWorkspace(NamedTuple):
     least: FloatArray
     greatest: FloatArray
     is_rejected: NDArray[np.bool_]
+    is_turned: NDArray[np.bool_]
     program: Program
     newton: NewtonStep
 
@@ -81,6 +85,7 @@ def empty_play_workspace(geometry: Geometry) -> PlayWorkspace:
         boxes=np.tile(np.arange(n_boxes), n_points),
         placement=empty_placement(geometry),
         faces=np.zeros(n_pairs, np.int64),
+        last_faces=np.zeros(n_pairs, np.int64),
         start_faces=np.zeros(n_pairs, np.int64),
         spare=np.zeros(n_pairs),
         arms=np.zeros((n_pairs, 3)),
@@ -89,6 +94,7 @@ def empty_play_workspace(geometry: Geometry) -> PlayWorkspace:
         least=np.zeros(6),
         greatest=np.zeros(6),
         is_rejected=np.zeros(n_pairs, np.bool_),
+        is_turned=np.zeros(n_pairs, np.bool_),
         program=empty_record(Program),
         newton=empty_record(NewtonStep),
     )
@@ -131,6 +137,14 @@ def farthest_face(geometry: Geometry, pair: int, work: PlayWorkspace) -> int:
         if gap_beyond(geometry, pair, face, work) > gap_beyond(geometry, pair, best, work):
             best = face
     return best
+
+
+@kernel
+def write_farthest_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> None:
+    """Let each point stay beyond the face that it is farthest beyond at a motion."""
+    place(geometry, motion, work)
+    for pair in range(len(work.faces)):
+        work.faces[pair] = farthest_face(geometry, pair, work)
 
 
 @kernel
@@ -215,9 +229,7 @@ def choose_faces(geometry: Geometry, work: PlayWorkspace) -> None:
     Where a point is beyond several faces of a box, it is enough that it stays beyond one. Of these the face is best
     that the point cannot reach anyhow, by the rows of the points that have no choice.
     """
-    place(geometry, START, work)
-    for pair in range(len(work.faces)):
-        work.faces[pair] = farthest_face(geometry, pair, work)
+    write_farthest_faces(geometry, START, work)
     write_rows(geometry, START, work)
     write_trust_region(work, math.inf)
     n_choices = 0

@@ -11,15 +11,26 @@ import math
 
 from cagepose.kernels.algebra.least_squares import aim, inner, least_target
 from cagepose.kernels.algebra.linear_program import OPTIMAL, renew_rows, solve_program, write_corner
-from cagepose.kernels.algebra.pose import euler_zyx_from_quaternion, quaternion_about, quaternion_product
-from cagepose.kernels.algebra.record import FloatArray, Rows
-from cagepose.kernels.algebra.vector import norm, plus, scaled
+from cagepose.kernels.algebra.pose import euler_zyx_from_quaternion
+from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
+from cagepose.kernels.algebra.vector import norm, vector_from
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.native.kernel import entry, kernel
+from cagepose.kernels.play.ends import (
+    change_faces,
+    find_prices,
+    moved,
+    note_extreme,
+    note_open,
+    put_on_faces,
+    start_beyond_others,
+    turn_around_edges,
+)
 from cagepose.kernels.play.extreme import (
     NOT_FOUND,
     OPEN,
     REACHED,
+    UNFINISHED,
     Extreme,
     find_linear,
     travels_without_end,
@@ -31,14 +42,12 @@ from cagepose.kernels.play.polytope import (
     START,
     Motion,
     PlayWorkspace,
-    farthest_face,
     gap_at,
-    is_beyond,
     least_gap,
     place,
+    write_farthest_faces,
     write_rows,
     write_start,
-    write_touching_rows,
     write_trust_region,
 )
 from cagepose.kernels.play.tolerances import (
@@ -51,24 +60,13 @@ from cagepose.kernels.play.tolerances import (
     PRICELESS,
     ROUNDING,
     SHORTEST,
+    STATIONARY,
     STEEPEST,
+    TOUCHES,
 )
 
 MOST_PROGRAMS = 200
 """A dozen are usual, forty where curvature alone limits the motion."""
-RESTORING = 3
-"""Newton steps at the end that bring the limiting points onto their faces."""
-
-
-@kernel
-def moved(motion: Motion, step: FloatArray) -> Motion:
-    """Return the motion after a step (t, w): t is added, the turn by w comes after."""
-    spin = (step[3], step[4], step[5])
-    angle = norm(spin)
-    position = plus(motion[0], (step[0], step[1], step[2]))
-    if angle == 0.0:
-        return position, motion[1]
-    return position, quaternion_product(quaternion_about(scaled(spin, 1.0 / angle), angle), motion[1])
 
 
 @kernel
@@ -106,7 +104,9 @@ def total_price(work: PlayWorkspace) -> float:
 
 
 @kernel
-def write_newton_step(goal: Goal, motion: Motion, factor: float, goes_on: bool, work: PlayWorkspace) -> bool:
+def write_newton_step(
+    goal: Goal, motion: Motion, factor: float, goes_on: bool, longest: float, work: PlayWorkspace
+) -> bool:
     """Write Newton's step on the rows that the program leans on, and those that block it; False: it leads to no top.
 
     A search that goes on has just taken such a step, and stays on its rows: from beside the top, a program leans on
@@ -122,7 +122,7 @@ def write_newton_step(goal: Goal, motion: Motion, factor: float, goes_on: bool, 
         aim(newton.held, objective)
         write_curvature(goal, motion, factor, work)
         is_top = write_steps(work.bounds, objective, newton)
-        blocks = join_steps(work.rows, work.bounds, n_pairs, is_top, FIRST_RADIUS, newton)
+        blocks = join_steps(work.rows, work.bounds, n_pairs, is_top, longest, newton)
         if blocks < 0 or newton.held.used == 6 or not hold_row(work.rows, blocks, newton):
             break
     return is_top
@@ -145,77 +145,41 @@ def moved_along_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -
 
 
 @kernel
-def put_on_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> Motion:
-    """Take the last steps, which are of the size of rounding, so that no limiting point is left inside."""
-    for _ in range(RESTORING):
-        inside = write_rows(geometry, motion, work)
-        write_trust_region(work, 100.0 * inside)
-        if inside == 0.0 or solve_program(work.rows, work.bounds, work.program) != OPTIMAL:
-            break
-        motion = moved(motion, work.program.x)
-    return motion
+def copy_faces(faces: IntArray, copy: IntArray) -> None:
+    for pair in range(len(faces)):
+        copy[pair] = faces[pair]
 
 
 @kernel
-def find_prices(geometry: Geometry, goal: Goal, motion: Motion, work: PlayWorkspace) -> float:
-    """Find the multipliers with which the rows that touch hold the value; return the factor taken out of its slope."""
-    write_touching_rows(geometry, motion, FIRST_RADIUS, work)
-    factor = write_slope(goal, motion, work.program.objective)
-    solve_program(work.rows, work.bounds, work.program)
-    return factor
-
-
-@kernel
-def note_extreme(goal: Goal, motion: Motion, factor: float, work: PlayWorkspace, extreme: Extreme) -> None:
-    """Write down where a search has come to and what limits it there, unless it has been farther."""
-    value = value_at(goal, motion)
-    if extreme.outcome == REACHED and goal.sign * extreme.value >= value:
-        return
-    extreme.outcome = REACHED
-    extreme.value = goal.sign * value
-    for k in range(3):
-        extreme.position[k] = motion[0][k]
-    for k in range(4):
-        extreme.quaternion[k] = motion[1][k]
-    write_limits(work.program.passive, len(work.faces), factor, extreme.limits)
-
-
-@kernel
-def change_faces(geometry: Geometry, work: PlayWorkspace) -> bool:
-    """Where a point that limits the motion is beyond another face too, let it stay beyond that one instead."""
-    passive = work.program.passive
-    changed = False
-    for k in range(passive.used):
-        pair = passive.labels[k]
-        if pair < len(work.faces) and passive.x[k] > PRICELESS:
-            best = farthest_face(geometry, pair, work)
-            if best != work.faces[pair] and is_beyond(geometry, pair, best, work):
-                work.faces[pair] = best
-                changed = True
-    return changed
-
-
-@kernel
-def climb(geometry: Geometry, goal: Goal, work: PlayWorkspace, extreme: Extreme) -> None:
-    """Follow linear programs in a trust region to a greatest value (7.5), from the start.
+def climb(geometry: Geometry, goal: Goal, start: Motion, work: PlayWorkspace, extreme: Extreme) -> None:
+    """Follow linear programs in a trust region to a greatest value (7.5), from a pose beyond all points.
 
     Where their limiting rows leave something free, Newton's step on these rows is tried too, and the better one taken.
     """
     newton, program = work.newton, work.program
-    motion = last_motion = START
-    radius = longest = FIRST_RADIUS
-    penalty, has_arrived, goes_on = 0.0, False, False
-    extreme.outcome = NOT_FOUND
+    motion = last_motion = start
+    radius = longest = FIRST_RADIUS  # of the program's steps, and of Newton's
+    penalty, has_arrived, goes_on, turned_at = 0.0, False, False, -math.inf
+    copy_faces(work.faces, work.last_faces)
     for _ in range(MOST_PROGRAMS):
         size = size_of(motion)
 
-        # Here is an extreme, unless a point that limits it has run off its face: then look farther, beyond the next.
+        # Here the search ends, unless points that limit the value here may go around edges: there it goes on, once.
         if has_arrived or radius < max(LAST_RADIUS * size, SHORTEST):
             motion = put_on_faces(geometry, motion, work)
-            factor = find_prices(geometry, goal, motion, work)
-            note_extreme(goal, motion, factor, work, extreme)
-            if not change_faces(geometry, work):
+            changed = change_faces(geometry, motion, work)
+            factor, rate = find_prices(geometry, goal, motion, work)
+            if least_gap(geometry, work) < -ROUNDING:
                 break
+            note_extreme(goal, motion, UNFINISHED, extreme)
+            if rate <= STATIONARY and not turn_around_edges(geometry, goal, motion, work):
+                if note_extreme(goal, motion, REACHED, extreme):
+                    write_limits(program.passive, len(work.faces), factor, extreme.limits)
+                break
+            value = value_at(goal, motion)
+            if (rate > STATIONARY and not changed) or value <= turned_at + ROUNDING:
+                break
+            turned_at = value
             radius = longest = FIRST_RADIUS
             penalty, has_arrived, goes_on = 0.0, False, False
 
@@ -223,9 +187,15 @@ def climb(geometry: Geometry, goal: Goal, work: PlayWorkspace, extreme: Extreme)
         # would be any Newton step beyond the new radius.
         inside = write_rows(geometry, motion, work)
         factor = write_slope(goal, motion, program.objective)
+        if inside == 0.0:
+            note_extreme(goal, motion, UNFINISHED, extreme)
+        if inside <= TOUCHES and (is_out(goal, motion) or (size > 1.0 and travels_without_end(work))):
+            note_open(goal, extreme)
+            break
         write_trust_region(work, radius)
         if solve_program(work.rows, work.bounds, program) != OPTIMAL:
             motion, goes_on = last_motion, False
+            copy_faces(work.last_faces, work.faces)
             radius = longest = 0.25 * radius
             continue
 
@@ -234,36 +204,39 @@ def climb(geometry: Geometry, goal: Goal, work: PlayWorkspace, extreme: Extreme)
         penalty = max(penalty, 2.0 * factor * total_price(work))
         merit = value - penalty * inside
         promised = factor * inner(program.objective, program.x, 6) + penalty * inside
-        is_top = write_newton_step(goal, motion, factor, goes_on, work)
+        is_top = write_newton_step(goal, motion, factor, goes_on, longest, work)
         newton_motion = moved_along_faces(geometry, motion, work)
         newton_gain = merit_at(geometry, goal, newton_motion, penalty, work) - merit
         newton_size = size_of_step(newton.step)
         noise = ROUNDING * abs(value) + EPSILON
         is_limited = inside <= GAP_ROUNDING and least_target(newton.held) >= -PRICELESS
-        is_last = is_top and is_limited and newton_size < LAST_STEP * size
+        is_last = is_top and is_limited and newton_size < min(LAST_STEP * size, 0.5 * longest)
         has_arrived = is_last or max(promised, newton_gain) <= noise
         if has_arrived:
             motion = newton_motion if newton_gain > 0.0 else motion
             continue
 
-        # Let the trust region follow how much of the promise the program's own step keeps.
+        # Let the trust regions follow how much of its promise the program's own step keeps, and whether Newton's gains.
         linear_motion = moved(motion, program.x)
         linear_gain = merit_at(geometry, goal, linear_motion, penalty, work) - merit
         if linear_gain < 0.5 * promised:  # a parabola's top lies nearer than the step is long
             radius = 0.5 * min(radius, size_of_step(program.x))
         elif linear_gain > 0.75 * promised:
             radius = min(FIRST_RADIUS, 2.0 * radius)
+        shorter = max(radius, 0.5 * min(longest, newton_size))
+        longest = min(FIRST_RADIUS, 2.0 * longest) if newton_gain > 0.0 else shorter
 
         # Take the better of the two steps, if it is good at all.
-        goes_on = newton_gain > max(linear_gain, 0.0) and newton_size <= longest
+        copy_faces(work.faces, work.last_faces)
+        goes_on = newton_gain > max(linear_gain, 0.0)
         if goes_on:
             last_motion, motion = motion, newton_motion
             radius = min(FIRST_RADIUS, max(radius, newton_size))
         elif linear_gain > max(0.1 * promised, 0.0):
             last_motion, motion = motion, linear_motion
-        if is_out(goal, motion):
-            extreme.outcome = OPEN
-            break
+        else:
+            continue
+        goes_on = not change_faces(geometry, motion, work) and goes_on
 
 
 @entry
@@ -283,14 +256,49 @@ def find_play(geometry: Geometry, goals: Rows[Goal], extremes: Rows[Extreme], wo
     write_start(geometry, work)
     for i in range(len(goals)):
         goal, extreme = goals[i], extremes[i]
-        for pair in range(len(work.faces)):
-            work.faces[pair] = work.start_faces[pair]
+        copy_faces(work.start_faces, work.faces)
         write_rows(geometry, START, work)
         write_trust_region(work, math.inf)
         find_linear(goal, work.rows, work.bounds, work.program, extreme)
+        extreme.outcome, extreme.value = NOT_FOUND, -goal.sign * math.inf
+        note_extreme(goal, START, UNFINISHED, extreme)
         if extreme.linear_outcome == OPEN and travels_without_end(work):
-            extreme.outcome = OPEN
-        else:
-            climb(geometry, goal, work, extreme)
+            note_open(goal, extreme)
+            continue
+        climb(geometry, goal, START, work, extreme)
+        if extreme.outcome == REACHED and start_beyond_others(geometry, extreme, work):
+            climb(geometry, goal, START, work, extreme)
+
+
+@entry
+def find_play_from(
+    geometry: Geometry,
+    goals: Rows[Goal],
+    extremes: Rows[Extreme],
+    positions: FloatArray,
+    quaternions: FloatArray,
+    work: PlayWorkspace,
+) -> None:
+    """Search once more for each goal whose extreme is not as far as one of other poses beyond all points, from there.
+
+    Parameters
+    ----------
+    geometry, goals, extremes, work
+        As `find_play` left them.
+    positions, quaternions
+        The poses, (n, 3) lengths of the scene and (n, 4).
+    """
+    for i in range(len(goals)):
+        goal, extreme = goals[i], extremes[i]
         if extreme.outcome == OPEN:
-            extreme.value = goal.sign * math.inf
+            continue
+        best, farthest = START, goal.sign * extreme.value + TOUCHES
+        for k in range(len(positions)):
+            q = quaternions[k]
+            motion = vector_from(positions[k]), (q[0], q[1], q[2], q[3])
+            value = value_at(goal, motion)
+            if value > farthest:
+                best, farthest = motion, value
+        if farthest > goal.sign * extreme.value + TOUCHES:
+            write_farthest_faces(geometry, best, work)
+            climb(geometry, goal, best, work, extreme)

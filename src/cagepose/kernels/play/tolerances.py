@@ -16,6 +16,8 @@ SAME_ROW = 1e-7
 """A row that differs by less from one that is taken, or from a sum of such, says nothing new."""
 PRICELESS = 1e-9
 """Of the slope. What a gap must be worth, to limit an end, for each length that it grows."""
+STATIONARY = 1e-6
+"""Of the slope: an end is one if the limiting rows hold all but this. Flat tops are known to 1e-7."""
 
 FIRST_RADIUS = 0.3
 """Radians, and length: the linear rows say little beyond."""

@@ -1,0 +1,182 @@
+"""Ends of the play against an oracle of its own: no point inside, stationary, none passed by what is known to go on."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections import Counter
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from scipy.optimize import nnls
+from scipy.spatial.transform import Rotation
+
+from audit.families import make_case
+from caged_scenes import LOADS, adversarial_scene, caged_scene
+from cagepose import Box, Cage, Object, Play, Pose, Scene, SceneError, play
+from cagepose.studies.cage_verdict import search_way_out
+from cagepose.studies.play import PlayEnd
+from cagepose.studies.play_frame import FREEDOMS, PlayFrame
+
+MM = 1e-3
+TOUCHES, STATIONARY = 1e-8, 1e-4
+"""Lengths of the scene, and of the slope."""
+FAMILIES = ("near-contact", "grid", "needle", "wedge", "twins", "block", "slot", "stopped-plate")
+
+
+def scenes(n_each: int) -> Iterator[Scene]:
+    """Caged scenes, scenes with points at edges, and loose, symmetric, slim, wedged and pinched ones."""
+    for draw in (caged_scene, adversarial_scene):
+        rng = np.random.default_rng(21)
+        for _ in range(n_each):
+            while True:
+                try:
+                    yield draw(rng)
+                except SceneError:  # a point of one box starts inside another
+                    continue
+                break
+    for family in FAMILIES:
+        for index in range(n_each):
+            yield make_case(family, index, 21).scene
+
+
+def ends_of(found: Play) -> Iterator[tuple[str, float, PlayEnd]]:
+    for name, ends in found.freedoms.items():
+        yield name, -1.0, ends.low
+        yield name, 1.0, ends.high
+
+
+class Start:
+    """A scene in the cage's axes, lengths of the scene: gaps and values at any pose, and how they change."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.axes = scene.cage.pose_world_cage.rotation
+        points = scene.cage.points_world()
+        self.middle = points.mean(axis=0)
+        self.length_m = float(np.linalg.norm(points - self.middle, axis=1).max())
+        self.points = (points - self.middle) @ self.axes / self.length_m
+        self.pose = scene.object.pose_world_object
+
+    def gaps(self, pose: Pose) -> tuple[np.ndarray, np.ndarray]:
+        """Gaps of all points to the six faces of all boxes, (n, 6), and how a twist lessens them, (n, 6, 6).
+
+        The twist is about the object's origin.
+        """
+        turn = self.axes.T @ pose.rotation
+        origin = self.axes.T @ (pose.position_m - self.middle) / self.length_m
+        gaps, rows = [], []
+        for box in self.scene.object.boxes:
+            columns = turn @ box.pose_object_box.rotation
+            center = origin + turn @ box.pose_object_box.position_m / self.length_m
+            normals = np.concatenate([columns.T, -columns.T])
+            half = np.tile(box.size_m / 2 / self.length_m, 2)
+            gaps.append((self.points - center) @ normals.T - half)
+            arms = np.broadcast_to((self.points - origin)[:, None], (len(self.points), 6, 3))
+            rows.append(np.concatenate([np.broadcast_to(normals, arms.shape), np.cross(arms, normals)], axis=2))
+        return np.concatenate(gaps), np.concatenate(rows)
+
+    def value(self, pose: Pose, name: str) -> tuple[float, np.ndarray]:
+        """The value of a freedom and its rate with the twist, (6,)."""
+        shift = self.axes.T @ (pose.position_m - self.pose.position_m) / self.length_m
+        turn = self.axes.T @ pose.rotation @ self.pose.rotation.T @ self.axes
+        yaw, roll = math.atan2(turn[1, 0], turn[0, 0]), math.atan2(turn[2, 1], turn[2, 2])
+        pitch = math.asin(max(-1.0, min(1.0, -turn[2, 0])))
+        if name in "xyz":
+            return float(shift["xyz".index(name)]), np.eye(6)["xyz".index(name)]
+        sine, cosine = math.sin(yaw), math.cos(yaw)
+        value, rate = {
+            "yaw": (yaw, (cosine * math.tan(pitch), sine * math.tan(pitch), 1.0)),
+            "pitch": (pitch, (-sine, cosine, 0.0)),
+            "roll": (roll, (cosine / math.cos(pitch), sine / math.cos(pitch), 0.0)),
+        }[name]
+        return value, np.array([0.0, 0.0, 0.0, *rate])
+
+    def unit(self, name: str) -> float:
+        return self.length_m if name in "xyz" else 1.0
+
+
+def missing(gaps: np.ndarray, rows: np.ndarray, slope: np.ndarray) -> float:
+    """What pushes of the touching points cannot hold of a slope, part of it (Karush, Kuhn, Tucker).
+
+    A point at an edge need only stay beyond one of its faces; every choice must hold the slope.
+    """
+    touching = np.flatnonzero(gaps.max(axis=1) < TOUCHES)
+    choices = [np.flatnonzero(gaps[point] > -TOUCHES) for point in touching]
+    slope = slope / np.linalg.norm(slope)
+    if not len(touching):
+        return 1.0
+    taken = itertools.islice(itertools.product(*choices), 64)
+    return max(float(nnls(rows[touching, list(faces)].T, slope)[1]) for faces in taken)
+
+
+def test_what_is_called_an_end_is_outside_and_stationary_and_the_start_lies_between_ends(cases):
+    n_ends = Counter[str]()
+    for scene in scenes(cases(10, 60)):
+        found, start = play(scene, search_s=0.0), Start(scene)
+        deepest = min(0.0, float(start.gaps(start.pose)[0].max(axis=1).min()))
+        for name, sign, end in ends_of(found):
+            n_ends[end.status] += 1
+            assert (end.exact is not None) == (end.status in ("local", "proven"))
+            if end.reached is None:
+                assert end.status == "open"
+                continue
+            assert sign * end.reached >= 0.0
+            assert end.pose_world_object is not None
+            value, slope = start.value(end.pose_world_object, name)
+            assert start.unit(name) * value == pytest.approx(end.reached, abs=1e-9 * start.unit(name))
+            gaps, rows = start.gaps(end.pose_world_object)
+            assert gaps.max(axis=1).min() >= deepest - 1e-11
+            if end.exact is not None:
+                assert missing(gaps, rows, sign * slope) < STATIONARY, (name, end)
+    assert n_ends["local"] + n_ends["proven"] > 8 * n_ends["not converged"]
+
+
+def test_no_end_is_nearer_than_the_pose_of_another():
+    """Each is searched for from the farthest of the others, too."""
+    for scene in scenes(6):
+        found, start = play(scene, search_s=0.0), Start(scene)
+        poses = [end.pose_world_object for *_, end in ends_of(found) if end.pose_world_object is not None]
+        for name, sign, end in ends_of(found):
+            if end.reached is not None:
+                farthest = max(sign * start.value(pose, name)[0] for pose in poses)
+                assert farthest <= sign * end.reached / start.unit(name) + 2e-8 or end.status == "not converged"
+
+
+def test_trees_of_free_motions_pass_no_proven_end_and_few_local_ones(cases):
+    """A proven end is passed by a hundredth at most; that any local one is passed at all is why they are so named."""
+    n_ends, n_passed = Counter[str](), Counter[str]()
+    for scene in scenes(cases(8, 60)):
+        found, frame = play(scene, search_s=0.0), PlayFrame(scene)
+        stations, n_stations, _, _ = search_way_out(scene, frame, 0.005)
+        positions, turns = stations["position"][:n_stations], stations["quaternion"][:n_stations, [1, 2, 3, 0]]
+        turned = Rotation.from_quat(turns)
+        origin = np.array(frame.pose_frame_object.position_m)
+        shifts = turned.apply(origin) + frame.length_m * positions - origin
+        yaw, pitch, roll = turned.as_euler("ZYX").T
+        values = dict(zip(FREEDOMS, (*shifts.T, roll, pitch, yaw), strict=True))
+        for name, sign, end in ends_of(found):
+            if end.reached is None:
+                continue
+            farthest, known = float((sign * values[name]).max()), sign * end.reached
+            n_ends[end.status] += 1
+            n_passed[end.status] += farthest > 1.001 * known + 1e-9
+            if end.certified is not None:
+                assert farthest <= sign * end.certified
+                assert (end.status == "proven") == (sign * end.certified <= 1.01 * known)
+    assert n_ends["proven"] > 20
+    assert n_passed["proven"] == 0
+    assert n_passed["local"] < 0.02 * n_ends["local"]
+
+
+def test_a_point_at_an_edge_lets_the_object_by_on_either_side():
+    """A cube of 20 mm with 1 mm of play all around, and one more point on its edge at x = y = 10: by hand, it may go
+    1 mm along x past the face that looks along y, and 1 mm along y past the other, not both."""
+    offsets = [(i, j) for i in (-8.0, 8.0) for j in (-8.0, 8.0)]
+    around = [np.roll((side * 11.0, *offset), axis) for axis in range(3) for side in (-1, 1) for offset in offsets]
+    cube = Object([Box(np.full(3, 20 * MM))])
+    found = play(Scene(cube, Cage(np.array([*around, (10.0, 10.0, 0.0)]) * MM), LOADS), search_s=0.0)
+    for name in ("x", "y"):
+        assert found.freedoms[name].high.exact == pytest.approx(1 * MM, rel=1e-3)
+        assert found.freedoms[name].low.exact == pytest.approx(-1 * MM, rel=1e-3)
