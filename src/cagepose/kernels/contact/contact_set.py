@@ -38,7 +38,8 @@ class ContactRow:
     gap
         Distance from the plane of the face, below zero inside, metres.
     group
-        The first row of the same point and box; -1: flush faces of another box say all that this one does.
+        The first row of the same point and box; -1: the row does not count, as flush faces of another box, or what is
+        locked, say all that it does.
     directions, arm
         Outward unit normal and two tangents, rows, and the point as seen from the centre of gravity, in the world.
     columns

@@ -24,9 +24,10 @@ from cagepose.kernels.contact.self_stress import OPPOSED, carry_by_locked, take_
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
-HELD_WITHOUT_FRICTION, HELD_BY_FRICTION, UNSOLVED, MOVES = 0, 1, 2, 3
+HELD_WITHOUT_FRICTION, HELD_BY_FRICTION, UNSOLVED, MOVES, MOVES_SOMEHOW = 0, 1, 2, 3, 4
 """What the contacts do, from the least to the most that moves. Of a balance, MOVES says that there is none, and
-UNSOLVED that there are too many choices of faces to ask them all, and that those which were asked hold."""
+UNSOLVED that there are too many choices of faces to ask them all, and that those which were asked hold. Of an onset
+MOVES_SOMEHOW says that there is no balance, and that how the object begins to move was not found."""
 RESERVE = 1e-6
 """A balance that needs all but this part of the friction is at its limit."""
 AT_REST, ON_THE_WAY = 1.0, 0.1

@@ -14,7 +14,7 @@ from cagepose.kernels.contact.edges import CHOICES_LIMIT, ONLY_CARRYING, keep_ch
 from cagepose.kernels.contact.equilibrium import (
     AT_REST,
     MOVES,
-    UNSOLVED,
+    MOVES_SOMEHOW,
     equilibrium,
     equilibrium_with_faces,
 )
@@ -39,7 +39,7 @@ def motion_with_faces(
 
 @kernel
 def freest_motion(contacts: ContactSet, friction: float, work: ContactWorkspace) -> int:
-    """Go on from `equilibrium` where it says MOVES: find the motion that begins; UNSOLVED: none was found.
+    """Go on from `equilibrium` where it says MOVES: find the motion that begins; MOVES_SOMEHOW: none was found.
 
     Filled: which faces are chosen, their forces, and in ``work`` the motion y and the residual.
     """
@@ -57,10 +57,10 @@ def freest_motion(contacts: ContactSet, friction: float, work: ContactWorkspace)
             break
         code = equilibrium_with_faces(contacts, friction, AT_REST, work.load, work.load_terms, work)
     else:
-        return UNSOLVED
+        return MOVES_SOMEHOW
     return_to_kept(contacts)
     work.residual = left
-    return MOVES if fastest > 0.0 else UNSOLVED
+    return MOVES if fastest > 0.0 else MOVES_SOMEHOW
 
 
 @kernel

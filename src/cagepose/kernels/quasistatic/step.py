@@ -17,7 +17,13 @@ from cagepose.kernels.algebra.vector import Vector, minus, norm, vector_from
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactSet, find_contacts, stays_on_face
 from cagepose.kernels.contact.curvature import write_curvature
-from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, HELD_WITHOUT_FRICTION, MOVES, UNSOLVED
+from cagepose.kernels.contact.equilibrium import (
+    HELD_BY_FRICTION,
+    HELD_WITHOUT_FRICTION,
+    MOVES,
+    MOVES_SOMEHOW,
+    UNSOLVED,
+)
 from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, write_load
 from cagepose.kernels.contact.onset import find_sticking, onset
 from cagepose.kernels.native.kernel import kernel
@@ -37,6 +43,7 @@ from cagepose.kernels.quasistatic.implicit_step import curvature_along, implicit
 from cagepose.kernels.quasistatic.projection import ON_FACE, keep_stopped
 from cagepose.kernels.quasistatic.rest_on_the_way import first_rest, is_held_on_the_way
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
+from cagepose.kernels.stability.strong import OTHER_FOUND, other_onset
 
 RULE_NAMES = ("free", "slide", "pivot", "held", "stalled")
 FREE, SLIDE, PIVOT, HELD, STUCK = 0, 1, 2, 3, 4
@@ -85,6 +92,24 @@ def carried_by(contacts: ContactSet) -> int:
         if stays_on_face(contacts, i):
             rule = max(rule, PIVOT if contacts.states[i].is_sticking else SLIDE)
     return rule
+
+
+@kernel
+def impending_motion(setting: Setting, frame: Frame, work: QuasistaticWorkspace) -> int:
+    """Return the code of the onset at the pose, with the motion in the solver.
+
+    Where Newton's method does not find it, it is looked for among all contact modes, as another onset beside a rest is.
+    """
+    contacts, solver, proof = work.contacts, work.scratch[0].solver, work.proof
+    code = onset(contacts, frame, setting.friction, solver)
+    if code != MOVES_SOMEHOW or setting.friction == 0.0:
+        return code
+    tree = proof.scratch[0].tree
+    if other_onset(contacts, setting.friction, solver.load, tree, solver.newton, proof.system) != OTHER_FOUND:
+        return MOVES_SOMEHOW
+    for k in range(6):
+        solver.y[k] = tree.y[k]
+    return MOVES
 
 
 @kernel
@@ -205,12 +230,12 @@ def next_step(
     write_state(work.trace.rows[step], state)
 
     # What happens from rest at this pose? A rest is put on its faces, and looked at again.
-    code = UNSOLVED
+    code, is_rest = UNSOLVED, False
     for _ in range(REFINEMENTS + 1):
         note_touching(work)
         frame = frame_at(setting.body, quaternion)
         solver.load_terms = write_load(setting.load, quaternion, frame, solver.load)
-        code = onset(work.contacts, frame, setting.friction, solver) if fits else UNSOLVED
+        code = impending_motion(setting, frame, work) if fits else UNSOLVED
         keep_stopped(solver.stopped, position, frame, work.path.constraints)
         is_rest = code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
         if not is_rest or n_refined == REFINEMENTS or gap_left(work.contacts) <= ON_FACE * setting.size_m:
@@ -220,8 +245,8 @@ def next_step(
         n_refined += 1
     here = State(position, quaternion, state.turn_step_rad, state.n_still, n_refined)
     if code != MOVES:
-        write_step(work, step, STUCK if code == UNSOLVED else HELD, NONE, position, quaternion)
-        return (STALLED if code == UNSOLVED else RESTS), here, fits
+        write_step(work, step, HELD if is_rest else STUCK, NONE, position, quaternion)
+        return (RESTS if is_rest else STALLED), here, fits
 
     # Which way, and how far?
     twist = next_twist(setting, quaternion, frame_at(setting.body, quaternion), state.turn_step_rad, work)

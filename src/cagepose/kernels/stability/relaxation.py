@@ -41,9 +41,9 @@ CUT_LIMIT = 96
 N_COLUMNS = 6 * CONTACT_LIMIT + CUT_LIMIT
 ROUNDS = 12
 """Twists that are looked for at one node; then it is divided, which tells more."""
-GENERATOR_LIMIT = 80
+MOST_GENERATORS = 80
 
-AT_REST = 5e-7
+STANDS_STILL = 5e-7
 """Sine of the angle that no motion has above those across the load: rest. One of v loads has at least v."""
 ROUNDING = 1e-15
 """In lengths of the terms of the residual."""
@@ -57,7 +57,7 @@ HARDLY_DRIVEN = 1e-10
 """The same where no generator helps any more, since they nearly depend on each other: what the proof makes of such a
 twist may still be small enough."""
 PROVEN = 5e-13
-"""The same of z of the proof: with AT_REST, it leaves no motion above 1e-6 loads while forces add up to one load."""
+"""The same of z of the proof: with STANDS_STILL it leaves no motion above 1e-6 loads where forces add up to a load."""
 NO_CUT = 1e-6
 """In lengths of the motion: what forces miss of it by less, they make."""
 
@@ -104,8 +104,8 @@ class Relaxation:
     edges: Annotated[FloatArray, CONTACT_LIMIT, 2, 2]
     motion: PassiveSet
     forces: PassiveSet
-    places: Annotated[IntArray, GENERATOR_LIMIT]
-    directions: Annotated[FloatArray, GENERATOR_LIMIT, 2]
+    places: Annotated[IntArray, MOST_GENERATORS]
+    directions: Annotated[FloatArray, MOST_GENERATORS, 2]
     generator: ScaledVector
     aimed: ScaledVector
     n_velocities: int
@@ -236,7 +236,7 @@ def add_generator(friction: float, number: int, work: Relaxation) -> int:
         along = inner(work.wrenches[place, 0], passive.residual, WRENCH) + used * along
         if along > most:
             best, most = place, along
-    if best == -2 or number == GENERATOR_LIMIT:
+    if best == -2 or number == MOST_GENERATORS:
         return -1
     work.places[number] = best
     for k in range(6):
@@ -358,7 +358,7 @@ def is_impossible(friction: float, work: Relaxation, system: System) -> bool:
         system.right_side[k] = work.load[k]
     for _ in range(ROUNDS):
         left = nonnegative_least_squares(system, work.n_velocities + work.n_cuts, work.motion)
-        if left + ROUNDING * rounding_scale(work.motion) <= AT_REST:
+        if left + ROUNDING * rounding_scale(work.motion) <= STANDS_STILL:
             if is_proven(friction, work):
                 return True
             break
