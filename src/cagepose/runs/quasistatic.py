@@ -5,14 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from cagepose.kernels.quasistatic.run import QuasistaticRules
+from cagepose.kernels.quasistatic.step import RULE_NAMES, STUCK
 from cagepose.model.scene import Scene
 from cagepose.runs.run import PhaseRun
-from cagepose.runs.warnings_of_runs import edge_warnings, proof_warnings, seam_warnings, weight_warnings
+from cagepose.runs.warnings_of_runs import (
+    edge_warnings,
+    proof_warnings,
+    seam_warnings,
+    unrun_warnings,
+    weight_warnings,
+)
 
 TURN_STEP_RAD = 0.02
 """Longest turn in one step: the path is wrong by about this fraction of it (docs/theory/mechanics)."""
 STEP_LIMIT = 3000
 """Steps in a phase after which a run is named "limit"."""
+
+
+REMEDY = "change the friction coefficient by a hundredth, or move a point or the start by a millionth of the size"
+"""Of a run that failed: most hang on contacts that fit exactly."""
 
 
 def quasistatic_rules(_scene: Scene) -> QuasistaticRules:
@@ -26,4 +37,20 @@ def quasistatic_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: flo
     yield from weight_warnings(scene, len(phases))
     for phase in phases:
         yield from edge_warnings(phase)
+    yield from _failure_warnings(phases[-1])
+    yield from unrun_warnings(scene, phases)
     yield from proof_warnings(phases, friction)
+
+
+def _failure_warnings(phase: PhaseRun) -> Iterator[str]:
+    """Why a phase failed, with which contacts, and what to change."""
+    touching = ", ".join(dict.fromkeys(contact.point for contact in phase.contacts)) or "no point"
+    if phase.verdict == "limit":
+        yield f"{phase.name}: it still moved after {STEP_LIMIT} steps, touching {touching}; {REMEDY}"
+    elif phase.verdict == "stalled" and phase.events and phase.events[-1].rule == RULE_NAMES[STUCK]:
+        yield (
+            f"{phase.name}: touching {touching}, no motion that obeys Coulomb's law was found, nor a rest"
+            f" ({phase.proof.reason}); {REMEDY}"
+        )
+    elif phase.verdict == "stalled":
+        yield f"{phase.name}: no step got on that keeps the contacts of {touching}; {REMEDY}"

@@ -11,7 +11,7 @@ from cagepose.kernels.stepwise.slip import SlipRules
 from cagepose.kernels.stepwise.support import SupportRules
 from cagepose.model.scene import Scene
 from cagepose.runs.run import Note, PhaseRun
-from cagepose.runs.warnings_of_runs import edge_warnings, proof_warnings, seam_warnings
+from cagepose.runs.warnings_of_runs import edge_warnings, proof_warnings, seam_warnings, unrun_warnings
 
 BLOCKED_ANGLE_RAD = math.pi / 10000.0
 """A turn that ends within 0.018 deg is blocked (R3)."""
@@ -77,4 +77,5 @@ def stepwise_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: float)
             f"turned by {math.degrees(largest):.1f} deg about one axis from the start; the paper's rules are meant for"
             " at most 45 deg (assumption E)"
         )
+    yield from unrun_warnings(scene, phases)
     yield from proof_warnings(phases, friction)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from cagepose.model.scene import Scene
 from cagepose.runs.load_scaling import WEIGHT_BESIDE_FORCE, scaled_load
-from cagepose.runs.run import PhaseRun
+from cagepose.runs.run import FAILURES, PhaseRun
 
 
 def seam_warnings(scene: Scene) -> Iterator[str]:
@@ -30,6 +30,13 @@ def weight_warnings(scene: Scene, n_phases: int) -> Iterator[str]:
                 f"{load.name}: gravity and force act together, but mass or magnitude is not given: the force dominates"
                 f" (weight = {WEIGHT_BESIDE_FORCE:g} of it)"
             )
+
+
+def unrun_warnings(scene: Scene, phases: Sequence[PhaseRun]) -> Iterator[str]:
+    """Which phases a run that failed has left out."""
+    left_out = [load.name for load in scene.loads[len(phases) :]]
+    if phases[-1].verdict in FAILURES and left_out:
+        yield f"{phases[-1].name}: the run failed here, so not run: {', '.join(left_out)}"
 
 
 def proof_warnings(phases: Sequence[PhaseRun], friction: float) -> Iterator[str]:
