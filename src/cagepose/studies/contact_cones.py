@@ -1,4 +1,4 @@
-"""Linear programs over all forces in round friction cones: `ContactCones`, by cuts (5.26).
+"""Linear programs over all forces in round friction cones: `ContactCones`, by cuts (5.24).
 
 A linear function of forces that balance a load is greatest where its dual, over the six numbers of a motion, is least;
 each ray of a cone is a row there. Rays are made when a motion asks for them, as in `kernels.contact.cone`: the one that

@@ -1,4 +1,4 @@
-"""How equally stiff contacts share a load: the least squares of forces in round cones that balance it (5.27)."""
+"""How equally stiff contacts share a load: the least squares of forces in round cones that balance it (5.25)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How large an extra force, or moment, contacts balance whichever way it points: `least_extra_load` (5.25).
+"""How large an extra force, or moment, contacts balance whichever way it points: `least_extra_load` (5.23).
 
 The extra loads w + u that the contacts balance are a convex set around u = 0. Its distance from there to its boundary
 is one over the distance of the farthest point of its polar set, and that is the image of a set of motions: those along

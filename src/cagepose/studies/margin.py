@@ -71,7 +71,7 @@ class Margin:
         Whichever way an extra force at the centre of gravity (an extra moment) of less than this points, forces inside
         the friction cones balance it beside the load: certain. Infinite: however large it is.
     force_below_n, moment_below_nm
-        One of this much is not balanced (to 1e-5 of it). At most a thousandth above the certain value (5.25).
+        One of this much is not balanced (to 1e-5 of it). At most a thousandth above the certain value (5.23).
     force_direction_world, moment_direction_world
         Which one, unit vectors (3,); zero where there is none.
     contacts
