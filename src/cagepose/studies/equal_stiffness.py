@@ -8,7 +8,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.studies.contact_cones import ContactCones
 
 MOST_STEPS = 200
-"""Of Newton's method; ten are usual, and more where the load lies at the limit of friction."""
+"""Of Newton's method: more are needed the nearer the load lies to what the contacts cannot balance."""
 SOLVED = 1e-14
 """Of the load: so little of it may be left. Rounding ends most searches first."""
 DAMPING = 0.1

@@ -23,8 +23,8 @@ from cagepose.studies.contact_cones import ConeProgram
 TIGHT = 1e-3
 """Of the distance: the bounds from below and above may differ by so much."""
 MOST_PLANES = 400
-"""Then the bound from below is certain, but less tight. About 50 are usual, and 150 on a floor that is rough alike all
-ways around."""
+"""Then the bound from below is certain, but less tight. Blocks among random points took at most 13, and a connector on
+a level floor, which slides alike all ways around, 116."""
 NOTHING, WITHOUT_BOUND = 1e-8, 1e5
 """In lengths of the load: less than the one is nothing, for that much is left by forces that balance; forces of more
 than the other come of surfaces that are parallel but for rounding (`OPPOSED` of the kernels)."""
