@@ -20,7 +20,7 @@ from cagepose.model.checks import FloatArray
 FIRST_RAYS = 8
 """Of each cone, evenly spread: cuts bring the others."""
 MOST_ROUNDS = 40
-"""Of cuts for one program; two in the median of 98 random blocks. After the last one the rays still lie in the cones."""
+"""Of cuts for one program; two in the median of 98 random blocks. After the last the rays lie in the cones, too."""
 
 
 class ContactCones(NamedTuple):
