@@ -50,6 +50,9 @@ if TYPE_CHECKING:
     from cagepose.studies.comparison import Parting as Parting
     from cagepose.studies.comparison import Variant as Variant
     from cagepose.studies.comparison import compare as compare
+    from cagepose.studies.margin import ContactMargin as ContactMargin
+    from cagepose.studies.margin import Margin as Margin
+    from cagepose.studies.margin import margin as margin
     from cagepose.studies.play import Play as Play
     from cagepose.studies.play import play as play
 
@@ -78,6 +81,7 @@ _HOMES = {
     "cagepose.runs.solve": ("run",),
     "cagepose.runs.variation": ("Variation",),
     "cagepose.studies.comparison": ("Comparison", "Parting", "Variant", "compare"),
+    "cagepose.studies.margin": ("ContactMargin", "Margin", "margin"),
     "cagepose.studies.play": ("Play", "play"),
     "cagepose.files.run_file": ("load_run", "save_run"),
     "cagepose.files.scene_file": ("load_scene",),
@@ -91,12 +95,14 @@ __all__ = [
     "CageposeError",
     "Comparison",
     "Contact",
+    "ContactMargin",
     "Event",
     "Force",
     "Frame",
     "FreeMotion",
     "KernelsError",
     "Load",
+    "Margin",
     "MissingExtraError",
     "Motion",
     "Object",
@@ -119,6 +125,7 @@ __all__ = [
     "compare",
     "load_run",
     "load_scene",
+    "margin",
     "play",
     "run",
     "run_many",

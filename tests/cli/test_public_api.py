@@ -17,10 +17,12 @@ SOURCE = Path(cagepose.__file__)
 def test_all_names_every_public_class_and_function_once() -> None:
     assert sorted(set(cagepose.__all__)) == sorted(cagepose.__all__)
     assert set(cagepose.__all__) == {
-        *("Adjustable", "Box", "Cage", "CageposeError", "Comparison", "Contact", "Event", "Force", "Frame"),
+        *("Adjustable", "Box", "Cage", "CageposeError", "Comparison", "Contact", "ContactMargin", "Event"),
+        *("Force", "Frame"),
         *(
             "FreeMotion",
             "Load",
+            "Margin",
             "MissingExtraError",
             "Motion",
             "Object",
@@ -34,7 +36,7 @@ def test_all_names_every_public_class_and_function_once() -> None:
             "Run",
         ),
         *("RunFileError", "Runs", "Scene", "SceneError", "SceneFileError", "Tolerances", "Variant", "Variation"),
-        *("__version__", "compare", "load_run", "load_scene", "play", "run", "run_many", "save_run"),
+        *("__version__", "compare", "load_run", "load_scene", "margin", "play", "run", "run_many", "save_run"),
         "with_critical_friction",
     }
 

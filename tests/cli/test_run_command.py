@@ -348,3 +348,13 @@ def test_a_saved_run_is_not_mistaken_for_a_scene(command: Command, sample: str) 
     assert "exact: is no known key" in answer.err
     with pytest.raises(RunFileError, match="is not JSON"):
         load_run(sample)
+
+
+def test_the_margin_stands_in_the_table_and_in_the_document(command: Command) -> None:
+    ladder = str(SCENES / "ladder.yaml")
+    shown = summary(command("run", ladder, "--margin").out)
+    assert shown["margin of force"].startswith("0.02242 of the load; the least that is not balanced is along (0.999")
+    assert shown["margin of moment"].startswith("22.42 mm times the load")
+    assert "foot left 0.4652 (+ 0.1243 sideways; 0.1975 to 0.7543)" in " ".join(shown["equally stiff"].split())
+    proof = json.loads(command("run", ladder, "--margin", "--json").out)["phases"][0]["proof"]
+    assert proof["margin"]["force"]["certain"] == pytest.approx(0.0224, abs=1e-4)

@@ -10,15 +10,24 @@ from rich.table import Table
 from rich.text import Text
 
 from cagepose.cli.console import print_all
+from cagepose.cli.margin_report import margin_lines
 from cagepose.errors import printable
 from cagepose.files.units import LengthUnit
 from cagepose.files.words import LengthWords, components, line_of, short
 from cagepose.runs.run import AT_REST, FAILURES, Event, PhaseRun, Run
+from cagepose.studies.margin import Margin
 
 
-def print_report(run: Run, unit: LengthUnit, notes: Sequence[str] = ()) -> None:
-    """Print ``run`` to standard output, lengths in ``unit``; ``notes`` stand below the warnings."""
+def print_report(
+    run: Run, unit: LengthUnit, notes: Sequence[str] = (), margins: Sequence[Margin | None] | None = None
+) -> None:
+    """Print ``run`` to standard output, lengths in ``unit``; ``notes`` stand below the warnings.
+
+    Of ``margins``, one for each phase, the last is shown; None: they were not asked for.
+    """
     writer = _Writer(run, unit)
+    if margins is not None:
+        writer.margin = margin_lines(margins[-1], unit)
     warnings = [Text(f"warning: {printable(warning)}", style="yellow") for warning in run.warnings]
     print_all(writer.title(), "", writer.events(), "", writer.summary(), *warnings, *(Text(note) for note in notes))
 
@@ -27,6 +36,7 @@ class _Writer:
     def __init__(self, run: Run, unit: LengthUnit) -> None:
         self.run = run
         self.words = LengthWords(unit, run.scene.size_m)
+        self.margin: list[tuple[str, str]] = []
 
     def title(self) -> Text:
         solve_ms = self.run.solve_s * 1000.0
@@ -71,6 +81,7 @@ class _Writer:
             ("proof", _proof(run)),
             ("onset", self._onset()),
             ("critical friction", _critical(run)),
+            *self.margin,
         ):
             if not value:
                 continue

@@ -24,6 +24,9 @@ def run_command(
     critical_friction: Annotated[
         bool, Switch, Parameter(help="Find the least coefficient of friction that each rest needs.")
     ] = False,
+    margin: Annotated[
+        bool, Switch, Parameter(help="Find what each rest balances beside its load, and what each contact may carry.")
+    ] = False,
     check_tolerance: Annotated[
         bool, Switch, Parameter(help="Run again with other touch tolerances and warn if the verdict changes.")
     ] = False,
@@ -48,6 +51,11 @@ def run_command(
         result = replace(result, warnings=(*result.warnings, *changes))
         if not changes:
             notes.append("same verdict with a ten times larger and a ten times smaller touch tolerance")
+    margins = None
+    if margin:
+        from cagepose.studies.margin import margin as margin_of
+
+        margins = [margin_of(result, phase) for phase in range(len(result.phases))]
     code = 1 if result.failed else 0
     if out is not None:
         from cagepose.files.run_file import save_run
@@ -61,11 +69,11 @@ def run_command(
         from cagepose.files.document import run_document
         from cagepose.files.write import json_text
 
-        sys.stdout.write(json_text(run_document(result, scene_file.length_unit)))
+        sys.stdout.write(json_text(run_document(result, scene_file.length_unit, margins)))
     else:
         from cagepose.cli.report import print_report
 
-        print_report(result, scene_file.length_unit, notes)
+        print_report(result, scene_file.length_unit, notes, margins)
     return code
 
 

@@ -3,22 +3,33 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
+from cagepose.files.margin_document import margin_document
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.proof import FreeMotion, Proof
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
+from cagepose.studies.margin import Margin
 
 FORMAT_VERSION = 2
 """Of the document and of saved runs. Counts up when a reader of the old form would misread the new one."""
 
 
-def run_document(run: Run, length_unit: LengthUnit = "mm") -> dict[str, Any]:
-    """Return the document: only dict, list, str, int, finite float, bool and None."""
+def run_document(
+    run: Run, length_unit: LengthUnit = "mm", margins: Sequence[Margin | None] | None = None
+) -> dict[str, Any]:
+    """Return the document: only dict, list, str, int, finite float, bool and None.
+
+    ``margins``, one for each phase, stand in the proofs; None: there is no such key.
+    """
     writer = _Writer(run.scene, length_unit)
+    phases = [writer.phase(phase) for phase in run.phases]
+    for phase, margin in zip(phases, margins or (), strict=False):
+        phase["proof"]["margin"] = None if margin is None else margin_document(margin, length_unit)
     return {
         "version": FORMAT_VERSION,
         "scene": run.scene.name,
@@ -27,7 +38,7 @@ def run_document(run: Run, length_unit: LengthUnit = "mm") -> dict[str, Any]:
         "verdict": run.verdict,
         "warnings": list(run.warnings),
         "pose": writer.pose(run.pose),
-        "phases": [writer.phase(phase) for phase in run.phases],
+        "phases": phases,
         "timing_s": {"solve": run.solve_s},
     }
 

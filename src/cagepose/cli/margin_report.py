@@ -1,0 +1,42 @@
+"""A margin as lines of the table of `cagepose run`."""
+
+from __future__ import annotations
+
+import math
+
+from cagepose.files.units import LengthUnit, from_metres
+from cagepose.files.words import components
+from cagepose.model.checks import FloatArray
+from cagepose.studies.margin import ContactMargin, Margin
+
+SHOWN = 1e-9
+"""Of a normal force: less than that sideways is rounding."""
+
+
+def margin_lines(margin: Margin | None, unit: LengthUnit) -> list[tuple[str, str]]:
+    """Return names and texts: the extra force, the extra moment, and what each contact may carry."""
+    if margin is None:
+        return [("margin", "none is known: no balance, or one by forces without bound")]
+    arm_unit = f"N {unit}" if margin.in_newtons else f"{unit} times the load"
+    moment = float(from_metres(margin.moment_nm, unit))
+    force_unit = "N" if margin.in_newtons else "of the load"
+    return [
+        ("margin of force", _extra(margin.force_n, force_unit, "along", margin.force_direction_world)),
+        ("margin of moment", _extra(moment, arm_unit, "about", margin.moment_direction_world)),
+        ("equally stiff", ", ".join(map(_carries, margin.contacts)) or "no contact"),
+    ]
+
+
+def _extra(certain: float, unit: str, preposition: str, direction: FloatArray) -> str:
+    if math.isinf(certain):
+        return "any is balanced"
+    least = f"{certain:.4g} {unit}" if certain else "none"
+    return f"{least}; the least that is not balanced is {preposition} ({components(direction)})"
+
+
+def _carries(contact: ContactMargin) -> str:
+    """``C1 0.25 (+ 0.05 sideways; 0 to 0.5 can be)``."""
+    sideways = math.hypot(*contact.equally_stiff_tangential_n)
+    beside = f"+ {sideways:.4g} sideways; " if sideways > SHOWN * contact.equally_stiff_n else ""
+    greatest = "any" if math.isinf(contact.greatest_n) else f"{contact.greatest_n:.4g}"
+    return f"{contact.point} {contact.equally_stiff_n:.4g} ({beside}{contact.least_n:.4g} to {greatest})"

@@ -1,0 +1,231 @@
+"""How far a rest is from giving way: `margin`, what its contacts balance beside the load and how they may share it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice, product
+
+import numpy as np
+
+from cagepose.kernels.contact.contact_set import SAME_NORMAL
+from cagepose.kernels.contact.edges import CHOICES_LIMIT
+from cagepose.model.checks import FloatArray
+from cagepose.runs.cases import dead_loads
+from cagepose.runs.load_scaling import scaled_load
+from cagepose.runs.methods import chosen_method
+from cagepose.runs.run import AT_REST, Contact, Run
+from cagepose.studies.contact_cones import (
+    ConeProgram,
+    ContactCones,
+    contact_cones,
+    greatest_normal_force,
+    least_normal_force,
+)
+from cagepose.studies.equal_stiffness import equally_stiff_forces
+from cagepose.studies.extra_load import NOTHING, WITHOUT_BOUND, ExtraLoad, least_extra_load
+
+UNBALANCED = 1e-7
+"""Of the load: forces that leave more do not balance it to first order. A rest leaves at most 1e-8."""
+CUT_FOR_BOUNDS, CUT_FOR_RANGES = 1e-6, 1e-9
+"""How closely rays follow the cones: bounds are certain however they do, and need three digits; ranges need more."""
+FORCES, MOMENTS = slice(0, 3), slice(3, 6)
+"""Of a wrench."""
+
+
+@dataclass(frozen=True, eq=False)
+class ContactMargin:
+    """What one contact may carry; newtons, or parts of the load, as in `Contact`.
+
+    Attributes
+    ----------
+    point, box
+        Names.
+    least_n, greatest_n
+        Of its normal force, over all forces that balance the load; the greatest is infinite where contacts can press
+        against each other without end, as in a wedge.
+    equally_stiff_n
+        Its normal force if all contacts are equally stiff, along the normal and across.
+    equally_stiff_tangential_n
+        Force across the normal on the object then, (3,), in the world.
+    """
+
+    point: str
+    box: str
+    least_n: float
+    greatest_n: float
+    equally_stiff_n: float
+    equally_stiff_tangential_n: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Margin:
+    """What the contacts of a rest can balance beside the load. That they can does not say that they must: see `Proof`.
+
+    Attributes
+    ----------
+    in_newtons
+        Whether forces are newtons and moments newton metres; else they are parts of the load, and moments times metres.
+    force_n, moment_nm
+        Whichever way an extra force at the centre of gravity (an extra moment) of less than this points, forces inside
+        the friction cones balance it beside the load: certain. Infinite: however large it is.
+    force_below_n, moment_below_nm
+        One of this much is not balanced (to 1e-5 of it). At most a thousandth above the certain value (5.23).
+    force_direction_world, moment_direction_world
+        Which one, unit vectors (3,); zero where there is none.
+    contacts
+        In the order of the phase's contacts, without flush faces that say the same.
+    """
+
+    in_newtons: bool
+    force_n: float
+    force_below_n: float
+    force_direction_world: FloatArray
+    moment_nm: float
+    moment_below_nm: float
+    moment_direction_world: FloatArray
+    contacts: tuple[ContactMargin, ...]
+
+
+def margin(run: Run, phase: int = -1) -> Margin | None:
+    """Say how large an extra force and moment a phase's end still balances, and what each contact may carry.
+
+    Returns None where the phase did not end in a balance; where contacts without play carry its load to second order,
+    by forces without bound; and where points on edges have more than 729 choices of faces.
+
+    Parameters
+    ----------
+    run
+        Of either method.
+    phase
+        Its number, from 0; the last one.
+
+    Raises
+    ------
+    IndexError
+        The run has no such phase.
+    """
+    number = range(len(run.phases))[phase]
+    ended = run.phases[number]
+    if ended.verdict not in AT_REST or ended.proof.verdict == "moves":
+        return None
+    contacts, groups = _faces(ended.contacts)
+    choices = list(islice(product(*groups), CHOICES_LIMIT + 1))
+    if len(choices) > CHOICES_LIMIT:
+        return None
+    cones = _cones(run, number, contacts)
+    load, size_n = _load(run, number, cones)
+    found = _Choices(cones, load, [_counting(len(contacts), choice) for choice in choices])
+    if not found.are_balanced:
+        return None
+    force, moment = found.least_extra_load(FORCES), found.least_extra_load(MOMENTS)
+    arm = size_n * cones.length_m
+    return Margin(
+        scaled_load(run.scene, run.scene.loads[number]).in_newtons,
+        size_n * force.certain,
+        size_n * force.found,
+        force.direction,
+        arm * moment.certain,
+        arm * moment.found,
+        moment.direction,
+        tuple(
+            ContactMargin(
+                contact.point, contact.box, size_n * least, size_n * greatest, float(size_n * share[0]), tangential
+            )
+            for contact, (least, greatest), share, tangential in zip(
+                contacts, found.ranges(), found.shares, size_n * found.tangential(), strict=True
+            )
+        ),
+    )
+
+
+def _faces(contacts: tuple[Contact, ...]) -> tuple[list[Contact], list[list[int]]]:
+    """Return the contacts that count, and groups of their numbers: those of one point on one box, of which one counts
+    at a time. Flush faces of another box that say nothing new are left out, as by `find_contacts`.
+    """
+    by_group: dict[tuple[str, str], list[Contact]] = {}
+    for contact in contacts:
+        by_group.setdefault((contact.point, contact.box), []).append(contact)
+    kept, groups = list[Contact](), list[list[int]]()
+    for group in by_group.values():
+        if all(_is_listed(contact, kept) for contact in group):
+            continue
+        groups.append(list(range(len(kept), len(kept) + len(group))))
+        kept += group
+    return kept, groups
+
+
+def _is_listed(contact: Contact, others: list[Contact]) -> bool:
+    return any(
+        other.point == contact.point and float(np.linalg.norm(other.normal_world - contact.normal_world)) <= SAME_NORMAL
+        for other in others
+    )
+
+
+def _cones(run: Run, phase: int, contacts: list[Contact]) -> ContactCones:
+    center = run.phases[phase].pose.transform(run.scene.object.center_of_gravity_m)
+    places = dict(zip(run.scene.cage.names, run.scene.cage.points_world() - center, strict=True))
+    normals = np.array([-contact.normal_world for contact in contacts]).reshape(-1, 3)
+    arms = np.array([places[contact.point] for contact in contacts]).reshape(-1, 3)
+    return contact_cones(normals, arms, chosen_method(run.scene, run.method).friction(run.scene))
+
+
+def _load(run: Run, phase: int, cones: ContactCones) -> tuple[FloatArray, float]:
+    """Return the wrench that contacts have to give, (6,), and the length that it was divided by."""
+    record = dead_loads(run.scene)[phase]
+    forces = record["forces_world"]
+    arms = record["arms_object"] @ run.phases[phase].pose.rotation.T
+    wrench = -np.append(forces.sum(axis=0), np.cross(arms, forces).sum(axis=0) / cones.length_m)
+    size = float(np.linalg.norm(wrench))
+    return wrench / size, size
+
+
+def _counting(n_contacts: int, choice: tuple[int, ...]) -> FloatArray:
+    """Return 0 for faces that count, and -inf for the others of their groups, (n,)."""
+    counts = np.full(n_contacts, -np.inf)
+    counts[list(choice)] = 0.0
+    return counts
+
+
+class _Choices:
+    """The answers over all choices of faces at edges: the object is held only if it is with every one of them."""
+
+    def __init__(self, cones: ContactCones, load: FloatArray, counts: list[FloatArray]) -> None:
+        self.cones, self.load, self.counts = cones, load, counts
+        forces = [self._forces(of_choice) for of_choice in counts]
+        self.balanced = [cones.wrench(of_choice) for of_choice in forces]
+        self.are_balanced = all(float(np.linalg.norm(load - given)) <= UNBALANCED for given in self.balanced)
+        self.shares = np.mean(forces, axis=0)
+
+    def _forces(self, counts: FloatArray) -> FloatArray:
+        """Return the forces of equally stiff contacts with one choice of faces, (n, 3)."""
+        forces = np.zeros((len(counts), 3))
+        chosen = np.isfinite(counts)
+        forces[chosen] = equally_stiff_forces(self.cones._replace(columns=self.cones.columns[chosen]), self.load)
+        return forces
+
+    def tangential(self) -> FloatArray:
+        """Return the shares across the normals, in the world, (n, 3)."""
+        return np.asarray(np.einsum("ij,ijk->ik", self.shares[:, 1:], self.cones.columns[:, 1:, :3]))
+
+    def least_extra_load(self, axes: slice) -> ExtraLoad:
+        program = ConeProgram(self.cones, CUT_FOR_BOUNDS)
+        least = ExtraLoad(math.inf, math.inf, np.zeros(3))
+        for counts, load in zip(self.counts, self.balanced, strict=True):
+            found = least_extra_load(program, load / np.linalg.norm(load), counts, axes, least.certain)
+            least = min(least, found, key=lambda extra: extra.certain)
+        return least
+
+    def ranges(self) -> Iterator[tuple[float, float]]:
+        """Yield the least and greatest normal force of each contact, over the choices in which it counts."""
+        program = ConeProgram(self.cones, CUT_FOR_RANGES)
+        for contact in range(len(self.cones.columns)):
+            asked = [
+                (load, counts)
+                for load, counts in zip(self.balanced, self.counts, strict=True)
+                if np.isfinite(counts[contact])
+            ]
+            least = min(least_normal_force(program, *given, contact) for given in asked)
+            greatest = max(greatest_normal_force(program, *given, contact) for given in asked)
+            yield least if least > NOTHING else 0.0, greatest if greatest < WITHOUT_BOUND else math.inf
