@@ -230,7 +230,7 @@ def test_the_default_method_shows_forces_and_proof(command: Command, sample: str
     answer = command("run", sample)
     below = summary(answer.out)
     assert answer.out.startswith("sample: rests  (quasistatic, ")
-    assert below["forces"] == "C1 0.7071, C4 0.7071"
+    assert below["forces"] == "of the load: C1 0.7071, C4 0.7071"
     assert below["verdict"] == "gravity: rests (unstable)"
     assert re.fullmatch(
         r"rests: the contacts balance the load without friction \(residual \d\.\de-\d+\)", below["proof"]
@@ -243,7 +243,7 @@ def test_the_default_method_shows_forces_and_proof(command: Command, sample: str
 def test_forces_are_newtons_where_a_mass_is_given(command: Command, sample: str) -> None:
     """2 kg under 9.81 m/s2: each of the two faces at 45 deg carries 19.62 N cos 45 deg = 13.87 N."""
     out = command("run", sample, "--set", "object.mass=2", "--set", "loads[0].gravity=[0, 0, -9.81]").out
-    assert summary(out)["forces"] == "C1 13.87, C4 13.87"
+    assert summary(out)["forces"] == "in newtons: C1 13.87, C4 13.87"
 
 
 def test_sideways_forces_and_sharing_are_named(command: Command) -> None:
@@ -254,7 +254,7 @@ def test_sideways_forces_and_sharing_are_named(command: Command) -> None:
     assert sum(float(along) for _, _, along in forces) == pytest.approx(0.5, abs=2e-3)
     assert all(float(along) <= 0.58 * float(across) + 1e-3 for _, across, along in forces)
     rail = summary(command("run", str(SCENES / "rail-pitch.yaml")).out)
-    assert rail["forces"].endswith("one way of many to share it between C1 C3 C6 C8")
+    assert rail["forces"].endswith("one way of many to share the load between C1 C3 C6 C8")
 
 
 def test_what_may_rest_names_the_other_onset(command: Command) -> None:

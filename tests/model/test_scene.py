@@ -36,6 +36,18 @@ def test_all_problems_are_found_at_once():
     assert places == ["loads[1].name", "friction", "object.boxes[1].size[2]", "cage.points.C2", "cage.points.C3"]
 
 
+def test_arguments_of_other_classes_are_named():
+    box = Box((2, 2, 2))
+    held = Object([box])
+    assert problems_of(lambda: Object([box], pose=(0, 0, 1))) == ["pose: is of type tuple; give a cagepose.Pose"]
+    assert problems_of(lambda: Object(box)) == ["boxes: is of type Box; give a list of cagepose.Box"]
+    assert problems_of(lambda: Box((1, 1, 1), (0, 0, 1))) == ["pose: is of type tuple; give a cagepose.Pose"]
+    assert problems_of(lambda: Scene(held, FAR, DOWN)) == [
+        "loads: is of type Load; give a list of cagepose.Load",
+        "cage: is of type list; give a cagepose.Cage",
+    ]
+
+
 def test_points_at_one_place_are_each_told_once():
     points = [(5, 0, 0)] * 300 + [(0, 5, 0)] * 2
     found = problems_of(lambda: Scene(Object([Box((2, 2, 2))]), Cage(points), [DOWN]))

@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cagepose import Box, Cage, Load, Object, Scene, SceneError, load_scene, run
+from cagepose.kernels.outcome.trace import LIMIT, STALLED
 from cagepose.model.methods import DEFAULT_FRICTION, DEFAULT_METHOD, METHODS
 from cagepose.runs.methods import REGISTRY
 from rails import rail_scene
@@ -30,6 +31,23 @@ def test_motions_lead_from_each_pose_to_the_next(method):
     assert_replays(run(rail_scene(pitch_deg=0.1), method))
     for scene in random_scenes(30, seed=3):
         assert_replays(run(scene, method))
+
+
+@pytest.mark.parametrize(
+    ("verdict", "says"),
+    [(STALLED, "no step got on that keeps the contacts of C1, "), (LIMIT, "it still moved after 3000")],
+)
+def test_a_failed_run_says_why_and_what_it_left_out(verdict, says):
+    """Such runs are made, by another code than the kernel wrote, before anything is read: no scene of ours fails."""
+    solution = run(rail_scene(pitch_deg=0.1)).solution
+    solution.outcome = solution.outcome._replace(phases=solution.outcome.phases[:1].copy())
+    solution.outcome.phases["verdict"] = verdict
+    failed = solution.run(0.0)
+    why, left_out = [warning for warning in failed.warnings if "edge" not in warning][:2]
+    assert failed.verdict in ("stalled", "limit")
+    assert says in why
+    assert "change the friction coefficient" in why
+    assert left_out == "weight: the run failed here, so not run: push"
 
 
 def test_each_phase_starts_where_the_one_before_ended():

@@ -22,8 +22,8 @@ MOST_CLEARANCES = 4
 ALIKE = 0.99
 """Clearances worth this part of the best one are as good to close; slopes say no more of a whole gap."""
 MEANING = (
-    "exact: no motion nearby goes farther (*: none inside the cage by more than a hundredth); past: so far, and perhaps"
-    " farther; certified: no motion at all inside the cage does"
+    "exact: no motion nearby goes farther (*: nor any inside the cage, by more than 1 % of it); past: so far, and"
+    " perhaps farther; certified: no motion at all inside the cage does"
 )
 NO_PLAY = 1e-12
 """Metres or radians: an end that is nearer is at the start but for rounding."""
@@ -57,6 +57,8 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
     verdict.append(cage.verdict, style=STYLES[cage.verdict])
     verdict.append(f" ({cage.reason})")
     print_all(Text(f"{play.scene.name}: play from the start pose, in the cage's frame"), "", verdict)
+    if cage.verdict == "escapes":
+        print_all(Text("it can leave: the ends are those near the start, and beyond them there is more"))
     if cage.free_directions:
         print_all(Text(f"free directions: {' '.join(cage.free_directions)}"))
     if cage.leaves_at is not None:

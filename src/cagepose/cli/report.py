@@ -14,6 +14,7 @@ from cagepose.cli.margin_report import margin_lines
 from cagepose.errors import printable
 from cagepose.files.units import LengthUnit
 from cagepose.files.words import LengthWords, components, line_of, short
+from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.run import AT_REST, FAILURES, Event, PhaseRun, Run
 from cagepose.studies.margin import Margin
 
@@ -119,7 +120,7 @@ def _contact_texts(run: Run) -> list[str]:
 
 
 def _forces(run: Run) -> str:
-    """``C1 0.5, C3 0.5 (+ 0.05 sideways)``: what presses at the end, one part of the load or newtons."""
+    """``of the load: C1 0.5, C3 0.5 (+ 0.05 sideways)``: what presses at the end; or ``in newtons: ...``."""
     texts = []
     for contact in run.contacts:
         if contact.force_normal_n:
@@ -128,8 +129,9 @@ def _forces(run: Run) -> str:
             texts.append(f"{contact.point} {contact.force_normal_n:.4g}{beside}")
     shared = run.phases[-1].proof.shared
     if shared:
-        texts.append(f"one way of many to share it between {' '.join(shared)}")
-    return ", ".join(texts)
+        texts.append(f"one way of many to share the load between {' '.join(shared)}")
+    in_newtons = scaled_load(run.scene, run.scene.loads[len(run.phases) - 1]).in_newtons
+    return f"{'in newtons' if in_newtons else 'of the load'}: {', '.join(texts)}" if texts else ""
 
 
 def _verdicts(run: Run) -> str:

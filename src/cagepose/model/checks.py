@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -100,3 +101,20 @@ class ProblemList:
     def raise_if_any(self) -> None:
         if self.problems:
             raise SceneError(self.problems)
+
+
+def check_kind(value: object, kind: type, path: tuple[str | int, ...], problems: ProblemList) -> None:
+    """Note a problem where a value is of another class than ``kind``."""
+    if not isinstance(value, kind):
+        problems.add(path, f"is of type {type(value).__name__}; give a cagepose.{kind.__name__}")
+
+
+def check_kinds(values: object, kind: type, key: str, problems: ProblemList) -> tuple[Any, ...]:
+    """Return what is in a list; note a problem where that is no list, or holds another class than ``kind``."""
+    if isinstance(values, kind) or not isinstance(values, Iterable):
+        problems.add((key,), f"is of type {type(values).__name__}; give a list of cagepose.{kind.__name__}")
+        return ()
+    found = tuple(values)
+    for index, value in enumerate(found):
+        check_kind(value, kind, (key, index), problems)
+    return found

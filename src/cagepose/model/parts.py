@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cagepose.errors import SceneError
-from cagepose.model.checks import FloatArray, ProblemList, duplicates, finite_array
+from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, duplicates, finite_array
 from cagepose.model.pose import Pose
 from cagepose.model.volume import BOX_SIGNS, VolumeMoments, union_moments
 
@@ -43,6 +43,7 @@ class Box:
         """
         size = finite_array(size_m, (3,), "size")
         problems = ProblemList()
+        check_kind(pose_object_box or Pose(), Pose, ("pose",), problems)
         for axis, length in enumerate(size.tolist()):
             if length <= 0.0:
                 problems.add(("size", axis), f"is {length!r} m; a box's edge lengths must be above zero")
@@ -94,9 +95,13 @@ class Object:
         Raises
         ------
         SceneError
-            No boxes, a name used twice, a mass that is not above zero, an inertia that no body has or without a mass.
+            Arguments of other classes, no boxes, a name used twice, a mass that is not above zero, an inertia that no
+            body has or without a mass.
         """
         problems = ProblemList()
+        boxes = check_kinds(boxes, Box, "boxes", problems)
+        check_kind(pose or Pose(), Pose, ("pose",), problems)
+        problems.raise_if_any()
         named = tuple(
             box if box.name is not None else Box(box.size_m, box.pose_object_box, f"box{index + 1}")
             for index, box in enumerate(boxes)

@@ -11,7 +11,7 @@ import numpy as np
 from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.model.cage import Cage
-from cagepose.model.checks import ProblemList, duplicates
+from cagepose.model.checks import ProblemList, check_kind, check_kinds, duplicates
 from cagepose.model.geometry import object_seams, scene_geometry, scene_size
 from cagepose.model.load import Load
 from cagepose.model.methods import Metric
@@ -97,13 +97,16 @@ class Scene:
         Raises
         ------
         SceneError
-            No loads, a phase name used twice, a negative friction coefficient, cage points on top of each other, a cage
-            point inside the object at the start, a start too far from the cage, or a box thinner than what the touch
-            tolerance can tell apart.
+            Arguments of other classes, no loads, a phase name used twice, a negative friction coefficient, cage points
+            on top of each other, a cage point inside the object at the start, a start too far from the cage, or a box
+            thinner than what the touch tolerance can tell apart.
         """
         tolerances = tolerances or Tolerances()
-        loads = tuple(loads)
         problems = ProblemList()
+        loads = check_kinds(loads, Load, "loads", problems)
+        check_kind(object, Object, ("object",), problems)
+        check_kind(cage, Cage, ("cage",), problems)
+        problems.raise_if_any()
         if not loads:
             problems.add(("loads",), "is empty; give at least one phase with gravity or a force")
         for load_name, indices in duplicates([load.name for load in loads]).items():

@@ -62,6 +62,12 @@ class Runs:
     def __len__(self) -> int:
         return len(self.phase_verdicts)
 
+    def __repr__(self) -> str:
+        ended = ", ".join(
+            f"{n} {verdict}" for verdict, n in zip(*np.unique(self.verdict, return_counts=True), strict=True)
+        )
+        return f"<{len(self)} Runs: {ended}>"
+
     @property
     def verdict(self) -> NDArray[np.str_]:
         """Verdict of the last phase that was reached, (n,): as `Run.verdict`."""

@@ -209,6 +209,10 @@ class Run:
     warnings: tuple[str, ...]
     solve_s: float
 
+    def __repr__(self) -> str:
+        ended = ", ".join(f"{phase.name}: {phase.verdict}" for phase in self.phases)
+        return f"<Run of {self.scene.name!r} ({self.method}): {ended}>"
+
     def __getattr__(self, name: str) -> object:
         """Read phases and warnings from the solution, once, when they are first asked for."""
         solution = vars(self).get("solution")

@@ -212,7 +212,8 @@ class _Found:
         ends = np.asarray(self.extremes)
         started = perf_counter()
         for _ in range(MOST_ROUNDS):
-            starts, before = [ends[ends["outcome"] != OPEN], stations], ends["value"].copy()
+            nearby = ends[: 2 * len(FREEDOMS)]  # not those of points: answers hang on no other question
+            starts, before = [nearby[nearby["outcome"] != OPEN], stations], ends["value"].copy()
             positions, quaternions = (np.concatenate([rows[k] for rows in starts]) for k in ("position", "quaternion"))
             find_play_from(geometry, self.goals, self.extremes, positions, quaternions, workspace)
             if (ends["value"] == before).all():
