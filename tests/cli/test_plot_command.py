@@ -113,3 +113,11 @@ def test_a_missing_matplotlib_is_told_with_its_remedy(
         "pictures need matplotlib, which is not installed; install the plot extra: pip install 'cagepose[plot]'\n",
     )
     assert [path.name for path in Path().iterdir()] == ["scene.yaml"]
+
+
+@pytest.mark.parametrize("name", ["run", "check", "play", "compare"])
+def test_what_asks_for_a_scene_says_that_it_got_a_saved_run(command: Command, sample: str, name: str) -> None:
+    command("run", sample, "--out", "run.json")
+    answer = command(name, "run.json")
+    assert answer.code == 2
+    assert answer.err.startswith("run.json: is a saved run, not a scene; name its scene file")

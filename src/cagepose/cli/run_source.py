@@ -30,7 +30,8 @@ def read_run_or_scene(
     ``problems_of_others`` are those of further arguments.
     """
     from cagepose.errors import CageposeError, printable
-    from cagepose.files.run_file import looks_like_run, read_run_file
+    from cagepose.files.read import looks_like_run
+    from cagepose.files.run_file import read_run_file
     from cagepose.files.scene_file import read_scene_file
     from cagepose.model.methods import METHODS
 

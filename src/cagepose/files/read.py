@@ -1,8 +1,9 @@
-"""Text out of a file that a user named: scenes and points files alike."""
+"""Text out of a file that a user named, scenes and points files alike, and whether it is a saved run."""
 
 from __future__ import annotations
 
 import codecs
+import os
 from pathlib import Path
 
 from cagepose.errors import FileProblem, Key, SceneFileError
@@ -50,3 +51,13 @@ def read_text(path: Path, source: str, at: tuple[Key, ...] = ()) -> str:
         line, column = before.count(b"\n") + 1, error.start - (before.rfind(b"\n") + 1) + 1
         byte = f"{content[error.start]:#04x}"
         raise refuse(f"holds byte {byte}, which is not UTF-8; save it as UTF-8", line, column) from None
+
+
+def looks_like_run(path: str | os.PathLike[str]) -> bool:
+    """Whether a file that can be read starts as a saved run does; a scene file never does."""
+    try:
+        with Path(path).open("rb") as stream:
+            head = stream.read(100)
+    except (OSError, ValueError):
+        return False
+    return head.lstrip().startswith(b"{") and b'"version"' in head

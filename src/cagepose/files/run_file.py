@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 from cagepose.errors import RunFileError, SceneError, key_path, printable
 from cagepose.files.document import FORMAT_VERSION, run_document
+from cagepose.files.read import looks_like_run
 from cagepose.files.record import from_record, record_of
 from cagepose.files.units import LENGTH_UNITS, LengthUnit
 from cagepose.files.write import check_can_write, json_text, write_whole
@@ -40,16 +41,6 @@ def check_can_save(path: str | os.PathLike[str]) -> None:
         It cannot, see `check_can_write`.
     """
     check_can_write(path, lambda target: _is_blank(target) or looks_like_run(target), "a saved run")
-
-
-def looks_like_run(path: str | os.PathLike[str]) -> bool:
-    """Whether a file that can be read starts as a saved run does; a scene file never does."""
-    try:
-        with Path(path).open("rb") as stream:
-            head = stream.read(100)
-    except (OSError, ValueError):
-        return False
-    return head.lstrip().startswith(b"{") and b'"version"' in head
 
 
 def _is_blank(target: Path) -> bool:
