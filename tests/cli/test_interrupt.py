@@ -15,6 +15,7 @@ from cagepose.kernels.native.library import kernel_library
 SOON_S = 0.5
 SCENE = Path(__file__).resolve().parents[2] / "scenes" / "rail-pitch.yaml"
 LONG = f"""
+import signal
 import sys
 import numpy as np
 import cagepose
@@ -22,6 +23,7 @@ from cagepose.runs import many
 from cagepose.runs.batch import Batch
 from cagepose.runs.methods import chosen_method
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell starts in the background ignores it
 N = 1_000_000  # of 70 us each
 scene = cagepose.load_scene({str(SCENE)!r})
 variation = cagepose.Variation(cage_euler_zyx=np.full((N, 3), 1e-3))
@@ -114,7 +116,6 @@ sys.exit(main(["run", {str(SCENE)!r}]))
 
 def test_who_handles_ctrl_c_otherwise_decides_what_becomes_of_it() -> None:
     _, code, out, err = interrupted("""
-import signal
 N = 30_000
 signal.signal(signal.SIGINT, lambda *_: print("heard", flush=True))
 one_call()
