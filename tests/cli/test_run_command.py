@@ -345,7 +345,7 @@ def test_a_saved_run_is_not_mistaken_for_a_scene(command: Command, sample: str) 
     command("run", sample, "--out", "run.json")
     answer = command("run", "run.json")
     assert answer.code == 2
-    assert "exact: is no known key" in answer.err
+    assert "is a saved run, not a scene" in answer.err
     with pytest.raises(RunFileError, match="is not JSON"):
         load_run(sample)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cagepose import Box, Cage, Load, Object, Pose, Scene, SceneError, run
+from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, SceneError, run
 
 LENGTH, WIDTH, THICKNESS = 0.1, 0.08, 0.01
 
@@ -84,6 +84,44 @@ def test_contacts_that_hold_each_other_in_turn_are_marginal():
     loose = np.array([*(np.array([*pair, *apart]) + play), *stops]) / 1e3
     turned = run(Scene(held, Cage(loose), [load])).phases[0]
     assert turned.verdict == "escapes" or np.abs(turned.pose.quaternion_wxyz[1:]).max() > 1e-2
+
+
+def test_a_contact_that_carries_next_to_nothing_is_in_no_self_stress():
+    """C2 makes up for a millionth that C1 and C4 leave, since the plate has rolled by rounding. Its second derivative
+    would stop the roll on, at 16 deg.
+    """
+    points = np.array([(-30, 10, -1), (-23, 10.5, -5), (30, 0, 8), (30, 10, -1)]) / 1e3
+    load = Load("push", force=Force((0.0, 1.0, 0.0), (0.003, -0.006, 0.004)))
+    assert run(Scene(Object([Box((0.06, 0.02, 0.01))]), Cage(points), [load])).verdict == "escapes"
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2, 3, 4), (0, 2, 1, 3, 4), (4, 3, 2, 1, 0)])
+def test_a_force_that_is_rounding_holds_nothing(order):
+    """A cross slides along y, whatever the order of its points; one of them carried 5e-17 of the load."""
+    held = Object([Box((0.04, 0.012, 0.02)), Box((0.012, 0.04, 0.02))], (-0.003, 0.009, -0.001))
+    points = np.array([(-6, -12, 7), (-2, 8, -10), (-2, 8, 10), (6, -7, 7), (8, -6, -9)])[list(order)] / 1e3
+    found = run(Scene(held, Cage(points), [Load("weight", gravity=(1.0, 0.0, -1.0))])).phases[0]
+    assert (found.verdict, found.proof.stability, found.proof.undetermined) == ("rests", "marginal", ("y",))
+
+
+def test_forces_come_before_moments_in_what_no_force_balances():
+    """Between one pair along y nothing else carries the push along y; the moments are left."""
+    held = Object([Box((0.04, 0.02, 0.01))], (0.005, 0.0, 0.002))
+    points = np.array([(0, 10, 0), (0, -10, 0), (20, 5, 0), (20, -5, 0), (0, 0, -5)]) / 1e3
+    found = run(Scene(held, Cage(points), [Load("push", gravity=(1.0, 1.0, -1.0))])).phases[0]
+    assert found.verdict == "rests"
+    net = sum(contact.force_normal_n * contact.normal_world for contact in found.contacts)
+    assert net == pytest.approx(np.ones(3) / np.sqrt(3.0) * (1.0, 1.0, -1.0), abs=1e-5)
+
+
+def test_a_fork_pushed_onto_two_pins_swings():
+    """Its slot opens by the square of its turn, and within 1e-12 m of play forces of 1e5 loads could balance it."""
+    sides = [Box((0.04, 0.004, 0.01), Pose((0.0, side * 0.008, 0.0))) for side in (-1.0, 1.0)]
+    fork = Object([*sides, Box((0.004, 0.02, 0.01), Pose((-0.018, 0.0, 0.0)))])
+    points = np.array([(0, -6, 0), (0, 6, 0), (0, 8, -5), (0, 8, 5)]) / 1e3
+    found = run(Scene(fork, Cage(points), [Load("push", gravity=(1.0, 1.0, 0.0))])).phases[0]
+    assert max(contact.force_normal_n for contact in found.contacts) < 2.0
+    assert np.abs(found.pose.quaternion_wxyz[1:]).max() > 0.1
 
 
 def test_no_force_stands_on_a_tilt():

@@ -37,6 +37,8 @@ HELD = 1e-9
 FORCES_COUNT, FORCES_LIMIT = 1e-5, 1e8
 """Of their lengths, forces add to the length that a residual is measured in: that allows for their rounding. Up to so
 many lengths of the load: no balance leaves more than 1e-8 of it."""
+NOTHING = 1e-13
+"""In lengths of the load: a contact that carries less carries nothing."""
 STEEPER = 1e-13
 """In lengths of the residual: a generator that points along it by so little more than one in use is no better."""
 GENERATOR_LIMIT = 400
@@ -228,6 +230,8 @@ def write_forces(cone: ConeWorkspace, friction: float, contacts: ContactSet) -> 
     for k in range(cone.passive.used):
         label = cone.passive.labels[k]
         forces, x = contacts.states[cone.contacts[label]].forces, cone.passive.x[k]
+        if x * cone.passive.sizes[k] <= NOTHING * cone.passive.terms:
+            continue
         forces[0] += x
         forces[1] += x * friction * cone.directions[label, 0]
         forces[2] += x * friction * cone.directions[label, 1]

@@ -27,11 +27,17 @@ from cagepose.kernels.native.kernel import kernel
 OPPOSED = 1e-5
 """In lengths of the wrenches: what may be left of forces that cancel. A plate that touches on both sides, within the
 touch tolerance, can be tilted by up to the root of that tolerance; and its forces would be 1e5 loads and more."""
+BELONGS = 1e-4
+"""In lengths of the wrenches: what a contact of a self-stress carries in it is more, of forces that add up to one."""
 STOPS = 1e-6
 """In the greatest second derivative: a smaller one is rounding."""
-PLAY = 1e-11
+PLAY = 1e-10
 """In radii of gyration: a contact with a wider gap, though it touches, has play. A fork that turns around two opposite
 points opens by the square of its turn."""
+MOMENTS = 1e-3
+"""What a moment counts for beside a force, where locked contacts cannot balance both: what they leave, forces without
+bound carry on levers of no length, as moments.
+"""
 CARRIES = 1e-6
 """In lengths of the load: so much along the motions that are stopped is more than rounding."""
 
@@ -49,6 +55,31 @@ def self_stress(contacts: ContactSet, friction: float, stress: SelfStressWorkspa
 
 
 @kernel
+def clear_self_stress(contacts: ContactSet, stress: SelfStressWorkspace) -> bool:
+    """Find a self-stress of chosen contacts to which all of them belong; False: there is none.
+
+    A contact that carries so little in it that it only makes up for what the others leave, within OPPOSED, does not
+    belong to it: its second derivative would count for what no force of it means.
+    """
+    left = self_stress(contacts, 0.0, stress)
+    for _ in range(N_ROWS):
+        if left > OPPOSED:
+            return False
+        passive, belongs_all = stress.cone.passive, True
+        for i in range(contacts.used[0]):
+            contacts.states[i].chosen = False
+        for k in range(passive.used):
+            i = stress.cone.contacts[passive.labels[k]]
+            size = length(contacts.rows[i].columns[0], WRENCH)
+            contacts.states[i].chosen = size == 0.0 or passive.x[k] * size > BELONGS
+            belongs_all = belongs_all and contacts.states[i].chosen
+        if belongs_all:
+            return True
+        left = self_stress(contacts, 0.0, stress)
+    return False
+
+
+@kernel
 def write_wrench(contacts: ContactSet, i: int, j: int, frame: Frame, out: FloatArray) -> None:
     """Write the scaled wrench of a unit force of contact i in its direction j, as `find_contacts` does."""
     direction = vector_from(contacts.rows[i].directions[j])
@@ -57,16 +88,18 @@ def write_wrench(contacts: ContactSet, i: int, j: int, frame: Frame, out: FloatA
 
 @kernel
 def balance_by_locked(contacts: ContactSet, wrench: FloatArray, frame: Frame, work: ContactWorkspace) -> None:
-    """Balance, with the locked contacts, what a wrench does along their normals: their forces are in
-    ``work.stress.reaction``. Which contacts are chosen is lost.
+    """Balance, with the locked contacts, what a wrench does along what is locked, forces before moments: their forces
+    are in ``work.stress.reaction``. Which contacts are chosen is lost.
 
     Only the parts of their wrenches count that made them locked: a tilt of 1e-6 between opposite faces carries nothing.
     """
     stress = work.stress
     for k in range(WRENCH):
         stress.twist[k] = 0.0
-        for place in range(stress.pressed.used):
-            stress.twist[k] += inner(stress.pressed.basis[place], wrench, WRENCH) * stress.pressed.basis[place, k]
+        for place in range(work.locked.used):
+            stress.twist[k] += inner(work.locked.basis[place], wrench, WRENCH) * work.locked.basis[place, k]
+    for k in range(3, WRENCH):
+        stress.twist[k] *= MOMENTS
     for i in range(contacts.used[0]):
         state, column = contacts.states[i], contacts.rows[i].columns[0]
         state.chosen = state.is_locked
@@ -74,7 +107,7 @@ def balance_by_locked(contacts: ContactSet, wrench: FloatArray, frame: Frame, wo
             write_wrench(contacts, i, 0, frame, work.trial)
             write_outside(stress.pressed, work.trial, 0.0, column)
             for k in range(WRENCH):
-                column[k] = work.trial[k] - column[k]
+                column[k] = (MOMENTS if k >= 3 else 1.0) * (work.trial[k] - column[k])
     clear_cone(stress.reaction, stress.twist, WRENCH, length(stress.twist, WRENCH))
     cone_residual(contacts, 0.0, stress.twist, stress.reaction)
     for i in range(contacts.used[0]):
@@ -133,12 +166,9 @@ def lock(contacts: ContactSet, frame: Frame, n_stresses: int, work: ContactWorks
     add_second_order(contacts, stress.reaction, frame, curvature)
     for k in range(passive.used):
         i = stress.cone.contacts[passive.labels[k]]
-        column = contacts.rows[i].columns[0]
-        size = length(column, WRENCH)
-        if size == 0.0 or passive.x[k] * size > OPPOSED:  # else it carries only what the others leave, to rounding
-            contacts.states[i].is_locked = True
-            extend(stress.pressed, column, OPPOSED)
-            extend(work.locked, column, OPPOSED)
+        contacts.states[i].is_locked = True
+        extend(stress.pressed, contacts.rows[i].columns[0], OPPOSED)
+        extend(work.locked, contacts.rows[i].columns[0], OPPOSED)
 
 
 @kernel
@@ -187,7 +217,7 @@ def find_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> N
             is_on_face = contacts.rows[i].group == i and last_of_group(contacts, i) == i
             is_closed = contacts.rows[i].gap <= PLAY * max(frame.radii[0], frame.radii[1], frame.radii[2])
             contacts.states[i].chosen = is_on_face and is_closed and not contacts.states[i].is_locked
-        if self_stress(contacts, 0.0, work.stress) <= OPPOSED:
+        if clear_self_stress(contacts, work.stress):
             lock(contacts, frame, n_stresses, work)
             n_stresses += 1
         elif not stop_all(n_stresses, work):

@@ -35,6 +35,7 @@ from cagepose.kernels.stability.relaxation import N_COLUMNS
 from cagepose.kernels.stability.second_order import (
     MARGINAL,
     STABLE_REST,
+    UNSTABLE,
     ContactStatus,
     StabilityWorkspace,
     find_held,
@@ -178,8 +179,7 @@ def stability_of_rest(
     what contacts without play stop counts as well.
     """
     contacts, rest, solver = at.contacts, at.scratch[0].rest, at.scratch[0].solver
-    n_ways = rest.ways.used
-    terms, code = solver.load_terms, STABLE_REST
+    n_ways, terms, found = rest.ways.used, solver.load_terms, UNSTABLE
     for _ in range(2):
         rest.ways.used = n_ways
         code = stability(
@@ -187,8 +187,12 @@ def stability_of_rest(
         )
         if code == STABLE_REST or solver.locked.used > 0 or not has_one_choice(contacts):
             break
+        found = code
         write_locked(contacts, frame, solver)
-    return max(code, MARGINAL) if solver.is_chained else code
+    if not solver.is_chained:
+        return code
+    solver.is_chained = solver.is_second_order or code < found  # else it makes no difference
+    return max(code, MARGINAL)
 
 
 @kernel
