@@ -11,6 +11,9 @@ from cagepose.errors import FileProblem, Key, SceneFileError
 MAX_FILE_BYTES = 4 * 1024 * 1024
 """The size limit of a scene file and of a points file: about 100,000 points, far above any cage we know of."""
 
+HEAD_BYTES = 100
+"""Of a file: within these a saved run shows that it is one."""
+
 
 def read_text(path: Path, source: str, at: tuple[Key, ...] = ()) -> str:
     """Return the text of a UTF-8 file; ``at`` is the key of the scene that named it.
@@ -57,7 +60,13 @@ def looks_like_run(path: str | os.PathLike[str]) -> bool:
     """Whether a file that can be read starts as a saved run does; a scene file never does."""
     try:
         with Path(path).open("rb") as stream:
-            head = stream.read(100)
+            head = stream.read(HEAD_BYTES)
     except (OSError, ValueError):
         return False
-    return head.lstrip().startswith(b"{") and b'"version"' in head
+    return starts_as_run(head.decode(errors="replace"))
+
+
+def starts_as_run(text: str) -> bool:
+    """As `looks_like_run`, of text that has been read: a pipe gives it only once."""
+    head = text[:HEAD_BYTES]
+    return head.lstrip().startswith("{") and '"version"' in head

@@ -17,7 +17,7 @@ from cagepose.files.key_path import Path as KeyPath
 from cagepose.files.key_path import parse_key_path, resolved, set_value, value_at
 from cagepose.files.messages import Finding, schema_findings, shown
 from cagepose.files.points_file import POINTS_KEY, PointsTable, read_points
-from cagepose.files.read import looks_like_run, read_text
+from cagepose.files.read import read_text, starts_as_run
 from cagepose.files.schema import PointsFileModel, SceneModel
 from cagepose.files.units import LengthUnit
 from cagepose.files.yaml_source import YamlSource, parse_yaml
@@ -64,7 +64,7 @@ def read_scene_text(path: str | os.PathLike[str]) -> SceneText:
     """
     source = os.fspath(path)
     text = read_text(Path(source), source)
-    if looks_like_run(path):
+    if starts_as_run(text):
         message = "is a saved run, not a scene; name its scene file (saved runs are for `cagepose plot` and `view`)"
         raise SceneFileError([FileProblem((), message, source)])
     return SceneText(text, parse_yaml(text, source), Path(source).parent)
