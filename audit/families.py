@@ -27,6 +27,7 @@ DRAWN: dict[str, Callable[[np.random.Generator], Scene]] = {
     "stopped-plate": exact_families.stopped_plate,
     "prism": prism_families.prism,
     "stopped-prism": prism_families.stopped_prism,
+    "edge-prism": prism_families.edge_prism,
 }
 """Families of random scenes."""
 

@@ -82,7 +82,7 @@ def contacts_of(held: Held) -> ContactSet:
     for i, columns in enumerate(held.columns):
         contacts.rows[i].columns[:] = columns
         contacts.rows[i].group = i
-        contacts.states[i].chosen = True
+        contacts.states[i].counts = True
     return contacts
 
 

@@ -38,8 +38,8 @@ class ContactRow:
     gap
         Distance from the plane of the face, below zero inside, metres.
     group
-        The first row of the same point and box; -1: the row does not count, as flush faces of another box, or what is
-        locked, say all that it does.
+        The first row of the same point and box; -1: the row does not count, as flush faces of another box say all
+        that it does.
     directions, arm
         Outward unit normal and two tangents, rows, and the point as seen from the centre of gravity, in the world.
     columns
@@ -64,7 +64,9 @@ class ContactState:
     Attributes
     ----------
     chosen
-        Whether this face counts: all but the other faces on an edge.
+        Whether it is the face that is asked of its group: all are but the other faces on an edge.
+    counts
+        Whether it takes part in the problem: chosen, and not left out of it because of what others lock.
     forces
         What the contact carries along its columns.
     is_sticking
@@ -74,12 +76,13 @@ class ContactState:
     slip_speed, is_rejected
         Of the problem with round cones: De Saxce's correction (5.7), and whether its generator did not help.
     has_carried
-        In the first row of a group: whether one of its faces carried in a choice that has been asked.
+        In the first row of a group: whether one of its faces carried, or was locked, in a choice that has been asked.
     kept_chosen, kept_forces
         Of the choice of faces that is kept.
     """
 
     chosen: bool
+    counts: bool
     forces: Annotated[FloatArray, 3]
     is_sticking: bool
     is_locked: bool
@@ -110,9 +113,9 @@ def stays_on_face(contacts: ContactSet, i: int) -> bool:
 
 
 @kernel
-def unlock(contacts: ContactSet) -> None:
-    for i in range(contacts.used[0]):
-        contacts.states[i].is_locked = False
+def choose(contacts: ContactSet, i: int, chosen: bool) -> None:
+    """Choose a face, or not: it counts if it is chosen."""
+    contacts.states[i].chosen = contacts.states[i].counts = chosen
 
 
 @kernel
@@ -172,10 +175,10 @@ def find_contacts(
                 contact = contacts.rows[contacts.used[0]]
                 contact.gap = abs(point_box[axis]) - half_size[axis]
                 contact.group = first
-                contacts.states[contacts.used[0]].chosen = contacts.used[0] == first
+                choose(contacts, contacts.used[0], contacts.used[0] == first)
                 append_contact(contacts, placement, point, box, axis, side, arm, frame)
             if n_new == 0:
                 for i in range(first, contacts.used[0]):
                     contacts.rows[i].group = -1
-                    contacts.states[i].chosen = False
+                    choose(contacts, i, False)
     return True

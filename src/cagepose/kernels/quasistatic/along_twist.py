@@ -132,10 +132,8 @@ def first_contact(
         )
         amount = distance / speed
     else:
-        near, near_depth = (
-            0.0,
-            STRAYED * strayed(setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end),
-        )
+        astray = strayed(setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end)
+        near, near_depth = 0.0, STRAYED * astray
         angle, point, box = math.inf, -1, -1
         for _ in range(len(setting.geometry.points_world)):
             angle, point, box = first_contact_screw(

@@ -7,11 +7,18 @@ from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.contact.cone import HELD
-from cagepose.kernels.contact.edges import CHOICES_LIMIT, EVERY, first_choice, keep_choice, next_choice, return_to_kept
-from cagepose.kernels.contact.equilibrium import AT_REST, HELD_BY_FRICTION, MOVES, equilibrium_with_faces
-from cagepose.kernels.contact.metric import Body, PhaseLoad
+from cagepose.kernels.contact.edges import CHOICES_LIMIT, EVERY, first_choice, keep_choice
+from cagepose.kernels.contact.equilibrium import (
+    AT_REST,
+    HELD_BY_FRICTION,
+    MOVES,
+    equilibrium_of_choice,
+    next_choice_unlocked,
+    return_to_choice,
+)
+from cagepose.kernels.contact.metric import Body, Frame, PhaseLoad, frame_at
 from cagepose.kernels.contact.onset import freest_motion
-from cagepose.kernels.contact.self_stress import self_stress
+from cagepose.kernels.contact.self_stress import forget_locked, self_stress
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.proof import (
     OTHER_ONSET,
@@ -25,29 +32,30 @@ from cagepose.kernels.stability.strong import OTHER_FOUND, UNIQUE, other_onset
 
 
 @kernel
-def search_faces(friction: float, at: ProofWorkspace) -> int:
+def search_faces(friction: float, frame: Frame, at: ProofWorkspace) -> int:
     """Return the code of the proof, that of the first combination of faces with which rest is not the only onset."""
     contacts, work, solver = at.contacts, at.scratch[0], at.scratch[0].solver
+    forget_locked(contacts, frame, solver)
     first_choice(contacts)
     for _ in range(CHOICES_LIMIT):
-        code = equilibrium_with_faces(contacts, friction, AT_REST, solver.load, solver.load_terms, solver)
+        code = equilibrium_of_choice(contacts, frame, friction, AT_REST, solver)
         if code == HELD_BY_FRICTION:
             answer = other_onset(contacts, friction, solver.load, work.tree, solver.newton, at.system)
             if answer != UNIQUE:
                 return OTHER_ONSET if answer == OTHER_FOUND else UNIQUENESS_NOT_SHOWN
-        if not next_choice(contacts, EVERY):
+        if not next_choice_unlocked(contacts, frame, EVERY, solver):
             return PROVEN_UNIQUE
     return UNIQUENESS_NOT_SHOWN
 
 
 @kernel
-def search_onsets(friction: float, at: ProofWorkspace) -> int:
+def search_onsets(friction: float, frame: Frame, at: ProofWorkspace) -> int:
     """Ask whether a rest that needs friction is the only onset (5.13).
 
     Parameters
     ----------
-    friction
-        Coefficient of friction.
+    friction, frame
+        Coefficient of friction; the scaled coordinates at the pose.
     at
         As left by the proof. Filled: the other onset, if one is found, and whether the contacts are wedged.
 
@@ -59,15 +67,15 @@ def search_onsets(friction: float, at: ProofWorkspace) -> int:
     contacts, work = at.contacts, at.scratch[0]
     left = work.solver.residual
     keep_choice(contacts)
-    proof = search_faces(friction, at)
-    return_to_kept(contacts)
+    proof = search_faces(friction, frame, at)
+    return_to_choice(contacts, frame, friction, AT_REST, work.solver)
     work.solver.residual = left
     work.wedged = proof != PROVEN_UNIQUE and self_stress(contacts, friction, work.solver.stress) <= HELD
     return proof
 
 
 @kernel
-def first_motion(friction: float, at: ProofWorkspace) -> None:
+def first_motion(friction: float, frame: Frame, at: ProofWorkspace) -> None:
     """Write into ``at.scratch[0].solver.y`` how an object begins to move that does so by `prove`.
 
     It is the onset that obeys Coulomb's law (5.7), and the residual is then the least that contact forces leave of the
@@ -75,13 +83,13 @@ def first_motion(friction: float, at: ProofWorkspace) -> None:
 
     Parameters
     ----------
-    friction
-        Coefficient of friction.
+    friction, frame
+        Coefficient of friction; the scaled coordinates at the pose.
     at
         As left by the proof.
     """
     contacts, work, solver = at.contacts, at.scratch[0], at.scratch[0].solver
-    if freest_motion(contacts, friction, solver) != MOVES:
+    if freest_motion(contacts, frame, friction, solver) != MOVES:
         solver.residual = work.twist_residual
         for k in range(6):
             solver.y[k] = work.twist[k]
@@ -106,7 +114,7 @@ def judge(
     at.scratch[0].wedged = False
     code, steady, n_undetermined = prove(geometry, body, position, quaternion, load, friction, size_m, tolerances, at)
     if code == UNIQUENESS_NOT_SHOWN:
-        code = search_onsets(friction, at)
+        code = search_onsets(friction, frame_at(body, quaternion), at)
     elif code == PROVEN_MOVES:
-        first_motion(friction, at)
+        first_motion(friction, frame_at(body, quaternion), at)
     return code, steady, n_undetermined

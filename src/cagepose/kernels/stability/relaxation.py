@@ -122,7 +122,7 @@ def take_contacts(contacts: ContactSet, b: FloatArray, work: Relaxation) -> bool
     """Take the contacts that are chosen, and the load; False: too many."""
     work.n_places = 0
     for i in range(contacts.used[0]):
-        if not contacts.states[i].chosen:
+        if not contacts.states[i].counts:
             continue
         place = work.n_places
         if place == CONTACT_LIMIT:

@@ -120,7 +120,7 @@ def find_held(
     for i in range(n):
         state, status = contacts.states[i], statuses[i]
         carried, one, two = state.forces
-        status.is_equality = state.chosen and carried > 0.0
+        status.is_equality = state.counts and carried > 0.0
         status.is_implied = status.opens = state.is_sticking = False
         if status.is_equality:
             extend(work.held, contacts.rows[i].columns[0], IN_SPAN)
@@ -150,7 +150,7 @@ def find_held(
 @kernel
 def may_open(contacts: ContactSet, statuses: Rows[ContactStatus], i: int) -> bool:
     """Whether a contact is chosen and no balance is known that loads it."""
-    return bool(contacts.states[i].chosen and not statuses[i].is_equality)
+    return bool(contacts.states[i].counts and not statuses[i].is_equality)
 
 
 @kernel
