@@ -71,9 +71,7 @@ def _section(rng: Rng) -> list[tuple[float, float, float, float]]:
     return sections[int(rng.integers(len(sections)))]
 
 
-def _opposite(
-    rng: Rng, section: list[tuple[float, float, float, float]], on_edges: bool
-) -> list[tuple[float, float]]:
+def _opposite(rng: Rng, section: list[tuple[float, float, float, float]], on_edges: bool) -> list[tuple[float, float]]:
     """Two places on faces that look opposite ways, of one bar or of two, on one line where that can be."""
     for _ in range(PLACES_TRIED):
         axis = int(rng.integers(2))
