@@ -22,6 +22,7 @@ DRAWN: dict[str, Callable[[np.random.Generator], Scene]] = {
     "any-scale": loose_families.any_scale,
     "twins": loose_families.twins,
     "block": loose_families.block,
+    "mixed-friction": loose_families.mixed_friction,
     "slot": exact_families.slot,
     "open-plate": exact_families.open_plate,
     "stopped-plate": exact_families.stopped_plate,

@@ -13,9 +13,10 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
-from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, row, vector_from
+from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, row, scaled, vector_from
 from cagepose.kernels.collision.contacts import face_normal, is_hidden, touches_face
 from cagepose.kernels.collision.geometry import Geometry, Placement, box_point
+from cagepose.kernels.contact.friction import Friction, friction_share
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.native.kernel import kernel
 
@@ -41,9 +42,11 @@ class ContactRow:
         The first row of the same point and box; -1: the row does not count, as flush faces of another box say all
         that it does.
     directions, arm
-        Outward unit normal and two tangents, rows, and the point as seen from the centre of gravity, in the world.
+        Outward unit normal and two tangents, rows, and the point as seen from the centre of gravity, in the world. The
+        tangents are as long as the contact's coefficient of friction is of the greatest one, so that one coefficient
+        does for all contacts: with tangential forces and slip in this unit Coulomb's law reads the same.
     columns
-        Scaled wrenches of a unit force along these directions. The contact pushes along their negative. What contacts
+        Scaled wrenches of a force along these directions. The contact pushes along their negative. What contacts
         without play lock is taken out of them, see `self_stress`.
     """
 
@@ -107,6 +110,15 @@ def empty_contact_set(n_rows: int) -> ContactSet:
 
 
 @kernel
+def is_smooth(contact: ContactRow) -> bool:
+    """Whether a contact has no friction, though others may have."""
+    greatest = 0.0
+    for k in range(6):
+        greatest = max(greatest, abs(contact.columns[1, k]), abs(contact.columns[2, k]))
+    return greatest == 0.0
+
+
+@kernel
 def stays_on_face(contacts: ContactSet, i: int) -> bool:
     """Whether a contact keeps its gap in a motion that begins: it carries, or is locked."""
     return contacts.states[i].forces[0] > 0.0 or contacts.states[i].is_locked
@@ -131,14 +143,23 @@ def face_is_listed(contacts: ContactSet, first: int, point: int, normal: Vector)
 
 @kernel
 def append_contact(
-    contacts: ContactSet, placement: Placement, point: int, box: int, axis: int, side: float, arm: Vector, frame: Frame
+    contacts: ContactSet,
+    placement: Placement,
+    friction: Friction,
+    point: int,
+    box: int,
+    axis: int,
+    side: float,
+    arm: Vector,
+    frame: Frame,
 ) -> None:
     contact = contacts.rows[contacts.used[0]]
+    share = friction_share(friction, point, box)
     contact.point, contact.box, contact.axis, contact.side = point, box, axis, side
     for k in range(3):
         contact.arm[k] = arm[k]
     for j in range(3):
-        direction = face_normal(placement, box, (axis + j) % 3, side if j == 0 else 1.0)
+        direction = scaled(face_normal(placement, box, (axis + j) % 3, 1.0), side if j == 0 else share)
         for k in range(3):
             contact.directions[j, k] = direction[k]
         write_scaled_wrench(direction, cross(arm, direction), frame, contact.columns[j])
@@ -147,7 +168,13 @@ def append_contact(
 
 @kernel
 def find_contacts(
-    geometry: Geometry, placement: Placement, center: Vector, frame: Frame, touch_m: float, contacts: ContactSet
+    geometry: Geometry,
+    placement: Placement,
+    friction: Friction,
+    center: Vector,
+    frame: Frame,
+    touch_m: float,
+    contacts: ContactSet,
 ) -> bool:
     """Fill ``contacts`` at a pose; False: there are more than it has room for."""
     contacts.used[0] = 0
@@ -176,7 +203,7 @@ def find_contacts(
                 contact.gap = abs(point_box[axis]) - half_size[axis]
                 contact.group = first
                 choose(contacts, contacts.used[0], contacts.used[0] == first)
-                append_contact(contacts, placement, point, box, axis, side, arm, frame)
+                append_contact(contacts, placement, friction, point, box, axis, side, arm, frame)
             if n_new == 0:
                 for i in range(first, contacts.used[0]):
                     contacts.rows[i].group = -1

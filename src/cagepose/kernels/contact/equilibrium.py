@@ -193,7 +193,7 @@ def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness:
         code = equilibrium_of_choice(contacts, frame, friction, strictness, work)
         if code == MOVES:
             return MOVES
-        if code > best_code:
+        if code > best_code or (code == best_code and work.residual > max(best_left, HELD)):
             best_code, best_left = code, work.residual
             keep_choice(contacts)
         if one_choice or not next_choice_unlocked(contacts, frame, ONLY_CARRYING, work):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.contact_set import ContactSet, is_smooth
 from cagepose.kernels.contact.coulomb import allowed_error, coulomb_onset
 from cagepose.kernels.contact.edges import CHOICES_LIMIT, ONLY_CARRYING, has_one_choice, keep_choice
 from cagepose.kernels.contact.equilibrium import (
@@ -89,7 +89,7 @@ def find_sticking(contacts: ContactSet, friction: float, terms: float, y: FloatA
     """Find which contacts carry and do not slip, to the digits that `coulomb_onset` asks of y."""
     for i in range(contacts.used[0]):
         columns, state = contacts.rows[i].columns, contacts.states[i]
-        state.is_sticking = state.forces[0] > 0.0 and friction > 0.0
+        state.is_sticking = state.forces[0] > 0.0 and friction > 0.0 and not is_smooth(contacts.rows[i])
         for j in range(1, 3):
             if abs(inner(columns[j], y, 6)) > allowed_error(terms, y) * length(columns[j], 6):
                 state.is_sticking = False

@@ -27,6 +27,7 @@ from cagepose.kernels.contact.equilibrium import (
     next_choice_unlocked,
     return_to_choice,
 )
+from cagepose.kernels.contact.friction import Friction
 from cagepose.kernels.contact.metric import WRENCH, Body, Frame, PhaseLoad, ScaledVector, frame_at, write_load
 from cagepose.kernels.contact.self_stress import forget_locked, write_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
@@ -105,6 +106,7 @@ def stand_at(
     position: Vector,
     quaternion: Quaternion,
     load: PhaseLoad,
+    friction: Friction,
     touch_m: float,
     at: ProofWorkspace,
 ) -> bool:
@@ -113,7 +115,7 @@ def stand_at(
     place_object(geometry, position, quaternion, at.placement)
     solver = at.scratch[0].solver
     solver.load_terms = write_load(load, quaternion, frame, solver.load)
-    return find_contacts(geometry, at.placement, position, frame, touch_m, at.contacts)
+    return find_contacts(geometry, at.placement, friction, position, frame, touch_m, at.contacts)
 
 
 @kernel
@@ -123,7 +125,7 @@ def prove(
     position: Vector,
     quaternion: Quaternion,
     load: PhaseLoad,
-    friction: float,
+    friction: Friction,
     size_m: float,
     tolerances: KernelTolerances,
     at: ProofWorkspace,
@@ -140,16 +142,17 @@ def prove(
     position, quaternion
         Centre of gravity, metres, and unit quaternion (w, x, y, z).
     friction, size_m, tolerances
-        Coefficient of friction, the scene's size in metres, and what counts as touching.
+        Coefficients of friction, the scene's size in metres, and what counts as touching.
     at
         Filled: the proof.
     """
-    if not stand_at(geometry, body, position, quaternion, load, tolerances.touch_m, at):
+    if not stand_at(geometry, body, position, quaternion, load, friction, tolerances.touch_m, at):
         at.scratch[0].solver.residual = 1.0  # no forces were asked for: all of the load is left
         return TOO_MANY_CONTACTS, STABLE_REST, 0
     contacts, scratch = at.contacts, at.scratch[0]
     frame = frame_at(body, quaternion)
-    code = equilibrium(contacts, frame, friction, AT_REST, scratch.solver)
+    greatest = friction.greatest
+    code = equilibrium(contacts, frame, greatest, AT_REST, scratch.solver)
     if code == MOVES:
         scratch.twist_residual = scratch.solver.residual
         for k in range(6):
@@ -158,14 +161,14 @@ def prove(
     left = scratch.solver.residual
     clear(scratch.rest.ways, WRENCH, 1.0)
     if code == UNSOLVED:
-        find_held(contacts, at.statuses, friction, scratch.solver.locked, scratch.rest, at.system)
+        find_held(contacts, at.statuses, greatest, scratch.solver.locked, scratch.rest, at.system)
         find_shared(contacts, at.statuses, scratch.rest)
         return TOO_MANY_CHOICES, MARGINAL, 0
     one_choice = has_one_choice(contacts)
-    proof, steady = judge_faces(at, code, one_choice, friction, load, quaternion, frame, size_m)
+    proof, steady = judge_faces(at, code, one_choice, greatest, load, quaternion, frame, size_m)
     if not one_choice:
         scratch.solver.residual = left
-        find_held(contacts, at.statuses, friction, scratch.solver.locked, scratch.rest, at.system)
+        find_held(contacts, at.statuses, greatest, scratch.solver.locked, scratch.rest, at.system)
     find_shared(contacts, at.statuses, scratch.rest)
     return proof, steady, scratch.rest.ways.used
 

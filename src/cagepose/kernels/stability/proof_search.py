@@ -16,6 +16,7 @@ from cagepose.kernels.contact.equilibrium import (
     next_choice_unlocked,
     return_to_choice,
 )
+from cagepose.kernels.contact.friction import Friction
 from cagepose.kernels.contact.metric import Body, Frame, PhaseLoad, frame_at
 from cagepose.kernels.contact.onset import freest_motion
 from cagepose.kernels.contact.self_stress import forget_locked, self_stress
@@ -102,7 +103,7 @@ def judge(
     position: Vector,
     quaternion: Quaternion,
     load: PhaseLoad,
-    friction: float,
+    friction: Friction,
     size_m: float,
     tolerances: KernelTolerances,
     at: ProofWorkspace,
@@ -114,7 +115,7 @@ def judge(
     at.scratch[0].wedged = False
     code, steady, n_undetermined = prove(geometry, body, position, quaternion, load, friction, size_m, tolerances, at)
     if code == UNIQUENESS_NOT_SHOWN:
-        code = search_onsets(friction, frame_at(body, quaternion), at)
+        code = search_onsets(friction.greatest, frame_at(body, quaternion), at)
     elif code == PROVEN_MOVES:
-        first_motion(friction, frame_at(body, quaternion), at)
+        first_motion(friction.greatest, frame_at(body, quaternion), at)
     return code, steady, n_undetermined

@@ -19,7 +19,7 @@ from cagepose.kernels.algebra.least_squares import (
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.algebra.span import extend, write_complement, write_outside, write_reduced
-from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
+from cagepose.kernels.contact.contact_set import ContactRow, ContactSet, is_smooth
 from cagepose.kernels.contact.curvature import write_curvature
 from cagepose.kernels.contact.metric import WRENCH, Frame, PhaseLoad, ScaledVector
 from cagepose.kernels.native.kernel import kernel
@@ -124,7 +124,7 @@ def find_held(
         status.is_implied = status.opens = state.is_sticking = False
         if status.is_equality:
             extend(work.held, contacts.rows[i].columns[0], IN_SPAN)
-            if friction > 0.0:
+            if friction > 0.0 and not is_smooth(contacts.rows[i]):
                 tangential = math.sqrt(one * one + two * two)
                 state.is_sticking = tangential < (1.0 - AT_LIMIT) * friction * carried
                 at_limit = at_limit or not state.is_sticking
