@@ -80,6 +80,9 @@ def test_the_critical_friction_is_the_greatest_coefficient_with_all_in_proportio
         return float(mu * floor * (sin + mu / 3.0 * cos) - 0.5 * cos)
 
     assert excess(found) == pytest.approx(0.0, abs=1e-9)
+    smooth = with_critical_friction(run(on_a_slope(0.1, 0.9, C1=0.0))).phases[0].proof.critical_friction
+    rough = with_critical_friction(run(on_a_slope(0.1, 0.9))).phases[0].proof.critical_friction
+    assert smooth > rough == pytest.approx(np.tan(0.1), rel=1e-9)
 
 
 def test_forces_stay_in_the_cones_of_their_contacts():
