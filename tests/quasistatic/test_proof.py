@@ -271,3 +271,21 @@ def test_a_balance_that_coulombs_law_does_not_insist_on():
     assert proof.motion.kind == "turn"
     assert proof.motion.axis_world == pytest.approx((0, 1, 0), abs=1e-9)  # to the right and down
     assert np.cross(proof.motion.through_world, proof.motion.axis_world) == pytest.approx((0, 0, 0), abs=1e-9)
+
+
+def test_a_board_jammed_between_points_is_marginal():
+    """Friction that only the points keep up, each against another, holds it: once they part, it falls."""
+    board = Object([Box((0.02, 0.1, 0.1))])
+    jam = Cage([(side, y, z) for y in (-0.03, 0.03) for z in (-0.03, 0.03) for side in (-0.01, 0.01)])
+    proof = run(Scene(board, jam, [Load("weight", gravity=(0, 0, -1))], friction_coefficient=0.5)).phases[0].proof
+    assert (proof.verdict, proof.stability) == ("may rest", "marginal")
+    assert "hangs on contacts that press against each other" in proof.reason
+
+
+@pytest.mark.parametrize(("spared", "stability"), [(1e-5, "marginal"), (2e-3, "stable")])
+def test_a_rest_that_needs_nearly_all_of_its_friction_is_marginal(spared, stability):
+    block = Object([Box((0.1, 0.08, 0.02), Pose((0, 0, 0.01)))])
+    feet = Cage([(0.04, 0.03, 0.0), (0.04, -0.03, 0.0), (-0.04, 0.0, 0.0)])
+    slope = Load("weight", gravity=(0.3, 0.0, -1.0))
+    phase = run(Scene(block, feet, [slope], friction_coefficient=0.3 / (1.0 - spared))).phases[0]
+    assert (phase.verdict, phase.proof.stability) == ("rests", stability)

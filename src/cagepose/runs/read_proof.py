@@ -36,6 +36,7 @@ NOT_SHOWN = "the contacts can balance the load with friction, but that the objec
 WEDGED = "; the contacts can press against each other without a load, as in a wedge"
 STOPPED = "; what they leave, contacts without play stop to second order, by forces without bound"
 CHAINED = "; contacts without play hold each other in turn: the least play frees it"
+CLAMPED = "; it hangs on contacts that press against each other: what parts them for a moment frees it"
 IN_SPAN = 1e-6
 """Sine of the angle below which a freedom lies in the span of the undetermined ones."""
 
@@ -50,6 +51,7 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
         phases["wedged"].tolist(),
         phases["is_second_order"].tolist(),
         phases["is_chained"].tolist(),
+        phases["is_clamped"].tolist(),
         phases["n_undetermined"].tolist(),
         phases["undetermined"],
         _free_motions(phases),
@@ -58,7 +60,8 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
         strict=True,
     )
     found = list[Proof]()
-    for code, stability, residual, wedged, second, chained, n_undetermined, undetermined, motion, end, names in columns:
+    for code, stability, residual, wedged, *remarks, n_undetermined, undetermined, motion, end, names in columns:
+        second, chained, clamped = remarks
         held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
         is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
         found.append(
@@ -67,7 +70,8 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
                 reason=REASONS.get(code, NOT_SHOWN)
                 + (WEDGED if is_open and wedged else "")
                 + (STOPPED if held and second else "")
-                + (CHAINED if held and chained else ""),
+                + (CHAINED if held and chained else "")
+                + (CLAMPED if held and clamped else ""),
                 residual=residual,
                 needs_friction=held and code != PROVEN_WITHOUT_FRICTION,
                 stability=STABILITY_NAMES[stability] if held else None,

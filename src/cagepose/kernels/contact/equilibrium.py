@@ -36,8 +36,8 @@ HELD_WITHOUT_FRICTION, HELD_BY_FRICTION, UNSOLVED, MOVES, MOVES_SOMEHOW = 0, 1, 
 """What the contacts do, from the least to the most that moves. Of a balance, MOVES says that there is none, and
 UNSOLVED that there are too many choices of faces to ask them all, and that those which were asked hold. Of an onset
 MOVES_SOMEHOW says that there is no balance, and that how the object begins to move was not found."""
-RESERVE = 1e-6
-"""A balance that needs all but this part of the friction is at its limit."""
+SPARED = (0.1, 0.01, 0.001, 1e-6)
+"""Parts of the friction that a balance may leave: the first with which there is one gives its forces."""
 AT_REST, ON_THE_WAY = 1.0, 0.1
 """Strictness. A pose on the way is looked at again when the run has got there: it must hold then, too."""
 
@@ -74,19 +74,21 @@ def is_balance(contacts: ContactSet, left: float, friction: float, strictness: f
 
 @kernel
 def spare_friction(contacts: ContactSet, friction: float, b: FloatArray, terms: float, work: ContactWorkspace) -> int:
-    """Choose the forces of a balance: without friction where those do, else inside their cones where they can, so that
-    no contact looks as if it were about to slip. Return which.
+    """Choose the forces of a balance: without friction where those do, else as far inside their cones as they can, so
+    that no contact looks as if it were about to slip. Return which.
     """
     left = least_residual(contacts, 0.0, b, terms, work)
     if left <= BALANCED:
         write_forces(work.cone, 0.0, contacts)
         work.residual = left
         return HELD_WITHOUT_FRICTION
-    spared = (1.0 - RESERVE) * friction
-    left = cone_residual(contacts, spared, b, work.cone)  # going on from there
-    if left <= HELD:
-        write_forces(work.cone, spared, contacts)
-        work.residual = left
+    for share in SPARED:
+        used = (1.0 - share) * friction
+        left = cone_residual(contacts, used, b, work.cone)  # going on from there
+        if left <= HELD:
+            write_forces(work.cone, used, contacts)
+            work.residual = left
+            break
     return HELD_BY_FRICTION
 
 

@@ -178,6 +178,7 @@ def publish_proof(
     phase.proof, phase.stability, phase.wedged = code, stability, scratch.wedged
     phase.residual = scratch.solver.residual
     phase.is_second_order, phase.is_chained = scratch.solver.is_second_order, scratch.solver.is_chained
+    phase.is_clamped = scratch.is_clamped
     phase.n_undetermined = n_undetermined
     for i in range(n_undetermined):
         for k in range(6):

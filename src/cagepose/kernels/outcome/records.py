@@ -23,8 +23,9 @@ class PhaseRecord:
         What the contact forces leave of the load, in lengths of the terms.
     wedged
         Whether the contacts can press against each other without a load.
-    is_second_order, is_chained
-        Whether contacts without play carry a part of the load, and whether some are held by what others stop.
+    is_second_order, is_chained, is_clamped
+        Whether contacts without play carry a part of the load, whether some are held by what others stop, and whether a
+        rest is marginal because it hangs on contacts that press against each other.
     n_undetermined, undetermined
         Scaled twists along which the load does not tell poses apart, rows.
     motion, along, through, pitch
@@ -40,6 +41,7 @@ class PhaseRecord:
     wedged: bool
     is_second_order: bool
     is_chained: bool
+    is_clamped: bool
     n_undetermined: int
     undetermined: Annotated[FloatArray, 6, 6]
     motion: int

@@ -32,6 +32,7 @@ from cagepose.kernels.contact.metric import WRENCH, Body, Frame, PhaseLoad, Scal
 from cagepose.kernels.contact.self_stress import forget_locked, write_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.stability.clamp import hangs_on_a_clamp
 from cagepose.kernels.stability.relaxation import N_COLUMNS
 from cagepose.kernels.stability.second_order import (
     MARGINAL,
@@ -65,6 +66,8 @@ class AnalysisWorkspace:
         Undetermined freedoms.
     wedged
         Whether the contacts can press against each other without a load; asked only by `proof_search`.
+    is_clamped
+        Whether a rest is marginal because it hangs on that.
     """
 
     solver: ContactWorkspace
@@ -73,6 +76,7 @@ class AnalysisWorkspace:
     tree: ModeTree
     rest: StabilityWorkspace
     wedged: bool
+    is_clamped: bool
 
 
 class ProofWorkspace(NamedTuple):
@@ -151,7 +155,7 @@ def prove(
         return TOO_MANY_CONTACTS, STABLE_REST, 0
     contacts, scratch = at.contacts, at.scratch[0]
     frame = frame_at(body, quaternion)
-    greatest = friction.greatest
+    greatest, scratch.is_clamped = friction.greatest, False
     code = equilibrium(contacts, frame, greatest, AT_REST, scratch.solver)
     if code == MOVES:
         scratch.twist_residual = scratch.solver.residual
@@ -224,6 +228,8 @@ def judge_faces(
         is_chained = is_chained or solver.is_chained
         if code != HELD_WITHOUT_FRICTION:
             proof = UNIQUENESS_NOT_SHOWN
+            if steady == STABLE_REST and hangs_on_a_clamp(contacts, frame, friction, solver):
+                steady, at.scratch[0].is_clamped = MARGINAL, True
         if one_choice:
             return proof, steady
         if not next_choice_unlocked(contacts, frame, EVERY, solver):

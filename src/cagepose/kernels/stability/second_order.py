@@ -28,8 +28,8 @@ STABLE_REST, MARGINAL, UNSTABLE = 0, 1, 2
 """Codes of stability: the index into `STABILITY_NAMES`."""
 STABILITY_NAMES: tuple[Literal["stable", "marginal", "unstable"], ...] = ("stable", "marginal", "unstable")
 
-AT_LIMIT = 1e-9
-"""A tangential force this near to its cone (relative) is at the limit of friction."""
+AT_LIMIT = 1e-4
+"""A tangential force this near to its cone (relative) is at the limit of friction, which nobody knows as well."""
 IN_SPAN = 1e-9
 """A wrench whose part outside a span is smaller than this fraction of it lies in it."""
 FLAT = 1e-9
