@@ -9,6 +9,7 @@ from cagepose.model.checks import FloatArray
 
 ProofVerdict = Literal["rests", "may rest", "moves"]
 Stability = Literal["stable", "marginal", "unstable"]
+Uniqueness = Literal["strong", "weak", "not shown"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,3 +75,14 @@ class Proof:
     shared: tuple[str, ...]
     motion: FreeMotion | None
     critical_friction: float | None = None
+
+    @property
+    def uniqueness(self) -> Uniqueness | None:
+        """Of rest as an onset, in the words of Pang and Trinkle (2000): None where the object moves.
+
+        "strong" stability ("rests"): rest is the only onset that Coulomb's law allows. "weak" ("may rest"): rest is
+        one, and `motion` is another. "not shown" ("may rest"): rest is one, and whether there is another is open.
+        """
+        if self.verdict == "moves":
+            return None
+        return "strong" if self.verdict == "rests" else "not shown" if self.motion is None else "weak"
