@@ -52,9 +52,9 @@ if TYPE_CHECKING:
     from cagepose.studies.certificate import ChosenFaces as ChosenFaces
     from cagepose.studies.certificate import ModeTree as ModeTree
     from cagepose.studies.certificate import OtherOnset as OtherOnset
-    from cagepose.studies.certificate import certificate as certificate
     from cagepose.studies.certificate_check import CertificateCheck as CertificateCheck
     from cagepose.studies.certificate_check import check_certificate as check_certificate
+    from cagepose.studies.certify import certificate as certificate
     from cagepose.studies.comparison import Comparison as Comparison
     from cagepose.studies.comparison import Parting as Parting
     from cagepose.studies.comparison import Variant as Variant
@@ -91,8 +91,9 @@ _HOMES = {
     "cagepose.runs.run": ("Contact", "Event", "Frame", "Motion", "PhaseRun", "Run"),
     "cagepose.runs.solve": ("run",),
     "cagepose.runs.variation": ("Variation",),
-    "cagepose.studies.certificate": ("Certificate", "ChosenFaces", "ModeTree", "OtherOnset", "certificate"),
+    "cagepose.studies.certificate": ("Certificate", "ChosenFaces", "ModeTree", "OtherOnset"),
     "cagepose.studies.certificate_check": ("CertificateCheck", "check_certificate"),
+    "cagepose.studies.certify": ("certificate",),
     "cagepose.studies.comparison": ("Comparison", "Parting", "Variant", "compare"),
     "cagepose.studies.contact_problem": ("ContactFace",),
     "cagepose.studies.margin": ("ContactMargin", "Margin", "margin"),

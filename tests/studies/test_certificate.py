@@ -1,4 +1,4 @@
-"""Certificates of rest: those that are made are right, those that were changed are refused, and nobody need trust us."""
+"""Certificates of rest: those that are made are right, those that were changed are refused, and none need trust us."""
 
 from __future__ import annotations
 
@@ -217,7 +217,7 @@ def test_a_changed_certificate_is_refused(
 
 @pytest.mark.parametrize("friction", [0.31, 0.45, 0.55, 0.9])
 def test_a_certificate_is_for_one_coefficient_of_friction(rest: tuple[Run, Certificate], friction: float) -> None:
-    """More friction makes other motions possible, and less no balance; a certificate that tells the new one is wrong."""
+    """More friction makes other motions possible, and less no balance; one that tells the new coefficient is wrong."""
     a_run, found = rest
     other = replace(a_run, scene=a_run.scene.changed(friction_coefficient=friction))
     with pytest.raises(CertificateError):
@@ -247,9 +247,9 @@ def test_another_onset_is_checked_by_coulombs_law() -> None:
     assert (found.uniqueness, checked.uniqueness) == ("weak", "weak")
     onset = found.onset
     assert onset is not None
-    for forces in (onset.forces + (1e-3, 0, 0), onset.forces + (0, 1e-3, 0), onset.forces - (1e-3, 0, 0)):
+    for more in ((1e-3, 0, 0), (0, 1e-3, 0), (-1e-3, 0, 0)):
         with pytest.raises(CertificateError, match="onset"):
-            check_certificate(replace(found, onset=replace(onset, forces=forces)), a_run)
+            check_certificate(replace(found, onset=replace(onset, forces=onset.forces + np.array(more))), a_run)
     rest_itself = replace(onset, forces=found.choices[0].forces)
     with pytest.raises(CertificateError, match="is no motion that the load drives"):
         check_certificate(replace(found, onset=rest_itself), a_run)
@@ -312,3 +312,14 @@ def test_a_phase_that_moves_has_none(tmp_path: Path) -> None:
     assert certificates[-1] is None
     with pytest.raises(IndexError):
         certificate(a_run, 7)
+
+
+def test_the_thirty_lines_of_the_theory_check_a_saved_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = (ROOT / "docs" / "theory" / "certificate.md").read_text(encoding="utf-8")
+    (by_hand,) = [text for text in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "import numpy" in text]
+    save_run(run(load_scene(ROOT / "scenes" / "ladder.yaml")), tmp_path / "run.json")
+    monkeypatch.chdir(tmp_path)
+    exec(by_hand, {})
+    assert "leaves: no motion begins" in capsys.readouterr().out

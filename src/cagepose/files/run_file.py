@@ -18,7 +18,8 @@ from cagepose.files.record import from_record, record_of
 from cagepose.files.units import LENGTH_UNITS, LengthUnit
 from cagepose.files.write import check_can_write, json_text, write_whole
 from cagepose.runs.run import Run
-from cagepose.studies.certificate import Certificate, certificate
+from cagepose.studies.certificate import Certificate
+from cagepose.studies.certify import certificate
 
 Kind = TypeVar("Kind")
 

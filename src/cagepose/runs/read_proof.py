@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -19,10 +20,13 @@ from cagepose.kernels.stability.proof import (
 )
 from cagepose.kernels.stability.second_order import STABILITY_NAMES
 from cagepose.model.checks import FloatArray
+from cagepose.model.load import Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.cases import body_of
+from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.proof import FreeMotion, Proof
+from cagepose.runs.run import Contact
 
 REASONS = {
     PROVEN_WITHOUT_FRICTION: "the contacts balance the load without friction",
@@ -40,10 +44,19 @@ IN_SPAN = 1e-6
 """Sine of the angle below which a freedom lies in the span of the undetermined ones."""
 
 
-def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Sequence[Sequence[str]]) -> list[Proof]:
-    """Return the proof of each phase's end, given the poses there and the names of contacts that share forces."""
+def read_proofs(
+    outcome: Outcome,
+    scene: Scene,
+    ends: Sequence[Pose],
+    contacts: Sequence[Sequence[Contact]],
+    shared: Sequence[Sequence[str]],
+) -> list[Proof]:
+    """Return the proof of each phase's end, given the poses and contacts there and the names of those that share
+    forces.
+    """
     phases: Any = outcome.phases
     columns = zip(
+        scene.loads,
         phases["proof"].tolist(),
         phases["stability"].tolist(),
         phases["residual"].tolist(),
@@ -54,11 +67,14 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
         phases["undetermined"],
         _free_motions(phases),
         ends,
+        contacts,
         shared,
-        strict=True,
+        strict=False,  # scenes have more loads than phases that were run
     )
     found = list[Proof]()
-    for code, stability, residual, wedged, second, chained, n_undetermined, undetermined, motion, end, names in columns:
+    for (
+        load, code, stability, residual, wedged, second, chained, n_undetermined, undetermined, motion, end, touching, names
+    ) in columns:  # fmt: skip
         held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
         is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
         found.append(
@@ -74,9 +90,23 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
                 undetermined=_freedoms(scene, end, undetermined[:n_undetermined]) if held and n_undetermined else (),
                 shared=tuple(names) if held else (),
                 motion=motion,
+                **(_sizes(scene, load, touching) if held else {}),
             )
         )
     return found
+
+
+def _sizes(scene: Scene, load: Load, contacts: Sequence[Contact]) -> dict[str, float]:
+    """Return `Proof.gap_work` and `Proof.largest_force`."""
+    weighed = scaled_load(scene, load)
+    load_n = math.hypot(*weighed.gravity) + math.hypot(*weighed.force)
+    work, largest = 0.0, 0.0
+    for contact in contacts:
+        normal, across = contact.force_normal_n, contact.force_tangential_n
+        if normal is not None and across is not None:
+            work += normal * contact.gap_m
+            largest = max(largest, math.hypot(normal, *across))
+    return {"gap_work": work / (load_n * scene.size_m), "largest_force": largest / load_n}
 
 
 def _free_motions(phases: Any) -> Iterator[FreeMotion | None]:

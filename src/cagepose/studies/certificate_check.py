@@ -30,7 +30,7 @@ LEFT = 1e-6
 GAPLESS_RAD = 1e-12
 """Sectors that are so far apart meet."""
 OBEYS = 1e-11
-"""Of the load: by so much, as a velocity, may another onset violate Coulomb's law. The search asks for a tenth of it."""
+"""Of the load: by so much, as a velocity, may another onset violate Coulomb's law. The search allows a tenth of it."""
 MOVES = 0.99e-6
 """In loads: a motion, and not rest. The search asks for 1e-6."""
 
@@ -259,7 +259,7 @@ class _Choice:
                 break
             reached = max(reached, start + width)
         if reached < above.width - GAPLESS_RAD:
-            raise self._refuse(where, f"its sectors leave out {above.width - reached:.1e} rad of the slips that it allows")
+            raise self._refuse(where, f"its sectors leave out {above.width - reached:.1e} rad of the slips in it")
 
     def _driven(self, twist: FloatArray, modes: list[_Modes]) -> float:
         """Return the most power of the load along a twist, or of a unit force against it (5.20)."""

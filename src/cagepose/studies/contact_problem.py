@@ -18,8 +18,8 @@ from cagepose.model.scene import Scene
 from cagepose.runs.load_scaling import scaled_load
 
 PROBE, PROBE_MARGIN = 3.0, 1.5
-"""In touch tolerances, of (2.7): a face is hidden where a point that far outside of it, and that far from its edge, lies
-so deep in another box."""
+"""In touch tolerances, of (2.7): a face is hidden where a point that far outside of it, and that far from its edge,
+lies so deep in another box."""
 SAME_NORMAL = 1e-9
 """Flush faces of two boxes give one contact."""
 NEEDLE = 1e-9
@@ -58,7 +58,7 @@ class ContactProblem:
         Their places by point and box: of each group one face counts at a time (points on edges).
     wrenches
         Of each contact: force and moment of a unit force along its outward normal and two tangents, (n, 3, 6), metres.
-        The tangents are the next two axes of its box, in the order x, y, z, x, y. The contact pushes along the negative.
+        The tangents are the next two axes of its box, in the order x, y, z, x, y. The contact pushes the other way.
     load
         Force and moment in loads: ``length`` of it is 1, (6,); zero where the loads cancel.
     metric

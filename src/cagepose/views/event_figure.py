@@ -121,7 +121,7 @@ def _snapshots(run: Run, length_unit: LengthUnit) -> tuple[list[tuple[int, Event
 def _amount(event: Event, length_unit: LengthUnit) -> str:
     assert event.motion is not None
     if not math.isfinite(event.motion.distance_m):
-        return "travel without end"
+        return "travel, nothing ahead"
     parts = []
     if event.motion.distance_m:
         parts.append(f"{float(from_metres(event.motion.distance_m, length_unit)):.4g} {length_unit}")
