@@ -125,8 +125,15 @@ def test_names_with_blanks_are_told_apart(command: Command, in_folder: Path, sam
 def test_a_proof_shows_gap_work_and_forces_that_are_not_small() -> None:
     held = cagepose.runs.solve.run(load_scene(SCENES / "slope.yaml"))
     (phase,) = held.phases
-    assert (phase.proof.gap_work, phase.proof.largest_force) == (pytest.approx(0, abs=1e-15), pytest.approx(0.5, abs=0.5))
-    for changes, told in (({}, ""), ({"gap_work": 2e-10}, ", gap work 2.0e-10"), ({"largest_force": 123.4}, ", largest force 123 loads")):
+    assert (phase.proof.gap_work, phase.proof.largest_force) == (
+        pytest.approx(0, abs=1e-15),
+        pytest.approx(0.5, abs=0.5),
+    )
+    for changes, told in (
+        ({}, ""),
+        ({"gap_work": 2e-10}, ", gap work 2.0e-10"),
+        ({"largest_force": 123.4}, ", largest force 123 loads"),
+    ):
         shown = report._proof(replace(held, phases=(replace(phase, proof=replace(phase.proof, **changes)),)))
         assert shown.endswith(f"{told})")
         assert ("gap work" in shown, "largest force" in shown) == ("gap_work" in changes, "largest_force" in changes)

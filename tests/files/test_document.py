@@ -46,7 +46,11 @@ def test_the_document_has_exactly_the_agreed_keys(sample_text: str, method: str)
     assert list(phase["proof"]) == PROOF
     motion = phase["proof"]["motion"]
     assert motion is None or list(motion) == MOTION
-    assert (document["version"], document["scene"], document["units"]) == (2, "sample", {"length": "mm", "force": "load"})
+    assert (document["version"], document["scene"], document["units"]) == (
+        2,
+        "sample",
+        {"length": "mm", "force": "load"},
+    )
     assert (document["method"], document["verdict"]) == (method, VERDICTS[method])
     assert list(document["timing_s"]) == ["solve"]
 

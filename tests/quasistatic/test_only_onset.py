@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog, nnls, root
 
+from caged_scenes import pushed_block
 from cagepose import run
 from cagepose.kernels.algebra.least_squares import empty_system
 from cagepose.kernels.algebra.record import empty_record
@@ -24,7 +25,6 @@ from cagepose.kernels.stability.proof import empty_proof_workspace, stand_at
 from cagepose.kernels.stability.relaxation import CLOSED, N_COLUMNS, UNDECIDED
 from cagepose.kernels.stability.strong import NOT_SHOWN, OTHER_FOUND, SECTORS, UNIQUE, ModeTree, other_onset
 from cagepose.runs.cases import cases_of, part_of
-from caged_scenes import pushed_block
 from inner_kernels import as_machine_code
 
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from cagepose.cli.options import SceneArgument, SetOption
 
-
 if TYPE_CHECKING:
     from cagepose.files.units import LengthUnit
     from cagepose.model.checks import FloatArray
@@ -44,7 +43,10 @@ def _extent(points_m: FloatArray, unit: LengthUnit) -> str:
 
     low, high = (from_metres(ends, unit).tolist() for ends in (points_m.min(axis=0), points_m.max(axis=0)))
     noise = 1e-12 * max(abs(value) for value in (*low, *high))
-    sides = [f"{axis} {short(one, 6, noise)} to {short(other, 6, noise)}" for axis, one, other in zip("xyz", low, high, strict=True)]
+    sides = [
+        f"{axis} {short(one, 6, noise)} to {short(other, 6, noise)}"
+        for axis, one, other in zip("xyz", low, high, strict=True)
+    ]
     edges = " x ".join(short(other - one, 6, noise) for one, other in zip(low, high, strict=True))
     return f"{edges} {unit}: {', '.join(sides)}"
 

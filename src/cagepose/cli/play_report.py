@@ -27,8 +27,8 @@ MEANING = (
     " perhaps farther; certified: no motion at all inside the cage does"
 )
 HALVED = (
-    "limited by: the gaps that end the play there, and by how much the end comes back, or goes on, for each of them that"
-    " is made smaller or larger; halved if closed by: the one gap, made so much smaller, that leaves half of the play"
+    "limited by: the gaps that end the play there, and by how much the end comes back, or goes on, as one of them is"
+    " made smaller or larger; halved if closed by: one gap alone, made so much smaller, leaves half of the play"
 )
 MOST_MOTIONS = 6
 """Of a way out, so many are printed; the document has all."""
@@ -125,7 +125,7 @@ def _exact(end: PlayEnd, is_length: bool, unit: LengthUnit) -> str:
 
 
 def _limits(end: PlayEnd, is_length: bool, unit: LengthUnit) -> dict[tuple[str, str, str], list[str]]:
-    """Return what gaps are worth that limit an end, and by how much to close one for half of it; for each, the points."""
+    """Return the points whose gaps limit an end, by what these are worth and how much of one to close to halve it."""
     factor = 1.0 if is_length else math.degrees(1.0) / float(from_metres(1.0, unit))
     by_m, alike = _halving(end)
     by = f"{float(from_metres(by_m, unit)):.3g} {unit}"
@@ -155,9 +155,7 @@ def _halving(end: PlayEnd) -> tuple[float, list[str]]:
 def _way_out(path: Sequence[PathStep], words: LengthWords) -> str:
     """``turn about (0, 0, 1) by 90 deg, travel along (1, 0, 0) by 5 mm, then nothing is ahead``."""
     motions = [step.motion for step in path[:MOST_MOTIONS]]
-    told = [
-        f"{motion.kind} {'along' if motion.kind == 'travel' else 'about'} {line_of(motion)} by {words.amount(motion, 4)}"
-        for motion in motions
-    ]
+    ways = {"travel": "along", "turn": "about", "screw": "about"}
+    told = [f"{motion.kind} {ways[motion.kind]} {line_of(motion)} by {words.amount(motion, 4)}" for motion in motions]
     more = [f"{len(path) - len(motions)} more"] if len(path) > len(motions) else []
     return f"{', '.join(told + more)}; then nothing is ahead"

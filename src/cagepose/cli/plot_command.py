@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import MethodOption, AtOption, SetOption
+from cagepose.cli.options import AtOption, MethodOption, SetOption
 from cagepose.cli.run_source import RunOrSceneArgument, read_run_or_scene, run_of
 
 if TYPE_CHECKING:

@@ -19,7 +19,6 @@ from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.run import AT_REST, FAILURES, Event, PhaseRun, Run
 from cagepose.studies.margin import Margin
 
-
 POSES = {
     "escapes": "where nothing is ahead any more; the object goes on from here",
     **dict.fromkeys(FAILURES, "where the run stopped; it is no end"),

@@ -42,8 +42,8 @@ class Runs:
         Of each phase, (n, n_phases): as `PhaseRun.verdict`; "invalid" where no run could begin (a cage point inside the
         object at the start, two points that are one, or a start too far from the cage); "" where it was not reached.
     n_steps
-        Of each phase, (n, n_phases). A step of the stepwise method is an event; the quasistatic method joins steps of one
-        kind to one.
+        Of each phase, (n, n_phases). A step of the stepwise method is an event; the quasistatic method joins steps of
+        one kind to one.
     position_m, quaternion_wxyz
         The object's pose in the world after each phase, (n, n_phases, 3) and (n, n_phases, 4); NaN where not reached.
     touching
@@ -108,7 +108,8 @@ def run_many(
     threads
         How many; None: one for each core.
     progress
-        True: on standard error, a bar on a terminal and else four lines. A function: called with the share of the runs that are done.
+        True: on standard error, a bar on a terminal and four lines elsewhere. A function: called with the share of the
+        runs that are done.
 
     Raises
     ------

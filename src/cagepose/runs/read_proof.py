@@ -72,9 +72,8 @@ def read_proofs(
         strict=False,  # scenes have more loads than phases that were run
     )
     found = list[Proof]()
-    for (
-        load, code, stability, residual, wedged, second, chained, n_undetermined, undetermined, motion, end, touching, names
-    ) in columns:  # fmt: skip
+    for load, code, stability, residual, wedged, second, chained, n_undetermined, *found_there in columns:
+        undetermined, motion, end, touching, names = found_there
         held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
         is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
         found.append(

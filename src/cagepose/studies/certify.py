@@ -113,13 +113,10 @@ class _Search:
             return False
         apart = np.linalg.norm(self.columns - expected, axis=2) / np.linalg.norm(expected, axis=2)
         return bool(
-            (apart <= SAME).all()
-            and np.linalg.norm(self.load / self.size - self.to_scaled @ self.problem.load) <= SAME
+            (apart <= SAME).all() and np.linalg.norm(self.load / self.size - self.to_scaled @ self.problem.load) <= SAME
         )
 
-    def ask(
-        self, chosen: tuple[int, ...], with_tree: bool
-    ) -> tuple[Uniqueness, ChosenFaces, OtherOnset | None]:
+    def ask(self, chosen: tuple[int, ...], with_tree: bool) -> tuple[Uniqueness, ChosenFaces, OtherOnset | None]:
         """Return what one choice of faces says of rest, its balance with a tree if asked for, and another onset."""
         places, states = list(chosen), self.states
         states["chosen"] = False
@@ -164,7 +161,7 @@ class _Search:
 
 
 def _root_alone(forces: FloatArray) -> ModeTree:
-    """A balance without friction: the load drives none of the motions that the contacts allow, and the proof is z = 0."""
+    """A balance without friction: the load drives no motion that the contacts allow, and the proof is z = 0."""
     nothing = np.zeros(1)
     return ModeTree((-1,), (-1,), ("none",), nothing, nothing, np.zeros((1, WRENCH)), forces[None])
 
