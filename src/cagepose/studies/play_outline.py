@@ -10,15 +10,11 @@ from numpy.typing import ArrayLike
 from cagepose.model.checks import FloatArray
 from cagepose.model.scene import Scene
 from cagepose.studies.play import PointPlay, play
-from cagepose.studies.support import convex_hull
+from cagepose.studies.support import polygon_within
 
 PLANES = (("x", "y"), ("x", "z"), ("y", "z"))
 N_DIRECTIONS = 24
 """In each plane, 15 deg apart."""
-PARALLEL = 1e-6
-"""Sine of the angle between two lines that do not cross."""
-ROUNDING = 1e-9
-"""Of the largest distance: a crossing that a line cuts off by less is a corner."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,19 +60,9 @@ def _outline(axes: tuple[str, str], units: FloatArray, points: tuple[PointPlay, 
 
 
 def _polygon(normals: FloatArray, highs: list[float | None], lows: list[float | None]) -> FloatArray | None:
-    """Return the corners of what lies within all lines: those crossings of two that no third one cuts off."""
+    """Return the corners of what the ends bound; None: one of them has no end."""
     if None in highs or None in lows:
         return None
-    heights = np.concatenate([np.array(highs, dtype=np.float64), -np.array(lows, dtype=np.float64)])
-    first, second = np.triu_indices(len(normals), 1)
-    is_crossing = np.abs(_cross(normals[first], normals[second])) > PARALLEL
-    first, second = first[is_crossing], second[is_crossing]
-    pairs = np.stack([normals[first], normals[second]], axis=1)
-    crossings = np.linalg.solve(pairs, np.stack([heights[first], heights[second]], axis=1)[:, :, None])[:, :, 0]
-    within = (crossings @ normals.T <= heights + ROUNDING * np.abs(heights).max()).all(axis=1)
-    return convex_hull(crossings[within])
-
-
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    crossed: FloatArray = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    return crossed
+    return polygon_within(
+        normals, np.concatenate([np.array(highs, dtype=np.float64), -np.array(lows, dtype=np.float64)])
+    )
