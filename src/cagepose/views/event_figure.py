@@ -161,6 +161,8 @@ def _draw_view(panel: Axes, run: Run, phase_index: int, length_unit: LengthUnit)
     title = f"end of {_cut(phase.name)}, seen along it:\n{_position(region, run.scene.size_m, length_unit)}"
     panel.set_title(title, fontsize=8.5, pad=8.0)
     low, high = extent.min(axis=0), extent.max(axis=0)
+    if region is not None and len(corners) and np.abs(corners - 0.5 * (low + high)).max() < (high - low).max():
+        low, high = np.minimum(low, corners.min(axis=0)), np.maximum(high, corners.max(axis=0))
     room = MARGIN * (high - low).max()
     panel.set_xlim(low[0] - room, high[0] + room)
     panel.set_ylim(low[1] - room, high[1] + room)
