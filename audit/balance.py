@@ -18,6 +18,7 @@ from audit.geometry import (
     acting,
     choices,
     corners,
+    friction_of,
     load_of,
     load_size,
     tangents,
@@ -134,8 +135,7 @@ def least_imbalance(
     frame = _Frame(scene, pose, np.array([touch.place for touch in chosen]), acts)
     if not chosen:
         return 1.0
-    mu = scene.friction_coefficient or 0.0
-    columns = np.vstack([_edges(frame, touch, mu, n_sides, outside) for touch in chosen]).T
+    columns = np.vstack([_edges(frame, touch, friction_of(scene, touch), n_sides, outside) for touch in chosen]).T
     n_columns, b = columns.shape[1], -frame.load
     slack = np.hstack([np.eye(6), -np.eye(6)])
     answer = linprog(
@@ -184,7 +184,6 @@ def _edges(frame: _Frame, touch: Touch, mu: float, n_sides: int, outside: bool) 
 
 
 def _wrong_forces(scene: Scene, phase: PhaseRun) -> list[str]:
-    mu = scene.friction_coefficient or 0.0
     acts = acting(scene, load_of(scene, phase.name))
     world = dict(zip(scene.cage.names, scene.cage.points_world(), strict=True))
     places = np.array([world[contact.point] for contact in phase.contacts])
@@ -198,7 +197,7 @@ def _wrong_forces(scene: Scene, phase: PhaseRun) -> list[str]:
         net += frame.wrench(tangential - normal_n * contact.normal_world, place)
         largest = max(largest, normal_n)
         fall += normal_n * abs(contact.gap_m) / scene.size_m
-        found += _outside_its_cone(contact, normal_n, tangential, mu)
+        found += _outside_its_cone(contact, normal_n, tangential, friction_of(scene, contact))
     left = float(np.abs(net).max())
     if left > REST:
         found.append(f"the reported forces leave {left:.1e} loads")

@@ -74,13 +74,16 @@ def build(
     pose: Pose | None = None,
     scale: float = 1.0,
     mass_kg: float | None = None,
+    frictions: FloatArray | None = None,
 ) -> Scene:
     """Build a scene from boxes (size, position) and points, all in the object's frame at the start.
 
-    Points inside a box are left out.
+    Points inside a box are left out. Coefficients of friction may be those of the points: NaN where it is that of all.
     """
     outside = [((np.abs(points_mm - at) >= size / 2 - 1e-9).any(axis=1)) for size, at in boxes_mm]
-    kept = points_mm[np.all(outside, axis=0)]
+    is_kept = np.all(outside, axis=0)
+    kept = points_mm[is_kept]
+    of_points = np.full(len(points_mm), np.nan) if frictions is None else frictions
     start = pose or Pose()
     parts = [Box(size * MM * scale, Pose(at * MM * scale), f"box{k + 1}") for k, (size, at) in enumerate(boxes_mm)]
     center = None if center_mm is None else center_mm * MM * scale
@@ -90,4 +93,5 @@ def build(
         Cage(placed.transform(kept * MM * scale)),
         loads,
         friction_coefficient=mu,
+        friction_of={f"C{k + 1}": own for k, own in enumerate(of_points[is_kept].tolist()) if own >= 0.0},
     )

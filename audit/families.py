@@ -22,11 +22,13 @@ DRAWN: dict[str, Callable[[np.random.Generator], Scene]] = {
     "any-scale": loose_families.any_scale,
     "twins": loose_families.twins,
     "block": loose_families.block,
+    "mixed-friction": loose_families.mixed_friction,
     "slot": exact_families.slot,
     "open-plate": exact_families.open_plate,
     "stopped-plate": exact_families.stopped_plate,
     "prism": prism_families.prism,
     "stopped-prism": prism_families.stopped_prism,
+    "edge-prism": prism_families.edge_prism,
 }
 """Families of random scenes."""
 

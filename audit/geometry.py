@@ -10,7 +10,7 @@ from math import prod
 import numpy as np
 
 from audit.case import FloatArray
-from cagepose import Load, Pose, Scene
+from cagepose import Contact, Load, Pose, Scene
 
 PROBE = 3.0
 PROBE_MARGIN = 1.5
@@ -108,6 +108,16 @@ def choices(found: Sequence[Touch], most: int, rng: np.random.Generator) -> tupl
     if prod(map(len, sides)) <= most:
         return [list(chosen) for chosen in product(*sides)], True
     return [[side[rng.integers(len(side))] for side in sides] for _ in range(most)], False
+
+
+def friction_of(scene: Scene, contact: Touch | Contact) -> float:
+    """The coefficient of a contact: that of its point, else that of its box, else that of the scene."""
+    if isinstance(contact, Touch):
+        point, box = scene.cage.names[contact.point], str(scene.object.boxes[contact.box].name)
+    else:
+        point, box = contact.point, contact.box
+    of_scene = scene.friction_coefficient or 0.0
+    return scene.friction_of.get(point, scene.friction_of.get(box, of_scene))
 
 
 def acting(scene: Scene, load: Load) -> list[Acting]:

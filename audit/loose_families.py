@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from audit.case import FloatArray
@@ -139,3 +141,11 @@ def block(rng: Rng) -> Scene:
     counts = [int(count) for count in rng.multinomial(int(rng.integers(8, 19)) - 6, [1 / 6] * 6) + 1]
     points = around(rng, size, counts, rng.uniform(0.1, 1.0, 18).tolist())
     return build([(size, ORIGIN)], points, [weight(), push(rng, size / 2)], friction(rng))
+
+
+def mixed_friction(rng: Rng) -> Scene:
+    """The same, and half of the points have a coefficient of their own, a third of these none."""
+    size = rng.uniform(20, 80, 3)
+    points = around(rng, size, (rng.multinomial(6, [1 / 6] * 6) + 1).tolist(), rng.uniform(0.1, 1.0, 18).tolist())
+    own = rng.choice([math.nan, math.nan, math.nan, 0.0, 0.05, 0.6], len(points))
+    return build([(size, ORIGIN)], points, [weight(), push(rng, size / 2)], friction(rng), frictions=own)

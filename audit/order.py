@@ -30,6 +30,7 @@ def renumbered(scene: Scene, rng: np.random.Generator) -> Scene:
         scene.loads,
         name=scene.name,
         friction_coefficient=scene.friction_coefficient,
+        friction_of=scene.friction_of,
         metric=scene.metric,
         tolerances=scene.tolerances,
     )
@@ -122,6 +123,7 @@ def _changed(scene: Scene, friction: float, position: FloatArray, direction: Flo
         Cage(cage.points_cage, cage.names, Pose(position, cage.pose_world_cage.quaternion_wxyz)),
         loads,
         friction_coefficient=friction,
+        friction_of=scene.friction_of,
         method=scene.method,
         metric=scene.metric,
         tolerances=scene.tolerances,

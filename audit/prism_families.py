@@ -16,20 +16,25 @@ PAIRS, PLACES_TRIED = 3, 60
 
 def prism(rng: Rng) -> Scene:
     """Between one to three pairs, on a slope along the prism: it slides out."""
-    return _prism(rng, False)
+    return _prism(rng, False, on_edges=False)
 
 
 def stopped_prism(rng: Rng) -> Scene:
     """The same with two stops 3 mm ahead of its first bar, at which it can come to rest, or turn on."""
-    return _prism(rng, True)
+    return _prism(rng, True, on_edges=False)
 
 
-def _prism(rng: Rng, is_stopped: bool) -> Scene:
+def edge_prism(rng: Rng) -> Scene:
+    """With or without stops, and half of the pairs on edges."""
+    return _prism(rng, bool(rng.integers(2)), on_edges=True)
+
+
+def _prism(rng: Rng, is_stopped: bool, *, on_edges: bool) -> Scene:
     section, length = _section(rng), float(rng.choice([60, 80, 100]))
     points = []
     for _ in range(int(rng.integers(1, PAIRS + 1))):
         along = float(rng.choice([0, 10, -10, 20, rng.uniform(-25, 25)]))
-        points += [[along, *place] for place in _opposite(rng, section)]
+        points += [[along, *place] for place in _opposite(rng, section, on_edges)]
     if is_stopped:
         low, high, bottom, top = section[0]
         sides = (0.75 * low + 0.25 * high, 0.25 * low + 0.75 * high)
@@ -66,16 +71,16 @@ def _section(rng: Rng) -> list[tuple[float, float, float, float]]:
     return sections[int(rng.integers(len(sections)))]
 
 
-def _opposite(rng: Rng, section: list[tuple[float, float, float, float]]) -> list[tuple[float, float]]:
+def _opposite(rng: Rng, section: list[tuple[float, float, float, float]], on_edges: bool) -> list[tuple[float, float]]:
     """Two places on faces that look opposite ways, of one bar or of two, on one line where that can be."""
     for _ in range(PLACES_TRIED):
         axis = int(rng.integers(2))
         one, other = (section[k] for k in rng.integers(len(section), size=2))
         across = 2 - 2 * axis
-        share = float(rng.choice([0.25, 0.5, 0.75, rng.uniform(0.1, 0.9)]))
+        share = float(rng.choice([*([0, 1, 0.5] if on_edges else [0.25, 0.5, 0.75]), rng.uniform(0.1, 0.9)]))
         at = one[across] + share * (one[across + 1] - one[across])
         opposite = at
-        if not other[across] < at < other[across + 1]:
+        if not (other[across] <= at <= other[across + 1] if on_edges else other[across] < at < other[across + 1]):
             opposite = other[across] + share * (other[across + 1] - other[across])
         places = [(one[2 * axis], at, -1.0), (other[2 * axis + 1], opposite, 1.0)]
         found = [(p, q) if axis == 0 else (q, p) for p, q, _ in places]

@@ -52,6 +52,7 @@ def disturbed(scene: Scene, phase: PhaseRun) -> Scene:
         Cage(moved, scene.cage.names),
         [load_of(scene, phase.name)],
         friction_coefficient=scene.friction_coefficient,
+        friction_of=scene.friction_of,
         metric=scene.metric,
         tolerances=scene.tolerances,
     )

@@ -29,7 +29,7 @@ def scene_yaml(scene: Scene, name: str, remarks: list[str]) -> str:
         "object": part,
         "cage": {"points": points, "pose": _pose(cage.pose_world_cage, "quat_wxyz")},
         "loads": [_load(load) for load in scene.loads],
-        "friction": {"coefficient": scene.friction_coefficient or 0.0},
+        "friction": {"coefficient": scene.friction_coefficient or 0.0, "of": scene.friction_of},
         "tolerances": {"touch": scene.tolerances.touch},
     }
     if scene.metric is not None:

@@ -35,7 +35,7 @@ DEPTH_PRICE = 10.0
 
 def stability(run: Run) -> Answer:
     """A stable rest has no lower neighbour; an unstable one has."""
-    if run.scene.friction_coefficient:
+    if run.scene.friction_coefficient or run.scene.friction_of:
         return None
     found, asked = [], False
     for phase in run.phases:

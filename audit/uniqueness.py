@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from audit.case import Answer, FloatArray
-from audit.geometry import Acting, Touch, acting, choices, load_of, tangents, touches
+from audit.geometry import Acting, Touch, acting, choices, friction_of, load_of, tangents, touches
 from cagepose import Pose, Run, Scene
 
 N_STARTS, N_SWEEPS, N_CHOICES, N_NEWTON = 20, 120, 3, 25
@@ -38,10 +38,11 @@ def uniqueness(run: Run) -> Answer:
 
 def other_onset(scene: Scene, pose: Pose, acts: Sequence[Acting]) -> float | None:
     """Return the length of an onset other than rest, by that of the free motion; None: none was found."""
-    rng, mu = np.random.default_rng(0), scene.friction_coefficient or 0.0
+    rng = np.random.default_rng(0)
     for chosen in choices(touches(scene, pose), N_CHOICES, rng)[0]:
         if 0 < len(chosen) <= MOST_CONTACTS:
             rows, b = scaled_rows(scene, pose, chosen, acts)
+            mu = np.array([friction_of(scene, touch) for touch in chosen])
             for forces in _swept(rows, b, mu, rng):
                 polished = _polished(rows, b, mu, forces)
                 y = b - np.einsum("ijk,ij->k", rows, polished)
@@ -70,12 +71,12 @@ def scaled_rows(
     return np.array(rows), b / np.linalg.norm(b)
 
 
-def violation(rows: FloatArray, b: FloatArray, mu: float, forces: FloatArray) -> float:
+def violation(rows: FloatArray, b: FloatArray, mus: FloatArray, forces: FloatArray) -> float:
     """The greatest violation of (5.7): speeds by the motion's length, forces by the load's, each at their wrench."""
     y = b - np.einsum("ijk,ij->k", rows, forces)
     speed = float(np.linalg.norm(y))
     worst = 0.0
-    for row, force in zip(rows, forces, strict=True):
+    for row, force, mu in zip(rows, forces, mus, strict=True):
         arm = float(np.linalg.norm(row[0]))
         v, f = row @ y / (arm * max(speed, 1e-300)), force * arm
         slip, grip = float(np.linalg.norm(v[1:])), float(np.linalg.norm(f[1:]))
@@ -84,7 +85,7 @@ def violation(rows: FloatArray, b: FloatArray, mu: float, forces: FloatArray) ->
     return worst
 
 
-def _swept(rows: FloatArray, b: FloatArray, mu: float, rng: np.random.Generator) -> list[FloatArray]:
+def _swept(rows: FloatArray, b: FloatArray, mu: FloatArray, rng: np.random.Generator) -> list[FloatArray]:
     """Contact forces (contacts, 3) after sweeps from random starts; those that hold the part are left out."""
     n = len(rows)
     steps = np.array([1.0 / np.linalg.norm(row @ row.T, 2) for row in rows])
@@ -95,8 +96,8 @@ def _swept(rows: FloatArray, b: FloatArray, mu: float, rng: np.random.Generator)
     for _ in range(N_SWEEPS):
         for i in rng.permutation(n):
             v = y @ rows[i].T
-            v[:, 0] -= mu * np.hypot(v[:, 1], v[:, 2])
-            new = _on_cone(forces[:, i] + steps[i] * v, mu)
+            v[:, 0] -= mu[i] * np.hypot(v[:, 1], v[:, 2])
+            new = _on_cone(forces[:, i] + steps[i] * v, mu[i])
             y -= (new - forces[:, i]) @ rows[i]
             forces[:, i] = new
     return list(forces[np.linalg.norm(y, axis=1) > MOVES])
@@ -112,7 +113,7 @@ def _on_cone(points: FloatArray, mu: float) -> FloatArray:
     return np.stack([first, share * points[:, 1], share * points[:, 2]], axis=1)
 
 
-def _polished(rows: FloatArray, b: FloatArray, mu: float, forces: FloatArray) -> FloatArray:
+def _polished(rows: FloatArray, b: FloatArray, mu: FloatArray, forces: FloatArray) -> FloatArray:
     """Solve the contact modes that forces show by Newton's method; what comes out must be checked."""
     n = len(rows)
     flat = rows.reshape(3 * n, 6)
@@ -132,10 +133,10 @@ def _polished(rows: FloatArray, b: FloatArray, mu: float, forces: FloatArray) ->
                 across = slice(3 * i + 1, 3 * i + 3)
                 speed = max(float(np.linalg.norm(v[across])), 1e-300)
                 d = v[across] / speed
-                left[across] = f[across] - mu * f[3 * i] * d
-                slope[across] = mu * f[3 * i] / speed * (np.eye(2) - np.outer(d, d)) @ delassus[across]
+                left[across] = f[across] - mu[i] * f[3 * i] * d
+                slope[across] = mu[i] * f[3 * i] / speed * (np.eye(2) - np.outer(d, d)) @ delassus[across]
                 slope[across, across] += np.eye(2)
-                slope[across, 3 * i] -= mu * d
+                slope[across, 3 * i] -= mu[i] * d
         step = np.linalg.lstsq(slope, left, rcond=1e-12)[0]
         f = f - step
         if np.abs(step).max() < 1e-14 * (1.0 + np.abs(f).max()) or not np.isfinite(f).all():

@@ -63,7 +63,9 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     part = Part(vectors, vectors, np.zeros((1, 3, 3)), 1, empty_record(Body), ORIGIN)
     loads = np.zeros((1, 1), dtype_of(PhaseLoad))
     points = np.zeros((1, 1, 3))
-    cases = Cases(vectors, quaternions, points, vectors, quaternions, numbers, numbers, loads, tolerances)
+    cases = Cases(
+        vectors, quaternions, points, vectors, quaternions, numbers, numbers, numbers, numbers, loads, tolerances
+    )
     outcome, endings = empty_outcome(1, 1, 1, 1), empty_endings(1, 1, 1)
     proof = empty_proof_workspace(geometry)
     yield judge_start, (0, part, cases, vectors, proof, outcome)

@@ -145,9 +145,9 @@ def test_an_onset_that_breaks_coulombs_law_does_not_count():
     rows[0, :, :3] = np.eye(3)
     b = np.array([1.0, 0.5, 0, 0, 0, 0]) / np.sqrt(1.25)
     right = np.array([[b[0], 0.2 * b[0], 0.0]])
-    assert uniqueness.violation(rows, b, 0.2, right) < 1e-15
+    assert uniqueness.violation(rows, b, np.full(len(rows), 0.2), right) < 1e-15
     for wrong in ([[b[0], 0.1 * b[0], 0.0]], [[0.5 * b[0], 0.0, 0.0]], [[b[0], 0.3 * b[0], 0.0]]):
-        assert uniqueness.violation(rows, b, 0.2, np.array(wrong)) > 1e-2
+        assert uniqueness.violation(rows, b, np.full(len(rows), 0.2), np.array(wrong)) > 1e-2
 
 
 def test_a_way_uphill_is_found():

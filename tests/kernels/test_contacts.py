@@ -14,6 +14,7 @@ from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.collision.contacts import deepest_boxes, is_near_edge
 from cagepose.kernels.collision.geometry import empty_placement, place_object
 from cagepose.kernels.contact.contact_set import empty_contact_set, find_contacts
+from cagepose.kernels.contact.friction import Friction
 from cagepose.kernels.contact.metric import Body, frame_at
 from cagepose.model.geometry import object_seams, scene_geometry
 
@@ -37,7 +38,8 @@ def rows_of(boxes, points, pose=STILL, touch=TOUCH):
     placement, contacts, body = empty_placement(geometry), empty_contact_set(12 * len(points)), empty_record(Body)
     body.axes_object[:], body.radii[:] = np.eye(3), 1.0
     place_object(geometry, *pose, placement)
-    assert find_contacts(geometry, placement, pose[0], frame_at(body, pose[1]), touch, contacts)
+    smooth = Friction(0.0, 0.0, np.full(len(points), np.nan), np.full(len(geometry.half_sizes), np.nan))
+    assert find_contacts(geometry, placement, smooth, pose[0], frame_at(body, pose[1]), touch, contacts)
     rows = contacts.rows[: contacts.used[0]]
     near_edge = [is_near_edge(geometry, placement, row.box, row.point, row.axis, touch) for row in rows]
     return Rows(rows["point"], rows["box"], rows["directions"][:, 0], rows["gap"], np.array(near_edge, dtype=bool))

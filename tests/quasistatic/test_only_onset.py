@@ -83,7 +83,7 @@ def contacts_of(held: Held) -> ContactSet:
     for i, columns in enumerate(held.columns):
         contacts.rows[i].columns[:] = columns
         contacts.rows[i].group = i
-        contacts.states[i].chosen = True
+        contacts.states[i].counts = True
     return contacts
 
 
@@ -323,7 +323,16 @@ def held_blocks(random: np.random.Generator, friction: float) -> Iterator[Held]:
             continue
         part, at = part_of(scene), empty_proof_workspace(scene.geometry)
         case = start_of(0, part, cases_of(scene, friction, phase.pose), scene.cage.points_world())
-        stand_at(case.geometry, part.body, case.position, case.quaternion, case.loads[0], case.tolerances.touch_m, at)
+        stand_at(
+            case.geometry,
+            part.body,
+            case.position,
+            case.quaternion,
+            case.loads[0],
+            case.friction,
+            case.tolerances.touch_m,
+            at,
+        )
         rows = [at.contacts.rows[i] for i in range(at.contacts.used[0]) if at.contacts.states[i].chosen]
         load = at.scratch[0].solver.load
         yield Held(np.array([row.columns for row in rows]), friction, load / np.linalg.norm(load))

@@ -48,7 +48,7 @@ def contacts_with(columns):
     contacts = empty_contact_set(len(columns))
     contacts.used[0] = len(columns)
     contacts.rows["columns"] = columns
-    contacts.states["chosen"] = True
+    contacts.states["counts"] = True
     return contacts, contacts.states["forces"]
 
 

@@ -22,7 +22,7 @@ def judged(scene: Scene, friction: float, pose: Pose | None = None):
     """The proof, the contacts and the critical friction at a pose (left out: where the scene starts)."""
     pose = scene.object.pose_world_object if pose is None else pose
     proof, contacts = judge_pose(scene, pose, 0, friction)
-    return replace(proof, critical_friction=critical_friction_at(scene, pose, 0)), contacts
+    return replace(proof, critical_friction=critical_friction_at(scene, pose, 0, 0.0)), contacts
 
 
 def slope(angle: float, friction: float | None = None, height: float = 0.02) -> Scene:

@@ -146,3 +146,14 @@ def test_a_fork_around_opposite_points_may_turn():
     found = run(Scene(fork, Cage(points), [Load("push", gravity=(0.0, -1.0, 0.0))])).phases[0]
     assert found.verdict in ("escapes", "rests")
     assert np.abs(found.pose.quaternion_wxyz[1:]).max() > 1e-3
+
+
+I_SECTION = [Box((0.06, 0.03, 0.005), Pose((0, 0, z))) for z in (-0.0175, 0.0175)] + [Box((0.06, 0.005, 0.03))]
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_opposite_points_on_edges_let_a_beam_slide_out(order):
+    """One in the corner of web and flange, one on the edge of the flange: which face of each counts is open (2.4)."""
+    points = np.array([(0.0087, -0.0025, 0.015), (0.0087, 0.015, 0.015)])[::order]
+    body = Object(I_SECTION, center_of_gravity_m=(0.005, 0.0, 0.0))
+    assert run(Scene(body, Cage(points), [Load("weight", gravity=(0.1, 0.0, -1.0))])).verdict == "escapes"

@@ -76,4 +76,4 @@ def test_a_phase_that_a_scene_has_not_is_refused_at_the_door(phase):
     with pytest.raises(IndexError, match=f"no phase {phase}"):
         judge_pose(RAIL, pose, phase, 0.0)
     with pytest.raises(IndexError, match=f"no phase {phase}"):
-        critical_friction_at(RAIL, pose, phase)
+        critical_friction_at(RAIL, pose, phase, 0.0)

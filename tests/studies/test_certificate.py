@@ -197,7 +197,8 @@ def with_forces(given: Certificate, change: Callable[[np.ndarray], np.ndarray]) 
         (lambda given: with_forces(given, lambda forces: 1.001 * forces), "of the load"),
         (lambda given: with_forces(given, lambda forces: forces * (1, 9, 1)), "leave their friction cones"),
         (lambda given: with_forces(given, lambda forces: forces * math.nan), "are not three numbers"),
-        (lambda given: replace(given, friction=0.4), "friction is 0.4, and the scene's is 0.5"),
+        (lambda given: replace(given, friction=0.8 * given.friction), "friction of C1 on -z of box1 is 0.4, and the"),
+        (lambda given: replace(given, friction=given.friction[:2]), "has 2 coefficients for 4 contacts"),
         (lambda given: replace(given, contacts=given.contacts[:-1]), "contacts leave out C4 on -z of box1"),
         (lambda given: replace(given, contacts=(replace(given.contacts[0], side="+z"), *given.contacts[1:])),
          "contacts name C1 on +z of box1, which does not touch"),
@@ -221,7 +222,7 @@ def test_a_certificate_is_for_one_coefficient_of_friction(rest: tuple[Run, Certi
     a_run, found = rest
     other = replace(a_run, scene=a_run.scene.changed(friction_coefficient=friction))
     with pytest.raises(CertificateError):
-        check_certificate(replace(found, friction=friction), other)
+        check_certificate(replace(found, friction=np.full(4, friction)), other)
 
 
 def test_a_certificate_is_for_one_pose_and_load(rest: tuple[Run, Certificate]) -> None:
@@ -230,13 +231,13 @@ def test_a_certificate_is_for_one_pose_and_load(rest: tuple[Run, Certificate]) -
     with pytest.raises(CertificateError):
         check_certificate(found, lighter_on_one_side)
     with pytest.raises(CertificateError, match="contacts leave out C5"):
-        check_certificate(found, run(_with_a_point_more(a_run.scene)))
+        check_certificate(found, run(_with_a_point_more(a_run.scene, (0.0, 0.0, 0.0))))
 
 
-def _with_a_point_more(scene: Scene) -> Scene:
+def _with_a_point_more(scene: Scene, point_cage: tuple[float, float, float]) -> Scene:
     cage = scene.cage
     return Scene(
-        scene.object, Cage([*cage.points_cage, (0.0, 0.0, 0.0)], pose=cage.pose_world_cage), scene.loads,
+        scene.object, Cage([*cage.points_cage, point_cage], pose=cage.pose_world_cage), scene.loads,
         friction_coefficient=scene.friction_coefficient,
     )  # fmt: skip
 
@@ -267,6 +268,31 @@ def test_points_on_edges_have_a_tree_for_each_choice_of_faces() -> None:
     assert checked.n_leaves >= 4
     with pytest.raises(CertificateError, match="choices leave out the one with"):
         check_certificate(replace(found, choices=found.choices[1:]), a_run)
+
+
+def test_contacts_may_have_coefficients_of_their_own() -> None:
+    """A block on a slope, one foot less rough, with a smooth pin behind; and with two smooth feet, which it slides off."""
+    scene = _with_a_point_more(slope(0.6, 0.5), (-0.05, 0.0, 0.02))
+    own = _with_friction_of(scene, {"C5": 0.0, "C2": 0.45})
+    a_run = run(own)
+    found, checked = certified(a_run)
+    assert (found.uniqueness, found.friction.tolist()) == ("strong", [0.6, 0.45, 0.6, 0.6, 0.0])
+    assert checked.n_leaves > 10
+    assert np.abs(found.choices[0].forces[4, 1:]).max() == 0.0
+    with pytest.raises(CertificateError, match=r"friction of C2 on -z of box1 is 0.45, and the scene's is 0.6"):
+        check_certificate(found, replace(a_run, scene=scene))
+    with pytest.raises(CertificateError, match="leaf|friction cones"):
+        check_certificate(replace(found, friction=np.full(5, 0.6)), replace(a_run, scene=scene))
+    slides, speed = certified(run(_with_friction_of(scene, {"C5": 0.0, "C2": 0.0})))
+    assert slides.uniqueness == "weak"
+    assert speed.speed > 0.01
+
+
+def _with_friction_of(scene: Scene, friction_of: dict[str, float]) -> Scene:
+    return Scene(
+        scene.object, scene.cage, scene.loads,
+        friction_coefficient=scene.friction_coefficient, friction_of=friction_of,
+    )  # fmt: skip
 
 
 def test_without_friction_the_forces_are_the_certificate() -> None:

@@ -203,7 +203,9 @@ def random_cones(rng: np.random.Generator, friction: float) -> tuple[ContactCone
     """Contacts that can balance a load, of length 1."""
     n = rng.integers(4, 14)
     normals = rng.normal(size=(n, 3))
-    cones = contact_cones(normals / np.linalg.norm(normals, axis=1)[:, None], rng.normal(size=(n, 3)), friction)
+    cones = contact_cones(
+        normals / np.linalg.norm(normals, axis=1)[:, None], rng.normal(size=(n, 3)), np.full(n, friction)
+    )
     forces = np.abs(rng.normal(size=(n, 1))) * np.append(np.ones((n, 1)), friction * rng.uniform(-0.6, 0.6, (n, 2)), 1)
     load = cones.wrench(forces)
     return cones, load / np.linalg.norm(load)

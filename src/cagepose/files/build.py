@@ -44,6 +44,7 @@ def build_scene(model: SceneModel, table: PointsTable | None) -> Scene:
         [load for load in loads if load is not None],
         name=model.name,
         friction_coefficient=_friction(model),
+        friction_of=None if model.friction is None else model.friction.of,
         method=model.method,
         metric=model.metric,
         tolerances=tolerances,

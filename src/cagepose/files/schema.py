@@ -198,7 +198,7 @@ class LoadModel(_Mapping):
 
 
 class FrictionModel(_Mapping):
-    """Friction of all contacts."""
+    """Friction of all contacts, or of single points and boxes."""
 
     coefficient: Annotated[float, Field(ge=0.0, le=LARGEST)] | None = Field(
         None, description="Friction force over normal force.", examples=[0.1]
@@ -206,12 +206,19 @@ class FrictionModel(_Mapping):
     angle_deg: Annotated[float, Field(ge=0.0, lt=90.0)] | None = Field(
         None, description="The same as an angle: its tangent is the coefficient.", examples=[5.7]
     )
+    of: dict[Name, Annotated[float, Field(ge=0.0, le=LARGEST)]] | None = Field(
+        None,
+        description="NAME: coefficient, of single cage points and boxes (quasistatic). A contact has that of its point,"
+        " else that of its box, else that of all.",
+        examples=[{"C1": 0}],
+    )
 
     @model_validator(mode="after")
     def _one_of_two(self) -> FrictionModel:
-        if (self.coefficient is None) == (self.angle_deg is None):
-            found = "neither" if self.coefficient is None else "both"
-            raise _wrong(f"has {found} of coefficient and angle_deg; give one of them")
+        if self.coefficient is not None and self.angle_deg is not None:
+            raise _wrong("has both of coefficient and angle_deg; give one of them")
+        if self.coefficient is None and self.angle_deg is None and self.of is None:
+            raise _wrong("has neither of coefficient and angle_deg; give one of them")
         return self
 
 

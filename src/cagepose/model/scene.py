@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,6 +54,9 @@ class Scene:
         What is held, what holds it, what pushes.
     friction_coefficient
         None: each method's own default.
+    friction_of
+        Coefficients of single cage points and boxes, by name. A contact has that of its point, else that of its box,
+        else ``friction_coefficient``.
     method, metric
         How to run it; None: the default.
     tolerances
@@ -72,6 +75,7 @@ class Scene:
     loads: tuple[Load, ...]
     name: str
     friction_coefficient: float | None
+    friction_of: dict[str, float]
     method: str | None
     metric: Metric | None
     tolerances: Tolerances
@@ -88,6 +92,7 @@ class Scene:
         *,
         name: str = "scene",
         friction_coefficient: float | None = None,
+        friction_of: Mapping[str, float] | None = None,
         method: str | None = None,
         metric: Metric | None = None,
         tolerances: Tolerances | None = None,
@@ -97,9 +102,9 @@ class Scene:
         Raises
         ------
         SceneError
-            Arguments of other classes, no loads, a phase name used twice, a negative friction coefficient, cage points
-            on top of each other, a cage point inside the object at the start, a start too far from the cage, or a box
-            thinner than what the touch tolerance can tell apart.
+            Arguments of other classes, no loads, a phase name used twice, a negative friction coefficient, or one of
+            what is neither a point nor a box, cage points on top of each other, a cage point inside the object at the
+            start, a start too far from the cage, or a box thinner than what the touch tolerance can tell apart.
         """
         tolerances = tolerances or Tolerances()
         problems = ProblemList()
@@ -115,6 +120,8 @@ class Scene:
             )
         if friction_coefficient is not None and not (np.isfinite(friction_coefficient) and friction_coefficient >= 0.0):
             problems.add(("friction",), f"is {friction_coefficient!r}; give a finite coefficient, zero or above")
+        friction_of = dict(friction_of or {})
+        _check_friction_of(friction_of, object, cage, problems)
         size_m = scene_size(object, cage)
         touch_m = tolerances.touch * size_m
         _check_thickness(object, touch_m, problems)
@@ -131,6 +138,7 @@ class Scene:
             ("loads", loads),
             ("name", str(name)),
             ("friction_coefficient", None if friction_coefficient is None else float(friction_coefficient)),
+            ("friction_of", {name: float(coefficient) for name, coefficient in friction_of.items()}),
             ("method", method),
             ("metric", metric),
             ("tolerances", tolerances),
@@ -161,6 +169,7 @@ class Scene:
             self.loads,
             name=self.name,
             friction_coefficient=self.friction_coefficient if friction_coefficient is None else friction_coefficient,
+            friction_of=self.friction_of,
             method=self.method,
             metric=self.metric if metric is None else metric,
             tolerances=self.tolerances if tolerances is None else tolerances,
@@ -174,6 +183,18 @@ class Scene:
 
 
 _set_field = object.__setattr__
+
+
+def _check_friction_of(friction_of: dict[str, float], held: Object, cage: Cage, problems: ProblemList) -> None:
+    points, boxes = set(cage.names), {box.name for box in held.boxes}
+    for name, coefficient in friction_of.items():
+        at = ("friction", "of", name)
+        if name in points and name in boxes:
+            problems.add(at, "is the name of a cage point and of a box; rename one of them")
+        elif name not in points and name not in boxes:
+            problems.add(at, "is neither a cage point nor a box; give the name of one")
+        if not (np.isfinite(coefficient) and coefficient >= 0.0):
+            problems.add(at, f"is {coefficient!r}; give a finite coefficient, zero or above")
 
 
 def _check_thickness(held: Object, touch_m: float, problems: ProblemList) -> None:

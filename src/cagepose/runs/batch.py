@@ -87,6 +87,8 @@ def _varied(scene: Scene, friction: float, columns: dict[str, FloatArray]) -> Ca
         _quaternions(columns.get("object_euler_zyx"), scene.object.pose_world_object),
         np.maximum(object_size(scene.object), cage_sizes(points)) if "points_cage_m" in columns else base.sizes_m,
         _owned(columns.get("friction_coefficient", base.frictions)),
+        base.point_frictions,
+        base.box_frictions,
         _loads(scene, columns),
         base.tolerances,
     )

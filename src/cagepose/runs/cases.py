@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import cast
 from weakref import WeakKeyDictionary
 
@@ -12,7 +14,7 @@ from cagepose.kernels.algebra.tolerances import kernel_tolerances
 from cagepose.kernels.contact.metric import Body, PhaseLoad
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.cases import Cases, Part
-from cagepose.model.checks import as_vector
+from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.methods import DEFAULT_METRIC
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -60,9 +62,23 @@ def cases_of(scene: Scene, friction: float, start: Pose | None = None) -> Cases:
         held.quaternion_wxyz[None],
         np.array([scene.size_m]),
         np.array([friction]),
+        _own_frictions(scene, scene.cage.names, len(scene.cage.names)),
+        _own_frictions(scene, [str(box.name) for box in scene.object.boxes], len(scene.geometry.half_sizes)),
         cast(Rows[Rows[PhaseLoad]], dead_loads(scene)[None]),
         kernel_tolerances(1.0, scene.tolerances.touch),
     )
+
+
+def _own_frictions(scene: Scene, names: Sequence[str], n: int) -> FloatArray:
+    """Return the coefficients of friction of points or boxes, (n,): NaN for those without one, bridges among them."""
+    own = np.full(n, math.nan)
+    own[: len(names)] = [scene.friction_of.get(name, math.nan) for name in names]
+    return own
+
+
+def contact_friction(scene: Scene, friction: float, point: str, box: str) -> float:
+    """Return the coefficient of a contact, with ``friction`` where neither its point nor its box has one."""
+    return scene.friction_of.get(point, scene.friction_of.get(box, friction))
 
 
 def dead_loads(scene: Scene) -> np.ndarray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from cagepose.runs.judge import critical_friction_at
+from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, PhaseRun, Run
 
 
@@ -14,8 +15,10 @@ def with_critical_friction(run: Run) -> Run:
     It stands in each phase's ``proof.critical_friction``: 0 if the contacts hold without friction, infinite if no
     friction is enough; None for a phase that did not end held.
     """
+    friction = chosen_method(run.scene, run.method).friction(run.scene)
     phases = list[PhaseRun]()
     for number, phase in enumerate(run.phases):
-        least = critical_friction_at(run.scene, phase.pose, number) if phase.verdict in AT_REST else None
+        is_held = phase.verdict in AT_REST
+        least = critical_friction_at(run.scene, phase.pose, number, friction) if is_held else None
         phases.append(replace(phase, proof=replace(phase.proof, critical_friction=least)))
     return replace(run, phases=tuple(phases))

@@ -41,8 +41,11 @@ def judged_workspace(scene: Scene, pose: Pose, phase: int, friction: float) -> t
     return at, outcome
 
 
-def critical_friction_at(scene: Scene, pose: Pose, phase: int) -> float:
+def critical_friction_at(scene: Scene, pose: Pose, phase: int, friction: float) -> float:
     """Return the least coefficient of friction at which the contacts balance the load of a phase (5.17); inf: none.
+
+    Where points or boxes have coefficients of their own, the greatest of all, with all in proportion to what they are
+    beside ``friction``.
 
     Raises
     ------
@@ -51,7 +54,7 @@ def critical_friction_at(scene: Scene, pose: Pose, phase: int) -> float:
     """
     points = _points_world(scene, phase)
     return at_pose.critical_friction(
-        phase, part_of(scene), cases_of(scene, 0.0, pose), points, empty_proof_workspace(scene.geometry)
+        phase, part_of(scene), cases_of(scene, friction, pose), points, empty_proof_workspace(scene.geometry)
     )
 
 

@@ -106,10 +106,10 @@ class Certificate:
     uniqueness
         "strong": for each choice of faces there is a tree. "weak": there is another onset. "not shown": neither; the
         forces show that rest is one onset.
-    friction
-        Coefficient.
     contacts
         Where they are.
+    friction
+        Coefficient of each, (n,).
     choices
         One for each choice of faces at edges.
     onset
@@ -117,7 +117,7 @@ class Certificate:
     """
 
     uniqueness: Uniqueness
-    friction: float
     contacts: tuple[ContactFace, ...]
+    friction: Annotated[FloatArray, (-1,)]
     choices: tuple[ChosenFaces, ...]
     onset: OtherOnset | None

@@ -15,7 +15,6 @@ import numpy as np
 
 from cagepose.errors import CertificateError
 from cagepose.model.checks import FloatArray
-from cagepose.runs.methods import chosen_method
 from cagepose.runs.proof import Uniqueness
 from cagepose.runs.run import Run
 from cagepose.studies.certificate import Certificate, ChosenFaces, Decision, ModeTree, OtherOnset
@@ -82,15 +81,12 @@ def check_certificate(certificate: Certificate, run: Run, phase: int = -1) -> Ce
         The run has no such phase.
     """
     number = range(len(run.phases))[phase]
-    problem = contact_problem(run.scene, run.phases[number].pose, number)
-    friction = chosen_method(run.scene, run.method).friction(run.scene)
-    if certificate.friction != friction:
-        raise CertificateError(f"friction is {certificate.friction!r}, and the scene's is {friction!r}")
+    problem = contact_problem(run, number)
     places = _places(certificate, problem)
     _check_choices(certificate, places, problem)
     residual, n_leaves, speed = 0.0, 0, 0.0
     for number, choice in enumerate(certificate.choices):
-        checked = _Choice(problem, [places[contact] for contact in choice.contacts], friction, f"choices[{number}]")
+        checked = _Choice(problem, [places[contact] for contact in choice.contacts], f"choices[{number}]")
         residual = max(residual, checked.balance(choice))
         if certificate.uniqueness == "strong":
             if choice.tree is None:
@@ -101,7 +97,7 @@ def check_certificate(certificate: Certificate, run: Run, phase: int = -1) -> Ce
         onset = certificate.onset
         if onset is None:
             raise CertificateError("onset is missing, and rest is said to be one of several")
-        speed = _Choice(problem, _taken(onset, places), friction, "onset").speed(onset)
+        speed = _Choice(problem, _taken(onset, places), "onset").speed(onset)
     return CertificateCheck(certificate.uniqueness, residual, n_leaves, speed)
 
 
@@ -117,7 +113,13 @@ def _places(certificate: Certificate, problem: ContactProblem) -> list[int]:
             raise CertificateError(f"contacts leave out {face}, which touches at this pose")
     if len(certificate.contacts) != len(places):
         raise CertificateError("contacts name one of them twice")
-    return [places[face] for face in certificate.contacts]
+    found = [places[face] for face in certificate.contacts]
+    if len(certificate.friction) != len(found):
+        raise CertificateError(f"friction has {len(certificate.friction)} coefficients for {len(found)} contacts")
+    for face, told, own in zip(certificate.contacts, certificate.friction, problem.friction[found], strict=True):
+        if told != own:
+            raise CertificateError(f"friction of {face} is {float(told)!r}, and the scene's is {float(own)!r}")
+    return found
 
 
 def _taken(onset: OtherOnset, places: list[int]) -> list[int]:
@@ -159,9 +161,9 @@ class _Modes(NamedTuple):
 class _Choice:
     """The contacts of one choice of faces, in loads."""
 
-    def __init__(self, problem: ContactProblem, places: list[int], friction: float, where: str) -> None:
-        self.problem, self.places, self.friction, self.where = problem, places, friction, where
-        self.wrenches = problem.wrenches[places]
+    def __init__(self, problem: ContactProblem, places: list[int], where: str) -> None:
+        self.problem, self.places, self.where = problem, places, where
+        self.wrenches, self.friction = problem.wrenches[places], problem.friction[places]
         self.sizes = problem.length(self.wrenches[:, 0])
 
     def _refuse(self, where: str, what: str) -> CertificateError:
@@ -265,14 +267,14 @@ class _Choice:
         """Return the most power of the load along a twist, or of a unit force against it (5.20)."""
         along = self.wrenches @ twist
         power = float(self.problem.load @ twist)
-        for (normal, one, two), size, mode in zip(along, self.sizes, modes, strict=True):
+        for (normal, one, two), coefficient, size, mode in zip(along, self.friction, self.sizes, modes, strict=True):
             if mode.opening == "opens":
                 continue  # it gives no force
             steepest = float(np.arctan2(-two, -one))
             is_inside = (steepest - mode.start) % (2.0 * pi) <= mode.width
             angles = [steepest] if mode.slipping != "slips" or is_inside else [mode.start, mode.start + mode.width]
             friction = max(float(-one * np.cos(angle) - two * np.sin(angle)) for angle in angles)
-            power = max(power, (-normal + self.friction * friction) / size)
+            power = max(power, float(-normal + coefficient * friction) / float(size))
         return power
 
     def _left(self, twist: FloatArray, pressures: FloatArray, modes: list[_Modes]) -> float:

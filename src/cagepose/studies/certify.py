@@ -16,12 +16,12 @@ from cagepose.kernels.algebra.least_squares import PassiveSet, clear, empty_syst
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.contact import coulomb_newton, equilibrium
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
+from cagepose.kernels.contact.friction import friction_of
 from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.stability import relaxation, strong
-from cagepose.kernels.stability.proof import ProofWorkspace
 from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
 from cagepose.model.checks import FloatArray
-from cagepose.runs.cases import body_of
+from cagepose.runs.cases import body_of, cases_of
 from cagepose.runs.judge import judged_workspace
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.proof import Uniqueness
@@ -63,66 +63,75 @@ def certificate(run: Run, phase: int = -1) -> Certificate | None:
     ended = run.phases[number]
     if ended.proof.verdict == "moves":
         return None
-    friction = chosen_method(run.scene, run.method).friction(run.scene)
-    problem = contact_problem(run.scene, ended.pose, number)
+    problem = contact_problem(run, number)
     choices = list(islice(product(*reversed(problem.groups)), CHOICES_LIMIT + 1))
-    at, _ = judged_workspace(run.scene, ended.pose, number, friction)
-    search = _Search(run, problem, at, friction, ended.pose.rotation)
+    search = _Search(run, problem, number)
     if not problem.faces or len(choices) > CHOICES_LIMIT or not search.is_of_first_order():
         return None
     found = list[ChosenFaces]()
     uniqueness: Uniqueness = "strong"
     onset = None
     for choice in choices:
-        chosen = tuple(reversed(choice))
-        answer, faces, moving = search.ask(chosen, uniqueness == "strong")
+        asked = search.ask(tuple(reversed(choice)), uniqueness == "strong")
+        if asked is None:
+            return None
+        answer, faces, moving = asked
         found.append(faces)
         if uniqueness == "strong":
             uniqueness, onset = answer, moving
     if uniqueness != "strong":
         found = [ChosenFaces(faces.contacts, faces.forces, None) for faces in found]
-    return Certificate(uniqueness, friction, problem.faces, tuple(found), onset)
+    return Certificate(uniqueness, problem.faces, problem.friction, tuple(found), onset)
 
 
 class _Search:
     """The kernels' search on the contacts of a problem, one choice of faces after the other."""
 
-    def __init__(
-        self, run: Run, problem: ContactProblem, at: ProofWorkspace, friction: float, rotation: FloatArray
-    ) -> None:
-        self.problem, self.at, self.friction = problem, at, friction
-        rows: Any = at.contacts.rows
-        self.states: Any = at.contacts.states
-        self.solver: Any = at.scratch[0].solver
-        self.tree: Any = at.scratch[0].tree
-        self.used = np.nonzero(rows["group"][: at.contacts.used[0]] >= 0)[0]
-        self.columns = rows["columns"][self.used]
-        self.load = np.array(self.solver.load[:WRENCH])
+    def __init__(self, run: Run, problem: ContactProblem, phase: int) -> None:
+        scene, pose = run.scene, run.phases[phase].pose
+        of_scene, body = chosen_method(scene, run.method).friction(scene), body_of(scene)
+        cases = cases_of(scene, of_scene, pose)
+        self.friction = friction_of(of_scene, cases.point_frictions, cases.box_frictions).greatest
+        # The kernel knows one coefficient, and shortens the tangents of contacts with less.
+        self.problem, self.lengths = problem, np.ones((len(problem.faces), 3))
+        if self.friction > 0.0:
+            self.lengths[:, 1:] = (problem.friction / self.friction)[:, None]
+        # D^-1/2 of (5.3), from wrenches in the world; its transpose takes scaled twists back there.
+        self.to_scaled = np.eye(WRENCH)
+        self.to_scaled[3:, 3:] = body.axes_object @ pose.rotation.T / body.radii[:, None]
+        self.at, _ = judged_workspace(scene, pose, phase, of_scene)
+        contacts: Any = self.at.contacts
+        work: Any = self.at.scratch[0]
+        self.states, self.tree = contacts.states, work.tree
+        self.used = np.nonzero(contacts.rows["group"][: contacts.used[0]] >= 0)[0]
+        self.columns = contacts.rows["columns"][self.used]
+        self.load = np.array(work.solver.load[:WRENCH])
         self.size = float(np.linalg.norm(self.load)) or 1.0
-        body = body_of(run.scene)
-        axes_world = body.axes_object @ rotation.T
-        self.to_scaled = np.zeros((WRENCH, WRENCH))
-        self.to_scaled[:3, :3] = np.eye(3)
-        self.to_scaled[3:, 3:] = axes_world / body.radii[:, None]
-        """D^-1/2 of (5.3), from wrenches in the world; its transpose takes scaled twists back there."""
 
     def is_of_first_order(self) -> bool:
         """Whether the kernel has balanced the load itself, with all contacts: nothing is locked, (5.21)."""
-        expected = self.problem.wrenches @ self.to_scaled.T
-        if self.columns.shape != expected.shape:
+        if self.columns.shape != self.problem.wrenches.shape:
             return False
-        apart = np.linalg.norm(self.columns - expected, axis=2) / np.linalg.norm(expected, axis=2)
+        expected = self.problem.wrenches @ self.to_scaled.T
+        apart = np.linalg.norm(self.columns - self.lengths[..., None] * expected, axis=2)
+        apart /= np.linalg.norm(expected, axis=2)
         return bool(
             (apart <= SAME).all() and np.linalg.norm(self.load / self.size - self.to_scaled @ self.problem.load) <= SAME
         )
 
-    def ask(self, chosen: tuple[int, ...], with_tree: bool) -> tuple[Uniqueness, ChosenFaces, OtherOnset | None]:
-        """Return what one choice of faces says of rest, its balance with a tree if asked for, and another onset."""
+    def ask(self, chosen: tuple[int, ...], with_tree: bool) -> tuple[Uniqueness, ChosenFaces, OtherOnset | None] | None:
+        """Return what one choice of faces says of rest, its balance with a tree if asked for, and another onset.
+
+        None: no forces balance the load to first order.
+        """
         places, states = list(chosen), self.states
-        states["chosen"] = False
-        states["chosen"][self.used[places]] = True
+        for flag in ("chosen", "counts"):
+            states[flag] = False
+            states[flag][self.used[places]] = True
         code = balance_with_faces(self.friction, self.at)
         forces = self._forces(places)
+        if code == equilibrium.MOVES:
+            return None
         if not with_tree:
             return "not shown", ChosenFaces(chosen, forces, None), None
         if code == equilibrium.HELD_WITHOUT_FRICTION:
@@ -134,7 +143,7 @@ class _Search:
         return ("weak" if onset else "not shown"), ChosenFaces(chosen, forces, None), onset
 
     def _forces(self, places: list[int]) -> FloatArray:
-        return np.asarray(self.states["forces"][self.used[places]] / self.size)
+        return np.asarray(self.lengths[places] * self.states["forces"][self.used[places]] / self.size)
 
     def _tree(self, places: list[int]) -> ModeTree:
         tree, n = self.tree, int(self.tree.n_nodes)
@@ -149,7 +158,7 @@ class _Search:
         )
         leaves = found.leaves()
         scaled = tree.twists[leaves]
-        columns = self.columns[places]
+        columns = self.problem.wrenches[places] @ self.to_scaled.T
         pressures = [
             _pressures(columns, found, leaf, self.load / self.size - twist)
             for leaf, twist in zip(leaves, scaled, strict=True)

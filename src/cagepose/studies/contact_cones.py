@@ -31,21 +31,25 @@ class ContactCones(NamedTuple):
     columns
         Wrenches of unit forces on the object along each contact's normal and two tangents, (n, 3, 6).
     friction
-        Coefficient.
+        Coefficient of each, (n,).
     length_m
         Metres: the longest arm.
     """
 
     columns: FloatArray
-    friction: float
+    friction: FloatArray
     length_m: float
+
+    def some(self, which: NDArray[np.bool_]) -> ContactCones:
+        """Return the cones of some of the contacts, (n,)."""
+        return self._replace(columns=self.columns[which], friction=self.friction[which])
 
     def wrench(self, forces: FloatArray) -> FloatArray:
         """Return the wrench of forces (n, 3), (6,)."""
         return np.asarray(np.einsum("ij,ijk->k", forces, self.columns))
 
 
-def contact_cones(normals: FloatArray, arms_m: FloatArray, friction: float) -> ContactCones:
+def contact_cones(normals: FloatArray, arms_m: FloatArray, friction: FloatArray) -> ContactCones:
     """Return the cones of n contacts.
 
     Parameters
@@ -55,7 +59,7 @@ def contact_cones(normals: FloatArray, arms_m: FloatArray, friction: float) -> C
     arms_m
         Where, as seen from the centre of gravity, (n, 3), metres.
     friction
-        Coefficient.
+        Coefficients, (n,).
     """
     length_m = float(np.linalg.norm(arms_m, axis=1).max(initial=0.0)) or 1.0
     axes = np.eye(3)[np.abs(normals).argmin(axis=1)]
@@ -80,14 +84,14 @@ class ConeProgram:
         self.rays = np.zeros((0, N_UNKNOWNS))
         self.program = empty_record(Program)
         indices = np.arange(len(cones.columns))
-        angles = 2.0 * np.pi * np.arange(FIRST_RAYS if cones.friction > 0.0 else 1) / FIRST_RAYS
+        angles = 2.0 * np.pi * np.arange(FIRST_RAYS if cones.friction.any() else 1) / FIRST_RAYS
         for angle in angles:
             self._add(indices, np.tile((np.cos(angle), np.sin(angle)), (len(indices), 1)))
 
     def _add(self, contacts: NDArray[np.int64], tangents: FloatArray) -> None:
         """Add the rays n + mu d of contacts, with unit tangents d, (n, 2)."""
         columns = self.cones.columns[contacts]
-        rays = columns[:, 0] + self.cones.friction * np.einsum("ij,ijk->ik", tangents, columns[:, 1:])
+        rays = columns[:, 0] + self.cones.friction[contacts, None] * np.einsum("ij,ijk->ik", tangents, columns[:, 1:])
         self.contacts, self.rays = np.append(self.contacts, contacts), np.concatenate([self.rays, rays])
 
     def greatest(self, objective: FloatArray, least: FloatArray, row: FloatArray) -> tuple[int, FloatArray]:
@@ -121,7 +125,7 @@ class ConeProgram:
 
     def _cut(self, motion: FloatArray, least: FloatArray) -> bool:
         """Add the rays that a motion violates most, one of each contact; False: it violates none."""
-        if self.cones.friction == 0.0:
+        if not self.cones.friction.any():
             return False
         along = self.cones.columns @ motion
         slips = np.linalg.norm(along[:, 1:], axis=1)

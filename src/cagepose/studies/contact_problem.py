@@ -15,7 +15,10 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.methods import DEFAULT_METRIC
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.runs.cases import contact_friction
 from cagepose.runs.load_scaling import scaled_load
+from cagepose.runs.methods import chosen_method
+from cagepose.runs.run import Run
 
 PROBE, PROBE_MARGIN = 3.0, 1.5
 """In touch tolerances, of (2.7): a face is hidden where a point that far outside of it, and that far from its edge,
@@ -59,6 +62,8 @@ class ContactProblem:
     wrenches
         Of each contact: force and moment of a unit force along its outward normal and two tangents, (n, 3, 6), metres.
         The tangents are the next two axes of its box, in the order x, y, z, x, y. The contact pushes the other way.
+    friction
+        Coefficient of each, (n,).
     load
         Force and moment in loads: ``length`` of it is 1, (6,); zero where the loads cancel.
     metric
@@ -68,6 +73,7 @@ class ContactProblem:
     faces: tuple[ContactFace, ...]
     groups: tuple[tuple[int, ...], ...]
     wrenches: FloatArray
+    friction: FloatArray
     load: FloatArray
     metric: FloatArray
 
@@ -89,18 +95,21 @@ class ContactProblem:
         return np.asarray(np.linalg.inv(self.metric))
 
 
-def contact_problem(scene: Scene, pose: Pose, phase: int) -> ContactProblem:
-    """Return the contact problem of a scene's object at a pose under the load of a phase."""
+def contact_problem(run: Run, phase: int) -> ContactProblem:
+    """Return the contact problem at the end of a phase, counted from 0, from a run's scene and the pose there."""
+    scene, pose = run.scene, run.phases[phase].pose
+    of_scene = chosen_method(scene, run.method).friction(scene)
     center = pose.transform(scene.object.center_of_gravity_m)
     faces, axes, arms = _touched_faces(scene, pose, center)
     groups: dict[tuple[str, str], list[int]] = {}
     for place, face in enumerate(faces):
         groups.setdefault((face.point, face.box), []).append(place)
     wrenches = np.concatenate([axes, np.cross(arms[:, None], axes)], axis=2)
+    friction = np.array([contact_friction(scene, of_scene, face.point, face.box) for face in faces])
     metric = _metric(scene, pose)
     unscaled = _load(scene, pose, phase)
     size = float(np.sqrt(unscaled @ np.linalg.inv(metric) @ unscaled)) or 1.0
-    return ContactProblem(tuple(faces), tuple(map(tuple, groups.values())), wrenches, unscaled / size, metric)
+    return ContactProblem(tuple(faces), tuple(map(tuple, groups.values())), wrenches, friction, unscaled / size, metric)
 
 
 def _touched_faces(scene: Scene, pose: Pose, center: FloatArray) -> tuple[list[ContactFace], FloatArray, FloatArray]:

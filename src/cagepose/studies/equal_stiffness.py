@@ -53,16 +53,16 @@ def equally_stiff_forces(cones: ContactCones, load: FloatArray) -> FloatArray:
     return forces
 
 
-def _projected(forces: FloatArray, friction: float) -> tuple[FloatArray, FloatArray]:
+def _projected(forces: FloatArray, friction: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the projection of forces (n, 3) onto their cones, and its derivative (n, 3, 3)."""
     normal, tangential = forces[:, 0], forces[:, 1:]
     size = np.linalg.norm(tangential, axis=1)
     is_inside = size <= friction * normal
     is_off = ~is_inside & (friction * size <= -normal)
     directions = np.divide(tangential, size[:, None], out=np.zeros_like(tangential), where=size[:, None] > 0.0)
-    rays = np.concatenate([np.ones((len(forces), 1)), friction * directions], axis=1)
+    rays = np.concatenate([np.ones((len(forces), 1)), friction[:, None] * directions], axis=1)
     along = (normal + friction * size) / (1.0 + friction**2)
-    derivative = rays[:, :, None] * rays[:, None, :] / (1.0 + friction**2)
+    derivative = rays[:, :, None] * rays[:, None, :] / (1.0 + friction**2)[:, None, None]
     turning = np.divide(friction * along, size, out=np.zeros_like(size), where=size > 0.0)
     derivative[:, 1:, 1:] += turning[:, None, None] * (np.eye(2) - directions[:, :, None] * directions[:, None, :])
     derivative[is_inside] = np.eye(3)

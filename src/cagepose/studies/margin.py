@@ -12,7 +12,7 @@ import numpy as np
 from cagepose.kernels.contact.contact_set import SAME_NORMAL
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
 from cagepose.model.checks import FloatArray
-from cagepose.runs.cases import dead_loads
+from cagepose.runs.cases import contact_friction, dead_loads
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, Contact, Run
@@ -168,7 +168,9 @@ def _cones(run: Run, phase: int, contacts: list[Contact]) -> ContactCones:
     places = dict(zip(run.scene.cage.names, run.scene.cage.points_world() - center, strict=True))
     normals = np.array([-contact.normal_world for contact in contacts]).reshape(-1, 3)
     arms = np.array([places[contact.point] for contact in contacts]).reshape(-1, 3)
-    return contact_cones(normals, arms, chosen_method(run.scene, run.method).friction(run.scene))
+    of_scene = chosen_method(run.scene, run.method).friction(run.scene)
+    friction = [contact_friction(run.scene, of_scene, contact.point, contact.box) for contact in contacts]
+    return contact_cones(normals, arms, np.array(friction))
 
 
 def _load(run: Run, phase: int, cones: ContactCones) -> tuple[FloatArray, float]:
@@ -202,7 +204,7 @@ class _Choices:
         """Return the forces of equally stiff contacts with one choice of faces, (n, 3)."""
         forces = np.zeros((len(counts), 3))
         chosen = np.isfinite(counts)
-        forces[chosen] = equally_stiff_forces(self.cones._replace(columns=self.cones.columns[chosen]), self.load)
+        forces[chosen] = equally_stiff_forces(self.cones.some(chosen), self.load)
         return forces
 
     def tangential(self) -> FloatArray:

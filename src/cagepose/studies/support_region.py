@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from cagepose.kernels.algebra.linear_program import INFEASIBLE, N_UNKNOWNS, OPTIMAL, UNBOUNDED, Program, solve_program
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.model.checks import FloatArray
-from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import Run
 from cagepose.studies.contact_problem import ContactProblem, contact_problem
 from cagepose.studies.support import ROUNDING, LoadView, convex_hull, polygon_within, without_doubles
@@ -60,16 +59,14 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
     reach_m
         Farther from the centre of gravity nothing is shown.
     """
-    scene = run.scene
-    problem = contact_problem(scene, run.phases[phase_index].pose, phase_index)
-    friction = chosen_method(scene, run.method).friction(scene)
+    problem = contact_problem(run, phase_index)
     choices = list(islice(product(*problem.groups), MOST_CHOICES + 1))
     if len(choices) > MOST_CHOICES:
         return None
     normals = _directions(view.polygon)
     heights = np.full(len(normals), math.inf)
     for choice in choices:
-        found = _farthest(problem, list(choice), friction, view, normals)
+        found = _farthest(problem, list(choice), view, normals)
         if found is None:
             return None
         heights = np.minimum(heights, found[0])
@@ -93,7 +90,7 @@ def _directions(polygon: FloatArray) -> FloatArray:
 
 
 def _farthest(
-    problem: ContactProblem, places: list[int], friction: float, view: LoadView, normals: FloatArray
+    problem: ContactProblem, places: list[int], view: LoadView, normals: FloatArray
 ) -> tuple[FloatArray, FloatArray] | None:
     """Return how far the region goes in each direction, metres from the centre of gravity, and these points;
     inf: it has no end, -inf: it is empty.
@@ -103,7 +100,7 @@ def _farthest(
     forces for its multipliers.
     """
     down, seen = np.cross(view.up_world, view.right_world), np.stack([view.right_world, view.up_world], axis=1)
-    rays, program = _Rays(problem.wrenches[places], friction, down), empty_record(Program)
+    rays, program = _Rays(problem.wrenches[places], problem.friction[places], down), empty_record(Program)
     heights, points = np.zeros(len(normals)), np.zeros((len(normals), 2))
     for place, normal in enumerate(normals):
         outcome = rays.solve(program, np.cross(down, seen @ normal))
@@ -121,17 +118,17 @@ def _farthest(
 class _Rays:
     """Rays of round friction cones: those that a solution violates most come in, as in `ConeProgram`."""
 
-    def __init__(self, wrenches: FloatArray, friction: float, down: FloatArray) -> None:
+    def __init__(self, wrenches: FloatArray, friction: FloatArray, down: FloatArray) -> None:
         self.wrenches, self.friction, self.down = wrenches, friction, down
         self.length_m = float(np.linalg.norm(wrenches[:, 0, 3:], axis=1).max(initial=0.0)) or 1.0
         self.forces, self.moments = np.zeros((0, 3)), np.zeros((0, 3))
         every = np.arange(len(wrenches))
-        for angle in 2.0 * np.pi * np.arange(FIRST_RAYS if friction > 0.0 else 1) / FIRST_RAYS:
+        for angle in 2.0 * np.pi * np.arange(FIRST_RAYS if friction.any() else 1) / FIRST_RAYS:
             self._add(every, np.tile((math.cos(angle), math.sin(angle)), (len(wrenches), 1)))
 
     def _add(self, contacts: NDArray[np.int64], tangents: FloatArray) -> None:
         across = np.einsum("ij,ijk->ik", tangents, self.wrenches[contacts, 1:])
-        rays = -(self.wrenches[contacts, 0] + self.friction * across)
+        rays = -(self.wrenches[contacts, 0] + self.friction[contacts, None] * across)
         self.forces = np.concatenate([self.forces, rays[:, :3]])
         self.moments = np.concatenate([self.moments, rays[:, 3:]])
 
@@ -153,7 +150,7 @@ class _Rays:
 
     def _cut(self, twist: FloatArray) -> bool:
         """Add the ray of each contact that a twist violates most; False: it violates none."""
-        if self.friction == 0.0:
+        if not self.friction.any():
             return False
         along = self.wrenches @ twist
         slips = np.linalg.norm(along[:, 1:], axis=1)

@@ -160,7 +160,7 @@ def add_generator(contacts: ContactSet, friction: float, b: FloatArray, number: 
     left = length(passive.residual, passive.n_rows)
     best, best_price = -1, 0.0
     for i in range(contacts.used[0]):
-        if not states[i].chosen or states[i].is_rejected:
+        if not states[i].counts or states[i].is_rejected:
             continue
         price, is_steeper = generator_price(contacts, i, friction, cone)
         if price <= 0.0:
@@ -197,7 +197,7 @@ def cone_residual(contacts: ContactSet, friction: float, b: FloatArray, cone: Co
     Parameters
     ----------
     contacts
-        Those that are chosen count.
+        At a pose.
     friction
         Coefficient of friction.
     b

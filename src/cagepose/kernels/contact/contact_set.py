@@ -13,9 +13,10 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
-from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, row, vector_from
+from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, row, scaled, vector_from
 from cagepose.kernels.collision.contacts import face_normal, is_hidden, touches_face
 from cagepose.kernels.collision.geometry import Geometry, Placement, box_point
+from cagepose.kernels.contact.friction import Friction, friction_share
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.native.kernel import kernel
 
@@ -38,12 +39,14 @@ class ContactRow:
     gap
         Distance from the plane of the face, below zero inside, metres.
     group
-        The first row of the same point and box; -1: the row does not count, as flush faces of another box, or what is
-        locked, say all that it does.
+        The first row of the same point and box; -1: the row does not count, as flush faces of another box say all
+        that it does.
     directions, arm
-        Outward unit normal and two tangents, rows, and the point as seen from the centre of gravity, in the world.
+        Outward unit normal and two tangents, rows, and the point as seen from the centre of gravity, in the world. The
+        tangents are as long as the contact's coefficient of friction is of the greatest one, so that one coefficient
+        does for all contacts: with tangential forces and slip in this unit Coulomb's law reads the same.
     columns
-        Scaled wrenches of a unit force along these directions. The contact pushes along their negative. What contacts
+        Scaled wrenches of a force along these directions. The contact pushes along their negative. What contacts
         without play lock is taken out of them, see `self_stress`.
     """
 
@@ -64,7 +67,9 @@ class ContactState:
     Attributes
     ----------
     chosen
-        Whether this face counts: all but the other faces on an edge.
+        Whether it is the face that is asked of its group: all are but the other faces on an edge.
+    counts
+        Whether it takes part in the problem: chosen, and not left out of it because of what others lock.
     forces
         What the contact carries along its columns.
     is_sticking
@@ -74,12 +79,13 @@ class ContactState:
     slip_speed, is_rejected
         Of the problem with round cones: De Saxce's correction (5.7), and whether its generator did not help.
     has_carried
-        In the first row of a group: whether one of its faces carried in a choice that has been asked.
+        In the first row of a group: whether one of its faces carried, or was locked, in a choice that has been asked.
     kept_chosen, kept_forces
         Of the choice of faces that is kept.
     """
 
     chosen: bool
+    counts: bool
     forces: Annotated[FloatArray, 3]
     is_sticking: bool
     is_locked: bool
@@ -104,15 +110,24 @@ def empty_contact_set(n_rows: int) -> ContactSet:
 
 
 @kernel
+def is_smooth(contact: ContactRow) -> bool:
+    """Whether a contact has no friction, though others may have."""
+    greatest = 0.0
+    for k in range(6):
+        greatest = max(greatest, abs(contact.columns[1, k]), abs(contact.columns[2, k]))
+    return greatest == 0.0
+
+
+@kernel
 def stays_on_face(contacts: ContactSet, i: int) -> bool:
     """Whether a contact keeps its gap in a motion that begins: it carries, or is locked."""
     return contacts.states[i].forces[0] > 0.0 or contacts.states[i].is_locked
 
 
 @kernel
-def unlock(contacts: ContactSet) -> None:
-    for i in range(contacts.used[0]):
-        contacts.states[i].is_locked = False
+def choose(contacts: ContactSet, i: int, chosen: bool) -> None:
+    """Choose a face, or not: it counts if it is chosen."""
+    contacts.states[i].chosen = contacts.states[i].counts = chosen
 
 
 @kernel
@@ -128,14 +143,23 @@ def face_is_listed(contacts: ContactSet, first: int, point: int, normal: Vector)
 
 @kernel
 def append_contact(
-    contacts: ContactSet, placement: Placement, point: int, box: int, axis: int, side: float, arm: Vector, frame: Frame
+    contacts: ContactSet,
+    placement: Placement,
+    friction: Friction,
+    point: int,
+    box: int,
+    axis: int,
+    side: float,
+    arm: Vector,
+    frame: Frame,
 ) -> None:
     contact = contacts.rows[contacts.used[0]]
+    share = friction_share(friction, point, box)
     contact.point, contact.box, contact.axis, contact.side = point, box, axis, side
     for k in range(3):
         contact.arm[k] = arm[k]
     for j in range(3):
-        direction = face_normal(placement, box, (axis + j) % 3, side if j == 0 else 1.0)
+        direction = scaled(face_normal(placement, box, (axis + j) % 3, 1.0), side if j == 0 else share)
         for k in range(3):
             contact.directions[j, k] = direction[k]
         write_scaled_wrench(direction, cross(arm, direction), frame, contact.columns[j])
@@ -144,7 +168,13 @@ def append_contact(
 
 @kernel
 def find_contacts(
-    geometry: Geometry, placement: Placement, center: Vector, frame: Frame, touch_m: float, contacts: ContactSet
+    geometry: Geometry,
+    placement: Placement,
+    friction: Friction,
+    center: Vector,
+    frame: Frame,
+    touch_m: float,
+    contacts: ContactSet,
 ) -> bool:
     """Fill ``contacts`` at a pose; False: there are more than it has room for."""
     contacts.used[0] = 0
@@ -172,10 +202,10 @@ def find_contacts(
                 contact = contacts.rows[contacts.used[0]]
                 contact.gap = abs(point_box[axis]) - half_size[axis]
                 contact.group = first
-                contacts.states[contacts.used[0]].chosen = contacts.used[0] == first
-                append_contact(contacts, placement, point, box, axis, side, arm, frame)
+                choose(contacts, contacts.used[0], contacts.used[0] == first)
+                append_contact(contacts, placement, friction, point, box, axis, side, arm, frame)
             if n_new == 0:
                 for i in range(first, contacts.used[0]):
                     contacts.rows[i].group = -1
-                    contacts.states[i].chosen = False
+                    choose(contacts, i, False)
     return True

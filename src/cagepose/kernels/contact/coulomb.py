@@ -51,7 +51,7 @@ def motion_left(contacts: ContactSet, b: FloatArray, y: FloatArray) -> None:
     for k in range(6):
         y[k] = b[k]
     for i in range(contacts.used[0]):
-        if contacts.states[i].chosen:
+        if contacts.states[i].counts:
             for j in range(3):
                 for k in range(6):
                     y[k] -= contacts.rows[i].columns[j, k] * contacts.states[i].forces[j]
@@ -71,7 +71,7 @@ def coulomb_error(contacts: ContactSet, friction: float, y: FloatArray) -> float
     """
     worst = 0.0
     for i in range(contacts.used[0]):
-        if not contacts.states[i].chosen:
+        if not contacts.states[i].counts:
             continue
         contact, forces = contacts.rows[i], contacts.states[i].forces
         size = length(contact.columns[0], 6)
@@ -119,7 +119,7 @@ def solves_with_any_modes(
     """Try all combinations of modes, for few contacts, each from the solution in ``cone``."""
     n_chosen = 0
     for i in range(contacts.used[0]):
-        if contacts.states[i].chosen:
+        if contacts.states[i].counts:
             n_chosen += 1
     if n_chosen > ENUMERATED:
         return False
@@ -128,7 +128,7 @@ def solves_with_any_modes(
         newton.n_carrying = 0
         digits = combination
         for i in range(contacts.used[0]):
-            if contacts.states[i].chosen:
+            if contacts.states[i].counts:
                 if digits % 3 != OPENS:
                     add_carrying(newton, i, digits % 3)
                 digits //= 3
@@ -185,7 +185,7 @@ def coulomb_onset(
             read_cone(contacts, friction, b, cone, y)
         share = 1.0 if turn <= ROUNDS_UNDAMPED else DAMPED
         for i in range(contacts.used[0]):
-            slip = steepest_tangent(contacts.rows[i], y)[0] if states[i].chosen else 0.0
+            slip = steepest_tangent(contacts.rows[i], y)[0] if states[i].counts else 0.0
             states[i].slip_speed += share * (slip - states[i].slip_speed)
         clear_cone(cone, b, WRENCH, terms)
         cone.is_corrected = True

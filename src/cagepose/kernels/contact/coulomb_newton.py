@@ -12,7 +12,7 @@ from cagepose.kernels.algebra.elimination import eliminate
 from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.contact.cone import steepest_tangent
-from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.contact_set import ContactSet, is_smooth
 from cagepose.kernels.native.kernel import kernel
 
 STICKING_LIMIT = 12
@@ -23,8 +23,8 @@ NEWTON_STEPS = 8
 STILL = 1e-14
 """In lengths of the load: after so small a change the next one is rounding, since the digits double."""
 
-OPENS, STICKS, SLIPS = 0, 1, 2
-"""Codes of what a contact does."""
+OPENS, STICKS, SLIPS, SLIDES = 0, 1, 2, 3
+"""Codes of what a contact does; one without friction slides."""
 
 
 class NewtonWorkspace:
@@ -69,7 +69,7 @@ def n_forces(mode: int) -> int:
     """Return how many unknown forces a contact has: one that slips has its normal force, and by how much its friction
     turns with the slip.
     """
-    return 2 if mode == SLIPS else 3
+    return 1 if mode == SLIDES else 2 if mode == SLIPS else 3
 
 
 @kernel
@@ -78,7 +78,9 @@ def number_unknowns(contacts: ContactSet, y: FloatArray, newton: NewtonWorkspace
     n = 6
     for place in range(newton.n_carrying):
         contact = contacts.rows[newton.contacts[place]]
-        if newton.modes[place] == SLIPS and steepest_tangent(contact, y)[0] == 0.0:
+        if is_smooth(contact):
+            newton.modes[place] = SLIDES
+        elif newton.modes[place] == SLIPS and steepest_tangent(contact, y)[0] == 0.0:
             newton.modes[place] = STICKS  # a slip without direction
         newton.first_unknowns[place] = n
         n += n_forces(newton.modes[place])
@@ -102,8 +104,9 @@ def write_system(
     for place in range(newton.n_carrying):
         contact, first = contacts.rows[newton.contacts[place]], newton.first_unknowns[place]
         columns, forces = contact.columns, contacts.states[newton.contacts[place]].forces
-        if newton.modes[place] == STICKS:
-            for j in range(3):
+        mode = newton.modes[place]
+        if mode != SLIPS:
+            for j in range(n_forces(mode)):
                 for k in range(6):
                     m[k, first + j] = m[first + j, k] = columns[j, k]
                     m[k, n] -= columns[j, k] * forces[j]
@@ -139,8 +142,9 @@ def add_changes(contacts: ContactSet, friction: float, y: FloatArray, n: int, ne
     for place in range(newton.n_carrying):
         contact, first = contacts.rows[newton.contacts[place]], newton.first_unknowns[place]
         forces = contacts.states[newton.contacts[place]].forces
-        if newton.modes[place] == STICKS:
-            for j in range(3):
+        mode = newton.modes[place]
+        if mode != SLIPS:
+            for j in range(n_forces(mode)):
                 forces[j] += changes[first + j]
         else:
             _, one, two = steepest_tangent(contact, y)

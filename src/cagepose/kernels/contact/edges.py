@@ -5,7 +5,7 @@ The one way through them: ``first_choice``, then ``next_choice`` until it says t
 
 from __future__ import annotations
 
-from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.contact_set import ContactSet, choose
 from cagepose.kernels.native.kernel import kernel
 
 CHOICES_LIMIT = 729
@@ -26,7 +26,7 @@ def last_of_group(contacts: ContactSet, first: int) -> int:
 def first_choice(contacts: ContactSet) -> None:
     """Choose the first face of each group."""
     for i in range(contacts.used[0]):
-        contacts.states[i].chosen = contacts.rows[i].group == i
+        choose(contacts, i, contacts.rows[i].group == i)
         contacts.states[i].has_carried = False
 
 
@@ -50,11 +50,11 @@ def next_choice(contacts: ContactSet, every: bool) -> bool:
         if every or states[first].has_carried:
             for i in range(first, last):
                 if states[i].chosen:
-                    states[i].chosen = False
-                    states[i + 1].chosen = True
+                    choose(contacts, i, False)
+                    choose(contacts, i + 1, True)
                     return True
         for i in range(first, last + 1):
-            states[i].chosen = i == first
+            choose(contacts, i, i == first)
         states[first].has_carried = False
     return False
 
@@ -83,6 +83,6 @@ def return_to_kept(contacts: ContactSet) -> None:
     """Choose the faces that were kept, with their forces."""
     for i in range(contacts.used[0]):
         state = contacts.states[i]
-        state.chosen = state.kept_chosen
+        choose(contacts, i, state.kept_chosen)
         for j in range(3):
             state.forces[j] = state.kept_forces[j]

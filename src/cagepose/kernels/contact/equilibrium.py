@@ -10,17 +10,25 @@ from cagepose.kernels.algebra.dense import remove_span
 from cagepose.kernels.algebra.least_squares import append_column, clear, inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.cone import BALANCED, HELD, clear_cone, cone_residual, write_forces
-from cagepose.kernels.contact.contact_set import ContactSet, unlock
+from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.edges import (
     CHOICES_LIMIT,
     ONLY_CARRYING,
     first_choice,
+    has_one_choice,
     keep_choice,
     next_choice,
     return_to_kept,
 )
 from cagepose.kernels.contact.metric import WRENCH, Frame
-from cagepose.kernels.contact.self_stress import OPPOSED, carry_by_locked, take_out_stopped, write_residual
+from cagepose.kernels.contact.self_stress import (
+    OPPOSED,
+    begin_unlocked,
+    carry_by_locked,
+    forget_locked,
+    take_out_stopped,
+    write_residual,
+)
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
@@ -91,7 +99,7 @@ def equilibrium_with_faces(
     Parameters
     ----------
     contacts, friction
-        Those that are chosen count; the coefficient of friction.
+        Those that count; the coefficient of friction.
     strictness
         Of the tolerance: AT_REST or ON_THE_WAY.
     b, terms
@@ -110,30 +118,6 @@ def equilibrium_with_faces(
 
 
 @kernel
-def equilibrium_with_edges(contacts: ContactSet, friction: float, strictness: float, work: ContactWorkspace) -> int:
-    """Return the code of the load in ``work``, whichever faces count on edges: MOVES as soon as it is not balanced.
-
-    For MOVES the faces are those that do not balance it, and the next choices have not been asked.
-    """
-    best_code, best_left = -1, 0.0
-    first_choice(contacts)
-    for _ in range(CHOICES_LIMIT):
-        code = equilibrium_with_faces(contacts, friction, strictness, work.load, work.load_terms, work)
-        if code == MOVES:
-            return MOVES
-        if code > best_code:
-            best_code, best_left = code, work.residual
-            keep_choice(contacts)
-        if not next_choice(contacts, ONLY_CARRYING):
-            break
-    else:
-        best_code = UNSOLVED
-    return_to_kept(contacts)
-    work.residual = best_left
-    return best_code
-
-
-@kernel
 def needs_second_order(contacts: ContactSet, code: int, friction: float, work: ContactWorkspace) -> bool:
     """Whether contacts without play may stop what forces do not: where these do not balance the load, or are without
     bound. Without friction contacts that carry do not press against each other, so another one must be closed as well.
@@ -148,12 +132,47 @@ def needs_second_order(contacts: ContactSet, code: int, friction: float, work: C
 
 
 @kernel
+def equilibrium_of_choice(
+    contacts: ContactSet, frame: Frame, friction: float, strictness: float, work: ContactWorkspace
+) -> int:
+    """As `equilibrium_with_faces` of the load in ``work``; where it takes forces without bound, contacts without play
+    are asked to second order, see `self_stress`. What they lock stays out of the wrenches until `forget_locked`.
+    """
+    code = equilibrium_with_faces(contacts, friction, strictness, work.load, work.load_terms, work)
+    if needs_second_order(contacts, code, friction, work) and take_out_stopped(contacts, frame, friction, work):
+        work.has_locked = True
+        code = equilibrium_with_faces(contacts, friction, strictness, work.load, work.load_terms, work)
+        if code != MOVES:
+            carry_by_locked(contacts, frame, friction, work)
+            write_residual(work)
+    return code
+
+
+@kernel
+def next_choice_unlocked(contacts: ContactSet, frame: Frame, every: bool, work: ContactWorkspace) -> bool:
+    """As `next_choice`, with nothing locked."""
+    forget_locked(contacts, frame, work)
+    return next_choice(contacts, every)
+
+
+@kernel
+def return_to_choice(
+    contacts: ContactSet, frame: Frame, friction: float, strictness: float, work: ContactWorkspace
+) -> None:
+    """Choose the faces that were kept, with their forces, and with what is locked there."""
+    forget_locked(contacts, frame, work)
+    return_to_kept(contacts)
+    if work.has_locked:
+        equilibrium_of_choice(contacts, frame, friction, strictness, work)
+
+
+@kernel
 def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness: float, work: ContactWorkspace) -> int:
     """Return the code of the load in ``work``: held, MOVES as soon as one choice of faces does not balance it, or
     UNSOLVED.
 
-    Filled: which faces are chosen, their forces, and the residual. Where it takes forces without bound, contacts
-    without play are asked to second order, see `self_stress`.
+    Filled: which faces are chosen, their forces, and the residual. For MOVES the faces are those that do not balance
+    it, and the next choices have not been asked.
 
     Parameters
     ----------
@@ -166,14 +185,22 @@ def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness:
     work
         Given: the load. Filled: the answer.
     """
-    clear(work.stopped, WRENCH, 1.0)
-    clear(work.locked, WRENCH, 1.0)
-    work.is_second_order = work.is_chained = False
-    unlock(contacts)
-    code = equilibrium_with_edges(contacts, friction, strictness, work)
-    if needs_second_order(contacts, code, friction, work) and take_out_stopped(contacts, frame, friction, work):
-        code = equilibrium_with_edges(contacts, friction, strictness, work)
-        if code != MOVES:
-            carry_by_locked(contacts, frame, work)
-            write_residual(work)
-    return code
+    begin_unlocked(contacts, work)
+    best_code, best_left = -1, 0.0
+    first_choice(contacts)
+    one_choice = has_one_choice(contacts)
+    for _ in range(CHOICES_LIMIT):
+        code = equilibrium_of_choice(contacts, frame, friction, strictness, work)
+        if code == MOVES:
+            return MOVES
+        if code > best_code or (code == best_code and work.residual > max(best_left, HELD)):
+            best_code, best_left = code, work.residual
+            keep_choice(contacts)
+        if one_choice or not next_choice_unlocked(contacts, frame, ONLY_CARRYING, work):
+            break
+    else:
+        best_code = UNSOLVED
+    if not one_choice:
+        return_to_choice(contacts, frame, friction, strictness, work)
+        work.residual = best_left
+    return best_code

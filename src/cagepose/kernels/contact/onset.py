@@ -8,15 +8,17 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.contact_set import ContactSet, is_smooth
 from cagepose.kernels.contact.coulomb import allowed_error, coulomb_onset
-from cagepose.kernels.contact.edges import CHOICES_LIMIT, ONLY_CARRYING, keep_choice, next_choice, return_to_kept
+from cagepose.kernels.contact.edges import CHOICES_LIMIT, ONLY_CARRYING, has_one_choice, keep_choice
 from cagepose.kernels.contact.equilibrium import (
     AT_REST,
     MOVES,
     MOVES_SOMEHOW,
     equilibrium,
-    equilibrium_with_faces,
+    equilibrium_of_choice,
+    next_choice_unlocked,
+    return_to_choice,
 )
 from cagepose.kernels.contact.metric import Frame
 from cagepose.kernels.contact.self_stress import carry_by_locked
@@ -38,12 +40,12 @@ def motion_with_faces(
 
 
 @kernel
-def freest_motion(contacts: ContactSet, friction: float, work: ContactWorkspace) -> int:
+def freest_motion(contacts: ContactSet, frame: Frame, friction: float, work: ContactWorkspace) -> int:
     """Go on from `equilibrium` where it says MOVES: find the motion that begins; MOVES_SOMEHOW: none was found.
 
     Filled: which faces are chosen, their forces, and in ``work`` the motion y and the residual.
     """
-    code, fastest, left = MOVES, -1.0, 0.0
+    code, fastest, left, one_choice = MOVES, -1.0, 0.0, has_one_choice(contacts)
     for _ in range(CHOICES_LIMIT):
         if code == MOVES:
             solved = motion_with_faces(contacts, friction, work.load, work.trial, work)
@@ -53,12 +55,15 @@ def freest_motion(contacts: ContactSet, friction: float, work: ContactWorkspace)
                 for k in range(6):
                     work.y[k] = work.trial[k] if solved else 0.0
                 keep_choice(contacts)
-        if not next_choice(contacts, ONLY_CARRYING):
+        if one_choice or not next_choice_unlocked(contacts, frame, ONLY_CARRYING, work):
             break
-        code = equilibrium_with_faces(contacts, friction, AT_REST, work.load, work.load_terms, work)
+        code = equilibrium_of_choice(contacts, frame, friction, AT_REST, work)
     else:
         return MOVES_SOMEHOW
-    return_to_kept(contacts)
+    if not one_choice:
+        return_to_choice(contacts, frame, friction, AT_REST, work)
+        if work.has_locked:
+            motion_with_faces(contacts, friction, work.load, work.trial, work)
     work.residual = left
     return MOVES if fastest > 0.0 else MOVES_SOMEHOW
 
@@ -73,9 +78,9 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
         work.y[k] = 0.0
     code = equilibrium(contacts, frame, friction, AT_REST, work)
     if code == MOVES:
-        code = freest_motion(contacts, friction, work)
+        code = freest_motion(contacts, frame, friction, work)
         if work.locked.used > 0:
-            carry_by_locked(contacts, frame, work)
+            carry_by_locked(contacts, frame, friction, work)
     return code
 
 
@@ -84,7 +89,7 @@ def find_sticking(contacts: ContactSet, friction: float, terms: float, y: FloatA
     """Find which contacts carry and do not slip, to the digits that `coulomb_onset` asks of y."""
     for i in range(contacts.used[0]):
         columns, state = contacts.rows[i].columns, contacts.states[i]
-        state.is_sticking = state.forces[0] > 0.0 and friction > 0.0
+        state.is_sticking = state.forces[0] > 0.0 and friction > 0.0 and not is_smooth(contacts.rows[i])
         for j in range(1, 3):
             if abs(inner(columns[j], y, 6)) > allowed_error(terms, y) * length(columns[j], 6):
                 state.is_sticking = False

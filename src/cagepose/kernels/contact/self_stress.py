@@ -19,7 +19,6 @@ from cagepose.kernels.algebra.vector import cross, vector_from
 from cagepose.kernels.contact.cone import N_ROWS, ConeWorkspace, clear_cone, cone_residual
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.curvature import add_face_curvature, clear_matrix
-from cagepose.kernels.contact.edges import keep_choice, last_of_group, return_to_kept
 from cagepose.kernels.contact.metric import WRENCH, Frame, write_scaled_wrench
 from cagepose.kernels.contact.workspace import STRESS_LIMIT, ContactWorkspace, SelfStressWorkspace
 from cagepose.kernels.native.kernel import kernel
@@ -35,17 +34,16 @@ PLAY = 1e-10
 """In radii of gyration: a contact with a wider gap, though it touches, has play. A fork that turns around two opposite
 points opens by the square of its turn."""
 MOMENTS = 1e-3
-"""What a moment counts for beside a force, where locked contacts cannot balance both: what they leave, forces without
-bound carry on levers of no length, as moments.
-"""
+"""What a moment counts for beside a force where locked contacts cannot balance both: forces without bound, on levers of
+no length, carry the moment that is left."""
 CARRIES = 1e-6
 """In lengths of the load: so much along the motions that are stopped is more than rounding."""
 
 
 @kernel
 def self_stress(contacts: ContactSet, friction: float, stress: SelfStressWorkspace) -> float:
-    """Return what is left of the least imbalance of forces at the chosen contacts whose normal parts add up to 1; they
-    are in ``stress.cone``.
+    """Return what is left of the least imbalance of forces whose normal parts add up to 1, at the contacts that count;
+    they are in ``stress.cone``.
     """
     for k in range(WRENCH):
         stress.twist[k] = 0.0
@@ -56,7 +54,7 @@ def self_stress(contacts: ContactSet, friction: float, stress: SelfStressWorkspa
 
 @kernel
 def clear_self_stress(contacts: ContactSet, stress: SelfStressWorkspace) -> bool:
-    """Find a self-stress of chosen contacts to which all of them belong; False: there is none.
+    """Find a self-stress of contacts that count to which all of them belong; False: there is none.
 
     A contact that carries so little in it that it only makes up for what the others leave, within OPPOSED, does not
     belong to it: its second derivative would count for what no force of it means.
@@ -67,12 +65,12 @@ def clear_self_stress(contacts: ContactSet, stress: SelfStressWorkspace) -> bool
             return False
         passive, belongs_all = stress.cone.passive, True
         for i in range(contacts.used[0]):
-            contacts.states[i].chosen = False
+            contacts.states[i].counts = False
         for k in range(passive.used):
             i = stress.cone.contacts[passive.labels[k]]
             size = length(contacts.rows[i].columns[0], WRENCH)
-            contacts.states[i].chosen = size == 0.0 or passive.x[k] * size > BELONGS
-            belongs_all = belongs_all and contacts.states[i].chosen
+            contacts.states[i].counts = size == 0.0 or passive.x[k] * size > BELONGS
+            belongs_all = belongs_all and contacts.states[i].counts
         if belongs_all:
             return True
         left = self_stress(contacts, 0.0, stress)
@@ -89,7 +87,7 @@ def write_wrench(contacts: ContactSet, i: int, j: int, frame: Frame, out: FloatA
 @kernel
 def balance_by_locked(contacts: ContactSet, wrench: FloatArray, frame: Frame, work: ContactWorkspace) -> None:
     """Balance, with the locked contacts, what a wrench does along what is locked, forces before moments: their forces
-    are in ``work.stress.reaction``. Which contacts are chosen is lost.
+    are in ``work.stress.reaction``. The locked contacts count afterwards.
 
     Only the parts of their wrenches count that made them locked: a tilt of 1e-6 between opposite faces carries nothing.
     """
@@ -102,7 +100,7 @@ def balance_by_locked(contacts: ContactSet, wrench: FloatArray, frame: Frame, wo
         stress.twist[k] *= MOMENTS
     for i in range(contacts.used[0]):
         state, column = contacts.states[i], contacts.rows[i].columns[0]
-        state.chosen = state.is_locked
+        state.counts = state.is_locked
         if state.is_locked:
             write_wrench(contacts, i, 0, frame, work.trial)
             write_outside(stress.pressed, work.trial, 0.0, column)
@@ -196,13 +194,13 @@ def take_out_locked(contacts: ContactSet, work: ContactWorkspace) -> None:
 
 @kernel
 def find_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> None:
-    """Find the contacts on faces, not on edges, that are in self-stresses, and what these stop to second order.
+    """Find which of the chosen contacts are in self-stresses, and what these stop to second order.
 
     Parameters
     ----------
     contacts
-        At a pose, from `find_contacts`, none locked. Filled: which are, and what is left of the normals' wrenches.
-        Which are chosen is lost.
+        At a pose, from `find_contacts`, with a choice of faces, none locked. Filled: which are, and what is left of the
+        normals' wrenches.
     frame
         The scaled coordinates there.
     work
@@ -214,9 +212,9 @@ def find_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> N
     n_stresses, n_locked = 0, 0
     while n_stresses < STRESS_LIMIT:
         for i in range(contacts.used[0]):
-            is_on_face = contacts.rows[i].group == i and last_of_group(contacts, i) == i
+            state = contacts.states[i]
             is_closed = contacts.rows[i].gap <= PLAY * max(frame.radii[0], frame.radii[1], frame.radii[2])
-            contacts.states[i].chosen = is_on_face and is_closed and not contacts.states[i].is_locked
+            state.counts = state.chosen and is_closed and not state.is_locked
         if clear_self_stress(contacts, work.stress):
             lock(contacts, frame, n_stresses, work)
             n_stresses += 1
@@ -226,6 +224,14 @@ def find_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> N
             n_locked = int(work.locked.used)
         take_out_locked(contacts, work)
     work.is_chained = 0 < n_locked < work.locked.used
+    count_chosen(contacts)
+
+
+@kernel
+def count_chosen(contacts: ContactSet) -> None:
+    """Let all contacts that are chosen count again."""
+    for i in range(contacts.used[0]):
+        contacts.states[i].counts = contacts.states[i].chosen
 
 
 @kernel
@@ -240,10 +246,34 @@ def restore_wrenches(contacts: ContactSet, frame: Frame) -> None:
 @kernel
 def write_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> None:
     """Write a basis of what contacts without play lock into ``work.locked``; the contacts stay as they are."""
-    keep_choice(contacts)
     find_locked(contacts, frame, work)
     restore_wrenches(contacts, frame)
-    return_to_kept(contacts)
+
+
+@kernel
+def begin_unlocked(contacts: ContactSet, work: ContactWorkspace) -> None:
+    """Lock nothing yet; the load in ``work`` is the whole one."""
+    clear(work.stopped, WRENCH, 1.0)
+    clear(work.locked, WRENCH, 1.0)
+    work.has_locked = work.is_second_order = work.is_chained = False
+    for i in range(contacts.used[0]):
+        contacts.states[i].is_locked = False
+    for k in range(WRENCH):
+        work.whole_load[k] = work.load[k]
+
+
+@kernel
+def forget_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> None:
+    """Lock nothing any more: wrenches and load are what they were, and all chosen contacts count."""
+    if work.locked.used == 0:
+        return
+    work.is_chained = False
+    count_chosen(contacts)
+    restore_wrenches(contacts, frame)
+    clear(work.stopped, WRENCH, 1.0)
+    clear(work.locked, WRENCH, 1.0)
+    for k in range(WRENCH):
+        work.load[k] = work.whole_load[k]
 
 
 @kernel
@@ -253,7 +283,7 @@ def take_out_stopped(contacts: ContactSet, frame: Frame, friction: float, work: 
     Parameters
     ----------
     contacts
-        At a pose, from `find_contacts`.
+        At a pose, from `find_contacts`, with a choice of faces.
     frame
         The scaled coordinates there.
     friction
@@ -262,12 +292,14 @@ def take_out_stopped(contacts: ContactSet, frame: Frame, friction: float, work: 
     work
         Given: the load. Filled: ``stopped`` and ``locked``, bases of the motions in question.
     """
-    keep_choice(contacts)
     find_locked(contacts, frame, work)
     if work.stopped.used == 0:
+        clear(work.locked, WRENCH, 1.0)
         restore_wrenches(contacts, frame)
-        return_to_kept(contacts)
         return False
+    for i in range(contacts.used[0]):
+        if contacts.states[i].is_locked:
+            contacts.states[contacts.rows[i].group].has_carried = True
     if friction > 0.0:
         clear(work.locked, WRENCH, 1.0)
         for place in range(work.stopped.used):
@@ -275,8 +307,6 @@ def take_out_stopped(contacts: ContactSet, frame: Frame, friction: float, work: 
         restore_wrenches(contacts, frame)
         for i in range(contacts.used[0]):
             take_out(contacts, i, work)
-    for k in range(WRENCH):
-        work.whole_load[k] = work.load[k]
     remove_span(work.load, work.locked)
     return True
 
@@ -288,7 +318,7 @@ def take_out(contacts: ContactSet, i: int, work: ContactWorkspace) -> None:
     """
     row, outside = contacts.rows[i], work.stress.twist
     if not write_outside(work.stopped, row.columns[0], OPPOSED, outside):
-        row.group = -1  # it stops nothing that is not stopped already
+        contacts.states[i].counts = False  # it stops nothing that is not stopped already
         return
     for j in range(3):
         remove_span(row.columns[j], work.stopped)
@@ -299,15 +329,16 @@ def take_out(contacts: ContactSet, i: int, work: ContactWorkspace) -> None:
 
 
 @kernel
-def carry_by_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> None:
-    """Write the forces of the locked contacts beside those of the others, and what all of them leave of the whole load
-    into ``work.stress.imbalance``.
+def carry_by_locked(contacts: ContactSet, frame: Frame, friction: float, work: ContactWorkspace) -> None:
+    """Write the forces of the locked contacts beside those of the others (with friction they are among them), and what
+    all of them leave of the whole load into ``work.stress.imbalance``.
     """
     reaction, left = work.stress.reaction, work.stress.imbalance
     write_left(contacts, frame, left, work)
-    keep_choice(contacts)
+    if friction > 0.0:
+        return
     balance_by_locked(contacts, left, frame, work)
-    return_to_kept(contacts)
+    count_chosen(contacts)
     for k in range(reaction.passive.used):
         contacts.states[reaction.contacts[reaction.passive.labels[k]]].forces[0] = reaction.passive.x[k]
     write_left(contacts, frame, left, work)
@@ -321,7 +352,8 @@ def write_residual(work: ContactWorkspace) -> None:
     left = work.stress.imbalance
     work.residual = length(left, WRENCH) / work.load_terms
     remove_span(left, work.stopped)
-    work.is_second_order = work.residual - length(left, WRENCH) / work.load_terms > CARRIES
+    if work.residual - length(left, WRENCH) / work.load_terms > CARRIES:
+        work.is_second_order = True
 
 
 @kernel

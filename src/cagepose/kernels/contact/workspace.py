@@ -61,6 +61,8 @@ class ContactWorkspace:
     stress, stopped, locked, whole_load
         See `self_stress`: memory, bases of the motions that contacts without play stop to second order and of all that
         is taken out of the problem with them, and the load before that.
+    has_locked
+        Whether they lock anything with one of the choices of faces that have been asked.
     residual
         What the contacts leave of the load, in its lengths: zero, to rounding, if the object is held by forces.
     is_second_order
@@ -80,6 +82,7 @@ class ContactWorkspace:
     stopped: PassiveSet
     locked: PassiveSet
     whole_load: ScaledVector
+    has_locked: bool
     residual: float
     is_second_order: bool
     is_chained: bool

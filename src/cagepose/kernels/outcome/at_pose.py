@@ -45,7 +45,7 @@ def critical_friction(phase: int, part: Part, cases: Cases, points_world: FloatA
     Parameters as for `judge_start`.
     """
     start = start_of(0, part, cases, points_world)
-    touch_m = start.tolerances.touch_m
-    if not stand_at(start.geometry, part.body, start.position, start.quaternion, start.loads[phase], touch_m, at):
+    load, touch_m = start.loads[phase], start.tolerances.touch_m
+    if not stand_at(start.geometry, part.body, start.position, start.quaternion, load, start.friction, touch_m, at):
         return math.nan
     return least_friction_of_faces(at)

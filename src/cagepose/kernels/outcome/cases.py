@@ -9,6 +9,7 @@ from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances, scaled_tolerances
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, row, scaled
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
+from cagepose.kernels.contact.friction import Friction, friction_of
 from cagepose.kernels.contact.metric import Body, PhaseLoad
 from cagepose.kernels.native.kernel import kernel
 
@@ -48,7 +49,9 @@ class Cases(NamedTuple):
     sizes_m
         The scene's size, (n,).
     frictions
-        Coefficient of friction, (n,).
+        Coefficient of friction of the scene, (n,).
+    point_frictions, box_frictions
+        Those of single cage points and boxes, (n_points,) and (n_boxes,), the same for all; NaN: none.
     loads
         (n, n_phases).
     tolerances
@@ -62,6 +65,8 @@ class Cases(NamedTuple):
     object_quaternions: FloatArray
     sizes_m: FloatArray
     frictions: FloatArray
+    point_frictions: FloatArray
+    box_frictions: FloatArray
     loads: Rows[Rows[PhaseLoad]]
     tolerances: KernelTolerances
 
@@ -87,7 +92,7 @@ class Start(NamedTuple):
     quaternion: Quaternion
     origin_world: Vector
     size_m: float
-    friction: float
+    friction: Friction
     tolerances: KernelTolerances
     loads: Rows[PhaseLoad]
 
@@ -128,7 +133,7 @@ def start_of(case: int, part: Part, cases: Cases, points_world: FloatArray) -> S
         quaternion,
         origin,
         size_m,
-        cases.frictions[row_of(len(cases.frictions), case)],
+        friction_of(cases.frictions[row_of(len(cases.frictions), case)], cases.point_frictions, cases.box_frictions),
         scaled_tolerances(cases.tolerances, size_m),
         cases.loads[row_of(len(cases.loads), case)],
     )

@@ -14,6 +14,7 @@ from cagepose.kernels.algebra.vector import Vector, norm, row, scaled
 from cagepose.kernels.collision.first_contact import allowed_depth, first_contact_screw, first_contact_travel
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
 from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
+from cagepose.kernels.contact.friction import Friction
 from cagepose.kernels.contact.metric import Body, PhaseLoad, moved_along_twist, total_force, work_done
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
@@ -40,7 +41,7 @@ class Setting(NamedTuple):
     size_m
         The scene's size, metres.
     friction
-        Coefficient of friction.
+        Coefficients of friction.
     turn_step_rad
         Longest turn in one step.
     tolerances
@@ -51,7 +52,7 @@ class Setting(NamedTuple):
     body: Body
     load: PhaseLoad
     size_m: float
-    friction: float
+    friction: Friction
     turn_step_rad: float
     tolerances: KernelTolerances
 
@@ -132,10 +133,8 @@ def first_contact(
         )
         amount = distance / speed
     else:
-        near, near_depth = (
-            0.0,
-            STRAYED * strayed(setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end),
-        )
+        astray = strayed(setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end)
+        near, near_depth = 0.0, STRAYED * astray
         angle, point, box = math.inf, -1, -1
         for _ in range(len(setting.geometry.points_world)):
             angle, point, box = first_contact_screw(

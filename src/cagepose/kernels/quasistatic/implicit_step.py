@@ -112,7 +112,7 @@ def implicit_step(
         return False
     turned.used[0] = contacts.used[0]
     for i in range(contacts.used[0]):
-        turned.states[i].chosen = contacts.states[i].chosen
+        turned.states[i].counts = contacts.states[i].counts
         for j in range(3):
             solve_lower(work.factor, contacts.rows[i].columns[j], turned.rows[i].columns[j])
     solve_lower(work.factor, solver.load, work.b)

@@ -45,8 +45,6 @@ class PositionConstraint:
         As in `ContactRow`: side * (coordinate of the point along the box's axis) ...
     target
         ... is to be this, metres: half the size of the box for a point on its face.
-    value
-        What is missing.
     """
 
     point: int
@@ -54,7 +52,6 @@ class PositionConstraint:
     axis: int
     side: float
     target: float
-    value: float
 
 
 class ProjectionWorkspace:
@@ -66,8 +63,10 @@ class ProjectionWorkspace:
         How many constraints, and motions that contacts without play stop to second order.
     stopped_forces, stopped_moments
         Those motions y have s . y = 0 with these wrenches s, about the world's origin.
-    column, y, basis
-        One wrench, a scaled twist, and the constraints' basis.
+    column, y
+        One wrench, and a scaled twist.
+    basis, values
+        Of the constraints that depend on no others, and what each of these lacks, metres.
     """
 
     used: int
@@ -77,6 +76,7 @@ class ProjectionWorkspace:
     column: ScaledVector
     y: ScaledVector
     basis: PassiveSet
+    values: ScaledVector
 
 
 class Constraints(NamedTuple):
@@ -142,7 +142,7 @@ def projected(
 
     Those that depend on others follow from them: where they do not, that shows as a point inside the object later.
     """
-    work, rows = constraints.scratch[0], constraints.rows
+    work, rows, values = constraints.scratch[0], constraints.rows, constraints.scratch[0].values
     worst_before = math.inf
     for _ in range(ROUNDS):
         frame = frame_at(body, quaternion)
@@ -153,7 +153,7 @@ def projected(
             force = row(work.stopped_forces, i)
             moment = minus(row(work.stopped_moments, i), cross(position, force))
             write_scaled_wrench(force, moment, frame, work.column)
-            rows[work.basis.used].value = 0.0
+            values[work.basis.used] = 0.0
             append_column(work.basis, work.column, i, 0.0)
         worst = 0.0
         for i in range(work.used):
@@ -165,8 +165,8 @@ def projected(
             write_scaled_wrench(direction, cross(arm, direction), frame, work.column)
             place = work.basis.used
             if append_column(work.basis, work.column, i, 0.0):
-                rows[place].value = dot(axis_object, from_box) - constraint.target
-                worst = max(worst, abs(rows[place].value))
+                values[place] = dot(axis_object, from_box) - constraint.target
+                worst = max(worst, abs(values[place]))
         if worst <= ON_FACE * size_m or worst >= worst_before:
             return worst <= 1e3 * ON_FACE * size_m, position, quaternion
         worst_before = worst
@@ -174,10 +174,10 @@ def projected(
             work.y[k] = 0.0
         for i in range(work.basis.used):
             for j in range(i):
-                rows[i].value -= work.basis.triangle[i, j] * rows[j].value
-            rows[i].value *= work.basis.triangle[i, i]
+                values[i] -= work.basis.triangle[i, j] * values[j]
+            values[i] *= work.basis.triangle[i, i]
             for k in range(6):
-                work.y[k] += rows[i].value * work.basis.basis[i, k]
+                work.y[k] += values[i] * work.basis.basis[i, k]
         velocity, spin = twist_of(work.y, frame)
         position, quaternion = moved_along_twist(position, quaternion, velocity, spin, 1.0)
     return False, position, quaternion

@@ -23,7 +23,9 @@ def is_held_on_the_way(setting: Setting, position: Vector, quaternion: Quaternio
     What the step reaches does not count: it touches at the end only, and what it holds is asked there.
     """
     frame = frame_at(setting.body, quaternion)
-    if not find_contacts(setting.geometry, work.placement, position, frame, setting.tolerances.touch_m, work.ahead):
+    if not find_contacts(
+        setting.geometry, work.placement, setting.friction, position, frame, setting.tolerances.touch_m, work.ahead
+    ):
         return False
     kept = 0
     for i in range(work.ahead.used[0]):
@@ -32,7 +34,8 @@ def is_held_on_the_way(setting: Setting, position: Vector, quaternion: Quaternio
             kept += 1
     work.ahead.used[0] = kept
     work.scratch[0].solver.load_terms = write_load(setting.load, quaternion, frame, work.scratch[0].solver.load)
-    return equilibrium(work.ahead, frame, setting.friction, ON_THE_WAY, work.scratch[0].solver) <= HELD_BY_FRICTION
+    greatest = setting.friction.greatest
+    return equilibrium(work.ahead, frame, greatest, ON_THE_WAY, work.scratch[0].solver) <= HELD_BY_FRICTION
 
 
 @kernel

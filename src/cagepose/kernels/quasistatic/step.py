@@ -102,11 +102,12 @@ def impending_motion(setting: Setting, frame: Frame, work: QuasistaticWorkspace)
     Where Newton's method does not find it, it is looked for among all contact modes, as another onset beside a rest is.
     """
     contacts, solver, proof = work.contacts, work.scratch[0].solver, work.proof
-    code = onset(contacts, frame, setting.friction, solver)
-    if code != MOVES_SOMEHOW or setting.friction == 0.0:
+    friction = setting.friction.greatest
+    code = onset(contacts, frame, friction, solver)
+    if code != MOVES_SOMEHOW or friction == 0.0:
         return code
     tree = proof.scratch[0].tree
-    if other_onset(contacts, setting.friction, solver.load, tree, solver.newton, proof.system) != OTHER_FOUND:
+    if other_onset(contacts, friction, solver.load, tree, solver.newton, proof.system) != OTHER_FOUND:
         return MOVES_SOMEHOW
     for k in range(6):
         solver.y[k] = tree.y[k]
@@ -118,9 +119,9 @@ def next_twist(
     setting: Setting, quaternion: Quaternion, frame: Frame, turn_step_rad: float, work: QuasistaticWorkspace
 ) -> Twist:
     """Return the twist to follow from a pose that moves; forces and sticking are then those of the step."""
-    contacts, scratch = work.contacts, work.scratch[0]
+    contacts, scratch, friction = work.contacts, work.scratch[0], setting.friction.greatest
     y = scratch.solver.y
-    find_sticking(contacts, setting.friction, scratch.solver.load_terms, y)
+    find_sticking(contacts, friction, scratch.solver.load_terms, y)
     carries = carried_by(contacts) != FREE
     velocity, spin = twist_of(y, frame)
     spin = straightened(velocity, spin, setting.body.reach_m, scratch.solver.load_terms)
@@ -129,7 +130,7 @@ def next_twist(
         write_curvature(contacts, setting.load, quaternion, frame, scratch.stiff.curvature)
         rho = max(keep_along_faces(contacts, scratch.solver.locked, scratch.stiff), 1.0 / end)
         is_stiff = abs(curvature_along(scratch.stiff.curvature, y)) * end > STIFF
-        if is_stiff and implicit_step(contacts, work.turned, setting.friction, rho, scratch.stiff, scratch.solver):
+        if is_stiff and implicit_step(contacts, work.turned, friction, rho, scratch.stiff, scratch.solver):
             velocity, spin = twist_of(scratch.stiff.delta, frame)
             end = min(1.0, longest_step(velocity, spin, carries, turn_step_rad, setting.size_m))
     return Twist(velocity, spin, end)
@@ -218,7 +219,9 @@ def find_placed_contacts(
 ) -> bool:
     """Find the contacts where the object is placed already; see `stand_at`."""
     frame = frame_at(setting.body, quaternion)
-    return find_contacts(setting.geometry, work.placement, position, frame, setting.tolerances.touch_m, work.contacts)
+    return find_contacts(
+        setting.geometry, work.placement, setting.friction, position, frame, setting.tolerances.touch_m, work.contacts
+    )
 
 
 @kernel
@@ -275,7 +278,7 @@ def next_step(
     if amount == math.inf:
         write_escape(work, step, twist.velocity, position, quaternion)
         return ESCAPES, here, fits
-    could_rest = setting.friction > 0.0 and rule != FREE and amount > 0.0
+    could_rest = setting.friction.greatest > 0.0 and rule != FREE and amount > 0.0
     if could_rest and is_held_on_the_way(setting, end, turned, work):
         end, turned = first_rest(setting, position, quaternion, twist, amount, work)
 

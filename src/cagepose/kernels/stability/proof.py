@@ -16,8 +16,6 @@ from cagepose.kernels.contact.edges import (
     EVERY,
     first_choice,
     has_one_choice,
-    next_choice,
-    return_to_kept,
 )
 from cagepose.kernels.contact.equilibrium import (
     AT_REST,
@@ -25,10 +23,13 @@ from cagepose.kernels.contact.equilibrium import (
     MOVES,
     UNSOLVED,
     equilibrium,
-    equilibrium_with_faces,
+    equilibrium_of_choice,
+    next_choice_unlocked,
+    return_to_choice,
 )
+from cagepose.kernels.contact.friction import Friction
 from cagepose.kernels.contact.metric import WRENCH, Body, Frame, PhaseLoad, ScaledVector, frame_at, write_load
-from cagepose.kernels.contact.self_stress import write_locked
+from cagepose.kernels.contact.self_stress import forget_locked, write_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.relaxation import N_COLUMNS
@@ -105,6 +106,7 @@ def stand_at(
     position: Vector,
     quaternion: Quaternion,
     load: PhaseLoad,
+    friction: Friction,
     touch_m: float,
     at: ProofWorkspace,
 ) -> bool:
@@ -113,7 +115,7 @@ def stand_at(
     place_object(geometry, position, quaternion, at.placement)
     solver = at.scratch[0].solver
     solver.load_terms = write_load(load, quaternion, frame, solver.load)
-    return find_contacts(geometry, at.placement, position, frame, touch_m, at.contacts)
+    return find_contacts(geometry, at.placement, friction, position, frame, touch_m, at.contacts)
 
 
 @kernel
@@ -123,7 +125,7 @@ def prove(
     position: Vector,
     quaternion: Quaternion,
     load: PhaseLoad,
-    friction: float,
+    friction: Friction,
     size_m: float,
     tolerances: KernelTolerances,
     at: ProofWorkspace,
@@ -140,16 +142,17 @@ def prove(
     position, quaternion
         Centre of gravity, metres, and unit quaternion (w, x, y, z).
     friction, size_m, tolerances
-        Coefficient of friction, the scene's size in metres, and what counts as touching.
+        Coefficients of friction, the scene's size in metres, and what counts as touching.
     at
         Filled: the proof.
     """
-    if not stand_at(geometry, body, position, quaternion, load, tolerances.touch_m, at):
+    if not stand_at(geometry, body, position, quaternion, load, friction, tolerances.touch_m, at):
         at.scratch[0].solver.residual = 1.0  # no forces were asked for: all of the load is left
         return TOO_MANY_CONTACTS, STABLE_REST, 0
     contacts, scratch = at.contacts, at.scratch[0]
     frame = frame_at(body, quaternion)
-    code = equilibrium(contacts, frame, friction, AT_REST, scratch.solver)
+    greatest = friction.greatest
+    code = equilibrium(contacts, frame, greatest, AT_REST, scratch.solver)
     if code == MOVES:
         scratch.twist_residual = scratch.solver.residual
         for k in range(6):
@@ -158,15 +161,14 @@ def prove(
     left = scratch.solver.residual
     clear(scratch.rest.ways, WRENCH, 1.0)
     if code == UNSOLVED:
-        find_held(contacts, at.statuses, friction, scratch.solver.locked, scratch.rest, at.system)
+        find_held(contacts, at.statuses, greatest, scratch.solver.locked, scratch.rest, at.system)
         find_shared(contacts, at.statuses, scratch.rest)
         return TOO_MANY_CHOICES, MARGINAL, 0
     one_choice = has_one_choice(contacts)
-    proof, steady = judge_faces(at, code, one_choice, friction, load, quaternion, frame, size_m)
+    proof, steady = judge_faces(at, code, one_choice, greatest, load, quaternion, frame, size_m)
     if not one_choice:
-        return_to_kept(contacts)
         scratch.solver.residual = left
-        find_held(contacts, at.statuses, friction, scratch.solver.locked, scratch.rest, at.system)
+        find_held(contacts, at.statuses, greatest, scratch.solver.locked, scratch.rest, at.system)
     find_shared(contacts, at.statuses, scratch.rest)
     return proof, steady, scratch.rest.ways.used
 
@@ -185,7 +187,7 @@ def stability_of_rest(
         code = stability(
             contacts, at.statuses, friction, solver.locked, load, quaternion, frame, terms, size_m, rest, at.system
         )
-        if code == STABLE_REST or solver.locked.used > 0 or not has_one_choice(contacts):
+        if code == STABLE_REST or solver.locked.used > 0:
             break
         found = code
         write_locked(contacts, frame, solver)
@@ -208,18 +210,26 @@ def judge_faces(
 ) -> tuple[int, int]:
     """Return (code of the proof, code of stability) of a rest: the least sure of all combinations of faces.
 
-    Where there is one choice of faces only, its balance has this code, and its forces stay.
+    Where there is one choice of faces only, its balance has this code; else those that are kept are chosen again.
     """
     contacts, solver = at.contacts, at.scratch[0].solver
-    proof, steady = PROVEN_WITHOUT_FRICTION, STABLE_REST
+    proof, steady, is_chained = PROVEN_WITHOUT_FRICTION, STABLE_REST, False
     if not one_choice:
+        forget_locked(contacts, frame, solver)
         first_choice(contacts)
     for _ in range(CHOICES_LIMIT):
         if not one_choice:
-            code = equilibrium_with_faces(contacts, friction, AT_REST, solver.load, solver.load_terms, solver)
+            code = equilibrium_of_choice(contacts, frame, friction, AT_REST, solver)
         steady = max(steady, stability_of_rest(at, friction, load, quaternion, frame, size_m))
+        is_chained = is_chained or solver.is_chained
         if code != HELD_WITHOUT_FRICTION:
             proof = UNIQUENESS_NOT_SHOWN
-        if not next_choice(contacts, EVERY):
+        if one_choice:
             return proof, steady
-    return (proof if proof == PROVEN_WITHOUT_FRICTION else UNIQUENESS_NOT_SHOWN), max(steady, MARGINAL)
+        if not next_choice_unlocked(contacts, frame, EVERY, solver):
+            break
+    else:
+        steady = max(steady, MARGINAL)
+    return_to_choice(contacts, frame, friction, AT_REST, solver)
+    solver.is_chained = is_chained
+    return proof, steady

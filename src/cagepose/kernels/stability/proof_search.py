@@ -7,11 +7,20 @@ from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.contact.cone import HELD
-from cagepose.kernels.contact.edges import CHOICES_LIMIT, EVERY, first_choice, keep_choice, next_choice, return_to_kept
-from cagepose.kernels.contact.equilibrium import AT_REST, HELD_BY_FRICTION, MOVES, equilibrium_with_faces
-from cagepose.kernels.contact.metric import Body, PhaseLoad
+from cagepose.kernels.contact.edges import CHOICES_LIMIT, EVERY, first_choice, keep_choice
+from cagepose.kernels.contact.equilibrium import (
+    AT_REST,
+    HELD_BY_FRICTION,
+    MOVES,
+    equilibrium_of_choice,
+    equilibrium_with_faces,
+    next_choice_unlocked,
+    return_to_choice,
+)
+from cagepose.kernels.contact.friction import Friction
+from cagepose.kernels.contact.metric import Body, Frame, PhaseLoad, frame_at
 from cagepose.kernels.contact.onset import freest_motion
-from cagepose.kernels.contact.self_stress import self_stress
+from cagepose.kernels.contact.self_stress import forget_locked, self_stress
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.stability.proof import (
     OTHER_ONSET,
@@ -26,7 +35,7 @@ from cagepose.kernels.stability.strong import OTHER_FOUND, UNIQUE, other_onset
 
 @entry
 def balance_with_faces(friction: float, at: ProofWorkspace) -> int:
-    """Balance the load with the faces that are chosen; return the code, see `equilibrium_with_faces`.
+    """Balance the load with the contacts that count, to first order; return the code, see `equilibrium_with_faces`.
 
     Parameters
     ----------
@@ -41,7 +50,7 @@ def balance_with_faces(friction: float, at: ProofWorkspace) -> int:
 
 @entry
 def search_with_faces(friction: float, at: ProofWorkspace) -> int:
-    """Search for another onset with the faces that are chosen; return UNIQUE, OTHER_FOUND or NOT_SHOWN.
+    """Search for another onset with the contacts that count; return UNIQUE, OTHER_FOUND or NOT_SHOWN.
 
     Parameters
     ----------
@@ -55,28 +64,30 @@ def search_with_faces(friction: float, at: ProofWorkspace) -> int:
 
 
 @kernel
-def search_faces(friction: float, at: ProofWorkspace) -> int:
+def search_faces(friction: float, frame: Frame, at: ProofWorkspace) -> int:
     """Return the code of the proof, that of the first combination of faces with which rest is not the only onset."""
-    contacts = at.contacts
+    contacts, solver = at.contacts, at.scratch[0].solver
+    forget_locked(contacts, frame, solver)
     first_choice(contacts)
     for _ in range(CHOICES_LIMIT):
-        if balance_with_faces(friction, at) == HELD_BY_FRICTION:
+        code = equilibrium_of_choice(contacts, frame, friction, AT_REST, solver)
+        if code == HELD_BY_FRICTION:
             answer = search_with_faces(friction, at)
             if answer != UNIQUE:
                 return OTHER_ONSET if answer == OTHER_FOUND else UNIQUENESS_NOT_SHOWN
-        if not next_choice(contacts, EVERY):
+        if not next_choice_unlocked(contacts, frame, EVERY, solver):
             return PROVEN_UNIQUE
     return UNIQUENESS_NOT_SHOWN
 
 
 @kernel
-def search_onsets(friction: float, at: ProofWorkspace) -> int:
+def search_onsets(friction: float, frame: Frame, at: ProofWorkspace) -> int:
     """Ask whether a rest that needs friction is the only onset (5.13).
 
     Parameters
     ----------
-    friction
-        Coefficient of friction.
+    friction, frame
+        Coefficient of friction; the scaled coordinates at the pose.
     at
         As left by the proof. Filled: the other onset, if one is found, and whether the contacts are wedged.
 
@@ -88,15 +99,15 @@ def search_onsets(friction: float, at: ProofWorkspace) -> int:
     contacts, work = at.contacts, at.scratch[0]
     left = work.solver.residual
     keep_choice(contacts)
-    proof = search_faces(friction, at)
-    return_to_kept(contacts)
+    proof = search_faces(friction, frame, at)
+    return_to_choice(contacts, frame, friction, AT_REST, work.solver)
     work.solver.residual = left
     work.wedged = proof != PROVEN_UNIQUE and self_stress(contacts, friction, work.solver.stress) <= HELD
     return proof
 
 
 @kernel
-def first_motion(friction: float, at: ProofWorkspace) -> None:
+def first_motion(friction: float, frame: Frame, at: ProofWorkspace) -> None:
     """Write into ``at.scratch[0].solver.y`` how an object begins to move that does so by `prove`.
 
     It is the onset that obeys Coulomb's law (5.7), and the residual is then the least that contact forces leave of the
@@ -104,13 +115,13 @@ def first_motion(friction: float, at: ProofWorkspace) -> None:
 
     Parameters
     ----------
-    friction
-        Coefficient of friction.
+    friction, frame
+        Coefficient of friction; the scaled coordinates at the pose.
     at
         As left by the proof.
     """
     contacts, work, solver = at.contacts, at.scratch[0], at.scratch[0].solver
-    if freest_motion(contacts, friction, solver) != MOVES:
+    if freest_motion(contacts, frame, friction, solver) != MOVES:
         solver.residual = work.twist_residual
         for k in range(6):
             solver.y[k] = work.twist[k]
@@ -123,7 +134,7 @@ def judge(
     position: Vector,
     quaternion: Quaternion,
     load: PhaseLoad,
-    friction: float,
+    friction: Friction,
     size_m: float,
     tolerances: KernelTolerances,
     at: ProofWorkspace,
@@ -135,7 +146,7 @@ def judge(
     at.scratch[0].wedged = False
     code, steady, n_undetermined = prove(geometry, body, position, quaternion, load, friction, size_m, tolerances, at)
     if code == UNIQUENESS_NOT_SHOWN:
-        code = search_onsets(friction, at)
+        code = search_onsets(friction.greatest, frame_at(body, quaternion), at)
     elif code == PROVEN_MOVES:
-        first_motion(friction, at)
+        first_motion(friction.greatest, frame_at(body, quaternion), at)
     return code, steady, n_undetermined

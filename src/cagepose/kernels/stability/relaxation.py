@@ -26,14 +26,14 @@ from cagepose.kernels.algebra.least_squares import (
     settle,
 )
 from cagepose.kernels.algebra.record import FloatArray, IntArray
-from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.contact_set import ContactSet, is_smooth
 from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS
 from cagepose.kernels.contact.metric import WRENCH, ScaledVector
 from cagepose.kernels.native.kernel import kernel
 
 CONTACT_LIMIT = 24
 """More contacts than this: not asked."""
-UNDECIDED, CLOSED = -1, 3
+UNDECIDED, CLOSED = -1, 4
 """Codes beside those of what a contact does. Whether it opens (OPENS, CLOSED) and whether it slips (STICKS, SLIPS) are
 decided each by itself: feet on a floor slip one way, however many of them carry."""
 CUT_LIMIT = 96
@@ -73,6 +73,8 @@ class Relaxation:
         Of each: scaled wrenches of its normal and its two tangents, the normal of length one.
     load
         Of length one.
+    is_smooth
+        Whether each has no friction.
     openings, slips, starts, widths, edges
         Whether each opens, whether it slips and, if so, from which angle on and over which, and the two tangents there.
     motion
@@ -95,6 +97,7 @@ class Relaxation:
 
     n_places: int
     contacts: Annotated[IntArray, CONTACT_LIMIT]
+    is_smooth: Annotated[IntArray, CONTACT_LIMIT]
     wrenches: Annotated[FloatArray, CONTACT_LIMIT, 3, 6]
     load: ScaledVector
     openings: Annotated[IntArray, CONTACT_LIMIT]
@@ -122,7 +125,7 @@ def take_contacts(contacts: ContactSet, b: FloatArray, work: Relaxation) -> bool
     """Take the contacts that are chosen, and the load; False: too many."""
     work.n_places = 0
     for i in range(contacts.used[0]):
-        if not contacts.states[i].chosen:
+        if not contacts.states[i].counts:
             continue
         place = work.n_places
         if place == CONTACT_LIMIT:
@@ -132,7 +135,7 @@ def take_contacts(contacts: ContactSet, b: FloatArray, work: Relaxation) -> bool
         for j in range(3):
             for k in range(6):
                 work.wrenches[place, j, k] = columns[j, k] / size
-        work.contacts[place] = i
+        work.contacts[place], work.is_smooth[place] = i, is_smooth(contacts.rows[i])
         work.n_places += 1
     size = length(b, WRENCH)
     for k in range(6):

@@ -19,7 +19,7 @@ from cagepose.kernels.algebra.least_squares import (
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.algebra.span import extend, write_complement, write_outside, write_reduced
-from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
+from cagepose.kernels.contact.contact_set import ContactRow, ContactSet, is_smooth
 from cagepose.kernels.contact.curvature import write_curvature
 from cagepose.kernels.contact.metric import WRENCH, Frame, PhaseLoad, ScaledVector
 from cagepose.kernels.native.kernel import kernel
@@ -120,11 +120,11 @@ def find_held(
     for i in range(n):
         state, status = contacts.states[i], statuses[i]
         carried, one, two = state.forces
-        status.is_equality = state.chosen and carried > 0.0
+        status.is_equality = state.counts and carried > 0.0
         status.is_implied = status.opens = state.is_sticking = False
         if status.is_equality:
             extend(work.held, contacts.rows[i].columns[0], IN_SPAN)
-            if friction > 0.0:
+            if friction > 0.0 and not is_smooth(contacts.rows[i]):
                 tangential = math.sqrt(one * one + two * two)
                 state.is_sticking = tangential < (1.0 - AT_LIMIT) * friction * carried
                 at_limit = at_limit or not state.is_sticking
@@ -150,7 +150,7 @@ def find_held(
 @kernel
 def may_open(contacts: ContactSet, statuses: Rows[ContactStatus], i: int) -> bool:
     """Whether a contact is chosen and no balance is known that loads it."""
-    return bool(contacts.states[i].chosen and not statuses[i].is_equality)
+    return bool(contacts.states[i].counts and not statuses[i].is_equality)
 
 
 @kernel

@@ -86,7 +86,8 @@ def stand_at_node(node: int, tree: ModeTree) -> None:
     """Write the modes of a node: what it decides, and those above it of other contacts."""
     work = tree.relaxation
     for place in range(work.n_places):
-        work.openings[place] = work.slips[place] = UNDECIDED
+        work.openings[place] = UNDECIDED
+        work.slips[place] = STICKS if work.is_smooth[place] else UNDECIDED  # nothing is to be decided of no friction
     work.n_cuts = tree.n_cuts[node]
     while node > 0:
         place, mode = tree.places[node], tree.modes[node]

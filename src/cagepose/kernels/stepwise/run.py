@@ -190,7 +190,7 @@ def phase_run(
     """
     geometry, tolerances, phase_load = start.geometry, start.tolerances, start.loads[phase]
     placement, touching, trace = work.placement, work.touching, work.trace
-    rules = rules_of(of_size, start.friction, start.size_m)
+    rules = rules_of(of_size, start.friction.scene, start.size_m)
     pushes = is_push(phase_load)
     place_object(geometry, position, quaternion, placement)
     load = load_at(phase_load, position, quaternion)

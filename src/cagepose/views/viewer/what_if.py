@@ -6,6 +6,7 @@ from pathlib import PurePath
 from typing import Any
 
 from cagepose.errors import CageposeError, SceneFileError
+from cagepose.files.key_path import value_at
 from cagepose.files.scene_edit import edited, edited_text, setting, with_cage_angles
 from cagepose.files.scene_file import SceneText
 from cagepose.runs.solve import run
@@ -38,6 +39,8 @@ class WhatIf:
         """
         changes = set_values if method is None else (*set_values, f"method={method}")
         self._text = with_cage_angles(edited(scene_text, changes))
+        of = value_at(self._text.yaml.data, ("friction", "of"))
+        self._friction_of = {"of": of} if of else {}
         self.controls: list[Control] = controls(self._text)
         self.file_name = f"{PurePath(scene_text.yaml.source).stem}-changed.yaml"
 
@@ -80,7 +83,7 @@ class WhatIf:
                 raise ValueError(f"{key} cannot be changed here")
             if not _is_plain(value):
                 raise ValueError(f"{key} is no number, no word and no list of numbers")
-            given = {"coefficient": value} if key == "friction" else value
+            given = {"coefficient": value, **self._friction_of} if key == "friction" else value
             settings.append(setting(key, given))
         return tuple(settings)
 
