@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -20,13 +21,11 @@ from cagepose.kernels.stability.proof import (
 )
 from cagepose.kernels.stability.second_order import STABILITY_NAMES
 from cagepose.model.checks import FloatArray
-from cagepose.model.load import Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.cases import body_of
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.proof import FreeMotion, Proof
-from cagepose.runs.run import Contact
 
 REASONS = {
     PROVEN_WITHOUT_FRICTION: "the contacts balance the load without friction",
@@ -40,23 +39,15 @@ NOT_SHOWN = "the contacts can balance the load with friction, but that the objec
 WEDGED = "; the contacts can press against each other without a load, as in a wedge"
 STOPPED = "; what they leave, contacts without play stop to second order, by forces without bound"
 CHAINED = "; contacts without play hold each other in turn: the least play frees it"
+ONES = np.ones(3)
 IN_SPAN = 1e-6
 """Sine of the angle below which a freedom lies in the span of the undetermined ones."""
 
 
-def read_proofs(
-    outcome: Outcome,
-    scene: Scene,
-    ends: Sequence[Pose],
-    contacts: Sequence[Sequence[Contact]],
-    shared: Sequence[Sequence[str]],
-) -> list[Proof]:
-    """Return the proof of each phase's end, given the poses and contacts there and the names of those that share
-    forces.
-    """
+def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Sequence[Sequence[str]]) -> list[Proof]:
+    """Return the proof of each phase's end, given the poses there and the names of contacts that share forces."""
     phases: Any = outcome.phases
     columns = zip(
-        scene.loads,
         phases["proof"].tolist(),
         phases["stability"].tolist(),
         phases["residual"].tolist(),
@@ -67,13 +58,13 @@ def read_proofs(
         phases["undetermined"],
         _free_motions(phases),
         ends,
-        contacts,
+        _sizes(outcome, scene),
         shared,
-        strict=False,  # scenes have more loads than phases that were run
+        strict=True,
     )
     found = list[Proof]()
-    for load, code, stability, residual, wedged, second, chained, n_undetermined, *found_there in columns:
-        undetermined, motion, end, touching, names = found_there
+    for code, stability, residual, wedged, second, chained, n_undetermined, *found_there in columns:
+        undetermined, motion, end, (gap_work, largest_force), names = found_there
         held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
         is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
         found.append(
@@ -89,23 +80,36 @@ def read_proofs(
                 undetermined=_freedoms(scene, end, undetermined[:n_undetermined]) if held and n_undetermined else (),
                 shared=tuple(names) if held else (),
                 motion=motion,
-                **(_sizes(scene, load, touching) if held else {}),
+                gap_work=gap_work if held else None,
+                largest_force=largest_force if held else None,
             )
         )
     return found
 
 
-def _sizes(scene: Scene, load: Load, contacts: Sequence[Contact]) -> dict[str, float]:
-    """Return `Proof.gap_work` and `Proof.largest_force`."""
-    weighed = scaled_load(scene, load)
-    load_n = math.hypot(*weighed.gravity) + math.hypot(*weighed.force)
-    work, largest = 0.0, 0.0
-    for contact in contacts:
-        normal, across = contact.force_normal_n, contact.force_tangential_n
-        if normal is not None and across is not None:
-            work += normal * contact.gap_m
-            largest = max(largest, math.hypot(normal, *across))
-    return {"gap_work": work / (load_n * scene.size_m), "largest_force": largest / load_n}
+def _sizes(outcome: Outcome, scene: Scene) -> Iterator[tuple[float, float]]:
+    """Yield `Proof.gap_work` and `Proof.largest_force` of each phase's end."""
+    phases: Any = outcome.phases
+    contacts: Any = outcome.contacts
+    normal, across = contacts["force_normal"], contacts["force_tangential"]
+    works = (normal * contacts["gap"]).tolist()
+    squares = (normal * normal + (across * across) @ ONES).tolist()
+    first = 0
+    for last, load_n in zip(phases["n_contacts"].tolist(), _load_sizes(scene), strict=False):
+        largest = max(squares[first:last], default=0.0)
+        yield sum(works[first:last]) / (load_n * scene.size_m), largest**0.5 / load_n
+        first = last
+
+
+_LOAD_SIZES: WeakKeyDictionary[Scene, list[float]] = WeakKeyDictionary()
+
+
+def _load_sizes(scene: Scene) -> list[float]:
+    """Return the lengths of the forces of each load, added up; a scene never changes, so that this is done once."""
+    if scene not in _LOAD_SIZES:
+        weighed = [scaled_load(scene, load) for load in scene.loads]
+        _LOAD_SIZES[scene] = [math.hypot(*load.gravity) + math.hypot(*load.force) for load in weighed]
+    return _LOAD_SIZES[scene]
 
 
 def _free_motions(phases: Any) -> Iterator[FreeMotion | None]:

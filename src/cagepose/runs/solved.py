@@ -203,7 +203,7 @@ def judged(scene: Scene, outcome: Outcome, ends: Sequence[Pose]) -> tuple[list[l
         list(dict.fromkeys(contact.point for contact in compress(of_phase, marks)))
         for of_phase, marks in zip(contacts, is_shared, strict=True)
     ]
-    proofs = read_proofs(outcome, scene, ends, contacts, shared)
+    proofs = read_proofs(outcome, scene, ends, shared)
     for index, proof in enumerate(proofs):
         if proof.verdict == "moves":
             contacts[index] = [

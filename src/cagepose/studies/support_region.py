@@ -64,17 +64,17 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
     if len(choices) > MOST_CHOICES:
         return None
     normals = _directions(view.polygon)
-    heights = np.full(len(normals), math.inf)
+    heights, points = np.full(len(normals), math.inf), np.zeros((0, 2))
     for choice in choices:
         found = _farthest(problem, list(choice), view, normals)
         if found is None:
             return None
-        heights = np.minimum(heights, found[0])
+        heights, points = np.minimum(heights, found[0]), found[1]
     margin_m = float(heights.min())
     if margin_m == -math.inf:
         return SupportRegion(np.zeros((0, 2)), margin_m)
     if len(choices) == 1 and heights.max() < reach_m:  # between its farthest points there is next to nothing
-        shown = without_doubles(convex_hull(found[1]), ROUNDING * reach_m)
+        shown = without_doubles(convex_hull(points), ROUNDING * reach_m)
     else:
         shown = polygon_within(normals, np.minimum(heights, reach_m))
     return SupportRegion(view.load_point + shown, margin_m)
