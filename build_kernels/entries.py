@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from cagepose.kernels.algebra.least_distance import shortest_inside
-from cagepose.kernels.algebra.least_squares import PassiveSet, empty_system, nonnegative_least_squares
+from cagepose.kernels.algebra.least_squares import PassiveSet, empty_system
 from cagepose.kernels.algebra.linear_program import Program, program_rows, solve_program
 from cagepose.kernels.algebra.pose import write_euler_zyx, write_quaternions
 from cagepose.kernels.algebra.program_bound import extents
@@ -72,7 +72,6 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield critical_friction, (0, part, cases, vectors, proof)
     yield balance_with_faces, (0.0, proof)
     yield search_with_faces, (0.0, proof)
-    yield nonnegative_least_squares, (empty_system(1), 1, empty_record(PassiveSet))
 
     rules, work = QuasistaticRules(0.0, 1), empty_quasistatic_workspace(geometry, 1)
     yield run_quasistatic, (part, cases, rules, work, outcome)

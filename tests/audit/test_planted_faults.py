@@ -143,9 +143,10 @@ def test_onsets_beside_rest_are_found():
 def test_a_rest_that_is_called_by_another_word_is_found():
     one = dropped()
     assert certified.certified(one) == []
-    proof = replace(one.phases[-1].proof, verdict="may rest")
+    other = run(block_on([(0.2, 0, 0)])).phases[-1].proof.motion
+    proof = replace(one.phases[-1].proof, verdict="may rest", motion=other)
     (text,) = certified.certified(with_phase(one, verdict="may rest", proof=proof))
-    assert "not shown, and strong when it is asked again" in text
+    assert "weak, and strong when it is asked again" in text
 
 
 def test_a_certificate_at_a_pose_that_rests_on_other_points_is_found(monkeypatch):

@@ -20,10 +20,14 @@ from cagepose.runs.run import Run
 from cagepose.studies.certificate import Certificate, ChosenFaces, Decision, ModeTree, OtherOnset
 from cagepose.studies.contact_problem import ContactProblem, contact_problem
 
-BALANCED = 1.1e-8
-"""Of the load: what forces may leave of it. No rest leaves more than 1e-8."""
-DRIVEN = 1e-12
-"""Of load and unit forces: the power along a leaf's twist that counts as none. The search asks for half of it."""
+BALANCED, ROUNDING = 1e-8, 2.3e-16
+"""Of the load: what forces may leave of it; and of the forces, which may be millions of loads, what rounding does."""
+OUTSIDE = 1e-12
+"""Of load and forces: how far a force may be outside of its friction cone."""
+DRIVEN = 1e-11
+"""Of load and unit forces: the power along a leaf's twist that counts as none. The search asks for a twentieth of it;
+the rest is for the rounding of arms, where the centre of gravity is far from the contacts.
+"""
 LEFT = 1e-6
 """Of the load: what velocities that a leaf does not allow may leave of (b - z). The search asks for half of it."""
 GAPLESS_RAD = 1e-12
@@ -164,7 +168,7 @@ class _Choice:
     def __init__(self, problem: ContactProblem, places: list[int], where: str) -> None:
         self.problem, self.places, self.where = problem, places, where
         self.wrenches, self.friction = problem.wrenches[places], problem.friction[places]
-        self.sizes = problem.length(self.wrenches[:, 0])
+        self.sizes = np.linalg.norm(problem.scaled(self.wrenches[:, 0]), axis=1)
 
     def _refuse(self, where: str, what: str) -> CertificateError:
         return CertificateError(f"{self.where}{where} {what}")
@@ -179,12 +183,13 @@ class _Choice:
         friction = np.linalg.norm(choice.forces[:, 1:], axis=1)
         beyond = np.maximum(-choice.forces[:, 0], friction - self.friction * choice.forces[:, 0])
         wrench = np.einsum("ij,ijk->k", choice.forces, self.wrenches)
-        left = float(self.problem.length(self.problem.load - wrench))
+        left = float(np.linalg.norm(self.problem.scaled(self.problem.load - wrench)))
         outside = float((beyond * self.sizes).max(initial=0.0))
-        if outside > DRIVEN * (1.0 + float(np.abs(choice.forces).max(initial=0.0))):
+        if outside > OUTSIDE * (1.0 + float(np.abs(choice.forces).max(initial=0.0))):
             raise self._refuse(".forces", f"leave their friction cones by {outside:.1e} loads")
-        if left > BALANCED:
-            raise self._refuse(".forces", f"leave {left:.1e} of the load, and at most {BALANCED:.1e} is a balance")
+        most = BALANCED + ROUNDING * float(np.abs(choice.forces).sum())
+        if left > most:
+            raise self._refuse(".forces", f"leave {left:.1e} of the load, and at most {most:.1e} is a balance")
         return left
 
     def speed_limit(self, tree: ModeTree) -> float:
@@ -280,7 +285,8 @@ class _Choice:
     def _left(self, twist: FloatArray, pressures: FloatArray, modes: list[_Modes]) -> float:
         """Return how much of b - D z drives motions that the contacts allow (5.20): zero proves that there are none."""
         wrench = np.einsum("ij,ijk->k", pressures, self.wrenches)
-        left = float(self.problem.length(self.problem.load - self.problem.metric @ twist - wrench))
+        rest = self.problem.scaled(self.problem.load - wrench) - self.problem.scaled_twist(twist)
+        left = float(np.linalg.norm(rest))
         for (normal, *across), size, mode in zip(pressures, self.sizes, modes, strict=True):
             wrong = 0.0 if mode.opening == "closed" else max(0.0, -float(normal))
             if mode.slipping == "slips":
@@ -296,11 +302,12 @@ class _Choice:
     def speed(self, onset: OtherOnset) -> float:
         """Return the speed of the motion that forces leave, if both obey Coulomb's law (5.7)."""
         self._check_forces(onset.forces)
-        motion = self.problem.motion_left(self.places, onset.forces)
-        speed, power = self.problem.speed(motion), float(self.problem.load @ motion)
+        load, wrenches = self.problem.scaled(self.problem.load), self.problem.scaled(self.wrenches)
+        motion = load - np.einsum("ij,ijk->k", onset.forces, wrenches)
+        speed, power = float(np.linalg.norm(motion)), float(load @ motion)
         if speed < MOVES or power <= 0.0:
             raise self._refuse("", f"is no motion that the load drives: {speed:.1e} loads fast")
-        rates = (self.wrenches @ motion) / self.sizes[:, None]
+        rates = (wrenches @ motion) / self.sizes[:, None]
         forces = onset.forces * self.sizes[:, None]
         slips, friction = np.linalg.norm(rates[:, 1:], axis=1), np.linalg.norm(forces[:, 1:], axis=1)
         missing = self.friction * forces[:, 0] * slips - np.einsum("ij,ij->i", forces[:, 1:], rates[:, 1:])

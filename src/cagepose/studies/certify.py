@@ -1,19 +1,18 @@
 """Why rest is the only onset, or which other there is, as data that others can check: `certificate`, (5.13) to (5.20).
 
 The search of a run keeps nothing but its answer. It is made again here, from the pose at the end of a phase, and every
-leaf of its tree is given the numbers that prove it; `check_certificate` then needs products and sums alone.
+leaf of its tree is read with the numbers that prove it; `check_certificate` then needs products and sums alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import replace
 from itertools import islice, product
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from cagepose.kernels.algebra.least_squares import PassiveSet, clear, empty_system, nonnegative_least_squares
-from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.contact import coulomb_newton, equilibrium
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
 from cagepose.kernels.contact.friction import friction_of
@@ -21,7 +20,7 @@ from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.stability import relaxation, strong
 from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
 from cagepose.model.checks import FloatArray
-from cagepose.runs.cases import body_of, cases_of
+from cagepose.runs.cases import cases_of
 from cagepose.runs.judge import judged_workspace
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.proof import Uniqueness
@@ -66,7 +65,7 @@ def certificate(run: Run, phase: int = -1) -> Certificate | None:
     problem = contact_problem(run, number)
     choices = list(islice(product(*reversed(problem.groups)), CHOICES_LIMIT + 1))
     search = _Search(run, problem, number)
-    if not problem.faces or len(choices) > CHOICES_LIMIT or not search.is_of_first_order():
+    if not problem.faces or len(choices) > CHOICES_LIMIT or not search.is_of_first_order:
         return None
     found = list[ChosenFaces]()
     uniqueness: Uniqueness = "strong"
@@ -89,35 +88,37 @@ class _Search:
 
     def __init__(self, run: Run, problem: ContactProblem, phase: int) -> None:
         scene, pose = run.scene, run.phases[phase].pose
-        of_scene, body = chosen_method(scene, run.method).friction(scene), body_of(scene)
+        of_scene = chosen_method(scene, run.method).friction(scene)
         cases = cases_of(scene, of_scene, pose)
         self.friction = friction_of(of_scene, cases.point_frictions, cases.box_frictions).greatest
         # The kernel knows one coefficient, and shortens the tangents of contacts with less.
         self.problem, self.lengths = problem, np.ones((len(problem.faces), 3))
         if self.friction > 0.0:
             self.lengths[:, 1:] = (problem.friction / self.friction)[:, None]
-        # D^-1/2 of (5.3), from wrenches in the world; its transpose takes scaled twists back there.
-        self.to_scaled = np.eye(WRENCH)
-        self.to_scaled[3:, 3:] = body.axes_object @ pose.rotation.T / body.radii[:, None]
+        self.columns = problem.scaled(problem.wrenches)
         self.at, _ = judged_workspace(scene, pose, phase, of_scene)
         contacts: Any = self.at.contacts
         work: Any = self.at.scratch[0]
         self.states, self.tree = contacts.states, work.tree
         self.used = np.nonzero(contacts.rows["group"][: contacts.used[0]] >= 0)[0]
-        self.columns = contacts.rows["columns"][self.used]
-        self.load = np.array(work.solver.load[:WRENCH])
-        self.size = float(np.linalg.norm(self.load)) or 1.0
+        load = work.solver.load[:WRENCH]
+        self.size = float(np.linalg.norm(load)) or 1.0
+        self.is_of_first_order = self._take(contacts.rows, load)
 
-    def is_of_first_order(self) -> bool:
-        """Whether the kernel has balanced the load itself, with all contacts: nothing is locked, (5.21)."""
-        if self.columns.shape != self.problem.wrenches.shape:
+    def _take(self, rows: Any, load: FloatArray) -> bool:
+        """Let the search be of just the numbers that are checked; False: it was of others, as contacts without play lock
+        some of what the load does (5.21).
+        """
+        columns, whole = self.lengths[..., None] * self.columns, self.problem.scaled(self.problem.load)
+        found = rows["columns"][self.used]
+        if found.shape != columns.shape:
             return False
-        expected = self.problem.wrenches @ self.to_scaled.T
-        apart = np.linalg.norm(self.columns - self.lengths[..., None] * expected, axis=2)
-        apart /= np.linalg.norm(expected, axis=2)
-        return bool(
-            (apart <= SAME).all() and np.linalg.norm(self.load / self.size - self.to_scaled @ self.problem.load) <= SAME
-        )
+        apart = np.linalg.norm(found - columns, axis=2) / np.linalg.norm(self.columns, axis=2)
+        if apart.max() > SAME or np.linalg.norm(load / self.size - whole) > SAME:
+            return False
+        rows["columns"][self.used] = columns
+        load[:] = self.size * whole
+        return True
 
     def ask(self, chosen: tuple[int, ...], with_tree: bool) -> tuple[Uniqueness, ChosenFaces, OtherOnset | None] | None:
         """Return what one choice of faces says of rest, its balance with a tree if asked for, and another onset.
@@ -157,16 +158,15 @@ class _Search:
             np.zeros((0, len(places), 3)),
         )
         leaves = found.leaves()
-        scaled = tree.twists[leaves]
-        columns = self.problem.wrenches[places] @ self.to_scaled.T
-        pressures = [
-            _pressures(columns, found, leaf, self.load / self.size - twist)
-            for leaf, twist in zip(leaves, scaled, strict=True)
-        ]
-        return ModeTree(
-            found.parents, found.contacts, found.decisions, found.starts_rad, found.widths_rad,
-            scaled @ self.to_scaled, np.array(pressures),
-        )  # fmt: skip
+        sizes = np.linalg.norm(self.columns[places, 0], axis=1)
+        pressures = np.zeros((len(leaves), len(places), 3))
+        for number, leaf in enumerate(leaves):
+            contacts, ways = _not_allowed(found, leaf, self.problem.friction[places] == 0.0)
+            for way, share in zip(tree.ways[leaf].tolist(), tree.shares[leaf].tolist(), strict=True):
+                if way >= 0:
+                    contact = contacts[way]
+                    pressures[number, contact] += share / sizes[contact] * self.lengths[places[contact]] * ways[way]
+        return replace(found, twists=tree.twists[leaves] @ self.problem.scale, pressures=pressures)
 
 
 def _root_alone(forces: FloatArray) -> ModeTree:
@@ -175,35 +175,23 @@ def _root_alone(forces: FloatArray) -> ModeTree:
     return ModeTree((-1,), (-1,), ("none",), nothing, nothing, np.zeros((1, WRENCH)), forces[None])
 
 
-def _pressures(columns: FloatArray, tree: ModeTree, leaf: int, wrench: FloatArray) -> FloatArray:
-    """Return how velocities that a leaf does not allow make a scaled wrench, (n_contacts, 3), by least squares."""
-    contacts, ways = _not_allowed(len(columns), tree, leaf)
-    system, passive = empty_system(len(contacts)), empty_record(PassiveSet)
-    system.columns[:, :WRENCH] = np.einsum("nj,njk->nk", ways, columns[contacts])
-    system.right_side[:WRENCH] = wrench
-    clear(passive, WRENCH, 1.0)
-    nonnegative_least_squares(system, len(contacts), passive)
-    found = np.zeros((len(columns), 3))
-    for label, share in zip(passive.labels[: passive.used], passive.x[: passive.used], strict=True):
-        found[contacts[label]] += share * ways[label]
-    return found
-
-
-def _not_allowed(n_contacts: int, tree: ModeTree, leaf: int) -> tuple[list[int], FloatArray]:
-    """Return velocities at contacts, normal and tangents, against which all that a leaf allows goes or stands still."""
-    contacts, ways = list(range(n_contacts)), [(1.0, 0.0, 0.0)] * n_contacts
-    slips_told = set[int]()
-    for node in tree.above(leaf):
-        contact, decision = tree.contacts[node], tree.decisions[node]
-        more: Sequence[tuple[float, float, float]] = ()
-        if decision == "closed":
-            more = [(-1.0, 0.0, 0.0)]
-        elif decision in ("sticks", "slips") and contact not in slips_told:
-            slips_told.add(contact)
-            more = [(0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]
-            if decision == "slips":
-                first, last = tree.starts_rad[node], tree.starts_rad[node] + tree.widths_rad[node]
-                more = [(0.0, np.sin(first), -np.cos(first)), (0.0, -np.sin(last), np.cos(last))]
-        contacts += [contact] * len(more)
-        ways += more
-    return contacts, np.array(ways)
+def _not_allowed(tree: ModeTree, leaf: int, is_smooth: NDArray[np.bool_]) -> tuple[list[int], list[FloatArray]]:
+    """Return velocities that a leaf does not allow, normal and tangents, and of which contact each is, as
+    `write_velocities` has them.
+    """
+    contacts, ways = list[int](), list[tuple[float, float, float]]()
+    for contact, smooth in enumerate(is_smooth.tolist()):
+        here = [node for node in tree.above(leaf) if tree.contacts[node] == contact]
+        opening = next((node for node in here if tree.decisions[node] in ("opens", "closed")), None)
+        slip = next((node for node in here if tree.decisions[node] in ("sticks", "slips")), None)
+        new = [(1.0, 0.0, 0.0)]
+        if opening is not None and tree.decisions[opening] == "closed":
+            new += [(-1.0, 0.0, 0.0)]
+        if smooth or (slip is not None and tree.decisions[slip] == "sticks"):
+            new += [(0.0, -1.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
+        elif slip is not None:
+            first, last = tree.starts_rad[slip], tree.starts_rad[slip] + tree.widths_rad[slip]
+            new += [(0.0, np.sin(first), -np.cos(first)), (0.0, -np.sin(last), np.cos(last))]
+        contacts += [contact] * len(new)
+        ways += new
+    return contacts, [np.array(way) for way in ways]

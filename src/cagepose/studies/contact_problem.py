@@ -7,7 +7,6 @@ Nothing here is shared with the kernels: contacts are found anew by (2.4) and (2
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -65,9 +64,10 @@ class ContactProblem:
     friction
         Coefficient of each, (n,).
     load
-        Force and moment in loads: ``length`` of it is 1, (6,); zero where the loads cancel.
-    metric
-        D of (5.1), for a mass of 1, (6, 6).
+        Force and moment in loads: scaled, it has length 1, (6,); zero where the loads cancel.
+    scale
+        D^-1/2 of (5.3), (6, 6): scaled wrenches are ``scale @ wrench``. By principal axes, as a needle's inertia about
+        its own axis would be lost in a matrix of the world.
     """
 
     faces: tuple[ContactFace, ...]
@@ -75,24 +75,15 @@ class ContactProblem:
     wrenches: FloatArray
     friction: FloatArray
     load: FloatArray
-    metric: FloatArray
+    scale: FloatArray
 
-    def length(self, wrench: FloatArray) -> FloatArray:
-        """Return lengths of wrenches (..., 6) in the scaled coordinates of (5.3)."""
-        return np.asarray(np.sqrt(np.einsum("...k,...k->...", wrench, wrench @ self._compliance)))
+    def scaled(self, wrenches: FloatArray) -> FloatArray:
+        """Return wrenches (..., 6) in scaled coordinates."""
+        return np.asarray(wrenches @ self.scale.T)
 
-    def speed(self, twist: FloatArray) -> float:
-        """Return the length of a twist, (6,), in the scaled coordinates of (5.3)."""
-        return float(np.sqrt(twist @ self.metric @ twist))
-
-    def motion_left(self, chosen: list[int], forces: FloatArray) -> FloatArray:
-        """Return the twist that contact forces (n, 3) leave of the load, D^-1 (w - A f), (6,)."""
-        left = self.load - np.einsum("ij,ijk->k", forces, self.wrenches[chosen])
-        return np.asarray(self._compliance @ left)
-
-    @cached_property
-    def _compliance(self) -> FloatArray:
-        return np.asarray(np.linalg.inv(self.metric))
+    def scaled_twist(self, twist: FloatArray) -> FloatArray:
+        """Return a twist, velocity of the centre of gravity and angular velocity, (6,), in scaled coordinates."""
+        return np.asarray(np.linalg.solve(self.scale.T, twist))
 
 
 def contact_problem(run: Run, phase: int) -> ContactProblem:
@@ -106,10 +97,10 @@ def contact_problem(run: Run, phase: int) -> ContactProblem:
         groups.setdefault((face.point, face.box), []).append(place)
     wrenches = np.concatenate([axes, np.cross(arms[:, None], axes)], axis=2)
     friction = np.array([contact_friction(scene, of_scene, face.point, face.box) for face in faces])
-    metric = _metric(scene, pose)
-    unscaled = _load(scene, pose, phase)
-    size = float(np.sqrt(unscaled @ np.linalg.inv(metric) @ unscaled)) or 1.0
-    return ContactProblem(tuple(faces), tuple(map(tuple, groups.values())), wrenches, friction, unscaled / size, metric)
+    scale = _scale(scene, pose)
+    load = _load(scene, pose, phase)
+    load /= float(np.linalg.norm(scale @ load)) or 1.0
+    return ContactProblem(tuple(faces), tuple(map(tuple, groups.values())), wrenches, friction, load, scale)
 
 
 def _touched_faces(scene: Scene, pose: Pose, center: FloatArray) -> tuple[list[ContactFace], FloatArray, FloatArray]:
@@ -159,18 +150,18 @@ def _is_hidden(
     return bool((depths.min(axis=1) > PROBE_MARGIN * touch_m).any())
 
 
-def _metric(scene: Scene, pose: Pose) -> FloatArray:
-    """Return D = diag(1, 1, 1, K) in the world; K of "drag" prefers no axis."""
+def _scale(scene: Scene, pose: Pose) -> FloatArray:
+    """Return D^-1/2, D = diag(1, 1, 1, K) along the principal axes of K; that of "drag" prefers none."""
     gyration = scene.object.gyration_m2
     if (scene.metric or DEFAULT_METRIC) == "drag":
-        gyration = np.eye(3) * np.trace(gyration) / 3.0
+        squares, axes = np.full(3, np.trace(gyration) / 3.0), np.eye(3)
+    else:
+        squares, axes = np.linalg.eigh(gyration)
     corners = np.concatenate([box.corners_object() for box in scene.object.boxes])
     reach = float(np.linalg.norm(corners - scene.object.center_of_gravity_m, axis=1).max())
-    squares, axes = np.linalg.eigh(gyration)
-    gyration = (axes * np.maximum(squares, (NEEDLE * reach) ** 2)) @ axes.T
-    metric = np.eye(6)
-    metric[3:, 3:] = pose.rotation @ gyration @ pose.rotation.T
-    return metric
+    scale = np.eye(6)
+    scale[3:, 3:] = (pose.rotation @ axes).T / np.sqrt(np.maximum(squares, (NEEDLE * reach) ** 2))[:, None]
+    return scale
 
 
 def _load(scene: Scene, pose: Pose, phase: int) -> FloatArray:

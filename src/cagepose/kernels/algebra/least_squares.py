@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.native.interrupt import heed_interrupt
-from cagepose.kernels.native.kernel import entry, kernel
+from cagepose.kernels.native.kernel import kernel
 
 MOST_ROWS = 7
 """Of all systems that are solved with this: those of a wrench, and one more."""
@@ -309,7 +309,7 @@ def label_is_passive(passive: PassiveSet, label: int) -> bool:
     return found
 
 
-@entry
+@kernel
 def nonnegative_least_squares(system: System, n_columns: int, passive: PassiveSet) -> float:
     """Return the least |b - sum x_j a_j| over x >= 0; the solution stays in ``passive``.
 
