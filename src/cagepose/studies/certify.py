@@ -106,8 +106,8 @@ class _Search:
         self.is_of_first_order = self._take(contacts.rows, load)
 
     def _take(self, rows: Any, load: FloatArray) -> bool:
-        """Let the search be of just the numbers that are checked; False: it was of others, as contacts without play lock
-        some of what the load does (5.21).
+        """Let the search be of the very numbers that are checked; False: it was of others, as contacts without play
+        lock some of what the load does (5.21).
         """
         columns, whole = self.lengths[..., None] * self.columns, self.problem.scaled(self.problem.load)
         found = rows["columns"][self.used]
