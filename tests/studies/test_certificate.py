@@ -18,6 +18,7 @@ from cagepose import (
     Cage,
     Certificate,
     CertificateError,
+    Force,
     Load,
     ModeTree,
     Object,
@@ -328,6 +329,19 @@ def test_a_saved_run_without_certificates_says_so(rest: tuple[Run, Certificate],
     path.write_text(json.dumps(damaged), encoding="utf-8")
     with pytest.raises(RunFileError, match=re.escape("is damaged: certificates[0].friction: ")):
         load_certificates(path)
+
+
+def test_what_nothing_touches_and_nothing_drives_rests_without_one(tmp_path: Path) -> None:
+    """Weight and push cancel. With a point below the certificate says that no force is needed."""
+    push = Force((0, 0, 1), (0, 0, 0), 9.81)
+    for z, has_one in ((-0.03, False), (-0.02, True)):
+        held = Object([Box((0.1, 0.08, 0.04))], mass_kg=1.0)
+        a_run = run(Scene(held, Cage([(0, 0, z)]), [Load("both", gravity=(0, 0, -9.81), force=push)]))
+        save_run(a_run, tmp_path / f"{z}.json")
+        (found,) = load_certificates(tmp_path / f"{z}.json")
+        assert (found is not None) == (has_one and a_run.phases[-1].proof.verdict == "rests")
+        if found is not None:
+            assert check_certificate(found, a_run).residual == 0.0
 
 
 def test_a_phase_that_moves_has_none(tmp_path: Path) -> None:

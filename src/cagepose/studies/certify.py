@@ -64,8 +64,10 @@ def certificate(run: Run, phase: int = -1) -> Certificate | None:
         return None
     problem = contact_problem(run, number)
     choices = list(islice(product(*reversed(problem.groups)), CHOICES_LIMIT + 1))
+    if not problem.faces or len(choices) > CHOICES_LIMIT:
+        return None
     search = _Search(run, problem, number)
-    if not problem.faces or len(choices) > CHOICES_LIMIT or not search.is_of_first_order:
+    if not search.is_of_first_order:
         return None
     found = list[ChosenFaces]()
     uniqueness: Uniqueness = "strong"
