@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from audit import balance, order, robustness, stability, uniqueness, way
+from audit import balance, certified, order, robustness, stability, uniqueness, way
 from audit.case import Answer, Case, Failure
 from audit.families import make_case
 from cagepose import Run, run
@@ -19,6 +19,7 @@ ORACLES: dict[str, Callable[[Run], Answer]] = {
     "robust": robustness.robustness,
     "valley": stability.stability,
     "unique": uniqueness.uniqueness,
+    "certified": certified.certified,
     "falls": way.potential_falls,
     "depth": way.depth,
     "passes": way.passes,

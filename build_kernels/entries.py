@@ -35,6 +35,7 @@ from cagepose.kernels.quasistatic.run import (
 )
 from cagepose.kernels.quasistatic.workspace import empty_quasistatic_workspace
 from cagepose.kernels.stability.proof import empty_proof_workspace
+from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
 from cagepose.kernels.stepwise.run import (
     StepwiseRules,
     empty_stepwise_workspace,
@@ -69,6 +70,8 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     proof = empty_proof_workspace(geometry)
     yield judge_start, (0, part, cases, vectors, proof, outcome)
     yield critical_friction, (0, part, cases, vectors, proof)
+    yield balance_with_faces, (0.0, proof)
+    yield search_with_faces, (0.0, proof)
 
     rules, work = QuasistaticRules(0.0, 1), empty_quasistatic_workspace(geometry, 1)
     yield run_quasistatic, (part, cases, rules, work, outcome)

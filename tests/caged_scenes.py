@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from cagepose import Box, Cage, Load, Object, Pose, Scene
+from cagepose import Box, Cage, Force, Load, Object, Pose, Scene
 
 MM = 1e-3
 LOADS = (Load("gravity", gravity=(0, 0, -1)),)
@@ -78,3 +78,16 @@ def _beside(rng: np.random.Generator, size: np.ndarray, widest: float, near: flo
                 point[axis] = side * (size[axis] / 2 + rng.uniform(1e-3, 1) * widest)
                 points.append(point)
     return np.array(points)
+
+
+def pushed_block(random: np.random.Generator, friction: float) -> Scene:
+    """A block between 8 to 18 points on its six sides, play 0.1 to 1 mm; weight, and a push as great somewhere."""
+    size = random.uniform(20, 60, 3)
+    faces = [*range(6), *random.integers(0, 6, random.integers(2, 13))]
+    points = random.uniform(-0.45, 0.45, (len(faces), 3)) * size
+    for point, face in zip(points, faces, strict=True):
+        axis = face // 2
+        point[axis] = (1 if face % 2 else -1) * (size[axis] / 2 + random.uniform(0.1, 1))
+    push = Force(random.normal(size=3), random.uniform(-0.4, 0.4, 3) * size * 1e-3)
+    load = Load("push", gravity=(0, 0, -1), force=push)
+    return Scene(Object([Box(size * 1e-3)]), Cage(points * 1e-3), [load], friction_coefficient=friction)

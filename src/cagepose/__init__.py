@@ -15,12 +15,14 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from cagepose.errors import CageposeError as CageposeError
+    from cagepose.errors import CertificateError as CertificateError
     from cagepose.errors import KernelsError as KernelsError
     from cagepose.errors import MissingExtraError as MissingExtraError
     from cagepose.errors import Problem as Problem
     from cagepose.errors import RunFileError as RunFileError
     from cagepose.errors import SceneError as SceneError
     from cagepose.errors import SceneFileError as SceneFileError
+    from cagepose.files.run_file import load_certificates as load_certificates
     from cagepose.files.run_file import load_run as load_run
     from cagepose.files.run_file import save_run as save_run
     from cagepose.files.scene_file import load_scene as load_scene
@@ -46,10 +48,18 @@ if TYPE_CHECKING:
     from cagepose.runs.run import Run as Run
     from cagepose.runs.solve import run as run
     from cagepose.runs.variation import Variation as Variation
+    from cagepose.studies.certificate import Certificate as Certificate
+    from cagepose.studies.certificate import ChosenFaces as ChosenFaces
+    from cagepose.studies.certificate import ModeTree as ModeTree
+    from cagepose.studies.certificate import OtherOnset as OtherOnset
+    from cagepose.studies.certificate_check import CertificateCheck as CertificateCheck
+    from cagepose.studies.certificate_check import check_certificate as check_certificate
+    from cagepose.studies.certify import certificate as certificate
     from cagepose.studies.comparison import Comparison as Comparison
     from cagepose.studies.comparison import Parting as Parting
     from cagepose.studies.comparison import Variant as Variant
     from cagepose.studies.comparison import compare as compare
+    from cagepose.studies.contact_problem import ContactFace as ContactFace
     from cagepose.studies.margin import ContactMargin as ContactMargin
     from cagepose.studies.margin import Margin as Margin
     from cagepose.studies.margin import margin as margin
@@ -61,6 +71,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "cagepose.errors": (
         "CageposeError",
+        "CertificateError",
         "KernelsError",
         "MissingExtraError",
         "Problem",
@@ -80,10 +91,14 @@ _HOMES = {
     "cagepose.runs.run": ("Contact", "Event", "Frame", "Motion", "PhaseRun", "Run"),
     "cagepose.runs.solve": ("run",),
     "cagepose.runs.variation": ("Variation",),
+    "cagepose.studies.certificate": ("Certificate", "ChosenFaces", "ModeTree", "OtherOnset"),
+    "cagepose.studies.certificate_check": ("CertificateCheck", "check_certificate"),
+    "cagepose.studies.certify": ("certificate",),
     "cagepose.studies.comparison": ("Comparison", "Parting", "Variant", "compare"),
+    "cagepose.studies.contact_problem": ("ContactFace",),
     "cagepose.studies.margin": ("ContactMargin", "Margin", "margin"),
     "cagepose.studies.play": ("Play", "play"),
-    "cagepose.files.run_file": ("load_run", "save_run"),
+    "cagepose.files.run_file": ("load_certificates", "load_run", "save_run"),
     "cagepose.files.scene_file": ("load_scene",),
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
@@ -93,8 +108,13 @@ __all__ = [
     "Box",
     "Cage",
     "CageposeError",
+    "Certificate",
+    "CertificateCheck",
+    "CertificateError",
+    "ChosenFaces",
     "Comparison",
     "Contact",
+    "ContactFace",
     "ContactMargin",
     "Event",
     "Force",
@@ -104,8 +124,10 @@ __all__ = [
     "Load",
     "Margin",
     "MissingExtraError",
+    "ModeTree",
     "Motion",
     "Object",
+    "OtherOnset",
     "Parting",
     "PhaseRun",
     "Play",
@@ -122,7 +144,10 @@ __all__ = [
     "Variant",
     "Variation",
     "__version__",
+    "certificate",
+    "check_certificate",
     "compare",
+    "load_certificates",
     "load_run",
     "load_scene",
     "margin",

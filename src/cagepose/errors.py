@@ -4,6 +4,7 @@
     ├── SceneError           a scene that cannot be right: every problem found, each with its place
     │   └── SceneFileError   the same, found in a scene file: each place has its line and column
     ├── RunFileError         a saved run that cannot be read
+    ├── CertificateError     a certificate of rest that proves nothing
     ├── MissingExtraError    a part of cagepose that is not installed
     └── KernelsError         the machine code that is built with cagepose is missing, or does not fit
 
@@ -84,6 +85,10 @@ class SceneFileError(SceneError):
 
 class RunFileError(CageposeError, ValueError):
     """A saved run that cannot be read: not one of ours, of an unknown version, or damaged."""
+
+
+class CertificateError(CageposeError, ValueError):
+    """A certificate of rest that proves nothing: for another scene or pose, incomplete, or with a wrong number."""
 
 
 class MissingExtraError(CageposeError, ImportError):

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from audit import balance, order, robustness, stability, uniqueness, way
+from audit import balance, certified, order, robustness, stability, uniqueness, way
 from audit.case import Case
 from audit.families import FAMILIES, make_case
 from audit.geometry import acting
@@ -138,6 +138,23 @@ def test_onsets_beside_rest_are_found():
     assert len(ambiguous) >= 3
     assert len(found) >= len(ambiguous) / 3
     assert all("allows an onset" in text for text in found)
+
+
+def test_a_rest_that_is_called_by_another_word_is_found():
+    one = dropped()
+    assert certified.certified(one) == []
+    other = run(block_on([(0.2, 0, 0)])).phases[-1].proof.motion
+    proof = replace(one.phases[-1].proof, verdict="may rest", motion=other)
+    (text,) = certified.certified(with_phase(one, verdict="may rest", proof=proof))
+    assert "weak, and strong when it is asked again" in text
+
+
+def test_a_certificate_at_a_pose_that_rests_on_other_points_is_found(monkeypatch):
+    one = dropped()
+    given = certified.certificate(one)
+    monkeypatch.setattr(certified, "certificate", lambda *_: given)
+    (text,) = certified.certified(moved_end(one, (0, 0, 0.0101)))
+    assert "does not touch at this pose" in text
 
 
 def test_an_onset_that_breaks_coulombs_law_does_not_count():

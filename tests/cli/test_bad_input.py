@@ -32,6 +32,10 @@ EDITS = [
      f" known keys: {KEYS}"),
     ("unknown key in a box", SIZE, SIZE + "\n      colour: red", "5:7: object.boxes[0].colour: is no known key;"
      " remove it; known keys: size, position, euler_zyx_deg, name"),
+    ("key in the wrong place", "name: sample", "name: sample\nmass: 2", "2:1: mass: is no known key; it belongs to"
+     f" object; known keys: {KEYS}"),
+    ("key of several places", "name: sample", "name: sample\nposition: 2", "2:1: position: is no known key; it belongs"
+     f" to object.boxes[i] or object.pose or cage.pose; known keys: {KEYS}"),
     ("missing name", "name: sample\n", "", "1:1: name: is missing; add it, for example name: bracket"),
     ("missing size", SIZE + "\n      ", "",
      "4:7: object.boxes[0].size: is missing; add it, for example size: [10, 20, 30]"),

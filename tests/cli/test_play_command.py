@@ -52,12 +52,21 @@ def test_a_scene_that_is_no_cage_gives_the_path_out_and_ends_with_0(command: Com
     assert document["freedoms"]["z"]["linear"][1] is None  # nothing is above the block
 
 
+def test_the_way_out_is_told_in_a_line(command: Command, sample: str) -> None:
+    path = json.loads(command("play", sample, "--json").out)["cage"]["path"]
+    (line,) = [line for line in command("play", sample).out.splitlines() if line.startswith("way out: ")]
+    assert line.count(" about (") + line.count(" along (") == len(path)
+    assert line.endswith("; then nothing is ahead")
+
+
 def test_the_tables_name_what_limits_each_end(command: Command) -> None:
     out = command("play", RAIL).out
     assert "-0.313084 to 0.313084" in out
     assert "cage: caged" in out
     assert "greatest x" in out
-    assert "close any of C1, C8, C6, C3 by 0.5 " in out  # any one of them halves the least pitch
+    (row,) = [line for line in out.splitlines() if line.startswith("least pitch")]
+    halved_by_any_of_them = ["C1,", "C8,", "C6,", "C3", "0.3131", "0", "0.5", "mm"]
+    assert row.split()[2:] == halved_by_any_of_them
 
 
 def test_a_load_that_finds_no_rest_nearby_is_not_shown_at_one(command: Command, sample: str) -> None:

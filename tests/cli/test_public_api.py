@@ -36,6 +36,16 @@ def test_all_names_every_public_class_and_function_once() -> None:
             "Run",
         ),
         *("RunFileError", "Runs", "Scene", "SceneError", "SceneFileError", "Tolerances", "Variant", "Variation"),
+        *(
+            "Certificate",
+            "CertificateCheck",
+            "CertificateError",
+            "ChosenFaces",
+            "ContactFace",
+            "ModeTree",
+            "OtherOnset",
+        ),
+        *("certificate", "check_certificate", "load_certificates"),
         *("__version__", "compare", "load_run", "load_scene", "margin", "play", "run", "run_many", "save_run"),
         "with_critical_friction",
     }

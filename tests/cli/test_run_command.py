@@ -95,6 +95,56 @@ def test_a_screen_gets_colours_and_wrapped_cells(
     assert max(len(line) for line in plain.splitlines()) <= 100
 
 
+def test_long_names_have_room_on_a_narrow_screen(
+    in_folder: Path, sample_text: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """No number and no name is broken where a table of one line for each event would break them all."""
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    for key, value in (("COLUMNS", "80"), ("TERM", "dumb")):
+        monkeypatch.setenv(key, value)
+    text = sample_text
+    for name in ("C1", "C2", "C3", "C4"):
+        text = text.replace(f"{name}:", f"rest button {name} of the fixture:")
+    (in_folder / "long.yaml").write_text(text.replace("name: gravity", "name: weight of the part"), encoding="utf-8")
+    report.print_report(cagepose.runs.solve.run(load_scene("long.yaml"), "stepwise"), "mm")
+    lines = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+    assert max(map(len, lines)) <= 80
+    assert "weight of the part:" in lines
+    assert "2  A-2   turn    (0, -1, 0)      28.955 deg" in lines
+    assert any(line.startswith("2: hits rest button C4 of the fixture; touching rest button C1") for line in lines)
+
+
+def test_names_with_blanks_are_told_apart(command: Command, in_folder: Path, sample_text: str) -> None:
+    text = sample_text.replace("C1:", "left pin:").replace("C3:", "right pin:")
+    (in_folder / "blanks.yaml").write_text(text, encoding="utf-8")
+    out = command("run", "blanks.yaml", "--set", "object.pose.position=[0, 0, 5]").out
+    assert "left pin, C2, right pin, C4 on box1" in out
+    assert "left pin: 0." in out
+
+
+def test_a_proof_shows_gap_work_and_forces_that_are_not_small() -> None:
+    held = cagepose.runs.solve.run(load_scene(SCENES / "slope.yaml"))
+    (phase,) = held.phases
+    assert (phase.proof.gap_work, phase.proof.largest_force) == (
+        pytest.approx(0, abs=1e-15),
+        pytest.approx(0.5, abs=0.5),
+    )
+    for changes, told in (
+        ({}, ""),
+        ({"gap_work": 2e-10}, ", gap work 2.0e-10"),
+        ({"largest_force": 123.4}, ", largest force 123 loads"),
+    ):
+        shown = report._proof(replace(held, phases=(replace(phase, proof=replace(phase.proof, **changes)),)))
+        assert shown.endswith(f"{told})")
+        assert ("gap work" in shown, "largest force" in shown) == ("gap_work" in changes, "largest_force" in changes)
+
+
+def test_help_lists_the_methods(command: Command) -> None:
+    for name in ("run", "plot", "view"):
+        text = " ".join(command(name, "--help").out.replace("│", " ").split())
+        assert "stepwise or quasistatic; left out: as the scene says" in text
+
+
 def test_names_with_rich_markup_and_emoji_codes_are_shown_as_they_are(command: Command, sample: str) -> None:
     out = command("run", sample, "--set", "name='[red]:smile:'", "--set", "object.boxes[0].name='[b]'").out
     assert out.startswith("[red]:smile:: rests")
@@ -115,7 +165,7 @@ def test_out_saves_the_run_and_the_table_is_still_printed(command: Command, samp
     assert answer.code == 0
     assert answer.out.startswith("sample: rests")
     assert load_run("run.json").verdict == "rests"
-    assert json.loads(Path("run.json").read_text(encoding="utf-8"))["units"] == {"length": "in"}
+    assert json.loads(Path("run.json").read_text(encoding="utf-8"))["units"]["length"] == "in"
 
 
 @pytest.mark.parametrize(
@@ -221,7 +271,12 @@ def test_an_escape_is_a_verdict_and_has_no_proof_line(command: Command, sample: 
     assert answer.out.startswith("sample: escapes")
     assert "inf" not in answer.out
     below = summary(answer.out)
-    assert below.keys() == {"position", "yaw, pitch, roll", "centre of gravity", "contacts", "verdict", "onset"}
+    angles = "yaw, pitch, roll"
+    assert below.keys() == {"pose", "position", angles, "centre of gravity", "contacts", "verdict", "onset"}
+    assert below["pose"].startswith("where nothing is ahead any more")
+    rule = "A-1" if method == "stepwise" else "escapes"
+    (row,) = [line for line in answer.out.splitlines() if line.startswith("1 ")]
+    assert row.split() == ["1", "gravity", rule, "travel", "(0,", "0,", "1)", "nothing", "ahead"]
     assert below["onset"] == "travel along (0, 0, 1)"
 
 
@@ -336,6 +391,8 @@ def test_check_says_what_a_scene_holds(command: Command, sample: str) -> None:
     assert command("check", sample) == (
         0,
         "sample: 1 box, 4 cage points, 1 load (gravity), method quasistatic\n"
+        "object 10 x 10 x 10 mm: x -5 to 5, y -5 to 5, z -5 to 5\n"
+        "cage 8 x 8 x 0 mm: x -4 to 4, y -4 to 4, z 0 to 0\n"
         "size 17.3205 mm, touch tolerance 1.73e-08 mm; no problems found\n",
         "",
     )

@@ -16,12 +16,12 @@ from cagepose.model.methods import METHODS
 
 TOP = ["version", "scene", "units", "method", "verdict", "warnings", "pose", "phases", "timing_s"]
 POSE = ["position", "euler_zyx_deg", "quat_wxyz", "center_of_gravity"]
-PHASE = ["name", "verdict", "pose", "events", "contacts", "proof"]
+PHASE = ["name", "verdict", "force_unit", "pose", "events", "contacts", "proof"]
 EVENT = ["rule", "motion", "direction", "axis", "through", "distance", "angle_deg", "hit", "contacts", "pose"]
 CONTACT = ["point", "box", "normal", "gap", "force_normal", "force_tangential"]
 PROOF = [
-    *("verdict", "reason", "residual", "needs_friction", "stability", "undetermined", "shared", "motion"),
-    "critical_friction",
+    *("verdict", "uniqueness", "reason", "residual", "gap_work", "largest_force", "needs_friction", "stability"),
+    *("undetermined", "shared", "motion", "critical_friction"),
 ]
 MOTION = ["kind", "direction", "axis", "through", "pitch"]
 VERDICTS = {"stepwise": "stable", "quasistatic": "rests"}
@@ -46,7 +46,11 @@ def test_the_document_has_exactly_the_agreed_keys(sample_text: str, method: str)
     assert list(phase["proof"]) == PROOF
     motion = phase["proof"]["motion"]
     assert motion is None or list(motion) == MOTION
-    assert (document["version"], document["scene"], document["units"]) == (2, "sample", {"length": "mm"})
+    assert (document["version"], document["scene"], document["units"]) == (
+        2,
+        "sample",
+        {"length": "mm", "force": "load"},
+    )
     assert (document["method"], document["verdict"]) == (method, VERDICTS[method])
     assert list(document["timing_s"]) == ["solve"]
 
@@ -171,7 +175,7 @@ def test_a_results_pose_can_be_pasted_back_into_the_scene(sample_text: str, meth
 def test_lengths_are_in_the_unit_that_was_asked_for(sample_text: str) -> None:
     result = sample_run(sample_text, "stepwise")
     millimetres, inches = run_document(result), run_document(result, "in")
-    assert inches["units"] == {"length": "in"}
+    assert inches["units"] == {"length": "in", "force": "load"}
     one, other = millimetres["phases"][0]["events"][1], inches["phases"][0]["events"][1]
     assert one["through"] == pytest.approx([25.4 * value for value in other["through"]])
     assert one["angle_deg"] == other["angle_deg"]
@@ -183,3 +187,41 @@ def test_lengths_of_a_file_come_back_to_rounding(unit: LengthUnit) -> None:
     lengths = np.random.default_rng(7).uniform(-1e3, 1e3, 1000)
     assert np.allclose(from_metres(to_metres(lengths, unit), unit), lengths, rtol=5e-16, atol=0.0)
     assert float(to_metres(1.0, unit)) == {"mm": 0.001, "m": 1.0, "in": 0.0254}[unit]
+
+
+PUSH = "  - {name: push, force: {direction: [0, 0, -1], at: [0, 0, 0], magnitude: 3}}\n"
+
+
+def test_the_unit_of_forces_is_told_and_of_each_phase_where_they_differ(sample_text: str) -> None:
+    mass = ["object.mass=2", *FLOOR]
+    newtons = run_document(sample_run(sample_text, "quasistatic", *mass))
+    assert (newtons["units"]["force"], newtons["phases"][0]["force_unit"]) == ("N", "N")
+    both = run_document(sample_run(sample_text + PUSH, "quasistatic", *FLOOR))
+    assert both["units"]["force"] is None
+    assert [phase["force_unit"] for phase in both["phases"]] == ["load", "N"]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_an_escape_has_a_motion_of_its_own(sample_text: str, method: str) -> None:
+    """Off its corner, and from there along the load: its last event says so, from the pose before it."""
+    document = run_document(sample_run(sample_text, method, "loads[0].gravity=[0, 0.6, 0.8]"))
+    assert document["verdict"] == "escapes"
+    last = document["phases"][0]["events"][-1]
+    assert (last["motion"], last["distance"], last["angle_deg"]) == ("travel", None, 0.0)
+    assert last["direction"] == pytest.approx([0, 0.6, 0.8])
+    assert (last["hit"], last["contacts"], last["pose"]) == ([], [], document["pose"])
+    assert last["rule"] == ("A-1" if method == "stepwise" else "escapes")
+
+
+def test_what_led_to_an_escape_is_an_event_before_it(sample_text: str) -> None:
+    document = run_document(sample_run(sample_text, "quasistatic", "object.center_of_gravity=[9, 4, 0]"))
+    rules = [event["rule"] for event in document["phases"][0]["events"]]
+    assert rules == ["free", "slide", "escapes"]
+    assert document["phases"][0]["events"][1]["motion"] == "screw"
+
+
+def test_a_proof_says_how_strong_it_is(sample_text: str) -> None:
+    held = run_document(sample_run(sample_text, "quasistatic", *FLOOR))["phases"][0]["proof"]
+    assert held["uniqueness"] == "strong"
+    moving = run_document(sample_run(sample_text, "stepwise"))["phases"][0]["proof"]
+    assert [moving[key] for key in ("uniqueness", "gap_work", "largest_force")] == [None, None, None]

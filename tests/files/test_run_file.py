@@ -87,6 +87,8 @@ def test_a_loaded_run_can_be_run_again_with_the_same_result(sample_text: str, tm
 def test_a_run_that_an_earlier_version_saved_is_read_without_loss(path: Path) -> None:
     """They were written when each class had a record of its own: every key and number of theirs comes back."""
     record = record_of(load_run(path))
+    for phase in record["phases"]:
+        assert [phase["proof"].pop(key) for key in ("gap_work", "largest_force")] == [None, None]  # they are newer
     assert record["scene"].pop("friction_of") == {}  # it is newer
     assert record == json.loads(path.read_text(encoding="utf-8"))["exact"]
 
@@ -183,9 +185,10 @@ def test_the_saved_file_begins_with_the_document(sample_text: str, tmp_path: Pat
     result = run(parse_scene(sample_text))
     save_run(result, tmp_path / "run.json", "in")
     content = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
-    exact = content.pop("exact")
+    exact, certificates = content.pop("exact"), content.pop("certificates")
     assert content == run_document(result, "in")
     assert exact["scene"]["name"] == "sample"
+    assert [found["uniqueness"] for found in certificates] == ["strong"]
 
 
 def test_saving_replaces_a_file_whole_and_leaves_nothing_else(sample_text: str, tmp_path: Path) -> None:

@@ -94,7 +94,9 @@ def test_what_is_pushed_away_from_the_cage_escapes(at_mm, metric):
     push = Load("push", force=Force((1, 0, 0), np.array(at_mm) * MM))
     result = run(Scene(Object([Box(np.full(3, 10.0) * MM)]), Cage(points), [push], metric=metric), method="quasistatic")
     assert result.verdict == "escapes"
-    assert {event.rule for event in result.phases[0].events} == {"free"}
+    (event,) = result.phases[0].events
+    assert (event.rule, event.motion.kind, event.motion.distance_m) == ("escapes", "travel", np.inf)
+    assert event.motion.direction_world.tolist() == [1, 0, 0]
 
 
 @pytest.mark.parametrize("metric", ["release", "drag"])

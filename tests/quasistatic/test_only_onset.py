@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog, nnls, root
 
-from cagepose import Box, Cage, Force, Load, Object, Scene, run
+from caged_scenes import pushed_block
+from cagepose import run
 from cagepose.kernels.algebra.least_squares import empty_system
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.contact.contact_set import ContactSet, empty_contact_set
@@ -313,23 +314,10 @@ def held_by(columns: np.ndarray, friction: float, random: np.random.Generator) -
     return Held(columns, friction, np.append(load / np.linalg.norm(load), 0.0))
 
 
-def block(random: np.random.Generator, friction: float) -> Scene:
-    """A block between 8 to 18 points on its six sides, play 0.1 to 1 mm; weight, and a push as great somewhere."""
-    size = random.uniform(20, 60, 3)
-    faces = [*range(6), *random.integers(0, 6, random.integers(2, 13))]
-    points = random.uniform(-0.45, 0.45, (len(faces), 3)) * size
-    for point, face in zip(points, faces, strict=True):
-        axis = face // 2
-        point[axis] = (1 if face % 2 else -1) * (size[axis] / 2 + random.uniform(0.1, 1))
-    push = Force(random.normal(size=3), random.uniform(-0.4, 0.4, 3) * size * 1e-3)
-    load = Load("push", gravity=(0, 0, -1), force=push)
-    return Scene(Object([Box(size * 1e-3)]), Cage(points * 1e-3), [load], friction_coefficient=friction)
-
-
 def held_blocks(random: np.random.Generator, friction: float) -> Iterator[Held]:
     """Where blocks come to rest by friction."""
     while True:
-        scene = block(random, friction)
+        scene = pushed_block(random, friction)
         phase = run(scene).phases[0]
         if phase.proof.verdict == "moves" or not phase.proof.needs_friction:
             continue
@@ -439,7 +427,7 @@ def test_a_rest_without_friction_is_shown_at_the_root(search):
 @pytest.mark.parametrize("friction", [0.1, 0.2, 0.4])
 def test_whether_an_ordinary_block_can_begin_to_move_is_nearly_always_said(cases, say, friction):
     random, n = np.random.default_rng(25), cases(40, 1000)
-    proofs = [run(block(random, friction)).phases[0].proof for _ in range(n)]
+    proofs = [run(pushed_block(random, friction)).phases[0].proof for _ in range(n)]
     verdicts = [proof.verdict for proof in proofs]
     say(f"blocks, friction {friction}: " + ", ".join(f"{verdicts.count(v)} {v}" for v in ("rests", "may rest")))
     assert sum("was not shown" in proof.reason for proof in proofs) <= n // 100

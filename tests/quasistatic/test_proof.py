@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import linprog
 
 from cagepose import Box, Cage, Force, Load, Object, Pose, Run, Scene, run, with_critical_friction
 from cagepose.runs.judge import critical_friction_at, judge_pose
@@ -72,6 +73,44 @@ class TestSlope:
     def test_with_friction_nothing_stays_open(self):
         proof, _ = judged(slope(0.0), 0.3)
         assert (proof.verdict, proof.stability, proof.undetermined) == ("rests", "stable", ())
+
+
+class TestSizes:
+    """Gap work and largest force, in parts of the load whatever its unit."""
+
+    @pytest.mark.parametrize(("mass", "gravity"), [(None, 1.0), (3.0, 9.81)])
+    def test_a_block_that_hovers_within_the_tolerance_could_fall_as_far(self, mass, gravity):
+        points = [(0.04, 0.03, 0), (-0.04, 0.03, 0), (-0.04, -0.03, 0), (0.04, -0.03, 0)]
+        scene = Scene(Object([Box((0.1, 0.08, 0.04))], pose=Pose((0, 0, 0.02)), mass_kg=mass), Cage(points),
+                      [Load("weight", gravity=(0, 0, -gravity))])  # fmt: skip
+        gap = 0.4 * scene.touch_m
+        proof, contacts = judge_pose(scene, Pose((0, 0, 0.02 + gap)), 0, 0.0)
+        assert proof.gap_work == pytest.approx(gap / scene.size_m, rel=1e-6)
+        total = 1.0 if mass is None else mass * gravity
+        assert proof.largest_force * total == pytest.approx(max(contact.force_normal_n for contact in contacts))
+        assert judge_pose(scene, Pose((0, 0, 0.02)), 0, 0.0)[0].gap_work == pytest.approx(0.0, abs=1e-15)
+
+    def test_the_load_does_no_more_work_than_that_in_any_motion_that_keeps_points_out(self):
+        """By duality, and a linear program: how far the load falls if a block sinks and tips onto uneven points."""
+        places = np.array([(0.04, 0.03), (-0.04, 0.03), (0.0, -0.035), (0.01, -0.01), (0.03, 0.0)])
+        gaps = np.array([0.9, 0.2, 0.6, 0.8, 0.5])  # in touch tolerances
+        block = Object([Box((0.1, 0.08, 0.04))], pose=Pose((0, 0, 0.02)))
+        touch_m = Scene(block, Cage(np.c_[places, np.zeros(5)]), [DOWN]).touch_m
+        scene = Scene(block, Cage(np.c_[places, -gaps * touch_m]), [DOWN])
+        proof, contacts = judge_pose(scene, Pose((0, 0, 0.02)), 0, 0.0)
+        assert (proof.verdict, len(contacts)) == ("rests", 5)
+        sinks = np.c_[np.ones(5), places]  # a fall of 1 and two tilts of the bottom lower it by that at each point
+        most = -linprog([-1.0, 0.0, 0.0], sinks, gaps, bounds=(None, None)).fun * touch_m
+        assert 0.0 < most <= proof.gap_work * scene.size_m * (1 + 1e-6)
+
+    def test_a_ladder_that_needs_its_friction_presses_as_statics_say(self):
+        proof, contacts = judged(ladder(math.radians(60)), 0.4)
+        sizes = [math.hypot(contact.force_normal_n, *contact.force_tangential_n) for contact in contacts]
+        assert proof.largest_force == pytest.approx(max(sizes))
+
+    def test_what_moves_has_none(self):
+        proof, _ = judged(slope(math.radians(30)), 0.1)
+        assert (proof.verdict, proof.gap_work, proof.largest_force, proof.uniqueness) == ("moves", None, None, None)
 
 
 def assert_balanced(contacts, scene: Scene, force: np.ndarray, friction: float, pose: Pose | None = None) -> None:

@@ -56,7 +56,7 @@ def test_from_near_an_unstable_balance_it_slides_away_in_few_steps(tilt_of_rail,
     variation = Variation(object_euler_zyx=np.radians([tilt_of_rail]), cage_euler_zyx=np.radians([tilt_of_cage]))
     runs = run_many(rail_scene(), variation, method="quasistatic")
     assert runs.phase_verdicts.tolist() == [["rests", "rests"]]
-    assert runs.n_events.max() < 30
+    assert runs.n_steps.max() < 30
 
 
 @pytest.mark.parametrize("misaligned", MISALIGNED)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import cagepose
-from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, SceneError, Variation, run, run_many
+from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, SceneError, Variation, load_scene, run, run_many
 from cagepose.model.methods import METHODS
 from cagepose.runs import many
 from rails import rail_scene
@@ -190,9 +190,27 @@ def test_progress_comes_to_one() -> None:
     assert len(shares) > 5
 
 
-def test_progress_is_drawn_on_standard_error(capsys: pytest.CaptureFixture[str]) -> None:
+def test_progress_is_a_bar_on_a_terminal(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
     run_many(block(), method="stepwise", progress=True)
     assert capsys.readouterr().err == f"\rcagepose: {'#' * 30} 100%\n"
+
+
+def test_progress_is_four_lines_at_most_in_a_pipe_or_log(capsys: pytest.CaptureFixture[str]) -> None:
+    many = Variation(cage_euler_zyx=np.zeros((5000, 3)))
+    run_many(block(), many, method="stepwise", threads=2, progress=True)
+    lines = capsys.readouterr().err.splitlines()
+    assert 2 <= len(lines) <= 4
+    assert lines[-1] == "cagepose: 100%"
+
+
+def test_steps_are_counted_by_steps() -> None:
+    """A run joins steps of one kind to an event; its row of `run_many` counts each of them."""
+    scene = load_scene("scenes/sample.yaml")
+    (phase,) = run(scene, "quasistatic").phases
+    n_steps = run_many(scene, method="quasistatic").n_steps[0, 0]
+    assert n_steps > len(phase.events)
+    assert n_steps >= sum(len(event.path) for event in phase.events)
 
 
 @dataclass(frozen=True)

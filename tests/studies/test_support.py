@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cagepose import Box, Cage, Load, Object, Pose, Scene, run
+from caged_scenes import pushed_block
+from cagepose import Box, Cage, Load, Object, Pose, Scene, load_scene, run
 from cagepose.paper.cases import sample_scene
+from cagepose.runs.judge import judge_pose
 from cagepose.studies.support import convex_hull, load_view
+from cagepose.studies.support_region import support_region
 
 
 def test_gravity_along_minus_z_is_seen_from_above():
@@ -47,3 +52,76 @@ def test_the_hull_of_random_points_holds_them_all_and_turns_left():
     for corner, side in zip(hull, sides, strict=True):
         to_points = points - corner
         assert (side[0] * to_points[:, 1] - side[1] * to_points[:, 0] >= -1e-12).all()
+
+
+def region_of(a_run, phase=0):
+    view = load_view(a_run, phase)
+    found = support_region(a_run, phase, view, 10.0)
+    assert found is not None
+    return view, found
+
+
+def test_on_level_ground_without_friction_the_support_region_is_the_polygon_of_the_contacts():
+    held = Object([Box((0.1, 0.08, 0.02))], (0.005, -0.01, 0.0), pose=Pose((0, 0, 0.01)))
+    points = [(0.04, 0.03, 0), (-0.03, 0.035, 0), (-0.045, -0.02, 0), (0.01, -0.03, 0), (0.0, 0.0, 0)]
+    view, found = region_of(run(Scene(held, Cage(points), [Load("weight", gravity=(0, 0, -1))])))
+    assert_allclose(found.corners, view.polygon, atol=1e-9)
+    assert found.margin_m == pytest.approx(view.margin_m, abs=1e-9)
+
+
+def test_a_ladder_may_be_climbed_up_to_where_its_ends_slip():
+    """Points at the foot (x = 0.5) and the head (x = -0.5, 1.732 above), both rough: N = 1 / (1 + mu^2) below, mu N at
+    the head. Moments about the foot: the weight goes as far as mu N (1.732 + mu 1.0) away from it.
+    """
+    scene = load_scene(Path(__file__).parents[2] / "scenes" / "ladder.yaml")
+    mu, height = scene.friction_coefficient, 2 * 0.8660254037844386
+    away = mu / (1 + mu * mu) * (height + mu * 1.0)
+    view, found = region_of(run(scene))
+    x, y = found.corners.T
+    assert (x.max(), x.min()) == pytest.approx((0.5, 0.5 - away), rel=1e-5)
+    assert (y.max(), y.min()) == pytest.approx((0.18, -0.18), rel=1e-5)
+    assert found.margin_m == pytest.approx(view.load_point[0] - x.min(), rel=1e-4)
+
+
+def test_without_friction_a_slope_supports_nothing():
+    turned = Pose(euler_zyx=(0, math.radians(10), 0))
+    feet = [(x, y, 0) for x in (-0.04, 0.04) for y in (-0.03, 0.03)]
+    held = Object([Box((0.1, 0.08, 0.04))], pose=turned @ Pose((0, 0, 0.02)))
+    loads = [Load("weight", gravity=(0, 0, -1))]
+    smooth, rough = (Scene(held, Cage(feet, pose=turned), loads, friction_coefficient=mu) for mu in (0.1, 0.3))
+    held_once = run(rough)
+    slides = replace(held_once, scene=smooth)  # the same pose, with less friction
+    assert region_of(slides)[1].margin_m == -math.inf
+    assert len(region_of(slides)[1].corners) == 0
+    assert region_of(held_once)[1].margin_m > 0.02
+
+
+def test_a_weight_is_balanced_just_inside_the_region_and_not_just_outside(cases):
+    """Blocks between points, centres of gravity across the region's edge, by the kernels' own equilibrium."""
+    random, n_asked = np.random.default_rng(8), 0
+    for _ in range(cases(25, 400)):
+        pushed = pushed_block(random, 0.3)
+        held = pushed.object
+        scene = Scene(held, pushed.cage, [Load("weight", gravity=(0, 0, -1))], friction_coefficient=0.3)
+        a_run = run(scene)
+        if a_run.verdict not in ("rests", "may rest"):
+            continue
+        view, found = region_of(a_run)
+        assert found.margin_m > -1e-9 * scene.size_m  # it is at rest
+        if math.isinf(found.margin_m):
+            continue
+        middle = found.corners.mean(axis=0)
+        for corner in found.corners[:: max(1, len(found.corners) // 4)]:
+            if np.abs(corner - view.load_point).max() > 5.0:
+                continue
+            for share, is_in in ((0.99, True), (1.02, False)):
+                place = middle + share * (corner - middle)
+                if np.linalg.norm(corner - middle) < 0.02 * scene.size_m:
+                    continue
+                shift = (place - view.load_point) @ np.stack([view.right_world, view.up_world])
+                center = held.center_of_gravity_m + a_run.pose.rotation.T @ shift
+                moved = Scene(Object(held.boxes, center), scene.cage, scene.loads, friction_coefficient=0.3)
+                proof, _ = judge_pose(moved, a_run.pose, 0, 0.3)
+                assert (proof.verdict != "moves") == is_in
+                n_asked += 1
+    assert n_asked > 50

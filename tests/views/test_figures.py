@@ -100,7 +100,7 @@ def test_each_event_has_its_snapshot_and_the_weight_its_view(sample):
         "1. gravity, A-1: travel 5 mm",
         "2. gravity, A-2: turn 28.96 deg",
         "3. gravity, A-3: turn 51.32 deg",
-        "end of gravity, seen along it:\nCoG 1.07 mm inside the contacts",
+        "end of gravity, seen along it:\nthe contacts balance it nowhere",
     ]
     view = figure.axes[-1]
     assert (view.get_xlabel(), view.get_ylabel()) == ("x [mm]", "y [mm]")
@@ -220,7 +220,7 @@ def test_an_unstable_rest_is_named_so_and_lies_over_the_line_of_its_contacts():
     slid = run(sample_scene(), method="quasistatic")
     assert pose_figure(slid).get_suptitle() == "sample: rests, unstable (quasistatic)"
     figure = event_figure(slid)
-    assert figure.axes[-1].get_title() == "end of gravity, seen along it:\nCoG right over the contacts' outline"
+    assert figure.axes[-1].get_title() == "end of gravity, seen along it:\nCoG on the edge of support"
 
 
 def test_a_long_title_takes_two_lines():

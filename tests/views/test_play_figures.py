@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 from matplotlib.patches import Rectangle
 
-from cagepose import load_scene, play
+from cagepose import Box, Cage, Load, Object, Pose, Scene, load_scene, play
 from cagepose.studies.play_outline import point_outlines
 from cagepose.views.extreme_figure import extreme_figure
 from cagepose.views.play_figure import play_figure
@@ -31,12 +32,32 @@ def test_an_open_end_is_an_arrow_and_no_bar_is_certified() -> None:
     bars = [patch for patch in figure.axes[0].patches if isinstance(patch, Rectangle)]
     assert len(bars) == 6
     assert any(line.get_marker() == ">" for line in figure.axes[0].lines)
-    assert [text.get_text() for text in figure.axes[2].texts] == ["no end, or none found, in some directions"]
+    below = figure.axes[3]  # x and z
+    assert below.get_title() == "no end along the arrows"
+    assert len(below.texts) == 24  # as many directions, all open
+    assert min(below.get_xlim()[1], below.get_ylim()[1]) > 1.0  # not the few hundredths of an empty picture
+
+
+def test_an_outline_with_ends_on_some_sides_shows_these_and_the_others_as_open() -> None:
+    """A plate on three points: it may go anywhere along them and up, and down by as much as it is above them."""
+    scene = Scene(
+        Object([Box((0.1, 0.08, 0.02))], pose=Pose((0, 0, 0.013))),
+        Cage([(0.03, 0.03, 0), (-0.03, 0.03, 0), (0.0, -0.03, 0)]),
+        [Load("weight", gravity=(0, 0, -1))],
+    )
+    xy, xz, _ = point_outlines(scene, (0, 0, -0.01))
+    assert len(xy.no_end) == 24
+    assert len(xz.no_end) == 13  # sideways, and all that goes up
+    assert xz.no_end[:, 1].min() > -1e-9
+    assert xz.linear[:, 1].min() == xz.exact[:, 1].min() == pytest.approx(-0.003, rel=1e-6)
+    assert xz.shown_m is not None
+    assert np.abs(xz.exact).max() > 2 * xz.shown_m  # cut off where nobody sees it
+    panel = play_figure(play(scene, search_s=0.0), [(0, 0, -0.01)]).axes[3]
+    assert len(panel.texts) == len(xz.no_end)
 
 
 def test_the_certified_outline_holds_the_exact_one() -> None:
     for outline in point_outlines(load_scene(RAIL), np.array([-600, 20, -60.747]) * 1e-3):
-        assert outline.exact is not None
         assert outline.certified is not None
         ends = np.roll(outline.certified, -1, axis=0)
         along = ends - outline.certified

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import sys
+from typing import TYPE_CHECKING
 
 from cagepose.cli.options import SceneArgument, SetOption
+
+if TYPE_CHECKING:
+    from cagepose.files.units import LengthUnit
+    from cagepose.model.checks import FloatArray
 
 
 def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int:
     """Print what the scene holds, or every problem found."""
+    import numpy as np
+
     from cagepose.files.scene_file import read_scene_file
     from cagepose.files.units import from_metres
     from cagepose.runs.methods import chosen_method
@@ -22,9 +29,26 @@ def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int
         f" {_count(len(found.cage.names), 'cage point')},"
         f" {_count(len(found.loads), 'load')} ({', '.join(load.name for load in found.loads)}),"
         f" method {chosen_method(found).name}\n"
+        f"object {_extent(np.concatenate([box.corners_object() for box in found.object.boxes]), unit)}\n"
+        f"cage {_extent(found.cage.points_cage, unit)}\n"
         f"size {size:.6g} {unit}, touch tolerance {touch:.3g} {unit}; no problems found\n"
     )
     return 0
+
+
+def _extent(points_m: FloatArray, unit: LengthUnit) -> str:
+    """``10 x 20 x 5 mm: x -5 to 5, ...`` in the frame of the points: a mistaken unit is seen at once."""
+    from cagepose.files.units import from_metres
+    from cagepose.files.words import short
+
+    low, high = (from_metres(ends, unit).tolist() for ends in (points_m.min(axis=0), points_m.max(axis=0)))
+    noise = 1e-12 * max(abs(value) for value in (*low, *high))
+    sides = [
+        f"{axis} {short(one, 6, noise)} to {short(other, 6, noise)}"
+        for axis, one, other in zip("xyz", low, high, strict=True)
+    ]
+    edges = " x ".join(short(other - one, 6, noise) for one, other in zip(low, high, strict=True))
+    return f"{edges} {unit}: {', '.join(sides)}"
 
 
 def _count(number: int, one: str, many: str | None = None) -> str:

@@ -6,6 +6,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from cagepose.model.methods import METHODS
+
 SceneArgument = Annotated[str, Parameter(help="Scene file (YAML or JSON).")]
 SetOption = Annotated[
     tuple[str, ...],
@@ -25,5 +27,8 @@ AtOption = Annotated[
         show_default=False,
         allow_leading_hyphen=True,
     ),
+]
+MethodOption = Annotated[
+    str | None, Parameter(help=f"How to run the scene: {' or '.join(METHODS)}; left out: as the scene says.")
 ]
 Switch = Parameter(negative="", show_default=False)

@@ -12,8 +12,9 @@ from rich.text import Text
 from cagepose.cli.console import print_all
 from cagepose.files.play_document import LENGTHS
 from cagepose.files.units import LengthUnit, from_metres
-from cagepose.files.words import short
+from cagepose.files.words import LengthWords, line_of, short
 from cagepose.model.checks import FloatArray
+from cagepose.studies.cage_verdict import PathStep
 from cagepose.studies.play import Play, PlayEnd
 from cagepose.studies.play_rest import PlayRest
 
@@ -25,6 +26,12 @@ MEANING = (
     "exact: no motion nearby goes farther (*: nor any inside the cage, by more than 1 % of it); past: so far, and"
     " perhaps farther; certified: no motion at all inside the cage does"
 )
+HALVED = (
+    "limited by: the gaps that end the play there, and by how much the end comes back, or goes on, as one of them is"
+    " made smaller or larger; halved if closed by: one gap alone, made so much smaller, leaves half of the play"
+)
+MOST_MOTIONS = 6
+"""Of a way out, so many are printed; the document has all."""
 NO_PLAY = 1e-12
 """Metres or radians: an end that is nearer is at the start but for rounding."""
 STYLES = {"caged": "bold green", "not certified": "bold yellow", "escapes": "bold red"}
@@ -36,7 +43,7 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
     for heading in ("", "unit", "linear", "exact", "certified within"):
         table.add_column(heading, overflow="fold")
     why = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
-    for heading in ("end", f"to halve it, {unit}", "limited by", f"less per {unit} closed", f"more per {unit} opened"):
+    for heading in ("end", "limited by", f"back per {unit} closed", f"on per {unit} opened", "halved if closed by"):
         why.add_column(heading, overflow="fold")
     rows = [(name, name in LENGTHS, ends.low, ends.high) for name, ends in play.freedoms.items()]
     rows += [(_point_name(place, play, unit), True, point.low, point.high) for place, point in enumerate(play.points)]
@@ -50,8 +57,9 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
         bound = f"{_value(low.certified, is_length, unit)} to {_value(high.certified, is_length, unit)}"
         table.add_row(*(Text(cell) for cell in (name, unit_name, *ranges, bound if is_certified else "-")))
         for sign, end in (("least", low), ("greatest", high)):
-            if end.clearances:
-                why.add_row(Text(f"{sign} {name}"), *(Text(cell) for cell in _limits(end, is_length, unit)))
+            for number, (worth, points) in enumerate(_limits(end, is_length, unit).items()):
+                title = f"{sign} {name}" if number == 0 else ""
+                why.add_row(Text(title), Text(", ".join(points)), *(Text(cell) for cell in worth))
     cage = play.cage
     verdict = Text("cage: ")
     verdict.append(cage.verdict, style=STYLES[cage.verdict])
@@ -63,9 +71,11 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
         print_all(Text(f"free directions: {' '.join(cage.free_directions)}"))
     if cage.leaves_at is not None:
         print_all(Text(f"it leaves its face with the object's origin at ({_triple(cage.leaves_at.position_m, unit)})"))
+    if cage.path is not None:
+        print_all(Text(f"way out: {_way_out(cage.path, LengthWords(unit, play.scene.size_m))}"))
     print_all("", table, "", Text(MEANING), "")
     if why.row_count:
-        print_all(why, "")
+        print_all(why, "", Text(HALVED), "")
     for rest in rests:
         print_all(_rest(rest, unit))
     print_all(Text(f"analysis {play.analysis_s * 1e3:.3g} ms, certificate {play.certificate_s * 1e3:.3g} ms"))
@@ -114,26 +124,38 @@ def _exact(end: PlayEnd, is_length: bool, unit: LengthUnit) -> str:
     return f"past {value}" if end.status == "not converged" else f"{value}*" if end.status == "proven" else value
 
 
-def _limits(end: PlayEnd, is_length: bool, unit: LengthUnit) -> tuple[str, str, str, str]:
-    """Return the gap to close for half of an end, the points that limit it, and what their gaps are worth."""
+def _limits(end: PlayEnd, is_length: bool, unit: LengthUnit) -> dict[tuple[str, str, str], list[str]]:
+    """Return the points whose gaps limit an end, by what these are worth and how much of one to close to halve it."""
     factor = 1.0 if is_length else math.degrees(1.0) / float(from_metres(1.0, unit))
-    shown = end.clearances[:MOST_CLEARANCES]
-    names = ", ".join(clearance.point for clearance in shown)
-    closing = ", ".join(f"{clearance.closing * factor:.4g}" for clearance in shown)
-    opening = ", ".join(short(clearance.opening * factor, 4, 1e-6) for clearance in shown)
-    more = len(end.clearances) - len(shown)
-    return _halving(end, unit), f"{names}, {more} more" if more else names, closing, opening
+    by_m, alike = _halving(end)
+    by = f"{float(from_metres(by_m, unit)):.3g} {unit}"
+    takes_several = "takes several" if by_m > 0.0 and not alike else ""
+    found: dict[tuple[str, str, str], list[str]] = {}
+    for clearance in end.clearances[:MOST_CLEARANCES]:
+        closing, opening = f"{clearance.closing * factor:.4g}", short(clearance.opening * factor, 4, 1e-6)
+        halved = by if clearance.point in alike else takes_several
+        found.setdefault((closing, opening, halved), []).append(clearance.point)
+    if len(end.clearances) > MOST_CLEARANCES:
+        found[next(reversed(found))].append(f"{len(end.clearances) - MOST_CLEARANCES} more")
+    return found
 
 
-def _halving(end: PlayEnd, unit: LengthUnit) -> str:
-    """Say which gap to close by how much, to first order, for half of the way from the start to an end."""
+def _halving(end: PlayEnd) -> tuple[float, list[str]]:
+    """Return by how much to close one gap, to first order, for half of the way from the start to an end, and the points
+    of which each alone does it; none: no gap is so wide. Zero: there is nothing to halve.
+    """
     usable = [clearance for clearance in end.clearances if 0.0 < clearance.closing < math.inf]
     if end.exact is None or abs(end.exact) < NO_PLAY or not usable:
-        return "-"
+        return 0.0, []
     best = max(clearance.closing for clearance in usable)
     by_m = 0.5 * abs(end.exact) / best
-    alike = [gap.point for gap in usable if gap.closing >= ALIKE * best and gap.gap_m >= ALIKE * by_m]
-    if not alike:
-        return "more than one gap"
-    names = alike[0] if len(alike) == 1 else f"any of {', '.join(alike[:MOST_CLEARANCES])}"
-    return f"close {names} by {float(from_metres(by_m, unit)):.3g}"
+    return by_m, [gap.point for gap in usable if gap.closing >= ALIKE * best and gap.gap_m >= ALIKE * by_m]
+
+
+def _way_out(path: Sequence[PathStep], words: LengthWords) -> str:
+    """``turn about (0, 0, 1) by 90 deg, travel along (1, 0, 0) by 5 mm, then nothing is ahead``."""
+    motions = [step.motion for step in path[:MOST_MOTIONS]]
+    ways = {"travel": "along", "turn": "about", "screw": "about"}
+    told = [f"{motion.kind} {ways[motion.kind]} {line_of(motion)} by {words.amount(motion, 4)}" for motion in motions]
+    more = [f"{len(path) - len(motions)} more"] if len(path) > len(motions) else []
+    return f"{', '.join(told + more)}; then nothing is ahead"

@@ -6,17 +6,26 @@ import math
 from collections.abc import Sequence
 
 from rich.box import SIMPLE_HEAD
+from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from cagepose.cli.console import print_all
+from cagepose.cli.console import fits_screen, print_all
 from cagepose.cli.margin_report import margin_lines
 from cagepose.errors import printable
 from cagepose.files.units import LengthUnit
-from cagepose.files.words import LengthWords, components, line_of, short
-from cagepose.runs.load_scaling import scaled_load
+from cagepose.files.words import LengthWords, components, line_of, names_of, short
+from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.run import AT_REST, FAILURES, Event, PhaseRun, Run
 from cagepose.studies.margin import Margin
+
+POSES = {
+    "escapes": "where nothing is ahead any more; the object goes on from here",
+    **dict.fromkeys(FAILURES, "where the run stopped; it is no end"),
+}
+"""Where the pose is taken from, if it is not that of a rest."""
+NO_GAP_WORK, LARGE_FORCE = 1e-12, 10.0
+"""Of the proof's numbers, those above these are told: more than rounding, and more than ten loads."""
 
 
 def print_report(
@@ -30,7 +39,10 @@ def print_report(
     if margins is not None:
         writer.margin = margin_lines(margins[-1], unit)
     warnings = [Text(f"warning: {printable(warning)}", style="yellow") for warning in run.warnings]
-    print_all(writer.title(), "", writer.events(), "", writer.summary(), *warnings, *(Text(note) for note in notes))
+    events: list[RenderableType] = [writer.events(), ""]
+    if not fits_screen(events[0]):
+        events = writer.events_of_phases()
+    print_all(writer.title(), "", *events, writer.summary(), *warnings, *(Text(note) for note in notes))
 
 
 class _Writer:
@@ -46,33 +58,45 @@ class _Writer:
         return title.append(f"  ({self.run.method}, {solve_ms:.3g} ms)")
 
     def events(self) -> Table:
-        table = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
-        for heading in ("#", "phase", "rule", "motion", "along / about", "amount", "hit", "contacts"):
-            is_number = heading in ("#", "amount")
-            table.add_column(heading, justify="right" if is_number else "left", no_wrap=is_number, overflow="fold")
+        table = _table("#", "phase", "rule", "motion", "along / about", "amount", "hit", "contacts")
         number = 0
         for phase in self.run.phases:
             for event in phase.events:
                 number += 1
-                last = event is phase.events[-1]
-                table.add_row(*self._event_row(number, phase.name, event, phase.verdict if last else None))
+                moved = self._moved(event, phase)
+                names = (Text(names_of(event.hit)), Text(names_of(event.contacts)))
+                table.add_row(Text(str(number)), Text(phase.name), *moved, *names)
             table.add_section()
         return table
 
-    def _event_row(self, number: int, phase: str, event: Event, verdict: str | None) -> list[Text]:
-        if event.motion is None:
-            motion = Text(verdict or "-", style=verdict_style(verdict) if verdict else "")
-            along = amount = ""
-        else:
-            motion, along, amount = Text(event.motion.kind), line_of(event.motion), self.words.amount(event.motion)
-        cells = (along, amount, " ".join(event.hit), " ".join(event.contacts))
-        return [Text(str(number)), Text(phase), Text(event.rule), motion, *(Text(cell) for cell in cells)]
+    def events_of_phases(self) -> list[RenderableType]:
+        """The same for a screen on which names leave no room: a table for each phase, its contacts below it."""
+        parts, number = list[RenderableType](), 0
+        for phase in self.run.phases:
+            table, touching = _table("#", "rule", "motion", "along / about", "amount"), Table.grid(padding=(0, 1))
+            for event in phase.events:
+                number += 1
+                table.add_row(Text(str(number)), *self._moved(event, phase))
+                hit = f"hits {names_of(event.hit)}; " if event.hit else ""
+                touching.add_row(Text(f"{number}:"), Text(f"{hit}touching {names_of(event.contacts) or 'nothing'}"))
+            parts += [Text(f"{phase.name}:"), table, touching, ""]
+        return parts
+
+    def _moved(self, event: Event, phase: PhaseRun) -> list[Text]:
+        """Rule, motion (or, where nothing moved, what the phase came to), line and amount of an event."""
+        if event.motion is not None:
+            motion = event.motion
+            return [Text(text) for text in (event.rule, motion.kind, line_of(motion), self.words.amount(motion))]
+        verdict = phase.verdict if event is phase.events[-1] else None
+        came_to = Text(verdict or "-", style=verdict_style(verdict) if verdict else "")
+        return [Text(event.rule), came_to, Text(""), Text("")]
 
     def summary(self) -> Table:
         run = self.run
         table = Table.grid(padding=(0, 2))
         angles = ", ".join(short(math.degrees(angle), 6, 1e-10) for angle in run.pose.euler_zyx)
         for name, value in (
+            ("pose", POSES.get(run.verdict, "")),
             ("position", f"({self.words.lengths(run.pose.position_m)}) {self.words.unit}"),
             ("yaw, pitch, roll", f"({angles}) deg"),
             ("centre of gravity", f"({self.words.lengths(run.center_of_gravity_world)}) {self.words.unit}"),
@@ -109,6 +133,14 @@ class _Writer:
         return f"{motion.kind} about {line}{pitch}"
 
 
+def _table(*headings: str) -> Table:
+    table = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
+    for heading in headings:
+        is_number = heading in ("#", "amount")
+        table.add_column(heading, justify="right" if is_number else "left", no_wrap=is_number, overflow="fold")
+    return table
+
+
 def _contact_texts(run: Run) -> list[str]:
     """``pin1 and pin2 on plate``: the points of each box, in the order of the contacts."""
     points: dict[str, list[str]] = {}
@@ -116,7 +148,7 @@ def _contact_texts(run: Run) -> list[str]:
         names = points.setdefault(contact.box, [])
         if contact.point not in names:  # a point on an edge touches two faces
             names.append(contact.point)
-    return [f"{' '.join(names)} on {box}" for box, names in points.items()]
+    return [f"{names_of(names)} on {box}" for box, names in points.items()]
 
 
 def _forces(run: Run) -> str:
@@ -126,12 +158,13 @@ def _forces(run: Run) -> str:
         if contact.force_normal_n:
             sideways = math.hypot(*contact.force_tangential_n) if contact.force_tangential_n is not None else 0.0
             beside = f" (+ {sideways:.4g} sideways)" if sideways > 1e-9 * contact.force_normal_n else ""
-            texts.append(f"{contact.point} {contact.force_normal_n:.4g}{beside}")
+            name = f"{contact.point}:" if " " in contact.point else contact.point
+            texts.append(f"{name} {contact.force_normal_n:.4g}{beside}")
     shared = run.phases[-1].proof.shared
     if shared:
-        texts.append(f"one way of many to share the load between {' '.join(shared)}")
-    in_newtons = scaled_load(run.scene, run.scene.loads[len(run.phases) - 1]).in_newtons
-    return f"{'in newtons' if in_newtons else 'of the load'}: {', '.join(texts)}" if texts else ""
+        texts.append(f"one way of many to share the load between {names_of(shared)}")
+    unit = force_unit(run.scene, run.scene.loads[len(run.phases) - 1])
+    return f"{'in newtons' if unit == 'N' else 'of the load'}: {', '.join(texts)}" if texts else ""
 
 
 def _verdicts(run: Run) -> str:
@@ -151,7 +184,12 @@ def _proof(run: Run) -> str:
     proof = run.phases[-1].proof
     if run.phases[-1].verdict not in AT_REST:
         return ""
-    return f"{proof.verdict}: {proof.reason} (residual {proof.residual:.1e})"
+    sizes = [f"residual {proof.residual:.1e}"]
+    if proof.gap_work is not None and abs(proof.gap_work) > NO_GAP_WORK:
+        sizes.append(f"gap work {proof.gap_work:.1e}")
+    if proof.largest_force is not None and proof.largest_force > LARGE_FORCE:
+        sizes.append(f"largest force {proof.largest_force:.3g} loads")
+    return f"{proof.verdict}: {proof.reason} ({', '.join(sizes)})"
 
 
 def _critical(run: Run) -> str:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import SceneArgument, SetOption, Switch
+from cagepose.cli.options import MethodOption, SceneArgument, SetOption, Switch
 
 if TYPE_CHECKING:
     from cagepose.files.scene_file import SceneFile
@@ -17,7 +17,7 @@ def run_command(
     scene: SceneArgument,
     /,
     *,
-    method: Annotated[str | None, Parameter(help="How to run the scene; left out: as the scene says.")] = None,
+    method: MethodOption = None,
     set_values: SetOption = (),
     json: Annotated[bool, Switch, Parameter(help="Print one JSON document instead of the table.")] = False,
     out: Annotated[str | None, Parameter(help="Save the run to this file, every number exactly.")] = None,

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from cagepose.files.scene_file import SceneFile
 
 RunOrSceneArgument = Annotated[str, Parameter(help="Saved run (run --out), or scene file (YAML or JSON).")]
-MethodOption = Annotated[str | None, Parameter(help="How to run a scene; left out: as the scene says.")]
 
 
 def read_run_or_scene(

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import SetOption
-from cagepose.cli.run_source import MethodOption, RunOrSceneArgument, read_run_or_scene, run_of
+from cagepose.cli.options import MethodOption, SetOption
+from cagepose.cli.run_source import RunOrSceneArgument, read_run_or_scene, run_of
 
 if TYPE_CHECKING:
     from cagepose.views.viewer.playback import Playback

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal
 
 from cagepose.files.margin_document import margin_document
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.checks import FloatArray
+from cagepose.model.load import Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.proof import FreeMotion, Proof
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
 from cagepose.studies.margin import Margin
@@ -27,13 +29,13 @@ def run_document(
     ``margins``, one for each phase, stand in the proofs; None: there is no such key.
     """
     writer = _Writer(run.scene, length_unit)
-    phases = [writer.phase(phase) for phase in run.phases]
+    phases = [writer.phase(phase, load) for phase, load in zip(run.phases, run.scene.loads, strict=False)]
     for phase, margin in zip(phases, margins or (), strict=False):
         phase["proof"]["margin"] = None if margin is None else margin_document(margin, length_unit)
     return {
         "version": FORMAT_VERSION,
         "scene": run.scene.name,
-        "units": {"length": length_unit},
+        "units": {"length": length_unit, "force": _force_unit(run)},
         "method": run.method,
         "verdict": run.verdict,
         "warnings": list(run.warnings),
@@ -41,6 +43,12 @@ def run_document(
         "phases": phases,
         "timing_s": {"solve": run.solve_s},
     }
+
+
+def _force_unit(run: Run) -> Literal["N", "load"] | None:
+    """Return the unit of forces: newtons, or the load; None: phases differ, and each of them tells its own."""
+    units = {force_unit(run.scene, load) for load in run.scene.loads[: len(run.phases)]}
+    return units.pop() if len(units) == 1 else None
 
 
 class _Writer:
@@ -56,10 +64,11 @@ class _Writer:
             "center_of_gravity": self._lengths(pose.transform(self.scene.object.center_of_gravity_m)),
         }
 
-    def phase(self, phase: PhaseRun) -> dict[str, Any]:
+    def phase(self, phase: PhaseRun, load: Load) -> dict[str, Any]:
         return {
             "name": phase.name,
             "verdict": phase.verdict,
+            "force_unit": force_unit(self.scene, load),
             "pose": self.pose(phase.pose),
             "events": [self._event(event) for event in phase.events],
             "contacts": [self._contact(contact) for contact in phase.contacts],
@@ -70,8 +79,11 @@ class _Writer:
         critical = proof.critical_friction
         return {
             "verdict": proof.verdict,
+            "uniqueness": proof.uniqueness,
             "reason": proof.reason,
             "residual": proof.residual,
+            "gap_work": proof.gap_work,
+            "largest_force": proof.largest_force,
             "needs_friction": proof.needs_friction,
             "stability": proof.stability,
             "undetermined": list(proof.undetermined),

@@ -116,9 +116,31 @@ def _choice(found: object, expected: str) -> str:
 
 
 def _unknown_key(found: str, known: list[str]) -> str:
-    close = difflib.get_close_matches(found, known, n=1)
-    meant = f"did you mean {close[0]}? " if close else "remove it; "
+    close = difflib.get_close_matches(found.lower(), known, n=1)
+    homes = _homes().get(found, [])
+    if homes:
+        meant = f"it belongs to {' or '.join(homes)}; "
+    else:
+        meant = f"did you mean {close[0]}? " if close else "remove it; "
     return f"is no known key; {meant}known keys: {', '.join(known)}"
+
+
+@cache
+def _homes() -> dict[str, list[str]]:
+    """Return for each key the mappings that have it, as ``loads[i].force``; none for keys of the scene itself."""
+    homes: dict[str, list[str]] = {}
+
+    def visit(node: dict[str, Any], place: str) -> None:
+        for part in _alternatives(node):
+            for key, child in part.get("properties", {}).items():
+                if place and place not in homes.setdefault(key, []):
+                    homes[key].append(place)
+                visit(child, f"{place}.{key}" if place else key)
+            if isinstance(part.get("items"), dict):
+                visit(part["items"], f"{place}[i]")
+
+    visit(_schema(), "")
+    return homes
 
 
 def _example(path: Path, data: object) -> str:

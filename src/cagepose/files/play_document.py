@@ -100,6 +100,7 @@ def _pose(pose: Pose | None, unit: LengthUnit) -> dict[str, Any] | None:
 def _rest(rest: PlayRest, unit: LengthUnit) -> dict[str, Any]:
     return {
         "phase": rest.phase,
+        "force_unit": "N" if rest.in_newtons else "load",
         "linear_pose": _pose(rest.linear_pose_world_object, unit),
         "exact_pose": _pose(rest.pose_world_object, unit),
         "forces": _forces(rest.forces),

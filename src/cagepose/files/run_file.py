@@ -4,23 +4,30 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TypeVar
 
 from pydantic import ValidationError
 
-from cagepose.errors import RunFileError, SceneError, key_path, printable
+from cagepose.errors import Key, RunFileError, SceneError, key_path, printable
 from cagepose.files.document import FORMAT_VERSION, run_document
 from cagepose.files.read import looks_like_run
 from cagepose.files.record import from_record, record_of
 from cagepose.files.units import LENGTH_UNITS, LengthUnit
 from cagepose.files.write import check_can_write, json_text, write_whole
 from cagepose.runs.run import Run
+from cagepose.studies.certificate import Certificate
+from cagepose.studies.certify import certificate
+
+Kind = TypeVar("Kind")
 
 
 def save_run(run: Run, path: str | os.PathLike[str], length_unit: LengthUnit = "mm") -> None:
     """Write ``run`` to one file, whole or not at all; ``length_unit`` is for the part that people read.
+
+    The file also holds the certificate of each phase's end, see `load_certificates`.
 
     Raises
     ------
@@ -29,7 +36,9 @@ def save_run(run: Run, path: str | os.PathLike[str], length_unit: LengthUnit = "
     """
     check_can_save(path)
     content = {**run_document(run, length_unit), "exact": record_of(run)}
-    write_whole(path, json_text(content).encode())
+    certificates = [certificate(run, phase) for phase in range(len(run.phases))]
+    records = [None if found is None else record_of(found) for found in certificates]
+    write_whole(path, json_text(content, certificates=records).encode())
 
 
 def check_can_save(path: str | os.PathLike[str]) -> None:
@@ -75,6 +84,39 @@ def read_run_file(path: str | os.PathLike[str]) -> RunFile:
     RunFileError
         As `load_run`.
     """
+    content, refuse = _content(path)
+    if "exact" not in content:
+        refuse("is what --json prints, without the exact numbers; save the run with --out FILE instead")
+    unit = content["units"].get("length") if isinstance(content.get("units"), dict) else None
+    if unit not in LENGTH_UNITS:
+        refuse(f"is damaged: units.length is {unit!r}; run the scene again")
+    run = _read_record(Run, content["exact"], ("exact",), refuse)
+    if not run.phases:
+        refuse("is damaged: exact.phases: is empty; run the scene again")
+    return RunFile(run, unit)
+
+
+def load_certificates(path: str | os.PathLike[str]) -> tuple[Certificate | None, ...]:
+    """Read the certificates of a saved run, one for each phase; None where `certificate` gave none.
+
+    They are as the file says: `check_certificate` finds out whether they are right.
+
+    Raises
+    ------
+    RunFileError
+        As `load_run`, or the file is older than certificates.
+    """
+    content, refuse = _content(path)
+    if not isinstance(content.get("certificates"), list):
+        refuse("has no certificates; save its run again, or make one with cagepose.certificate(run)")
+    return tuple(
+        None if record is None else _read_record(Certificate, record, ("certificates", phase), refuse)
+        for phase, record in enumerate(content["certificates"])
+    )
+
+
+def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], Callable[[str], NoReturn]]:
+    """Return what a saved run holds, its version being right, and how to refuse it by its name."""
     source = os.fspath(path)
 
     def refuse(message: str) -> NoReturn:
@@ -89,23 +131,18 @@ def read_run_file(path: str | os.PathLike[str]) -> RunFile:
             f"has format version {version!r}, and this cagepose knows {FORMAT_VERSION};"
             " read it with the cagepose that wrote it, or run the scene again"
         )
-    if "exact" not in content:
-        refuse("is what --json prints, without the exact numbers; save the run with --out FILE instead")
-    unit = content["units"].get("length") if isinstance(content.get("units"), dict) else None
-    if unit not in LENGTH_UNITS:
-        refuse(f"is damaged: units.length is {unit!r}; run the scene again")
+    return content, refuse
+
+
+def _read_record(kind: type[Kind], record: object, place: tuple[Key, ...], refuse: Callable[[str], NoReturn]) -> Kind:
     try:
-        run = from_record(Run, content["exact"])
+        return from_record(kind, record)
     except ValidationError as error:
         first = error.errors()[0]
         reason = first.get("ctx", {}).get("error")
         if isinstance(reason, SceneError):
             refuse(f"is damaged: its scene cannot be right ({reason.problems[0]}); run the scene again")
-        place = key_path(("exact", *first["loc"]))
-        refuse(f"is damaged: {place}: {first['msg'].lower()}; run the scene again")
-    if not run.phases:
-        refuse("is damaged: exact.phases: is empty; run the scene again")
-    return RunFile(run, unit)
+        refuse(f"is damaged: {key_path((*place, *first['loc']))}: {first['msg'].lower()}; run the scene again")
 
 
 def _read_json(source: str, refuse: Any) -> object:

@@ -27,7 +27,7 @@ class LengthWords:
         if motion.kind == "turn":
             return angle
         if not math.isfinite(motion.distance_m):
-            return "without end"
+            return "nothing ahead"
         distance = f"{short(float(from_metres(motion.distance_m, self.unit)), digits, self.noise)} {self.unit}"
         return distance if motion.kind == "travel" else f"{distance}, {angle}"
 
@@ -46,3 +46,13 @@ def components(direction: FloatArray) -> str:
 def short(value: float, digits: int, noise: float) -> str:
     """Return a number as people read it; below ``noise`` it is zero."""
     return "0" if abs(value) < noise else f"{value:.{digits}g}"
+
+
+def names_of(names: Iterable[str]) -> str:
+    """Return names in a row, told apart by commas where a blank could be one of a name.
+
+    >>> names_of(["C1", "C2"]), names_of(["pin left", "pin right"])
+    ('C1 C2', 'pin left, pin right')
+    """
+    all_names = list(names)
+    return (", " if any(" " in name for name in all_names) else " ").join(all_names)

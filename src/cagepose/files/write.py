@@ -34,9 +34,12 @@ def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
         partial.unlink(missing_ok=True)
 
 
-def json_text(document: dict[str, Any]) -> str:
-    """Return a document as the text that is printed and saved."""
-    return json.dumps(document, indent=1, allow_nan=False) + "\n"
+def json_text(document: dict[str, Any], **on_one_line: object) -> str:
+    """Return a document as the text that is printed and saved; long tables of numbers stand last, a line each."""
+    text = json.dumps(document, indent=1, allow_nan=False)
+    for key, value in on_one_line.items():
+        text = f'{text[:-2]},\n "{key}": {json.dumps(value, separators=(",", ":"), allow_nan=False)}\n}}'
+    return text + "\n"
 
 
 def check_can_write(path: str | os.PathLike[str], may_replace: Callable[[Path], bool], what: str) -> None:

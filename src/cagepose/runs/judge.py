@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from cagepose.kernels.outcome import at_pose
-from cagepose.kernels.outcome.records import empty_outcome
-from cagepose.kernels.stability.proof import empty_proof_workspace
+from cagepose.kernels.outcome.records import Outcome, empty_outcome
+from cagepose.kernels.stability.proof import ProofWorkspace, empty_proof_workspace
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -22,13 +22,23 @@ def judge_pose(scene: Scene, pose: Pose, phase: int, friction: float) -> tuple[P
     IndexError
         The scene has no such phase.
     """
-    points = _points_world(scene, phase)
-    outcome = empty_outcome(len(scene.loads), 1, len(points), 0)
-    at_pose.judge_start(
-        phase, part_of(scene), cases_of(scene, friction, pose), points, empty_proof_workspace(scene.geometry), outcome
-    )
+    _, outcome = judged_workspace(scene, pose, phase, friction)
     contacts, proofs = judged(scene, written(outcome), [pose] * (phase + 1))
     return proofs[phase], tuple(contacts[phase])
+
+
+def judged_workspace(scene: Scene, pose: Pose, phase: int, friction: float) -> tuple[ProofWorkspace, Outcome]:
+    """Judge a pose under the load of a phase; return the memory of that as the kernel has left it, and what it wrote.
+
+    Raises
+    ------
+    IndexError
+        The scene has no such phase.
+    """
+    points, at = _points_world(scene, phase), empty_proof_workspace(scene.geometry)
+    outcome = empty_outcome(len(scene.loads), 1, len(points), 0)
+    at_pose.judge_start(phase, part_of(scene), cases_of(scene, friction, pose), points, at, outcome)
+    return at, outcome
 
 
 def critical_friction_at(scene: Scene, pose: Pose, phase: int, friction: float) -> float:

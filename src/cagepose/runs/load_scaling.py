@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -55,3 +55,8 @@ def scaled_pushes(
     # Where newtons do not count, the weight is a part of the force.
     weights = WEIGHT_BESIDE_FORCE * lengths * unit_vector(gravity, "gravity")
     return ScaledLoad(weights, forces, in_newtons=False)
+
+
+def force_unit(scene: Scene, load: Load) -> Literal["N", "load"]:
+    """Return the unit of the forces that balance a load."""
+    return "N" if scaled_load(scene, load).in_newtons else "load"

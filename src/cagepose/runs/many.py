@@ -41,8 +41,9 @@ class Runs:
     phase_verdicts
         Of each phase, (n, n_phases): as `PhaseRun.verdict`; "invalid" where no run could begin (a cage point inside the
         object at the start, two points that are one, or a start too far from the cage); "" where it was not reached.
-    n_events
-        Events (stepwise) or steps (quasistatic) of each phase, (n, n_phases).
+    n_steps
+        Of each phase, (n, n_phases). A step of the stepwise method is an event; the quasistatic method joins steps of
+        one kind to one.
     position_m, quaternion_wxyz
         The object's pose in the world after each phase, (n, n_phases, 3) and (n, n_phases, 4); NaN where not reached.
     touching
@@ -53,7 +54,7 @@ class Runs:
 
     methods: NDArray[np.str_]
     phase_verdicts: NDArray[np.str_]
-    n_events: NDArray[np.int64]
+    n_steps: NDArray[np.int64]
     position_m: FloatArray
     quaternion_wxyz: FloatArray
     touching: NDArray[np.bool_]
@@ -107,7 +108,8 @@ def run_many(
     threads
         How many; None: one for each core.
     progress
-        True: a line on standard error. A function: called with the share of the runs that are done.
+        True: on standard error, a bar on a terminal and four lines elsewhere. A function: called with the share of the
+        runs that are done.
 
     Raises
     ------
@@ -128,7 +130,7 @@ def run_many(
         Batch(scene, chosen, variation or Variation()) for scene, chosen in zip(all_scenes, methods, strict=True)
     ]
     began = time.perf_counter()
-    _run_all(batches, threads or os.cpu_count() or 1, _show_progress if progress is True else progress or None)
+    _run_all(batches, threads or os.cpu_count() or 1, _Progress() if progress is True else progress or None)
     solve_s = time.perf_counter() - began
     return _columns([chosen.name for chosen in methods], batches, solve_s)
 
@@ -167,7 +169,7 @@ def _columns(methods: list[str], batches: Sequence[Batch], solve_s: float) -> Ru
     return Runs(
         np.repeat(methods, [batch.n_runs for batch in batches]),
         verdicts,
-        _stacked([found.n_events for found in endings], 0),
+        _stacked([found.n_steps for found in endings], 0),
         _stacked([found.positions for found in endings], np.nan),
         _stacked([found.quaternions for found in endings], np.nan),
         _stacked([found.touching for found in endings], False),
@@ -188,7 +190,18 @@ def _stacked(arrays: list[NDArray[Any]], filling: Any) -> NDArray[Any]:
     return whole
 
 
-def _show_progress(share: float) -> None:
-    ends = "\n" if share >= 1.0 else ""
-    sys.stderr.write(f"\rcagepose: {'#' * int(30 * share):30} {share:4.0%}{ends}")
-    sys.stderr.flush()
+class _Progress:
+    """Shows the share of the runs that are done on standard error: a bar on a terminal, a line a quarter elsewhere."""
+
+    def __init__(self) -> None:
+        self.on_screen, self.shown = sys.stderr.isatty(), 0
+        self.steps = 100 if self.on_screen else 4
+
+    def __call__(self, share: float) -> None:
+        done = int(self.steps * share)
+        if done == self.shown:
+            return
+        self.shown = done
+        bar = f"\rcagepose: {'#' * int(30 * share):30} {share:4.0%}" if self.on_screen else f"cagepose: {share:.0%}\n"
+        sys.stderr.write(f"{bar}\n" if self.on_screen and share >= 1.0 else bar)
+        sys.stderr.flush()

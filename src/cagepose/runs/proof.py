@@ -9,6 +9,7 @@ from cagepose.model.checks import FloatArray
 
 ProofVerdict = Literal["rests", "may rest", "moves"]
 Stability = Literal["stable", "marginal", "unstable"]
+Uniqueness = Literal["strong", "weak", "not shown"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +64,16 @@ class Proof:
     critical_friction
         The least coefficient of friction at which the contacts balance the load: None if not asked for, infinite if
         there is none.
+    gap_work
+        The sum of normal force times gap over the contacts, as a fraction of the load times the scene's size; below
+        zero where points are inside, all within the touch tolerance. Without friction no motion that keeps the points
+        out of the object lets the load do more work than this (to first order), so it tells how far a rest stands on
+        the touch tolerance. None where the object moves, or in a run that an older version saved.
+    largest_force
+        The greatest force of a contact as a fraction of the load. Many loads mean contacts that press against each
+        other, as in a wedge, and a rest that hangs on little changes of shape. None as above.
+
+    What is accepted as zero, and why, is in docs/conventions.
     """
 
     verdict: ProofVerdict
@@ -74,3 +85,16 @@ class Proof:
     shared: tuple[str, ...]
     motion: FreeMotion | None
     critical_friction: float | None = None
+    gap_work: float | None = None
+    largest_force: float | None = None
+
+    @property
+    def uniqueness(self) -> Uniqueness | None:
+        """Of rest as an onset, in the words of Pang and Trinkle (2000): None where the object moves.
+
+        "strong" stability ("rests"): rest is the only onset that Coulomb's law allows. "weak" ("may rest"): rest is
+        one, and `motion` is another. "not shown" ("may rest"): rest is one, and whether there is another is open.
+        """
+        if self.verdict == "moves":
+            return None
+        return "strong" if self.verdict == "rests" else "not shown" if self.motion is None else "weak"

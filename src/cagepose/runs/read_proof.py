@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -22,6 +24,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.cases import body_of
+from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.proof import FreeMotion, Proof
 
 REASONS = {
@@ -37,6 +40,11 @@ WEDGED = "; the contacts can press against each other without a load, as in a we
 STOPPED = "; what they leave, contacts without play stop to second order, by forces without bound"
 CHAINED = "; contacts without play hold each other in turn: the least play frees it"
 CLAMPED = "; it hangs on contacts that press against each other: what parts them for a moment frees it"
+NUMBERS = (
+    "proof", "stability", "residual", "wedged", "is_second_order", "is_chained", "is_clamped", "n_undetermined",
+)  # fmt: skip
+"""Fields of a phase's record that are one number."""
+ONES = np.ones(3)
 IN_SPAN = 1e-6
 """Sine of the angle below which a freedom lies in the span of the undetermined ones."""
 
@@ -45,23 +53,17 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
     """Return the proof of each phase's end, given the poses there and the names of contacts that share forces."""
     phases: Any = outcome.phases
     columns = zip(
-        phases["proof"].tolist(),
-        phases["stability"].tolist(),
-        phases["residual"].tolist(),
-        phases["wedged"].tolist(),
-        phases["is_second_order"].tolist(),
-        phases["is_chained"].tolist(),
-        phases["is_clamped"].tolist(),
-        phases["n_undetermined"].tolist(),
+        zip(*[phases[name].tolist() for name in NUMBERS], strict=True),
         phases["undetermined"],
         _free_motions(phases),
         ends,
+        _sizes(outcome, scene),
         shared,
         strict=True,
     )
     found = list[Proof]()
-    for code, stability, residual, wedged, *remarks, n_undetermined, undetermined, motion, end, names in columns:
-        second, chained, clamped = remarks
+    for numbers, undetermined, motion, end, (gap_work, largest_force), names in columns:
+        code, stability, residual, wedged, second, chained, clamped, n_undetermined = numbers
         held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
         is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
         found.append(
@@ -78,9 +80,36 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
                 undetermined=_freedoms(scene, end, undetermined[:n_undetermined]) if held and n_undetermined else (),
                 shared=tuple(names) if held else (),
                 motion=motion,
+                gap_work=gap_work if held else None,
+                largest_force=largest_force if held else None,
             )
         )
     return found
+
+
+def _sizes(outcome: Outcome, scene: Scene) -> Iterator[tuple[float, float]]:
+    """Yield `Proof.gap_work` and `Proof.largest_force` of each phase's end."""
+    phases: Any = outcome.phases
+    contacts: Any = outcome.contacts
+    normal, across = contacts["force_normal"], contacts["force_tangential"]
+    works = (normal * contacts["gap"]).tolist()
+    squares = (normal * normal + (across * across) @ ONES).tolist()
+    first = 0
+    for last, load_n in zip(phases["n_contacts"].tolist(), _load_sizes(scene), strict=False):
+        largest = max(squares[first:last], default=0.0)
+        yield sum(works[first:last]) / (load_n * scene.size_m), largest**0.5 / load_n
+        first = last
+
+
+_LOAD_SIZES: WeakKeyDictionary[Scene, list[float]] = WeakKeyDictionary()
+
+
+def _load_sizes(scene: Scene) -> list[float]:
+    """Return the lengths of the forces of each load, added up; a scene never changes, so that this is done once."""
+    if scene not in _LOAD_SIZES:
+        weighed = [scaled_load(scene, load) for load in scene.loads]
+        _LOAD_SIZES[scene] = [math.hypot(*load.gravity) + math.hypot(*load.force) for load in weighed]
+    return _LOAD_SIZES[scene]
 
 
 def _free_motions(phases: Any) -> Iterator[FreeMotion | None]:

@@ -22,6 +22,7 @@ HARDLY = 5e-5
 """Components of a direction below this are shown as 0."""
 GROUNDS = {
     "free": "nothing holds it back",
+    "escapes": "nothing is ahead",
     "slide": "the contacts cannot hold it, and those that carry slide",
     "pivot": "the contacts cannot hold it, but friction makes one of them stick",
     **dict.fromkeys(("A-1", "B-1"), "no contact, so along the load"),

@@ -10,15 +10,17 @@ from numpy.typing import ArrayLike
 from cagepose.model.checks import FloatArray
 from cagepose.model.scene import Scene
 from cagepose.studies.play import PointPlay, play
-from cagepose.studies.support import convex_hull
+from cagepose.studies.support import PARALLEL, polygon_within
 
 PLANES = (("x", "y"), ("x", "z"), ("y", "z"))
 N_DIRECTIONS = 24
 """In each plane, 15 deg apart."""
-PARALLEL = 1e-6
-"""Sine of the angle between two lines that do not cross."""
-ROUNDING = 1e-9
-"""Of the largest distance: a crossing that a line cuts off by less is a corner."""
+
+
+SHOWN = 1.3
+"""Of the farthest end: so far goes a picture in which some directions have no end."""
+CUT_OFF = 4.0
+"""In halves of such a picture: there an outline without end is cut off, so that the cut is not seen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,13 +32,24 @@ class PointOutline:
     axes
         Of the picture: "x", "y" or "z", to the right and upward.
     linear, exact, certified
-        Corners of the polygon that the ends in all directions bound, (n, 2); None: some have no end, or no proof.
+        Corners of the polygon that the ends in all directions bound, (n, 2). Where there is no end it is cut off, far
+        outside of what is shown. Of exact ends that were not found it has how far the searches came; certified, None:
+        some are not proven.
+    no_end
+        Of the directions, unit vectors, those along which the point goes without end and nothing bounds it, (n, 2).
+    not_converged
+        Where the searches came along directions whose end was not found, (n, 2).
+    shown_m
+        How far the picture goes if there is no end in some direction; None: it shows all.
     """
 
     axes: tuple[str, str]
-    linear: FloatArray | None
-    exact: FloatArray | None
+    linear: FloatArray
+    exact: FloatArray
     certified: FloatArray | None
+    no_end: FloatArray
+    not_converged: FloatArray
+    shown_m: float | None
 
 
 def point_outlines(scene: Scene, at_object: ArrayLike) -> tuple[PointOutline, PointOutline, PointOutline]:
@@ -48,35 +61,38 @@ def point_outlines(scene: Scene, at_object: ArrayLike) -> tuple[PointOutline, Po
         directions[plane][:, ["xyz".index(axis) for axis in axes]] = units
     found = play(scene, [at_object], list(directions.reshape(-1, 3)), search_s=0.0).points
     xy, xz, yz = (
-        _outline(axes, units, found[plane * len(units) : (plane + 1) * len(units)]) for plane, axes in enumerate(PLANES)
+        _outline(axes, units, found[plane * len(units) : (plane + 1) * len(units)], scene.size_m)
+        for plane, axes in enumerate(PLANES)
     )
     return xy, xz, yz
 
 
-def _outline(axes: tuple[str, str], units: FloatArray, points: tuple[PointPlay, ...]) -> PointOutline:
+def _outline(axes: tuple[str, str], units: FloatArray, points: tuple[PointPlay, ...], size_m: float) -> PointOutline:
     normals = np.concatenate([units, -units])
-    highs, lows = [point.high for point in points], [point.low for point in points]
+    ends = [*(point.high for point in points), *(point.low for point in points)]
+    signs = np.repeat([1.0, -1.0], len(points))
     linear, exact, certified = (
-        _polygon(normals, [getattr(end, kind) for end in highs], [getattr(end, kind) for end in lows])
-        for kind in ("linear", "exact", "certified")
+        signs * np.array([getattr(end, kind) for end in ends], dtype=np.float64)  # NaN: none
+        for kind in ("linear", "reached", "certified")
     )
-    return PointOutline(axes, linear, exact, certified)
+    heights = np.concatenate([linear, exact])
+    has_end = np.isfinite(heights)
+    farthest_m = float(np.abs(heights[has_end]).max(initial=0.0)) or 0.5 * size_m
+    shown_m = None if has_end.all() else SHOWN * farthest_m
+    is_open, bounding = np.isnan(exact), normals[~np.isnan(exact)]
+    goes_on = is_open & (normals @ bounding.T <= PARALLEL).all(axis=1)
+    unsure = np.array([end.status == "not converged" for end in ends]) & ~is_open
+    return PointOutline(
+        axes,
+        _polygon(normals, linear, shown_m),
+        _polygon(normals, exact, shown_m),
+        polygon_within(normals, certified) if np.isfinite(certified).all() else None,
+        normals[goes_on],
+        (normals * exact[:, None])[unsure],
+        shown_m,
+    )
 
 
-def _polygon(normals: FloatArray, highs: list[float | None], lows: list[float | None]) -> FloatArray | None:
-    """Return the corners of what lies within all lines: those crossings of two that no third one cuts off."""
-    if None in highs or None in lows:
-        return None
-    heights = np.concatenate([np.array(highs, dtype=np.float64), -np.array(lows, dtype=np.float64)])
-    first, second = np.triu_indices(len(normals), 1)
-    is_crossing = np.abs(_cross(normals[first], normals[second])) > PARALLEL
-    first, second = first[is_crossing], second[is_crossing]
-    pairs = np.stack([normals[first], normals[second]], axis=1)
-    crossings = np.linalg.solve(pairs, np.stack([heights[first], heights[second]], axis=1)[:, :, None])[:, :, 0]
-    within = (crossings @ normals.T <= heights + ROUNDING * np.abs(heights).max()).all(axis=1)
-    return convex_hull(crossings[within])
-
-
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    crossed: FloatArray = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    return crossed
+def _polygon(normals: FloatArray, heights: FloatArray, shown_m: float | None) -> FloatArray:
+    """Return the corners of what the ends bound, cut off where there are none."""
+    return polygon_within(normals, heights if shown_m is None else np.fmin(heights, CUT_OFF * shown_m))

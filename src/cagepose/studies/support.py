@@ -11,6 +11,11 @@ from cagepose.model.load import Load
 from cagepose.model.scene import Scene
 from cagepose.runs.run import Run
 
+PARALLEL = 1e-6
+"""Sine of the angle between two lines that do not cross."""
+ROUNDING = 1e-9
+"""Of the largest distance: a crossing that a line cuts off by less is a corner."""
+
 
 @dataclass(frozen=True, eq=False)
 class LoadView:
@@ -87,6 +92,33 @@ def convex_hull(points: FloatArray) -> FloatArray:
             chain.append(point)
         chains += chain[:-1]
     return np.array(chains)
+
+
+def polygon_within(normals: FloatArray, heights: FloatArray) -> FloatArray:
+    """Return the corners of all points p, (n, 2), with normals p <= heights: those crossings of two lines that no third
+    one cuts off, counter-clockwise. ``normals`` are unit vectors, (m, 2).
+
+    >>> polygon_within(np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]]), np.array([2.0, 1, 0, 0])).tolist()
+    [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]
+    """
+    first, second = np.triu_indices(len(normals), 1)
+    is_crossing = np.abs(_cross(normals[first], normals[second])) > PARALLEL
+    first, second = first[is_crossing], second[is_crossing]
+    pairs = np.stack([normals[first], normals[second]], axis=1)
+    crossings = np.linalg.solve(pairs, np.stack([heights[first], heights[second]], axis=1)[:, :, None])[:, :, 0]
+    within = (crossings @ normals.T <= heights + ROUNDING * np.abs(heights).max()).all(axis=1)
+    return without_doubles(convex_hull(crossings[within] + 0.0), 10.0 * ROUNDING * np.abs(heights).max())
+
+
+def without_doubles(corners: FloatArray, distance: float) -> FloatArray:
+    """Return the corners of a polygon but those within a distance of the one before them."""
+    is_far = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1) > distance
+    return corners[is_far] if is_far.any() else corners[:1]
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    crossed: FloatArray = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return crossed
 
 
 def _turns_left(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:

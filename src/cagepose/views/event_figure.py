@@ -18,7 +18,8 @@ from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.pose import Pose
 from cagepose.runs.run import Event, Run
 from cagepose.studies.ending import ending
-from cagepose.studies.support import LoadView, convex_hull, load_view
+from cagepose.studies.support import convex_hull, load_view
+from cagepose.studies.support_region import SupportRegion, support_region
 from cagepose.views.scene_drawing import POINT_LOOKS, SceneDrawing
 from cagepose.views.style import (
     BLACK,
@@ -41,7 +42,11 @@ MOST_SNAPSHOTS = 14
 """A longer run shows its start, its first events and its last one, and says how many it leaves out."""
 
 RIGHT_OVER = 1e-9
-"""A load's line is on the outline of the contacts within this fraction of its length."""
+"""The centre of gravity is on the edge of the support region within this fraction of the scene's size."""
+REACH = 10.0
+"""In sizes of the scene: a support region without end is drawn as far, which is out of the picture."""
+MARGIN = 0.06
+"""Of the extent of a view: room around it."""
 
 LENGTH_WORDS: Mapping[LengthUnit, str] = {"mm": "mm", "m": "m", "in": "inches"}
 LONGEST_NAME = 12
@@ -53,7 +58,7 @@ LONGEST_TITLE = 40
 def event_figure(run: Run, length_unit: LengthUnit = "mm") -> Figure:
     """Draw the scene at the start and after each event, as the paper's Figs. 6 and 7 do.
 
-    Each phase under a weight alone adds a view along it: the polygon of the contacts, and the centre of gravity.
+    Each phase under a weight alone adds a view along it: the support region and the centre of gravity.
     """
     shots, n_left_out = _snapshots(run, length_unit)
     weights = [index for index in range(len(run.phases)) if run.scene.loads[index].force is None]
@@ -121,7 +126,7 @@ def _snapshots(run: Run, length_unit: LengthUnit) -> tuple[list[tuple[int, Event
 def _amount(event: Event, length_unit: LengthUnit) -> str:
     assert event.motion is not None
     if not math.isfinite(event.motion.distance_m):
-        return "travel without end"
+        return "travel, nothing ahead"
     parts = []
     if event.motion.distance_m:
         parts.append(f"{float(from_metres(event.motion.distance_m, length_unit)):.4g} {length_unit}")
@@ -140,20 +145,28 @@ def _draw_view(panel: Axes, run: Run, phase_index: int, length_unit: LengthUnit)
     for corners in view.project(boxes).reshape(-1, 8, 2):
         outline = from_metres(convex_hull(corners), length_unit)
         panel.fill(*outline.T, facecolor=SKY, edgecolor=BLUE, alpha=0.22, linewidth=0.6)
-    polygon = from_metres(view.polygon, length_unit)
-    panel.fill(*polygon.T, facecolor="none", edgecolor=GREEN, hatch="//", linewidth=1.6)
+    points = run.scene.cage.points_world()
+    region = support_region(run, phase_index, view, REACH * run.scene.size_m)
+    extent = from_metres(view.project(np.concatenate([points, boxes])), length_unit)
+    if region is not None:
+        corners = from_metres(region.corners, length_unit)
+        panel.fill(*corners.T, facecolor="none", edgecolor=GREEN, hatch="//", linewidth=1.6)
     touching = {contact.point for contact in phase.contacts}
-    points = from_metres(view.project(run.scene.cage.points_world()), length_unit)
-    for name, point in zip(run.scene.cage.names, points, strict=True):
+    for name, point in zip(run.scene.cage.names, extent[: len(points)], strict=True):
         touches = name in touching
         panel.plot(*point, "o", zorder=2.0 + touches, **POINT_LOOKS["touching" if touches else "free"])
         if touches:
             panel.annotate(name, point, xytext=(3.0, 3.0), textcoords="offset points", fontsize=7.0)
     panel.plot(*from_metres(view.load_point, length_unit), marker="D", color=BLUE, markersize=5.0)
-    title = f"end of {_cut(phase.name)}, seen along it:\n{_position(view, length_unit)}"
+    title = f"end of {_cut(phase.name)}, seen along it:\n{_position(region, run.scene.size_m, length_unit)}"
     panel.set_title(title, fontsize=8.5, pad=8.0)
-    extent = np.ptp(np.concatenate([points, from_metres(view.project(boxes), length_unit)]), axis=0)
-    if extent.min() > 0.3 * extent.max():
+    low, high = extent.min(axis=0), extent.max(axis=0)
+    if region is not None and len(corners) and np.abs(corners - 0.5 * (low + high)).max() < (high - low).max():
+        low, high = np.minimum(low, corners.min(axis=0)), np.maximum(high, corners.max(axis=0))
+    room = MARGIN * (high - low).max()
+    panel.set_xlim(low[0] - room, high[0] + room)
+    panel.set_ylim(low[1] - room, high[1] + room)
+    if (high - low).min() > 0.3 * (high - low).max():
         panel.set_aspect("equal")
     horizontal, vertical = (_axis_name(axis) for axis in (view.right_world, view.up_world))
     panel.set_xlabel(f"{horizontal} [{length_unit}]", fontsize=7.5)
@@ -161,13 +174,15 @@ def _draw_view(panel: Axes, run: Run, phase_index: int, length_unit: LengthUnit)
     panel.tick_params(labelsize=7.0)
 
 
-def _position(view: LoadView, length_unit: LengthUnit) -> str:
-    if len(view.polygon) == 0:
-        return "no contacts"
-    if abs(view.margin_m) < RIGHT_OVER * float(np.ptp(view.polygon, axis=0).max()):
-        return "CoG right over the contacts' outline"
-    margin = float(from_metres(abs(view.margin_m), length_unit))
-    return f"CoG {margin:.3g} {length_unit} {'inside' if view.margin_m > 0.0 else 'outside'} the contacts"
+def _position(region: SupportRegion | None, size_m: float, length_unit: LengthUnit) -> str:
+    if region is None:
+        return "support not known"
+    if math.isinf(region.margin_m):
+        return "the contacts balance it nowhere" if region.margin_m < 0.0 else "the contacts balance it anywhere"
+    if abs(region.margin_m) < RIGHT_OVER * size_m:
+        return "CoG on the edge of support"
+    margin = float(from_metres(abs(region.margin_m), length_unit))
+    return f"CoG {margin:.3g} {length_unit} {'inside' if region.margin_m > 0.0 else 'outside'} support"
 
 
 def _axis_name(axis_world: np.ndarray) -> str:
@@ -189,7 +204,7 @@ def _draw_legend(figure: Figure) -> None:
             Line2D([], [], color=PURPLE, linestyle="-.", label="axis of turning, or travel"),
             Line2D([], [], color=BLACK, label="load"),
             Line2D([], [], color=GREY, linestyle=":", label="before the motion"),
-            Patch(facecolor="none", edgecolor=GREEN, hatch="//", label="polygon of the contacts"),
+            Patch(facecolor="none", edgecolor=GREEN, hatch="//", label="support region: a weight is balanced"),
         ],
         loc="lower center",
         ncols=4,

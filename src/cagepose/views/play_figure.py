@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -28,14 +29,17 @@ LINES: dict[str, Look] = {
     "certified": {"color": GREY, "linestyle": (0, (4, 2)), "linewidth": 1.0},
     "linear": {"color": ORANGE, "linestyle": "-", "linewidth": 1.2},
 }
+ARROW: dict[str, Any] = {"arrowstyle": "-|>", "color": VERMILLION, "linewidth": 1.0, "shrinkA": 0.0, "shrinkB": 0.0}
+ARROW_FROM, ARROW_TO = 0.78, 0.97
+"""Of the way to the edge of a picture: arrows along which a point has no end."""
 WORDS = {"certified": "certified: cannot be passed", "exact": "exact", "linear": "linear"}
 
 
 def play_figure(play: Play, at: Sequence[ArrayLike] = (), length_unit: LengthUnit = "mm") -> Figure:
     """Draw the range of each freedom, and for each point ``at`` of the object (metres, in its frame) how far it goes.
 
-    A bar that ends in an arrow has no end, and of one with a question mark none was found. A point's way is seen along
-    the three axes of the cage.
+    A bar that ends in an arrow has no end, and of one with a question mark none was found; so has the way of a point,
+    which is seen along the three axes of the cage.
     """
     with styled():
         rows = 1 + len(at)
@@ -96,24 +100,25 @@ def _all_ends(ends: PlayRange) -> list[float]:
 
 
 def _draw_outline(panel: Axes, outline: PointOutline, length_unit: LengthUnit) -> None:
-    if outline.exact is None:
-        panel.text(
-            0.5,
-            0.7,
-            "no end, or none found, in some directions",
-            transform=panel.transAxes,
-            ha="center",
-            color=VERMILLION,
-        )
-    else:
-        panel.fill(
-            *from_metres(outline.exact, length_unit).T, facecolor=BLUE, edgecolor=BLUE, alpha=0.45, linewidth=1.2
-        )
+    panel.fill(*from_metres(outline.exact, length_unit).T, facecolor=BLUE, edgecolor=BLUE, alpha=0.45, linewidth=1.2)
     for kind, look in LINES.items():
         if (polygon := getattr(outline, kind)) is not None:
             shown = from_metres(polygon, length_unit)
             panel.plot(*np.concatenate([shown, shown[:1]]).T, **look)
     panel.plot([0.0], [0.0], marker="+", color=GREY, markersize=6.0)
+    told = []
+    if outline.shown_m is not None:
+        reach = float(from_metres(outline.shown_m, length_unit))
+        panel.set_xlim(-reach, reach)
+        panel.set_ylim(-reach, reach)
+        for way in reach * outline.no_end:
+            panel.annotate("", ARROW_TO * way, ARROW_FROM * way, arrowprops=ARROW)
+        told.append("no end along the arrows" if len(outline.no_end) else "no end in some directions")
+    if len(outline.not_converged):
+        places = from_metres(outline.not_converged, length_unit)
+        panel.plot(*places.T, linestyle="none", marker="$?$", color=VERMILLION, markersize=7.0)
+        told.append("?: perhaps farther")
+    panel.set_title("; ".join(told), fontsize=8.0, color=VERMILLION, pad=3.0)
     panel.set_xlabel(f"{outline.axes[0]} [{length_unit}]")
     panel.set_ylabel(f"{outline.axes[1]} [{length_unit}]", labelpad=1.0)
     panel.grid(color=PALE, linewidth=0.6)

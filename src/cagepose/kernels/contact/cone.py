@@ -203,7 +203,7 @@ def cone_residual(contacts: ContactSet, friction: float, b: FloatArray, cone: Co
     b
         Scaled wrench of the load, (at least 6,); see `clear_cone`.
     cone
-        The solution. Start with `clear_cone`, or with the solution for a smaller coefficient.
+        The solution. Start with `clear_cone`, or with the solution for no friction: rays are those of one coefficient.
 
     Returns
     -------

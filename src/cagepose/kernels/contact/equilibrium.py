@@ -84,7 +84,7 @@ def spare_friction(contacts: ContactSet, friction: float, b: FloatArray, terms: 
         return HELD_WITHOUT_FRICTION
     for share in SPARED:
         used = (1.0 - share) * friction
-        left = cone_residual(contacts, used, b, work.cone)  # going on from there
+        left = least_residual(contacts, used, b, terms, work)
         if left <= HELD:
             write_forces(work.cone, used, contacts)
             work.residual = left

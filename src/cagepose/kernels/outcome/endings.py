@@ -24,7 +24,7 @@ class Endings(NamedTuple):
 
     Attributes
     ----------
-    verdicts, n_events
+    verdicts, n_steps
         Codes, and how many events (stepwise) or steps (quasistatic) it took, (n, n_phases).
     proofs
         Code where a quasistatic phase comes to rest, (n, n_phases).
@@ -36,7 +36,7 @@ class Endings(NamedTuple):
 
     verdicts: NDArray[np.int64]
     proofs: NDArray[np.int64]
-    n_events: NDArray[np.int64]
+    n_steps: NDArray[np.int64]
     positions: FloatArray
     quaternions: FloatArray
     touching: NDArray[np.bool_]
@@ -60,7 +60,7 @@ def write_ending(
     case: int,
     phase: int,
     verdict: int,
-    n_events: int,
+    n_steps: int,
     position: Vector,
     quaternion: Quaternion,
     start: Start,
@@ -69,7 +69,7 @@ def write_ending(
     """Write how a phase ended, the pose in the world; `Endings.touching` is left to the method."""
     placed = object_position(start, part, position, quaternion)
     endings.verdicts[case, phase] = verdict
-    endings.n_events[case, phase] = n_events
+    endings.n_steps[case, phase] = n_steps
     for k in range(3):
         endings.positions[case, phase, k] = placed[k]
     write_upright(quaternion, endings.quaternions[case, phase])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from cagepose.kernels.algebra.pose import Quaternion, write_upright
 from cagepose.kernels.algebra.vector import Vector, vector_from
 from cagepose.kernels.collision.contacts import is_near_edge
@@ -129,7 +131,7 @@ def publish_events(
         first_step = outcome.counts[STEPS]
         along, through = vector_from(record.along), vector_from(record.through)
         event.distance, event.angle = record.distance, record.angle
-        if joins_steps and record.motion != NONE:
+        if joins_steps and record.motion != NONE and record.distance < math.inf:
             moved = motion_between(position, quaternion, end, turned, start.size_m)
             event.motion, along, through = moved.motion, moved.along, moved.through
             event.distance, event.angle = moved.distance, moved.angle

@@ -13,7 +13,7 @@ import math
 from typing import NamedTuple
 
 from cagepose.kernels.algebra.pose import Quaternion, turned_by
-from cagepose.kernels.algebra.vector import Vector, minus, norm, vector_from
+from cagepose.kernels.algebra.vector import Vector, minus, norm, scaled, vector_from
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactSet, find_contacts, stays_on_face
 from cagepose.kernels.contact.curvature import write_curvature
@@ -24,7 +24,7 @@ from cagepose.kernels.contact.equilibrium import (
     MOVES_SOMEHOW,
     UNSOLVED,
 )
-from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, write_load
+from cagepose.kernels.contact.metric import Frame, frame_at, total_force, twist_of, write_load
 from cagepose.kernels.contact.onset import find_sticking, onset
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import ESCAPES, LET_GO, NONE, PLAIN, RESTS, SCREW, STALLED, TRAVEL, StepRecord
@@ -45,9 +45,10 @@ from cagepose.kernels.quasistatic.rest_on_the_way import first_rest, is_held_on_
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 from cagepose.kernels.stability.strong import OTHER_FOUND, other_onset
 
-RULE_NAMES = ("free", "slide", "pivot", "held", "stalled")
-FREE, SLIDE, PIVOT, HELD, STUCK = 0, 1, 2, 3, 4
-"""No contact carries; those that carry slide; one of them sticks; the contacts hold the object; nothing was found."""
+RULE_NAMES = ("free", "slide", "pivot", "held", "stalled", "escapes")
+FREE, SLIDE, PIVOT, HELD, STUCK, AWAY = 0, 1, 2, 3, 4, 5
+"""No contact carries; those that carry slide; one of them sticks; the contacts hold the object; nothing was found;
+nothing is ahead."""
 
 STIFF = 0.25
 """Curvature times step above which the explicit step would no longer follow the path: then it is made implicit."""
@@ -178,6 +179,7 @@ def write_step(
     trace = work.trace
     record = trace.rows[step]
     record.rule, record.motion, record.note = rule, motion, PLAIN
+    record.distance = 0.0  # told by the poses
     for k in range(3):
         record.position[k] = position[k]
     for k in range(4):
@@ -190,6 +192,18 @@ def write_step(
         trace.hit[step, point] = trace.touching[step, point] and not work.touched[point]
         if work.touched[point] and not trace.touching[step, point]:
             record.note = LET_GO
+
+
+@kernel
+def write_escape(
+    work: QuasistaticWorkspace, step: int, velocity: Vector, position: Vector, quaternion: Quaternion
+) -> None:
+    """Write the last step of an object that gets away, from a pose: its centre of gravity travels without end."""
+    write_step(work, step, AWAY, TRAVEL, position, quaternion)
+    along = scaled(velocity, 1.0 / norm(velocity))
+    work.trace.rows[step].distance = math.inf
+    for k in range(3):
+        work.trace.rows[step].along[k] = along[k]
 
 
 @kernel
@@ -256,13 +270,13 @@ def next_step(
     rule = carried_by(work.contacts)
     motion = TRAVEL if norm(twist.spin) == 0.0 else SCREW
     if rule == FREE and nothing_ahead(setting, position):
-        write_step(work, step, rule, TRAVEL, position, quaternion)
+        write_escape(work, step, total_force(setting.load), position, quaternion)
         return ESCAPES, here, fits
     amount, as_planned, end, turned = furthest_step(
         setting, work.placement, work.contacts, position, quaternion, twist, work.path
     )
     if amount == math.inf:
-        write_step(work, step, rule, TRAVEL, position, quaternion)
+        write_escape(work, step, twist.velocity, position, quaternion)
         return ESCAPES, here, fits
     could_rest = setting.friction.greatest > 0.0 and rule != FREE and amount > 0.0
     if could_rest and is_held_on_the_way(setting, end, turned, work):

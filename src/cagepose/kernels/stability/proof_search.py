@@ -13,6 +13,7 @@ from cagepose.kernels.contact.equilibrium import (
     HELD_BY_FRICTION,
     MOVES,
     equilibrium_of_choice,
+    equilibrium_with_faces,
     next_choice_unlocked,
     return_to_choice,
 )
@@ -20,7 +21,7 @@ from cagepose.kernels.contact.friction import Friction
 from cagepose.kernels.contact.metric import Body, Frame, PhaseLoad, frame_at
 from cagepose.kernels.contact.onset import freest_motion
 from cagepose.kernels.contact.self_stress import forget_locked, self_stress
-from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.stability.proof import (
     OTHER_ONSET,
     PROVEN_MOVES,
@@ -32,16 +33,46 @@ from cagepose.kernels.stability.proof import (
 from cagepose.kernels.stability.strong import OTHER_FOUND, UNIQUE, other_onset
 
 
+@entry
+def balance_with_faces(friction: float, at: ProofWorkspace) -> int:
+    """Balance the load with the contacts that count, to first order; return the code, see `equilibrium_with_faces`.
+
+    Parameters
+    ----------
+    friction
+        Coefficient of friction.
+    at
+        As left by the proof of a rest. Filled: the forces.
+    """
+    solver = at.scratch[0].solver
+    return equilibrium_with_faces(at.contacts, friction, AT_REST, solver.load, solver.load_terms, solver)
+
+
+@entry
+def search_with_faces(friction: float, at: ProofWorkspace) -> int:
+    """Search for another onset with the contacts that count; return UNIQUE, OTHER_FOUND or NOT_SHOWN.
+
+    Parameters
+    ----------
+    friction
+        Coefficient of friction.
+    at
+        As left by the proof of a rest. Filled: the tree; the forces are those of another onset, or lost.
+    """
+    solver = at.scratch[0].solver
+    return other_onset(at.contacts, friction, solver.load, at.scratch[0].tree, solver.newton, at.system)
+
+
 @kernel
 def search_faces(friction: float, frame: Frame, at: ProofWorkspace) -> int:
     """Return the code of the proof, that of the first combination of faces with which rest is not the only onset."""
-    contacts, work, solver = at.contacts, at.scratch[0], at.scratch[0].solver
+    contacts, solver = at.contacts, at.scratch[0].solver
     forget_locked(contacts, frame, solver)
     first_choice(contacts)
     for _ in range(CHOICES_LIMIT):
         code = equilibrium_of_choice(contacts, frame, friction, AT_REST, solver)
         if code == HELD_BY_FRICTION:
-            answer = other_onset(contacts, friction, solver.load, work.tree, solver.newton, at.system)
+            answer = search_with_faces(friction, at)
             if answer != UNIQUE:
                 return OTHER_ONSET if answer == OTHER_FOUND else UNIQUENESS_NOT_SHOWN
         if not next_choice_unlocked(contacts, frame, EVERY, solver):

@@ -317,6 +317,18 @@ def is_proven(friction: float, work: Relaxation) -> bool:
 
 
 @kernel
+def write_shares(work: Relaxation, ways: IntArray, shares: FloatArray) -> None:
+    """Write of what velocities b - z of the proof is made: places and shares, (6,) each; -1: no more."""
+    n = 0
+    for j in range(work.motion.used):
+        if work.motion.labels[j] < work.n_velocities:
+            ways[n], shares[n] = work.motion.labels[j], work.motion.x[j]
+            n += 1
+    for k in range(n, 6):
+        ways[k] = -1
+
+
+@kernel
 def drop_cuts(n_before: int, work: Relaxation) -> None:
     """Of the twists found at this node, keep those in use."""
     n_kept = n_before

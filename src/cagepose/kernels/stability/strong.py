@@ -27,6 +27,7 @@ from cagepose.kernels.stability.relaxation import (
     slip_along,
     take_contacts,
     write_edges,
+    write_shares,
 )
 
 UNIQUE, OTHER_FOUND, NOT_SHOWN = 0, 1, 2
@@ -59,6 +60,9 @@ class ModeTree:
         Twists known from above.
     is_closed, twists
         Whether no motion can begin there, and z, which proves it.
+    ways, shares
+        Of what velocities that are not allowed b - z is made: their places in the order of `write_velocities`, -1: no
+        more, and how much of each.
     waiting
         Nodes still to be looked at.
     relaxation
@@ -76,6 +80,8 @@ class ModeTree:
     n_cuts: Annotated[IntArray, NODE_LIMIT]
     is_closed: Annotated[IntArray, NODE_LIMIT]
     twists: Annotated[FloatArray, NODE_LIMIT, 6]
+    ways: Annotated[IntArray, NODE_LIMIT, 6]
+    shares: Annotated[FloatArray, NODE_LIMIT, 6]
     waiting: Annotated[IntArray, NODE_LIMIT]
     relaxation: Relaxation
     y: ScaledVector
@@ -234,6 +240,7 @@ def other_onset(
             tree.is_closed[node] = 1
             for k in range(6):
                 tree.twists[node, k] = work.twist[k]
+            write_shares(work, tree.ways[node], tree.shares[node])
             continue
         if is_near(friction, work) and is_witnessed(contacts, friction, b, tree, newton):
             return OTHER_FOUND

@@ -222,13 +222,11 @@ class _Camera:
 def _escape(phase: PhaseRun, size_m: float) -> Motion | None:
     """Return as much as is shown of the motion by which an object gets away at the end of a phase."""
     motion = phase.events[-1].motion
-    if phase.verdict != "escapes" or (motion is not None and math.isfinite(motion.distance_m)):
+    if phase.verdict != "escapes" or motion is None or math.isfinite(motion.distance_m):
         return None
-    if motion is not None:
-        return replace(motion, distance_m=ESCAPE * size_m)
     onset = phase.proof.motion
-    if onset is None:
-        return None
+    if onset is None or phase.events[-1].rule != "escapes":  # the paper's rules let it travel
+        return replace(motion, distance_m=ESCAPE * size_m)
     way_m, angle = (ESCAPE * size_m, 0.0) if onset.kind == "travel" else (ESCAPE * onset.pitch_m, ESCAPE)
     return Motion(onset.kind, onset.direction_world, onset.axis_world, onset.through_world, way_m, angle)
 

@@ -1,0 +1,199 @@
+"""Why rest is the only onset, or which other there is, as data that others can check: `certificate`, (5.13) to (5.20).
+
+The search of a run keeps nothing but its answer. It is made again here, from the pose at the end of a phase, and every
+leaf of its tree is read with the numbers that prove it; `check_certificate` then needs products and sums alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import islice, product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.kernels.contact import coulomb_newton, equilibrium
+from cagepose.kernels.contact.edges import CHOICES_LIMIT
+from cagepose.kernels.contact.friction import friction_of
+from cagepose.kernels.contact.metric import WRENCH
+from cagepose.kernels.stability import relaxation, strong
+from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
+from cagepose.model.checks import FloatArray
+from cagepose.runs.cases import cases_of
+from cagepose.runs.judge import judged_workspace
+from cagepose.runs.methods import chosen_method
+from cagepose.runs.proof import Uniqueness
+from cagepose.runs.run import Run
+from cagepose.studies.certificate import Certificate, ChosenFaces, Decision, ModeTree, OtherOnset
+from cagepose.studies.contact_problem import ContactProblem, contact_problem
+
+DECISIONS: dict[int, Decision] = {
+    relaxation.UNDECIDED: "none",
+    coulomb_newton.OPENS: "opens",
+    relaxation.CLOSED: "closed",
+    coulomb_newton.STICKS: "sticks",
+    coulomb_newton.SLIPS: "slips",
+}
+SAME = 1e-9
+"""Of the load, and of a unit wrench: contacts and load of the kernel are those of the scene but for rounding."""
+
+
+def certificate(run: Run, phase: int = -1) -> Certificate | None:
+    """Return the proof that the end of a phase is at rest, and that rest is the only onset or one of several.
+
+    The search is made again. Returns None where the object moves; where nothing touches it; where contacts without play
+    carry the load to second order, which these proofs of first order do not show; and where points on edges have more
+    than 729 choices of faces.
+
+    Parameters
+    ----------
+    run
+        Of either method, made or loaded.
+    phase
+        Its number, from 0; the last one.
+
+    Raises
+    ------
+    IndexError
+        The run has no such phase.
+    """
+    number = range(len(run.phases))[phase]
+    ended = run.phases[number]
+    if ended.proof.verdict == "moves":
+        return None
+    problem = contact_problem(run, number)
+    choices = list(islice(product(*reversed(problem.groups)), CHOICES_LIMIT + 1))
+    if not problem.faces or len(choices) > CHOICES_LIMIT:
+        return None
+    search = _Search(run, problem, number)
+    if not search.is_of_first_order:
+        return None
+    found = list[ChosenFaces]()
+    uniqueness: Uniqueness = "strong"
+    onset = None
+    for choice in choices:
+        asked = search.ask(tuple(reversed(choice)), uniqueness == "strong")
+        if asked is None:
+            return None
+        answer, faces, moving = asked
+        found.append(faces)
+        if uniqueness == "strong":
+            uniqueness, onset = answer, moving
+    if uniqueness != "strong":
+        found = [ChosenFaces(faces.contacts, faces.forces, None) for faces in found]
+    return Certificate(uniqueness, problem.faces, problem.friction, tuple(found), onset)
+
+
+class _Search:
+    """The kernels' search on the contacts of a problem, one choice of faces after the other."""
+
+    def __init__(self, run: Run, problem: ContactProblem, phase: int) -> None:
+        scene, pose = run.scene, run.phases[phase].pose
+        of_scene = chosen_method(scene, run.method).friction(scene)
+        cases = cases_of(scene, of_scene, pose)
+        self.friction = friction_of(of_scene, cases.point_frictions, cases.box_frictions).greatest
+        # The kernel knows one coefficient, and shortens the tangents of contacts with less.
+        self.problem, self.lengths = problem, np.ones((len(problem.faces), 3))
+        if self.friction > 0.0:
+            self.lengths[:, 1:] = (problem.friction / self.friction)[:, None]
+        self.columns = problem.scaled(problem.wrenches)
+        self.at, _ = judged_workspace(scene, pose, phase, of_scene)
+        contacts: Any = self.at.contacts
+        work: Any = self.at.scratch[0]
+        self.states, self.tree = contacts.states, work.tree
+        self.used = np.nonzero(contacts.rows["group"][: contacts.used[0]] >= 0)[0]
+        load = work.solver.load[:WRENCH]
+        self.size = float(np.linalg.norm(load)) or 1.0
+        self.is_of_first_order = self._take(contacts.rows, load)
+
+    def _take(self, rows: Any, load: FloatArray) -> bool:
+        """Let the search be of the very numbers that are checked; False: it was of others, as contacts without play
+        lock some of what the load does (5.21).
+        """
+        columns, whole = self.lengths[..., None] * self.columns, self.problem.scaled(self.problem.load)
+        found = rows["columns"][self.used]
+        if found.shape != columns.shape:
+            return False
+        apart = np.linalg.norm(found - columns, axis=2) / np.linalg.norm(self.columns, axis=2)
+        if apart.max() > SAME or np.linalg.norm(load / self.size - whole) > SAME:
+            return False
+        rows["columns"][self.used] = columns
+        load[:] = self.size * whole
+        return True
+
+    def ask(self, chosen: tuple[int, ...], with_tree: bool) -> tuple[Uniqueness, ChosenFaces, OtherOnset | None] | None:
+        """Return what one choice of faces says of rest, its balance with a tree if asked for, and another onset.
+
+        None: no forces balance the load to first order.
+        """
+        places, states = list(chosen), self.states
+        for flag in ("chosen", "counts"):
+            states[flag] = False
+            states[flag][self.used[places]] = True
+        code = balance_with_faces(self.friction, self.at)
+        forces = self._forces(places)
+        if code == equilibrium.MOVES:
+            return None
+        if not with_tree:
+            return "not shown", ChosenFaces(chosen, forces, None), None
+        if code == equilibrium.HELD_WITHOUT_FRICTION:
+            return "strong", ChosenFaces(chosen, forces, _root_alone(forces)), None
+        answer = search_with_faces(self.friction, self.at)
+        if answer == strong.UNIQUE:
+            return "strong", ChosenFaces(chosen, forces, self._tree(places)), None
+        onset = OtherOnset(chosen, self._forces(places)) if answer == strong.OTHER_FOUND else None
+        return ("weak" if onset else "not shown"), ChosenFaces(chosen, forces, None), onset
+
+    def _forces(self, places: list[int]) -> FloatArray:
+        return np.asarray(self.lengths[places] * self.states["forces"][self.used[places]] / self.size)
+
+    def _tree(self, places: list[int]) -> ModeTree:
+        tree, n = self.tree, int(self.tree.n_nodes)
+        found = ModeTree(
+            tuple(tree.parents[:n].tolist()),
+            tuple(tree.places[:n].tolist()),
+            tuple(DECISIONS[mode] for mode in tree.modes[:n].tolist()),
+            tree.starts[:n].copy(),
+            tree.widths[:n].copy(),
+            np.zeros((0, WRENCH)),
+            np.zeros((0, len(places), 3)),
+        )
+        leaves = found.leaves()
+        sizes = np.linalg.norm(self.columns[places, 0], axis=1)
+        pressures = np.zeros((len(leaves), len(places), 3))
+        for number, leaf in enumerate(leaves):
+            contacts, ways = _not_allowed(found, leaf, self.problem.friction[places] == 0.0)
+            for way, share in zip(tree.ways[leaf].tolist(), tree.shares[leaf].tolist(), strict=True):
+                if way >= 0:
+                    contact = contacts[way]
+                    pressures[number, contact] += share / sizes[contact] * self.lengths[places[contact]] * ways[way]
+        return replace(found, twists=tree.twists[leaves] @ self.problem.scale, pressures=pressures)
+
+
+def _root_alone(forces: FloatArray) -> ModeTree:
+    """A balance without friction: the load drives no motion that the contacts allow, and the proof is z = 0."""
+    nothing = np.zeros(1)
+    return ModeTree((-1,), (-1,), ("none",), nothing, nothing, np.zeros((1, WRENCH)), forces[None])
+
+
+def _not_allowed(tree: ModeTree, leaf: int, is_smooth: NDArray[np.bool_]) -> tuple[list[int], list[FloatArray]]:
+    """Return velocities that a leaf does not allow, normal and tangents, and of which contact each is, as
+    `write_velocities` has them.
+    """
+    contacts, ways = list[int](), list[tuple[float, float, float]]()
+    for contact, smooth in enumerate(is_smooth.tolist()):
+        here = [node for node in tree.above(leaf) if tree.contacts[node] == contact]
+        opening = next((node for node in here if tree.decisions[node] in ("opens", "closed")), None)
+        slip = next((node for node in here if tree.decisions[node] in ("sticks", "slips")), None)
+        new = [(1.0, 0.0, 0.0)]
+        if opening is not None and tree.decisions[opening] == "closed":
+            new += [(-1.0, 0.0, 0.0)]
+        if smooth or (slip is not None and tree.decisions[slip] == "sticks"):
+            new += [(0.0, -1.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
+        elif slip is not None:
+            first, last = tree.starts_rad[slip], tree.starts_rad[slip] + tree.widths_rad[slip]
+            new += [(0.0, np.sin(first), -np.cos(first)), (0.0, -np.sin(last), np.cos(last))]
+        contacts += [contact] * len(new)
+        ways += new
+    return contacts, [np.array(way) for way in ways]

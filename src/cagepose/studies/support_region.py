@@ -1,0 +1,160 @@
+"""Where the centre of gravity may be for the contacts to balance a weight, seen along it: `support_region`, (5.27).
+
+On level ground without friction it is the polygon of the contacts. On slopes, with friction, or between walls it is
+not: there forces that point elsewhere than up make it larger, smaller or empty.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import islice, product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.kernels.algebra.linear_program import INFEASIBLE, N_UNKNOWNS, OPTIMAL, UNBOUNDED, Program, solve_program
+from cagepose.kernels.algebra.record import empty_record
+from cagepose.model.checks import FloatArray
+from cagepose.runs.run import Run
+from cagepose.studies.contact_problem import ContactProblem, contact_problem
+from cagepose.studies.support import ROUNDING, LoadView, convex_hull, polygon_within, without_doubles
+
+N_DIRECTIONS = 120
+"""3 deg apart; and across each side of the contacts' polygon, so that a polygon comes out exactly."""
+FIRST_RAYS, MOST_ROUNDS = 8, 40
+"""Of each friction cone, evenly spread; and how often others come in."""
+CUT_FROM = 1e-9
+"""In lengths of a twist: one that is violated by less is left as it is."""
+MOST_CHOICES = 27
+"""Of faces at edges: three points on corners."""
+
+
+@dataclass(frozen=True, eq=False)
+class SupportRegion:
+    """The region in the picture of a `LoadView`, metres.
+
+    Attributes
+    ----------
+    corners
+        Of the region as far as it is shown, counter-clockwise, (n, 2); none: the contacts balance the weight nowhere.
+    margin_m
+        How far the centre of gravity is inside; below zero: outside. Infinite: it may be anywhere, or (minus) nowhere.
+    """
+
+    corners: FloatArray
+    margin_m: float
+
+
+def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -> SupportRegion | None:
+    """Return where the contacts at the end of a phase under gravity alone could balance the object's weight.
+
+    They can where the region holds the centre of gravity, with each choice of faces at edges. (That they can does not
+    say that they must, see `Proof`.) None: there are too many choices, or a linear program had no sure answer.
+
+    Parameters
+    ----------
+    run, phase_index, view
+        The phase, and how it is seen.
+    reach_m
+        Farther from the centre of gravity nothing is shown.
+    """
+    problem = contact_problem(run, phase_index)
+    choices = list(islice(product(*problem.groups), MOST_CHOICES + 1))
+    if len(choices) > MOST_CHOICES:
+        return None
+    normals = _directions(view.polygon)
+    heights, points = np.full(len(normals), math.inf), np.zeros((0, 2))
+    for choice in choices:
+        found = _farthest(problem, list(choice), view, normals)
+        if found is None:
+            return None
+        heights, points = np.minimum(heights, found[0]), found[1]
+    margin_m = float(heights.min())
+    if margin_m == -math.inf:
+        return SupportRegion(np.zeros((0, 2)), margin_m)
+    if len(choices) == 1 and heights.max() < reach_m:  # between its farthest points there is next to nothing
+        shown = without_doubles(convex_hull(points), ROUNDING * reach_m)
+    else:
+        shown = polygon_within(normals, np.minimum(heights, reach_m))
+    return SupportRegion(view.load_point + shown, margin_m)
+
+
+def _directions(polygon: FloatArray) -> FloatArray:
+    """Return unit vectors in the picture, (n, 2)."""
+    angles = 2.0 * np.pi * np.arange(N_DIRECTIONS) / N_DIRECTIONS
+    sides = np.roll(polygon, -1, axis=0) - polygon
+    sizes = np.linalg.norm(sides, axis=1)
+    across = np.stack([sides[:, 1], -sides[:, 0]], axis=1)[sizes > 0.0] / sizes[sizes > 0.0, None]
+    return np.concatenate([np.stack([np.cos(angles), np.sin(angles)], axis=1), across, -across])
+
+
+def _farthest(
+    problem: ContactProblem, places: list[int], view: LoadView, normals: FloatArray
+) -> tuple[FloatArray, FloatArray] | None:
+    """Return how far the region goes in each direction, metres from the centre of gravity, and these points;
+    inf: it has no end, -inf: it is empty.
+
+    With unit forces F_r of rays and their moments, the centre of gravity is M x d off for a weight of 1 along d, if the
+    forces add up to -d and M has no part along d. The dual of what is greatest of it along a has four unknowns, and
+    forces for its multipliers.
+    """
+    down, seen = np.cross(view.up_world, view.right_world), np.stack([view.right_world, view.up_world], axis=1)
+    rays, program = _Rays(problem.wrenches[places], problem.friction[places], down), empty_record(Program)
+    heights, points = np.zeros(len(normals)), np.zeros((len(normals), 2))
+    for place, normal in enumerate(normals):
+        outcome = rays.solve(program, np.cross(down, seen @ normal))
+        if outcome == OPTIMAL:
+            used = program.passive.used
+            moment = program.passive.x[:used] @ rays.moments[program.passive.labels[:used]]
+            heights[place], points[place] = -rays.length_m * float(down @ program.x[:3]), np.cross(moment, down) @ seen
+        elif outcome in (UNBOUNDED, INFEASIBLE):  # the dual of none, or of what has no end
+            heights[place] = -math.inf if outcome == UNBOUNDED else math.inf
+        else:
+            return None
+    return heights, points
+
+
+class _Rays:
+    """Rays of round friction cones: those that a solution violates most come in, as in `ConeProgram`."""
+
+    def __init__(self, wrenches: FloatArray, friction: FloatArray, down: FloatArray) -> None:
+        self.wrenches, self.friction, self.down = wrenches, friction, down
+        self.length_m = float(np.linalg.norm(wrenches[:, 0, 3:], axis=1).max(initial=0.0)) or 1.0
+        self.forces, self.moments = np.zeros((0, 3)), np.zeros((0, 3))
+        every = np.arange(len(wrenches))
+        for angle in 2.0 * np.pi * np.arange(FIRST_RAYS if friction.any() else 1) / FIRST_RAYS:
+            self._add(every, np.tile((math.cos(angle), math.sin(angle)), (len(wrenches), 1)))
+
+    def _add(self, contacts: NDArray[np.int64], tangents: FloatArray) -> None:
+        across = np.einsum("ij,ijk->ik", tangents, self.wrenches[contacts, 1:])
+        rays = -(self.wrenches[contacts, 0] + self.friction[contacts, None] * across)
+        self.forces = np.concatenate([self.forces, rays[:, :3]])
+        self.moments = np.concatenate([self.moments, rays[:, 3:]])
+
+    def solve(self, program: Program, across: FloatArray) -> int:
+        """Find what M . ``across`` is at most; the dual's unknowns are a velocity and a turn about the load."""
+        program.objective[:3] = self.down
+        program.passive.used = 0
+        for _ in range(MOST_ROUNDS):
+            rows = np.zeros((len(self.forces), N_UNKNOWNS))
+            rows[:, :3], rows[:, 3] = -self.forces, -self.moments @ self.down / self.length_m
+            outcome = solve_program(rows, -self.moments @ across / self.length_m, program)
+            if outcome not in (OPTIMAL, UNBOUNDED):
+                return outcome
+            found = program.x if outcome == OPTIMAL else program.ray
+            turn = found[3] * self.down - (across if outcome == OPTIMAL else 0.0)
+            if not self._cut(np.append(found[:3], turn / self.length_m)):
+                break
+        return outcome
+
+    def _cut(self, twist: FloatArray) -> bool:
+        """Add the ray of each contact that a twist violates most; False: it violates none."""
+        if not self.friction.any():
+            return False
+        along = self.wrenches @ twist
+        slips = np.linalg.norm(along[:, 1:], axis=1)
+        size = np.linalg.norm(twist * [1.0, 1.0, 1.0, *3 * [self.length_m]])
+        cut = np.nonzero((along[:, 0] + self.friction * slips > CUT_FROM * size) & (slips > 0.0))[0]
+        self._add(cut, along[cut, 1:] / slips[cut, None])
+        return len(cut) > 0
