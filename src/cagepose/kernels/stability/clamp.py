@@ -2,7 +2,7 @@
 
 A board that is jammed between two points rests by friction that only the points keep up, each against the other. Where
 contacts can press against each other without a load, the load must do with fewer of them: with so few that they no
-longer can. And of those that are left, each must close again by the motion that begins without it.
+longer can. And the motion that begins without one of those that are left must not lead away from it.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from cagepose.kernels.native.kernel import kernel
 
 ASKED = 24
 """Contacts up to which this is asked, as many as those of which another onset is ruled out."""
-CLOSES = 1e-9
-"""In lengths of the motion: a contact that it approaches more slowly does not close."""
+OPENS = 1e-9
+"""In lengths of the motion: a contact that it leaves more slowly stays where it is."""
 
 
 @kernel
@@ -44,20 +44,20 @@ def leave_one_out(contacts: ContactSet, friction: float, work: ContactWorkspace)
 
 
 @kernel
-def closes_again(contacts: ContactSet, i: int, friction: float, work: ContactWorkspace) -> bool:
-    """Whether the object stays where it is without a contact, or begins to move towards it."""
+def parts_for_good(contacts: ContactSet, i: int, friction: float, work: ContactWorkspace) -> bool:
+    """Whether the object begins to move away from a contact without it."""
     state, column, y = contacts.states[i], contacts.rows[i].columns[0], work.trial
     state.counts = False
-    closes = least_residual(contacts, friction, work.load, work.load_terms, work) <= HELD
-    if not closes and motion_with_faces(contacts, friction, work.load, y, work):
-        closes = inner(column, y, WRENCH) > CLOSES * length(column, WRENCH) * length(y, WRENCH)
+    parts = least_residual(contacts, friction, work.load, work.load_terms, work) > HELD
+    if parts and motion_with_faces(contacts, friction, work.load, y, work):
+        parts = inner(column, y, WRENCH) < -OPENS * length(column, WRENCH) * length(y, WRENCH)
     state.counts = True
-    return closes
+    return parts
 
 
 @kernel
 def hangs_on_a_clamp(contacts: ContactSet, frame: Frame, friction: float, work: ContactWorkspace) -> bool:
-    """Whether no contacts were found that balance the load, cannot press against each other, and close again.
+    """Whether no contacts were found that balance the load, cannot press against each other, and do not part for good.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def hangs_on_a_clamp(contacts: ContactSet, frame: Frame, friction: float, work: 
         hangs = not leave_one_out(contacts, friction, work)
     for i in range(contacts.used[0]):
         if contacts.states[i].counts and not hangs:
-            hangs = not closes_again(contacts, i, friction, work)
+            hangs = parts_for_good(contacts, i, friction, work)
     count_chosen(contacts)
     forget_locked(contacts, frame, work)
     equilibrium_of_choice(contacts, frame, friction, AT_REST, work)  # for its forces
