@@ -14,8 +14,9 @@ def imbalance(scene: Scene, phase: PhaseRun) -> float:
     weighed = scaled_load(scene, load)
     center = phase.pose.transform(scene.object.center_of_gravity_m)
     acts = [(weighed.gravity, center)]
-    if load.force is not None:
-        acts.append((weighed.force, phase.pose.transform(load.force.at_object_m)))
+    acts += [
+        (force, phase.pose.transform(push.at_object_m)) for push, force in zip(load.pushes, weighed.forces, strict=True)
+    ]
     size_of_load = sum(np.linalg.norm(force) for force, _ in acts)
     points = dict(zip(scene.cage.names, scene.cage.points_world(), strict=True))
     for contact in phase.contacts:

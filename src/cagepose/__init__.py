@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from cagepose.model.cage import Cage as Cage
     from cagepose.model.load import Force as Force
     from cagepose.model.load import Load as Load
+    from cagepose.model.load import Moment as Moment
+    from cagepose.model.load import Spring as Spring
     from cagepose.model.parts import Box as Box
     from cagepose.model.parts import Object as Object
     from cagepose.model.pose import Pose as Pose
@@ -69,7 +71,7 @@ _HOMES = {
         "SceneFileError",
     ),
     "cagepose.model.cage": ("Cage",),
-    "cagepose.model.load": ("Force", "Load"),
+    "cagepose.model.load": ("Force", "Load", "Moment", "Spring"),
     "cagepose.model.parts": ("Box", "Object"),
     "cagepose.model.pose": ("Pose",),
     "cagepose.model.scene": ("Adjustable", "Scene"),
@@ -104,6 +106,7 @@ __all__ = [
     "Load",
     "Margin",
     "MissingExtraError",
+    "Moment",
     "Motion",
     "Object",
     "Parting",
@@ -118,6 +121,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "SceneFileError",
+    "Spring",
     "Tolerances",
     "Variant",
     "Variation",

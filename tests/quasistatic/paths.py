@@ -41,9 +41,9 @@ def potential(scene: Scene, load: Load, pose: Pose) -> float:
     """Potential of a phase's dead loads, -sum F . x, x where each acts, in units of total force times size."""
     weighed = scaled_load(scene, load)
     value = -weighed.gravity @ pose.transform(scene.object.center_of_gravity_m)
-    if load.force is not None:
-        value -= weighed.force @ pose.transform(load.force.at_object_m)
-    total = np.linalg.norm(weighed.gravity) + np.linalg.norm(weighed.force)
+    for push, force in zip(load.pushes, weighed.forces, strict=True):
+        value -= force @ pose.transform(push.at_object_m)
+    total = np.linalg.norm(weighed.gravity) + np.linalg.norm(weighed.forces)
     return float(value / (total * scene.size_m))
 
 

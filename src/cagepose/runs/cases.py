@@ -7,16 +7,17 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from cagepose.kernels.algebra.record import Rows, dtype_of, empty_record
+from cagepose.kernels.algebra.record import Rows, empty_record
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
-from cagepose.kernels.contact.metric import Body, PhaseLoad
+from cagepose.kernels.contact.loads import Action
+from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.cases import Cases, Part
 from cagepose.model.checks import as_vector
 from cagepose.model.methods import DEFAULT_METRIC
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.runs.load_scaling import scaled_load
+from cagepose.runs.actions import actions_of
 
 
 def part_of(scene: Scene) -> Part:
@@ -60,20 +61,9 @@ def cases_of(scene: Scene, friction: float, start: Pose | None = None) -> Cases:
         held.quaternion_wxyz[None],
         np.array([scene.size_m]),
         np.array([friction]),
-        cast(Rows[Rows[PhaseLoad]], dead_loads(scene)[None]),
+        cast(Rows[Rows[Rows[Action]]], actions_of(scene)[None]),
         kernel_tolerances(1.0, scene.tolerances.touch),
     )
-
-
-def dead_loads(scene: Scene) -> np.ndarray:
-    """Return the loads of all phases as records, (n_phases,)."""
-    loads = np.zeros(len(scene.loads), dtype_of(PhaseLoad))
-    for index, load in enumerate(scene.loads):
-        weighed = scaled_load(scene, load)
-        loads["forces_world"][index] = weighed.gravity, weighed.force
-        if load.force is not None:
-            loads["arms_object"][index, 1] = load.force.at_object_m - scene.object.center_of_gravity_m
-    return loads
 
 
 _PREPARED: WeakKeyDictionary[Scene, dict[float, tuple[Slots, Slots]]] = WeakKeyDictionary()

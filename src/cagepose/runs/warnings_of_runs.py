@@ -25,7 +25,7 @@ def edge_warnings(phase: PhaseRun) -> Iterator[str]:
 
 def weight_warnings(scene: Scene, n_phases: int) -> Iterator[str]:
     for load in scene.loads[:n_phases]:
-        if load.gravity_world is not None and load.force is not None and not scaled_load(scene, load).in_newtons:
+        if load.gravity_world is not None and load.pushes and not scaled_load(scene, load).in_newtons:
             yield (
                 f"{load.name}: gravity and force act together, but mass or magnitude is not given: the force dominates"
                 f" (weight = {WEIGHT_BESIDE_FORCE:g} of it)"

@@ -9,7 +9,8 @@ from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances, scaled_tolerances
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, row, scaled
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
-from cagepose.kernels.contact.metric import Body, PhaseLoad
+from cagepose.kernels.contact.loads import Action, PhaseLoad
+from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.native.kernel import kernel
 
 
@@ -49,8 +50,8 @@ class Cases(NamedTuple):
         The scene's size, (n,).
     frictions
         Coefficient of friction, (n,).
-    loads
-        (n, n_phases).
+    actions
+        What acts in each phase, (n, n_phases, n_actions); see `PhaseLoad`.
     tolerances
         For a scene of size 1; the same for all.
     """
@@ -62,7 +63,7 @@ class Cases(NamedTuple):
     object_quaternions: FloatArray
     sizes_m: FloatArray
     frictions: FloatArray
-    loads: Rows[Rows[PhaseLoad]]
+    actions: Rows[Rows[Rows[Action]]]
     tolerances: KernelTolerances
 
 
@@ -78,7 +79,7 @@ class Start(NamedTuple):
         Of the centre of gravity, seen from the middle of the cage points, and the object's orientation.
     origin_world
         That middle.
-    size_m, friction, tolerances, loads
+    size_m, friction, tolerances, actions
         Those of the case.
     """
 
@@ -89,7 +90,7 @@ class Start(NamedTuple):
     size_m: float
     friction: float
     tolerances: KernelTolerances
-    loads: Rows[PhaseLoad]
+    actions: Rows[Rows[Action]]
 
 
 @kernel
@@ -130,8 +131,14 @@ def start_of(case: int, part: Part, cases: Cases, points_world: FloatArray) -> S
         size_m,
         cases.frictions[row_of(len(cases.frictions), case)],
         scaled_tolerances(cases.tolerances, size_m),
-        cases.loads[row_of(len(cases.loads), case)],
+        cases.actions[row_of(len(cases.actions), case)],
     )
+
+
+@kernel
+def phase_load(start: Start, phase: int) -> PhaseLoad:
+    """Return all that acts in a phase of a case."""
+    return PhaseLoad(start.actions[phase], start.origin_world)
 
 
 @kernel

@@ -10,11 +10,12 @@ import numpy as np
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.tolerances import KernelTolerances
-from cagepose.kernels.algebra.vector import Vector, norm, row, scaled
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, row, scaled
 from cagepose.kernels.collision.first_contact import allowed_depth, first_contact_screw, first_contact_travel
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
 from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
-from cagepose.kernels.contact.metric import Body, PhaseLoad, moved_along_twist, total_force, work_done
+from cagepose.kernels.contact.loads import BOUND, STRAIGHT, PhaseLoad, flight, total_dead_force, total_load, work_done
+from cagepose.kernels.contact.metric import Body, moved_along_twist
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
 from cagepose.kernels.quasistatic.projection import Constraints, add_constraint, empty_constraints, projected
@@ -26,8 +27,10 @@ POINTS_PUSHED = 8
 """Points that may be pushed out of the object after a step."""
 ROUNDING = 1e-15
 """In lengths of the terms of a load: a slower motion may be no motion."""
-STRAIGHT = 1e-14
+STRAIGHT_TRAVEL = 1e-14
 """Radians for each length of the object: a motion that turns by less is a travel."""
+OUT_OF_REACH = 10.0
+"""In sizes of the scene from all cage points: an object that flies on there, wherever its load turns to, has escaped."""
 
 
 class Setting(NamedTuple):
@@ -87,7 +90,7 @@ class Twist(NamedTuple):
 @kernel
 def straightened(velocity: Vector, spin: Vector, reach_m: float, terms: float) -> Vector:
     """Return the spin, or zero where it is rounding, of the motion or of the terms of the load that it is left of."""
-    if norm(spin) * reach_m <= max(STRAIGHT * norm(velocity), ROUNDING * terms):
+    if norm(spin) * reach_m <= max(STRAIGHT_TRAVEL * norm(velocity), ROUNDING * terms):
         return (0.0, 0.0, 0.0)
     return spin
 
@@ -276,7 +279,8 @@ def stepped(
         constrain_to_face(geometry, placement, hit_point, hit_box, work.constraints)
     done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], work)
     if done:
-        rounding = setting.tolerances.resolution_m * total_load(setting.load)
+        total = total_load(setting.load, position, quaternion, setting.size_m)
+        rounding = setting.tolerances.resolution_m * total
         done = work_done(setting.load, position, quaternion, new_position, new_quaternion) >= -rounding
     if done:
         return True, new_position, new_quaternion
@@ -285,15 +289,17 @@ def stepped(
 
 
 @kernel
-def total_load(load: PhaseLoad) -> float:
-    """Return the sum of the magnitudes of a phase's forces."""
-    return norm(row(load.forces_world, 0)) + norm(row(load.forces_world, 1))
+def nothing_ahead(setting: Setting, position: Vector, velocity: Vector) -> bool:
+    """Whether an object that touches nothing has got away.
 
-
-@kernel
-def nothing_ahead(setting: Setting, position: Vector) -> bool:
-    """Whether no cage point can ever be met in free flight: the centre of gravity goes straight along the force."""
-    force = total_force(setting.load)
+    Under dead forces and moments the centre of gravity goes straight along the force: no cage point may ever be met on
+    this way. Under what follows the object, or pulls with a constant force, the way is not known beforehand: it has got
+    away when it is out of reach and goes on. A spring with stiffness brings it back.
+    """
+    kind = flight(setting.load)
+    if kind != STRAIGHT:
+        return kind != BOUND and is_out_of_reach(setting, position, velocity)
+    force = total_dead_force(setting.load)
     size = norm(force)
     if size == 0.0:
         return False
@@ -307,6 +313,18 @@ def nothing_ahead(setting: Setting, position: Vector) -> bool:
             away = setting.geometry.points_world[point, k] - position[k] - max(ahead, 0.0) * along[k]
             distance += away * away
         if math.sqrt(distance) <= setting.body.reach_m:
+            return False
+    return True
+
+
+@kernel
+def is_out_of_reach(setting: Setting, position: Vector, velocity: Vector) -> bool:
+    """Whether the object is sizes of the scene away from all cage points, and goes away from their middle."""
+    if dot(position, velocity) <= 0.0:
+        return False
+    for point in range(len(setting.geometry.points_world)):
+        away = norm(minus(row(setting.geometry.points_world, point), position))
+        if away <= OUT_OF_REACH * setting.size_m + setting.body.reach_m:
             return False
     return True
 

@@ -27,7 +27,8 @@ from cagepose.kernels.contact.equilibrium import (
     equilibrium,
     equilibrium_with_faces,
 )
-from cagepose.kernels.contact.metric import WRENCH, Body, Frame, PhaseLoad, ScaledVector, frame_at, write_load
+from cagepose.kernels.contact.loads import PhaseLoad, write_load
+from cagepose.kernels.contact.metric import WRENCH, Body, Frame, ScaledVector, frame_at
 from cagepose.kernels.contact.self_stress import write_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
@@ -112,7 +113,7 @@ def stand_at(
     frame = frame_at(body, quaternion)
     place_object(geometry, position, quaternion, at.placement)
     solver = at.scratch[0].solver
-    solver.load_terms = write_load(load, quaternion, frame, solver.load)
+    solver.load_terms = write_load(load, position, quaternion, frame, solver.load)
     return find_contacts(geometry, at.placement, position, frame, touch_m, at.contacts)
 
 
@@ -162,7 +163,7 @@ def prove(
         find_shared(contacts, at.statuses, scratch.rest)
         return TOO_MANY_CHOICES, MARGINAL, 0
     one_choice = has_one_choice(contacts)
-    proof, steady = judge_faces(at, code, one_choice, friction, load, quaternion, frame, size_m)
+    proof, steady = judge_faces(at, code, one_choice, friction, load, position, quaternion, frame, size_m)
     if not one_choice:
         return_to_kept(contacts)
         scratch.solver.residual = left
@@ -173,7 +174,13 @@ def prove(
 
 @kernel
 def stability_of_rest(
-    at: ProofWorkspace, friction: float, load: PhaseLoad, quaternion: Quaternion, frame: Frame, size_m: float
+    at: ProofWorkspace,
+    friction: float,
+    load: PhaseLoad,
+    position: Vector,
+    quaternion: Quaternion,
+    frame: Frame,
+    size_m: float,
 ) -> int:
     """Return the code of stability of a rest with these faces; where it is not stable to first order and by curvature,
     what contacts without play stop counts as well.
@@ -183,7 +190,18 @@ def stability_of_rest(
     for _ in range(2):
         rest.ways.used = n_ways
         code = stability(
-            contacts, at.statuses, friction, solver.locked, load, quaternion, frame, terms, size_m, rest, at.system
+            contacts,
+            at.statuses,
+            friction,
+            solver.locked,
+            load,
+            position,
+            quaternion,
+            frame,
+            terms,
+            size_m,
+            rest,
+            at.system,
         )
         if code == STABLE_REST or solver.locked.used > 0 or not has_one_choice(contacts):
             break
@@ -202,6 +220,7 @@ def judge_faces(
     one_choice: bool,
     friction: float,
     load: PhaseLoad,
+    position: Vector,
     quaternion: Quaternion,
     frame: Frame,
     size_m: float,
@@ -217,7 +236,7 @@ def judge_faces(
     for _ in range(CHOICES_LIMIT):
         if not one_choice:
             code = equilibrium_with_faces(contacts, friction, AT_REST, solver.load, solver.load_terms, solver)
-        steady = max(steady, stability_of_rest(at, friction, load, quaternion, frame, size_m))
+        steady = max(steady, stability_of_rest(at, friction, load, position, quaternion, frame, size_m))
         if code != HELD_WITHOUT_FRICTION:
             proof = UNIQUENESS_NOT_SHOWN
         if not next_choice(contacts, EVERY):

@@ -9,7 +9,8 @@ from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.contact.cone import HELD
 from cagepose.kernels.contact.edges import CHOICES_LIMIT, EVERY, first_choice, keep_choice, next_choice, return_to_kept
 from cagepose.kernels.contact.equilibrium import AT_REST, HELD_BY_FRICTION, MOVES, equilibrium_with_faces
-from cagepose.kernels.contact.metric import Body, PhaseLoad
+from cagepose.kernels.contact.loads import PhaseLoad
+from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.contact.onset import freest_motion
 from cagepose.kernels.contact.self_stress import self_stress
 from cagepose.kernels.native.kernel import kernel

@@ -1,0 +1,237 @@
+"""What acts on the object: forces, moments and springs, their wrench and their work, equations (5.2) and (5.26) to
+(5.28). How they change with the pose is in `load_curvature`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, NamedTuple
+
+from cagepose.kernels.algebra.pose import Quaternion, quaternion_product, rotated
+from cagepose.kernels.algebra.record import FloatArray, Rows
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled, vector_from
+from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
+from cagepose.kernels.native.kernel import kernel
+
+DEAD_FORCE, FOLLOWING_FORCE, DEAD_MOMENT, FOLLOWING_MOMENT, SPRING = 0, 1, 2, 3, 4
+"""Kinds of actions. What is dead keeps its direction in the world, what follows keeps it in the object."""
+STRAIGHT, BENT, BOUND = 0, 1, 2
+"""How an object flies that touches nothing: its centre of gravity along a straight line; along another way; or so that
+a spring pulls it back."""
+ARCS_PER_TURN = 5.0
+"""Along a step the direction of a spring may change by so many times what the object may turn."""
+SHORTEST = 1e-12
+"""In sizes of the scene: a spring is taken to be no shorter, where its length limits a step."""
+
+
+class Action:
+    """One force, moment or spring; a record. All zero, it is a force that does nothing.
+
+    Attributes
+    ----------
+    kind
+        See above.
+    vector
+        Force or moment: in the world, or in the object's frame where it follows.
+    arm_object
+        Where a force or a spring acts, from the centre of gravity, in the object's frame, metres.
+    anchor_world
+        Where a spring is held, metres.
+    stiffness
+        Of a spring, force for each metre.
+    tension_at_zero
+        What its tension would be if its ends met: at the length l it is ``tension_at_zero + stiffness * l``.
+    """
+
+    kind: int
+    vector: Annotated[FloatArray, 3]
+    arm_object: Annotated[FloatArray, 3]
+    anchor_world: Annotated[FloatArray, 3]
+    stiffness: float
+    tension_at_zero: float
+
+
+class PhaseLoad(NamedTuple):
+    """All that acts in a phase, the weight first; positions of kernels are seen from ``origin_world``."""
+
+    actions: Rows[Action]
+    origin_world: Vector
+
+
+class Acting(NamedTuple):
+    """An action at a pose: a force, and its moment about the centre of gravity, in the world, as long as the terms that
+    it is the sum of, and the part of them that is left of the sum (of a spring; else 1).
+    """
+
+    force: Vector
+    moment: Vector
+    share: float
+
+
+@kernel
+def arm_of(action: Action, quaternion: Quaternion) -> Vector:
+    """Return where a force or spring acts, from the centre of gravity, in the world."""
+    return rotated(quaternion, vector_from(action.arm_object))
+
+
+@kernel
+def spring_vector(action: Action, origin: Vector, position: Vector, arm: Vector) -> Vector:
+    """Return the way from where a spring acts to where it is held."""
+    return minus(minus(vector_from(action.anchor_world), origin), plus(position, arm))
+
+
+@kernel
+def acting(action: Action, origin: Vector, position: Vector, quaternion: Quaternion) -> Acting:
+    """Return what an action does at a pose."""
+    vector = vector_from(action.vector)
+    if action.kind == DEAD_FORCE:
+        return Acting(vector, cross(arm_of(action, quaternion), vector), 1.0)
+    if action.kind == FOLLOWING_FORCE:
+        force = rotated(quaternion, vector)
+        return Acting(force, cross(arm_of(action, quaternion), force), 1.0)
+    if action.kind == DEAD_MOMENT:
+        return Acting((0.0, 0.0, 0.0), vector, 1.0)
+    if action.kind == FOLLOWING_MOMENT:
+        return Acting((0.0, 0.0, 0.0), rotated(quaternion, vector), 1.0)
+    arm = arm_of(action, quaternion)
+    way = spring_vector(action, origin, position, arm)
+    length = norm(way)
+    if length == 0.0:  # it has no direction
+        return Acting((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 1.0)
+    terms = action.stiffness * length + abs(action.tension_at_zero)
+    force = scaled(way, terms / length)
+    return Acting(force, cross(arm, force), (action.stiffness * length + action.tension_at_zero) / terms)
+
+
+@kernel
+def write_load(load: PhaseLoad, position: Vector, quaternion: Quaternion, frame: Frame, out: FloatArray) -> float:
+    """Write the scaled wrench of a phase's load, D^-1/2 w; return the length of its terms, which may cancel."""
+    terms = 0.0
+    force, moment = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for which in range(len(load.actions)):
+        one = acting(load.actions[which], load.origin_world, position, quaternion)
+        write_scaled_wrench(one.force, one.moment, frame, out)
+        terms += math.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2 + out[3] ** 2 + out[4] ** 2 + out[5] ** 2)
+        force, moment = plus(force, scaled(one.force, one.share)), plus(moment, scaled(one.moment, one.share))
+    write_scaled_wrench(force, moment, frame, out)
+    return terms
+
+
+@kernel
+def total_load(load: PhaseLoad, position: Vector, quaternion: Quaternion, size_m: float) -> float:
+    """Return the sum of what a phase's forces and springs are made of, and of its moments over a length."""
+    total = 0.0
+    for which in range(len(load.actions)):
+        action = load.actions[which]
+        if action.kind == DEAD_MOMENT or action.kind == FOLLOWING_MOMENT:
+            total += norm(vector_from(action.vector)) / size_m
+        else:
+            total += norm(acting(action, load.origin_world, position, quaternion).force)
+    return total
+
+
+@kernel
+def joining_twist(
+    start: Vector, start_turned: Quaternion, end: Vector, end_turned: Quaternion
+) -> tuple[Vector, Vector]:
+    """Return (velocity of the centre of gravity at the start, spin) of the screw that leads from one pose to another in
+    a unit of time, by the smaller angle (5.28).
+    """
+    back = (start_turned[0], -start_turned[1], -start_turned[2], -start_turned[3])
+    turn = quaternion_product(end_turned, back)
+    sense = math.copysign(1.0, turn[0])
+    vector = (sense * turn[1], sense * turn[2], sense * turn[3])
+    sine = norm(vector)
+    way = minus(end, start)
+    if sine == 0.0:
+        return way, (0.0, 0.0, 0.0)
+    half = math.atan2(sine, abs(turn[0]))
+    axis = scaled(vector, 1.0 / sine)
+    bent = cross(axis, way)
+    # 1 - x / tan x loses digits where x is small
+    bulge = half * half / 3.0 if half < 1e-4 else 1.0 - half / math.tan(half)
+    velocity = plus(plus(way, scaled(bent, -half)), scaled(cross(axis, bent), bulge))
+    return velocity, scaled(axis, 2.0 * half)
+
+
+@kernel
+def work_done(load: PhaseLoad, start: Vector, start_turned: Quaternion, end: Vector, end_turned: Quaternion) -> float:
+    """Return the work of a phase's load between two poses of the centre of gravity.
+
+    That of dead forces and springs is what their potential falls, (5.2) and (5.26). That of moments, and of what
+    follows, is taken along the screw that joins the poses: their power along it is constant (5.28).
+    """
+    work = 0.0
+    for which in range(len(load.actions)):
+        action = load.actions[which]
+        arm, turned_arm = arm_of(action, start_turned), arm_of(action, end_turned)
+        moved = plus(minus(end, start), minus(turned_arm, arm))
+        if action.kind == DEAD_FORCE:
+            work += dot(vector_from(action.vector), moved)
+        elif action.kind == SPRING:
+            before = spring_vector(action, load.origin_world, start, arm)
+            after = spring_vector(action, load.origin_world, end, turned_arm)
+            lengths = norm(before) + norm(after)
+            mean = 0.5 * action.stiffness
+            if lengths > 0.0:
+                mean += action.tension_at_zero / lengths
+            work += mean * dot(moved, plus(before, after))
+        else:
+            velocity, spin = joining_twist(start, start_turned, end, end_turned)
+            one = acting(action, load.origin_world, start, start_turned)
+            work += dot(one.force, velocity) + dot(one.moment, spin)
+    return work
+
+
+@kernel
+def longest_pull(
+    load: PhaseLoad,
+    position: Vector,
+    quaternion: Quaternion,
+    velocity: Vector,
+    spin: Vector,
+    turn_step_rad: float,
+    size_m: float,
+) -> float:
+    """Return how much of a twist springs keep their direction for (5.27); inf: there are none, or none moves.
+
+    A spring whose tension is in proportion to its length has no part in that: its force is linear in the pose.
+    """
+    amount = math.inf
+    for which in range(len(load.actions)):
+        action = load.actions[which]
+        if action.kind != SPRING:
+            continue
+        arm = arm_of(action, quaternion)
+        speed = norm(plus(velocity, cross(spin, arm)))
+        longest = size_m
+        if action.tension_at_zero != 0.0:
+            length = max(norm(spring_vector(action, load.origin_world, position, arm)), SHORTEST * size_m)
+            longest = min(longest, ARCS_PER_TURN * turn_step_rad * length)
+        if speed > 0.0:
+            amount = min(amount, longest / speed)
+    return amount
+
+
+@kernel
+def flight(load: PhaseLoad) -> int:
+    """Return how an object flies that touches nothing: STRAIGHT, BENT or BOUND."""
+    found = STRAIGHT
+    for which in range(len(load.actions)):
+        action = load.actions[which]
+        if action.kind == SPRING:
+            found = max(found, BOUND if action.stiffness > 0.0 else BENT)
+        elif action.kind == FOLLOWING_FORCE:
+            found = max(found, BENT)
+    return found
+
+
+@kernel
+def total_dead_force(load: PhaseLoad) -> Vector:
+    """Return the sum of the forces that keep their direction."""
+    total = (0.0, 0.0, 0.0)
+    for which in range(len(load.actions)):
+        action = load.actions[which]
+        if action.kind == DEAD_FORCE:
+            total = plus(total, vector_from(action.vector))
+    return total

@@ -1,0 +1,121 @@
+"""What acts in a phase as kernels take it: `Action` records, and their sum at a pose."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from cagepose.kernels.algebra.record import dtype_of
+from cagepose.kernels.contact.loads import (
+    DEAD_FORCE,
+    DEAD_MOMENT,
+    FOLLOWING_FORCE,
+    FOLLOWING_MOMENT,
+    SPRING,
+    Action,
+    acting,
+)
+from cagepose.model.checks import FloatArray, as_vector
+from cagepose.model.load import Load, Spring
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
+from cagepose.runs.load_scaling import one_force, scaled_load
+
+HARDLY_TENSE = 1e-12
+"""In the terms of a spring's tension: a smaller one at length zero is rounding. The spring's force is then linear."""
+ORIGIN = (0.0, 0.0, 0.0)
+
+
+class Wrench(NamedTuple):
+    """A force and its moment about the centre of gravity, (3,) each, in the world."""
+
+    force: FloatArray
+    moment: FloatArray
+
+
+def actions_of(scene: Scene) -> np.ndarray:
+    """Return what acts in each phase, (n_phases, n_actions): the weight, forces, moments and springs, then such as do
+    nothing.
+    """
+    of_phases = [_actions_of_phase(scene, load) for load in scene.loads]
+    found = np.zeros((len(of_phases), max(map(len, of_phases))), dtype_of(Action))
+    for index, actions in enumerate(of_phases):
+        found[index, : len(actions)] = actions
+    return found
+
+
+def _actions_of_phase(scene: Scene, load: Load) -> np.ndarray:
+    center, start = scene.object.center_of_gravity_m, scene.object.pose_world_object
+    weighed = scaled_load(scene, load)
+    pushes = acting_pushes(load, weighed.forces)
+    found = np.zeros(1 + len(pushes) + len(load.moments) + len(load.springs), dtype_of(Action))
+    found["vector"][0] = weighed.gravity
+    for index, push in enumerate(pushes, start=1):
+        found["kind"][index] = FOLLOWING_FORCE if push.follows else DEAD_FORCE
+        found["vector"][index], found["arm_object"][index] = push.vector, push.at_object_m - center
+    for index, moment in enumerate(load.moments, start=1 + len(pushes)):
+        found["kind"][index] = FOLLOWING_MOMENT if moment.follows else DEAD_MOMENT
+        found["vector"][index] = moment.magnitude_nm * moment.direction
+    for index, spring in enumerate(load.springs, start=len(found) - len(load.springs)):
+        found["kind"][index] = SPRING
+        found["arm_object"][index], found["anchor_world"][index] = spring.at_object_m - center, spring.to_world_m
+        found["stiffness"][index] = spring.stiffness_n_per_m
+        found["tension_at_zero"][index] = tensions_at_zero(
+            spring, start.position_m[None], start.quaternion_wxyz[None]
+        )[0]
+    return found
+
+
+class Push(NamedTuple):
+    """A force that acts: as a vector (3,), in the world or in the object's frame if it follows it, at a point (3,)."""
+
+    follows: bool
+    vector: FloatArray
+    at_object_m: FloatArray
+
+
+def acting_pushes(load: Load, forces: FloatArray) -> list[Push]:
+    """Return a phase's forces, (n, 3), each at its point; dead forces that one force is equal to are that one.
+
+    So the stepwise method, which knows one force, sees what such forces come to.
+    """
+    pushes = [Push(push.follows, force, push.at_object_m) for push, force in zip(load.pushes, forces, strict=True)]
+    dead = [push for push in pushes if not push.follows]
+    if len(dead) > 1:
+        one = one_force(np.array([push.vector for push in dead]), np.array([push.at_object_m for push in dead]))
+        if one is not None:
+            return [Push(False, *one), *(push for push in pushes if push.follows)]
+    return pushes
+
+
+def tensions_at_zero(spring: Spring, positions_m: FloatArray, quaternions: FloatArray) -> FloatArray:
+    """Return the tension that a spring would have if its ends met, newtons, (n,), for objects that start at poses,
+    (n, 3) and (n, 4). Number by number, so that a row has the same bits as alone.
+    """
+    x, y, z = spring.at_object_m
+    w, i, j, k = quaternions.T
+    # 2 (r x a) and then a + w t + r x t, with r the vector part: `cagepose.kernels.algebra.pose.rotated`
+    t = (2.0 * (j * z - k * y), 2.0 * (k * x - i * z), 2.0 * (i * y - j * x))
+    turned = (
+        x + w * t[0] + (j * t[2] - k * t[1]),
+        y + w * t[1] + (k * t[0] - i * t[2]),
+        z + w * t[2] + (i * t[1] - j * t[0]),
+    )
+    ways = [spring.to_world_m[axis] - (positions_m[:, axis] + turned[axis]) for axis in range(3)]
+    pulls = spring.stiffness_n_per_m * np.sqrt(ways[0] * ways[0] + ways[1] * ways[1] + ways[2] * ways[2])
+    tensions: FloatArray = spring.preload_n - pulls
+    return np.where(np.abs(tensions) <= HARDLY_TENSE * (abs(spring.preload_n) + pulls), 0.0, tensions)
+
+
+def wrench_at(actions: np.ndarray, center_m: FloatArray, pose: Pose) -> Wrench:
+    """Return the sum of a phase's actions on an object at a pose, whose centre of gravity is ``center_m`` in its frame,
+    (3,), metres.
+    """
+    center, turned = as_vector(pose.transform(center_m)), pose.as_tuples()[1]
+    force, moment = np.zeros(3), np.zeros(3)
+    for action in actions:
+        one = acting(action, ORIGIN, center, turned)
+        force += one.share * np.array(one.force)
+        moment += one.share * np.array(one.moment)
+    return Wrench(force, moment)
