@@ -17,6 +17,12 @@ def imbalance(scene: Scene, phase: PhaseRun) -> float:
     acts += [
         (force, phase.pose.transform(push.at_object_m)) for push, force in zip(load.pushes, weighed.forces, strict=True)
     ]
+    for spring in load.springs:
+        here = phase.pose.transform(spring.at_object_m)
+        way, start = spring.to_world_m - here, scene.object.pose_world_object.transform(spring.at_object_m)
+        longer = np.linalg.norm(way) - np.linalg.norm(spring.to_world_m - start)
+        pull = (spring.preload_n + spring.stiffness_n_per_m * longer) / np.linalg.norm(way)
+        acts.append((pull * way, here))
     size_of_load = sum(np.linalg.norm(force) for force, _ in acts)
     points = dict(zip(scene.cage.names, scene.cage.points_world(), strict=True))
     for contact in phase.contacts:

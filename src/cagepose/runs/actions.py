@@ -89,6 +89,12 @@ def acting_pushes(load: Load, forces: FloatArray) -> list[Push]:
     return pushes
 
 
+def is_one_force(scene: Scene, load: Load) -> bool:
+    """Whether besides its weight a phase has at most one dead force, or such as one is equal to."""
+    pushes = acting_pushes(load, scaled_load(scene, load).forces)
+    return not load.moments and not load.springs and (not pushes or (len(pushes) == 1 and not pushes[0].follows))
+
+
 def tensions_at_zero(spring: Spring, positions_m: FloatArray, quaternions: FloatArray) -> FloatArray:
     """Return the tension that a spring would have if its ends met, newtons, (n,), for objects that start at poses,
     (n, 3) and (n, 4). Number by number, so that a row has the same bits as alone.

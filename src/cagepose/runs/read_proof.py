@@ -32,6 +32,7 @@ REASONS = {
     TOO_MANY_CHOICES: "the contacts can balance the load with the first faces at edges that were asked, of too many",
     TOO_MANY_CONTACTS: "more faces touch at one place than a proof has room for",
 }
+UNTOUCHED = "nothing touches, and all that acts is in balance by itself"
 NOT_SHOWN = "the contacts can balance the load with friction, but that the object cannot move was not shown"
 WEDGED = "; the contacts can press against each other without a load, as in a wedge"
 STOPPED = "; what they leave, contacts without play stop to second order, by forces without bound"
@@ -50,6 +51,7 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
         phases["wedged"].tolist(),
         phases["is_second_order"].tolist(),
         phases["is_chained"].tolist(),
+        np.diff(phases["n_contacts"], prepend=0).tolist(),
         phases["n_undetermined"].tolist(),
         phases["undetermined"],
         _free_motions(phases),
@@ -58,13 +60,14 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
         strict=True,
     )
     found = list[Proof]()
-    for code, stability, residual, wedged, second, chained, n_undetermined, undetermined, motion, end, names in columns:
+    for code, stability, residual, wedged, second, chained, n_contacts, n_undetermined, *rest in columns:
+        undetermined, motion, end, names = rest
         held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
         is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
         found.append(
             Proof(
                 verdict="moves" if not held else "may rest" if is_open else "rests",
-                reason=REASONS.get(code, NOT_SHOWN)
+                reason=(REASONS.get(code, NOT_SHOWN) if n_contacts or not held else UNTOUCHED)
                 + (WEDGED if is_open and wedged else "")
                 + (STOPPED if held and second else "")
                 + (CHAINED if held and chained else ""),

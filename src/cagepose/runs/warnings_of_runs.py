@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 from cagepose.model.scene import Scene
 from cagepose.runs.load_scaling import WEIGHT_BESIDE_FORCE, scaled_load
@@ -32,6 +33,17 @@ def weight_warnings(scene: Scene, n_phases: int) -> Iterator[str]:
             )
 
 
+def lost_weight_warnings(scene: Scene, n_phases: int) -> Iterator[str]:
+    """The first phase without the weight that a phase before it had."""
+    loads = scene.loads[:n_phases]
+    for before, load in pairwise(loads):
+        if before.gravity_world is not None and load.gravity_world is None:
+            yield (
+                f"{load.name}: the weight of the phase before no longer acts (give gravity in this phase to keep it)"
+            )
+            return
+
+
 def unrun_warnings(scene: Scene, phases: Sequence[PhaseRun]) -> Iterator[str]:
     """Which phases a run that failed has left out."""
     left_out = [load.name for load in scene.loads[len(phases) :]]
@@ -52,3 +64,5 @@ def proof_warnings(phases: Sequence[PhaseRun], friction: float) -> Iterator[str]
             yield f"{phase.name}: {proof.reason}"
         if phase.verdict in ("stable", "rests", "may rest") and proof.stability == "unstable":
             yield f"{phase.name}: the balance is unstable: the least disturbance moves the object on"
+        elif phase.verdict in ("stable", "rests", "may rest") and proof.stability == "not shown":
+            yield f"{phase.name}: the load has no potential here, so whether the balance is stable was not shown"

@@ -204,10 +204,10 @@ def longest_pull(
             continue
         arm = arm_of(action, quaternion)
         speed = norm(plus(velocity, cross(spin, arm)))
-        longest = size_m
+        length = norm(spring_vector(action, load.origin_world, position, arm))
+        longest = max(length, size_m)
         if action.tension_at_zero != 0.0:
-            length = max(norm(spring_vector(action, load.origin_world, position, arm)), SHORTEST * size_m)
-            longest = min(longest, ARCS_PER_TURN * turn_step_rad * length)
+            longest = ARCS_PER_TURN * turn_step_rad * max(length, SHORTEST * size_m)
         if speed > 0.0:
             amount = min(amount, longest / speed)
     return amount

@@ -1,0 +1,264 @@
+"""Forces, moments and springs in any number, against closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from balance import imbalance
+from quasistatic.paths import path_of
+
+from cagepose import Box, Cage, Force, Load, Moment, Object, Pose, Run, Scene, Spring, Variation, run, run_many
+
+MM, G = 1e-3, 9.81
+FAR = [(0.9, 0.9, 0.9)]
+"""A cage that nothing reaches."""
+NEST = [(0.021, 0.011, 0.021), (0.0212, -0.012, 0.019), (0.002, 0.0215, 0.02), (-0.003, -0.0215, 0.02)]
+"""Stops ahead of a cube of 40 mm and beside it."""
+FLOOR = [(x * MM, y * MM, 0.0) for x in (-10, 10) for y in (-10, 10)]
+
+
+def cube(edge_m: float = 0.04, mass_kg: float | None = 1.0, pose: Pose | None = None) -> Object:
+    return Object([Box((edge_m,) * 3)], mass_kg=mass_kg, pose=pose)
+
+
+def ended(held: Object, points: list, *loads: Load, friction: float = 0.0) -> Run:
+    return run(Scene(held, Cage(points), loads, friction_coefficient=friction))
+
+
+def forces_of(result: Run) -> dict[str, float]:
+    return {contact.point: float(contact.force_normal_n or 0.0) for contact in result.contacts}
+
+
+def test_a_part_hangs_where_its_springs_carry_its_weight() -> None:
+    """Four vertical springs of 1 N/mm: it sinks by m g / (4 k), and touches nothing."""
+    springs = [
+        Spring((x, y, 0.02), (x, y, 0.12), 1000.0) for x in (-0.02, 0.02) for y in (-0.02, 0.02)
+    ]
+    result = ended(cube(mass_kg=2.0), FAR, Load("hang", gravity=(0, 0, -G), springs=springs))
+    assert (result.verdict, result.phases[0].proof.stability) == ("rests", "stable")
+    assert result.contacts == ()
+    assert result.pose.position_m == pytest.approx([0.0, 0.0, -2.0 * G / 4000.0], abs=1e-13)
+    assert "nothing touches" in result.phases[0].proof.reason
+
+
+@pytest.mark.parametrize(("preload_n", "floor_n"), [(0.0, G - 1.5), (3.0, G - 4.5), (-2.0, G + 0.5)])
+def test_a_spring_above_a_floor_takes_off_what_it_pulls(preload_n: float, floor_n: float) -> None:
+    """The part falls by 3 mm onto the floor; the spring of 0.5 N/mm is then longer by as much."""
+    spring = Spring((0, 0, 0.02), (0, 0, 0.2), 500.0, preload_n)
+    start = Pose((0.0, 0.0, 0.023))
+    result = ended(cube(pose=start), FLOOR, Load("down", gravity=(0, 0, -G), springs=[spring]))
+    assert result.verdict == "rests"
+    assert result.pose.position_m[2] == pytest.approx(0.02, abs=1e-15)
+    assert sum(forces_of(result).values()) == pytest.approx(floor_n, rel=1e-12)
+
+
+def test_a_spring_that_carries_the_weight_leaves_the_floor_alone() -> None:
+    spring = Spring((0, 0, 0.02), (0, 0, 0.2), 500.0, 2.0 * G)
+    result = ended(cube(pose=Pose((0.0, 0.0, 0.02))), FLOOR, Load("up", gravity=(0, 0, -G), springs=[spring]))
+    assert (result.verdict, result.contacts) == ("rests", ())
+    assert result.pose.position_m[2] == pytest.approx(0.02 + G / 500.0, abs=1e-13)
+
+
+def test_two_springs_along_a_line_hold_a_part_upright_or_do_not() -> None:
+    """Of two opposite springs with a tension, at points outside of the centre of gravity, every freedom but the turn
+    about their line is stable; pushed together they buckle.
+    """
+    def held(preload_n: float) -> Run:
+        springs = [Spring((side * 0.02, 0, 0), (side * 0.07, 0, 0), 100.0, preload_n) for side in (-1, 1)]
+        return ended(cube(), FAR, Load("between", springs=springs))
+
+    pulled, pushed = held(1.0), held(-1.0)
+    assert pulled.verdict == pushed.verdict == "rests"
+    assert (pulled.phases[0].proof.stability, pulled.phases[0].proof.undetermined) == ("marginal", ("roll",))
+    assert pushed.phases[0].proof.stability == "unstable"
+
+
+def test_a_pendulum_on_a_spring_hangs_below_its_pivot() -> None:
+    """Without stiffness a spring is a rope of constant tension: hung by more than its weight it rises to the pivot, so
+    it is held by stiffness: length = start + (m g - preload) / k, and the centre of gravity is below the pivot.
+    """
+    at, to = np.array([0.0, 0.0, 0.05]), np.array([0.0, 0.0, 0.2])
+    held = cube(pose=Pose((0.08, 0.02, 0.0), euler_zyx=(0.3, 0.5, 0.2)))
+    result = ended(held, [(0.5, 0.5, 0.5)], Load("hang", gravity=(0, 0, -G), springs=[Spring(at, to, 400.0, 1.0)]))
+    start = float(np.linalg.norm(to - held.pose_world_object.transform(at)))
+    length = start + (G - 1.0) / 400.0
+    assert result.verdict == "rests"
+    assert result.center_of_gravity_world == pytest.approx(to - [0.0, 0.0, length + 0.05], abs=1e-10)
+    assert (result.phases[0].proof.stability, result.phases[0].proof.undetermined) == ("marginal", ("yaw",))
+
+
+def test_a_spring_without_stiffness_pulls_along_its_line_with_its_preload() -> None:
+    """A cube on a smooth floor is pulled against two stops: they carry the preload, whatever the length."""
+    points = [*FLOOR, (0.02, 0.0, 0.02), (-0.0205, 0.0, 0.02)]
+    spring = Spring((0, 0, 0), (0.3, 0.4, 0.02), 0.0, 5.0)
+    result = ended(cube(pose=Pose((0, 0, 0.02))), [*points, (0.0, 0.021, 0.02)], Load("pull", springs=[spring]))
+    way = spring.to_world_m - result.pose.position_m
+    pull = 5.0 * way / np.linalg.norm(way)
+    assert result.verdict == "rests"
+    carried = sum(-(contact.force_normal_n or 0.0) * contact.normal_world for contact in result.contacts)
+    assert carried == pytest.approx(-pull, abs=1e-9)
+    assert np.linalg.norm(carried) == pytest.approx(5.0, rel=1e-9)
+
+
+def test_a_soft_spring_far_away_is_a_constant_force() -> None:
+    points = [*FLOOR, *NEST]
+    held = cube(pose=Pose((0, 0, 0.022), euler_zyx=(0.01, 0.0, 0.0)))
+    at = (0.0, 0.001, 0.002)
+    weight = {"gravity": (0, 0, -G)}
+    force = ended(held, points, Load("push", **weight, force=Force((1, 0, 0), at, 3.0)))
+    reach_m = 1e7
+    start = held.pose_world_object.transform(at)
+    spring = Spring(at, start + np.array([reach_m, 0.0, 0.0]), 1e-9, 3.0)
+    pulled = ended(held, points, Load("push", **weight, springs=[spring]))
+    assert force.verdict == pulled.verdict == "rests"
+    assert pulled.pose.position_m == pytest.approx(force.pose.position_m, abs=1e-9)
+    assert forces_of(pulled) == pytest.approx(forces_of(force), abs=1e-6)
+
+
+def test_parallel_forces_are_their_resultant() -> None:
+    points = [*FLOOR, *NEST]
+    held = cube(pose=Pose((0, 0, 0.022), euler_zyx=(0.01, 0.0, 0.0)))
+    two = [Force((1, 0, 0), (0, 0.006, 0.001), 2.0), Force((1, 0, 0), (0, -0.003, 0.004), 1.0)]
+    one = Force((1, 0, 0), (0, 0.003, 0.002), 3.0)
+    several = ended(held, points, Load("push", gravity=(0, 0, -G), forces=two))
+    single = ended(held, points, Load("push", gravity=(0, 0, -G), force=one))
+    assert several.verdict == single.verdict == "rests"
+    for mine, other in zip(path_of(several.phases[0]), path_of(single.phases[0]), strict=True):
+        assert mine.position_m == pytest.approx(other.position_m, abs=1e-12)
+        assert mine.quaternion_wxyz == pytest.approx(other.quaternion_wxyz, abs=1e-12)
+
+
+def test_a_dead_couple_turns_a_part_until_its_forces_are_in_line_and_a_moment_for_ever() -> None:
+    """Two opposite dead forces are a pendulum: no moment is left where their line passes both points. A moment of the
+    same size never ceases.
+    """
+    couple = [Force((0, 1, 0), (0.01, 0, 0), 1.0), Force((0, -1, 0), (-0.01, 0, 0), 1.0)]
+    turned = ended(cube(), FAR, Load("turn", forces=couple))
+    assert turned.verdict == "rests"
+    assert turned.pose.euler_zyx == pytest.approx([np.pi / 2.0, 0.0, 0.0], abs=1e-10)
+    for follows in (False, True):
+        driven = ended(cube(), FAR, Load("turn", moments=[Moment((0, 0, 1), 0.02, follows=follows)]))
+        assert (driven.verdict, driven.failed) == ("limit", True)
+        assert any("moments, and forces that follow" in warning for warning in driven.warnings)
+    following = [Force(force.direction, force.at_object_m, 1.0, follows=True) for force in couple]
+    assert ended(cube(), FAR, Load("turn", forces=following)).verdict == "limit"
+
+
+@pytest.mark.parametrize("follows", [False, True])
+def test_a_moment_turns_a_bar_between_stops_by_the_angle_of_their_play(follows: bool) -> None:
+    """Pins at x = +-l, a gap above the bar's upper and below its lower face: sin t = gap cos t + ..., so that
+    l sin t + h cos t = h + gap, h the half height. The pins carry M / (2 l cos t + 2 h sin t) ... as statics says.
+    """
+    half, gap, reach, moment = 0.005, 0.0002, 0.05, 0.3
+    bar = Object([Box((0.12, 0.02, 2.0 * half))])
+    pins = [(reach, y, half + gap) for y in (-0.005, 0.005)] + [(-reach, y, -half - gap) for y in (-0.005, 0.005)]
+    result = ended(bar, pins, Load("turn", moments=[Moment((0, -1, 0), moment, follows=follows)]))
+    angle = -result.pose.euler_zyx[1]
+    assert result.verdict == "rests"
+    # The upper face passes through (reach, half + gap): half = (half + gap) cos t - reach sin t.
+    assert (half + gap) * np.cos(angle) - reach * np.sin(angle) == pytest.approx(half, abs=1e-15)
+    along = reach * np.cos(angle) + (half + gap) * np.sin(angle)  # of a pin, along the bar
+    assert sum(forces_of(result).values()) == pytest.approx(moment / along, rel=1e-9)
+    assert "y" in result.phases[0].proof.undetermined or result.phases[0].proof.stability == "not shown"
+
+
+def test_a_following_force_between_two_stops_stays_along_the_part() -> None:
+    """The force turns with the bar, so each stop carries its share of all of it, not of its component."""
+    bar = Object([Box((0.1, 0.02, 0.02))], pose=Pose((0, 0, 0), euler_zyx=(0.02, 0, 0)))
+    points = [(0.055, 0.004, 0.0), (0.0551, -0.006, 0.0), (0.0, 0.03, 0.0), (0.0, -0.03, 0.0)]
+    for follows in (True, False):
+        result = ended(bar, points, Load("push", force=Force((1, 0, 0), (0, 0, 0), 2.0, follows=follows)))
+        yaw = result.pose.euler_zyx[0]
+        assert result.verdict == "rests"
+        assert abs(yaw - np.arctan2(0.0001, -0.01)) % np.pi == pytest.approx(0.0, abs=1e-9) or abs(yaw) > 1e-4
+    assert result.failed is False
+
+
+def test_what_flies_away_has_escaped_and_what_a_spring_pulls_back_has_not() -> None:
+    ahead = [(0.1, 0.0, 0.0), (0.0, 0.05, 0.0), (0.0, -0.05, 0.0)]
+    away = Load("jet", force=Force((-1, 0, 0), (0, 1e-5, 0), 1.0, follows=True))
+    assert ended(cube(), ahead, away).verdict == "escapes"
+    round_and_round = Load("jet", force=Force((-1, 0, 0), (0, 5e-3, 0), 1.0, follows=True))
+    assert ended(cube(), ahead, round_and_round).verdict == "limit"
+    bound = Load("jet", forces=[Force((-1, 0, 0), (0, 0, 0), 1.0)], springs=[Spring((0, 0, 0), (0.1, 0, 0), 1e-3)])
+    result = ended(cube(), ahead, bound)
+    assert result.verdict == "rests"  # a kilometre away
+    assert result.pose.position_m[0] == pytest.approx(-1000.0, rel=1e-9)
+    pushed = Load("off", springs=[Spring((0, 0, 0), (0.05, 0, 0), 0.0, -1.0)])
+    assert ended(cube(), ahead, pushed).verdict == "escapes"
+
+
+def test_a_constant_pull_that_has_come_home_is_no_rest_and_says_so() -> None:
+    reel = Load("reel", springs=[Spring((0, 0, 0.02), (0, 0.1, 0.02), 0.0, 1.0)])
+    result = ended(cube(), [(0.2, 0.0, 0.0), (-0.2, 0.1, 0.0)], reel)
+    assert result.failed
+    assert any("ends of" in warning for warning in result.warnings)
+
+
+def test_the_potential_never_rises_with_springs() -> None:
+    random = np.random.default_rng(8)
+    for _ in range(20):
+        scene = sprung(random, friction=0.2)
+        result = run(scene)
+        values = [potential_of(scene, scene.loads[0], pose) for pose in path_of(result.phases[0])]
+        assert np.diff(values).max(initial=-1.0) <= 1e-12 * size_of(scene.loads[0])
+        if result.verdict in ("rests", "may rest"):
+            assert imbalance(scene, result.phases[0]) < 1e-8
+
+
+def test_rows_of_a_batch_have_the_bits_of_runs() -> None:
+    """Also where the start varies, and with it the springs' length there."""
+    random = np.random.default_rng(4)
+    scene = sprung(random, friction=0.1)
+    start = scene.object.pose_world_object
+    positions = start.position_m + 1e-3 * random.uniform(-1, 1, (6, 3))
+    turns = 0.01 * random.uniform(-1, 1, (6, 3))
+    rows = run_many(scene, Variation(object_position_m=positions, object_euler_zyx=turns))
+    for row in range(6):
+        held = scene.object
+        placed = Object(held.boxes, held.center_of_gravity_m, pose=Pose(positions[row], euler_zyx=turns[row]), mass_kg=1.0)
+        single = run(Scene(placed, scene.cage, scene.loads, friction_coefficient=0.1))
+        assert rows.verdict[row] == single.verdict
+        assert np.array_equal(rows.position_m[row, 0], single.pose.position_m)
+        assert np.array_equal(rows.quaternion_wxyz[row, 0], single.pose.quaternion_wxyz)
+
+
+def sprung(random: np.random.Generator, friction: float) -> Scene:
+    """A cube with three springs and a weight among points on all sides."""
+    axes = np.concatenate([np.eye(3), -np.eye(3)])
+    points = [
+        axis * (0.02 + random.uniform(0.0005, 0.003)) + np.where(axis == 0.0, random.uniform(-0.015, 0.015, 3), 0.0)
+        for axis in axes
+        for _ in range(2)
+    ]
+    springs = [
+        Spring(random.uniform(-0.02, 0.02, 3), random.uniform(-0.1, 0.1, 3), 10 ** random.uniform(1, 3), random.normal())
+        for _ in range(3)
+    ]
+    load = Load("all", gravity=(0, 0, -G), forces=[Force(random.normal(size=3), (0.01, 0, 0), 1.0)], springs=springs)
+    return Scene(cube(), Cage(points), [load], friction_coefficient=friction)
+
+
+def potential_of(scene: Scene, load: Load, pose: Pose) -> float:
+    """Potential of weight, dead forces and springs, joules, written anew from (5.2) and (5.26)."""
+    value = 0.0
+    if load.gravity_world is not None:
+        value -= (scene.object.mass_kg or 1.0) * float(load.gravity_world @ pose.transform(scene.object.center_of_gravity_m))
+    for push in load.pushes:
+        value -= (push.magnitude_n or 1.0) * float(push.direction @ pose.transform(push.at_object_m))
+    for spring in load.springs:
+        start = length_of(spring, scene.object.pose_world_object)
+        longer = length_of(spring, pose) - start
+        value += spring.preload_n * longer + 0.5 * spring.stiffness_n_per_m * longer**2
+    return value
+
+
+def length_of(spring: Spring, pose: Pose) -> float:
+    return float(np.linalg.norm(spring.to_world_m - pose.transform(spring.at_object_m)))
+
+
+def size_of(load: Load) -> float:
+    """What rounding of the potential is measured in, joules."""
+    return 1.0 + sum(spring.stiffness_n_per_m * 0.1 for spring in load.springs)
+
+
