@@ -178,7 +178,7 @@ class Load:
         if force is not None and self.forces:
             problems.add(("forces",), "stands beside force; put all of them into forces")
         problems.raise_if_any()
-        if gravity is None and not (self.pushes or self.moments or self.springs):
+        if gravity is None and self.is_weight_alone:
             raise SceneError(
                 [Problem((), "has neither gravity nor a force, a moment or a spring; give at least one of them")]
             )
@@ -195,6 +195,11 @@ class Load:
     def pushes(self) -> tuple[Force, ...]:
         """All forces, whether one or several."""
         return self.forces if self.force is None else (self.force,)
+
+    @property
+    def is_weight_alone(self) -> bool:
+        """Whether nothing but gravity acts."""
+        return not (self.pushes or self.moments or self.springs)
 
     @property
     def needs_newtons(self) -> bool:

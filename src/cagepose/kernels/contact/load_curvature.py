@@ -17,6 +17,7 @@ from cagepose.kernels.contact.loads import (
     PhaseLoad,
     acting,
     arm_of,
+    is_idle,
     spring_vector,
 )
 from cagepose.kernels.contact.metric import Frame
@@ -62,6 +63,8 @@ def add_load_curvature(
     """Add what a phase's load adds to S, (6, 6). That of moments, dead or following, is zero."""
     for which in range(len(load.actions)):
         action = load.actions[which]
+        if is_idle(action):
+            continue
         if action.kind == DEAD_FORCE:
             force, arm = vector_from(action.vector), arm_of(action, quaternion)
             add_turned_arm(force, arm, -1.0, frame.axes, frame.radii, out)

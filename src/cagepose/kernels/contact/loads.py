@@ -75,6 +75,13 @@ def arm_of(action: Action, quaternion: Quaternion) -> Vector:
 
 
 @kernel
+def is_idle(action: Action) -> bool:
+    """Whether an action is a force that does nothing: no weight in a phase, or the place of an action of another."""
+    vector = action.vector
+    return action.kind == DEAD_FORCE and vector[0] == 0.0 and vector[1] == 0.0 and vector[2] == 0.0
+
+
+@kernel
 def spring_vector(action: Action, origin: Vector, position: Vector, arm: Vector) -> Vector:
     """Return the way from where a spring acts to where it is held."""
     return minus(minus(vector_from(action.anchor_world), origin), plus(position, arm))
@@ -109,6 +116,8 @@ def write_load(load: PhaseLoad, position: Vector, quaternion: Quaternion, frame:
     terms = 0.0
     force, moment = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for which in range(len(load.actions)):
+        if is_idle(load.actions[which]):
+            continue
         one = acting(load.actions[which], load.origin_world, position, quaternion)
         write_scaled_wrench(one.force, one.moment, frame, out)
         terms += math.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2 + out[3] ** 2 + out[4] ** 2 + out[5] ** 2)
@@ -123,10 +132,12 @@ def total_load(load: PhaseLoad, position: Vector, quaternion: Quaternion, size_m
     total = 0.0
     for which in range(len(load.actions)):
         action = load.actions[which]
-        if action.kind == DEAD_MOMENT or action.kind == FOLLOWING_MOMENT:
-            total += norm(vector_from(action.vector)) / size_m
-        else:
+        if action.kind == SPRING:
             total += norm(acting(action, load.origin_world, position, quaternion).force)
+        elif action.kind == DEAD_FORCE or action.kind == FOLLOWING_FORCE:
+            total += norm(vector_from(action.vector))
+        else:
+            total += norm(vector_from(action.vector)) / size_m
     return total
 
 
@@ -164,6 +175,8 @@ def work_done(load: PhaseLoad, start: Vector, start_turned: Quaternion, end: Vec
     work = 0.0
     for which in range(len(load.actions)):
         action = load.actions[which]
+        if is_idle(action):
+            continue
         arm, turned_arm = arm_of(action, start_turned), arm_of(action, end_turned)
         moved = plus(minus(end, start), minus(turned_arm, arm))
         if action.kind == DEAD_FORCE:
