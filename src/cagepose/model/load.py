@@ -141,6 +141,8 @@ class Load:
         Several pushes.
     moments, springs
         What else acts.
+    pushes
+        All forces, whether one or several.
     """
 
     name: str
@@ -149,6 +151,7 @@ class Load:
     forces: tuple[Force, ...]
     moments: tuple[Moment, ...]
     springs: tuple[Spring, ...]
+    pushes: tuple[Force, ...]
 
     def __init__(
         self,
@@ -175,6 +178,7 @@ class Load:
         _set_field(self, "forces", check_kinds(forces, Force, "forces", problems))
         _set_field(self, "moments", check_kinds(moments, Moment, "moments", problems))
         _set_field(self, "springs", check_kinds(springs, Spring, "springs", problems))
+        _set_field(self, "pushes", self.forces if force is None else (force,))
         if force is not None and self.forces:
             problems.add(("forces",), "stands beside force; put all of them into forces")
         problems.raise_if_any()
@@ -190,11 +194,6 @@ class Load:
                 problems.add((*place, "magnitude"), "is missing, and other loads act beside this force; give newtons")
         problems.raise_if_any()
         _set_field(self, "gravity_world", None if gravity is None else finite_array(gravity, (3,), "gravity"))
-
-    @property
-    def pushes(self) -> tuple[Force, ...]:
-        """All forces, whether one or several."""
-        return self.forces if self.force is None else (self.force,)
 
     @property
     def is_weight_alone(self) -> bool:

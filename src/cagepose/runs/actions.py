@@ -91,8 +91,9 @@ def acting_pushes(load: Load, forces: FloatArray) -> list[Push]:
 
 def is_one_force(scene: Scene, load: Load) -> bool:
     """Whether besides its weight a phase has at most one dead force, or such as one is equal to."""
-    pushes = acting_pushes(load, scaled_load(scene, load).forces)
-    return not load.moments and not load.springs and (not pushes or (len(pushes) == 1 and not pushes[0].follows))
+    if load.moments or load.springs or any([push.follows for push in load.pushes]):
+        return False
+    return len(load.pushes) < 2 or len(acting_pushes(load, scaled_load(scene, load).forces)) == 1
 
 
 def tensions_at_zero(spring: Spring, positions_m: FloatArray, quaternions: FloatArray) -> FloatArray:

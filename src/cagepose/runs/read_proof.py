@@ -44,6 +44,7 @@ IN_SPAN = 1e-6
 def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Sequence[Sequence[str]]) -> list[Proof]:
     """Return the proof of each phase's end, given the poses there and the names of contacts that share forces."""
     phases: Any = outcome.phases
+    last_contacts = phases["n_contacts"].tolist()
     columns = zip(
         phases["proof"].tolist(),
         phases["stability"].tolist(),
@@ -51,23 +52,24 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
         phases["wedged"].tolist(),
         phases["is_second_order"].tolist(),
         phases["is_chained"].tolist(),
-        np.diff(phases["n_contacts"], prepend=0).tolist(),
+        [0, *last_contacts],
+        last_contacts,
         phases["n_undetermined"].tolist(),
         phases["undetermined"],
         _free_motions(phases),
         ends,
         shared,
-        strict=True,
+        strict=False,  # there is one more beginning than there are phases
     )
     found = list[Proof]()
-    for code, stability, residual, wedged, second, chained, n_contacts, n_undetermined, *rest in columns:
+    for code, stability, residual, wedged, second, chained, first, last, n_undetermined, *rest in columns:
         undetermined, motion, end, names = rest
         held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
         is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
         found.append(
             Proof(
                 verdict="moves" if not held else "may rest" if is_open else "rests",
-                reason=(REASONS.get(code, NOT_SHOWN) if n_contacts or not held else UNTOUCHED)
+                reason=(REASONS.get(code, NOT_SHOWN) if last > first or not held else UNTOUCHED)
                 + (WEDGED if is_open and wedged else "")
                 + (STOPPED if held and second else "")
                 + (CHAINED if held and chained else ""),

@@ -91,7 +91,7 @@ class Margin:
 def margin(run: Run, phase: int = -1) -> Margin | None:
     """Say how large an extra force and moment a phase's end still balances, and what each contact may carry.
 
-    Returns None where the phase did not end in a balance; where contacts without play carry its load to second order,
+    Returns None where the phase did not end in a balance, or in one of what acts alone, on springs for example; where contacts without play carry its load to second order,
     by forces without bound; and where points on edges have more than 729 choices of faces.
 
     Parameters
@@ -108,7 +108,7 @@ def margin(run: Run, phase: int = -1) -> Margin | None:
     """
     number = range(len(run.phases))[phase]
     ended = run.phases[number]
-    if ended.verdict not in AT_REST or ended.proof.verdict == "moves":
+    if ended.verdict not in AT_REST or ended.proof.verdict == "moves" or not ended.contacts:
         return None
     contacts, groups = _faces(ended.contacts)
     choices = list(islice(product(*groups), CHOICES_LIMIT + 1))
@@ -116,6 +116,8 @@ def margin(run: Run, phase: int = -1) -> Margin | None:
         return None
     cones = _cones(run, number, contacts)
     load, size_n = _load(run, number, cones)
+    if size_n == 0.0:
+        return None
     found = _Choices(cones, load, [_counting(len(contacts), choice) for choice in choices])
     if not found.are_balanced:
         return None
@@ -177,7 +179,7 @@ def _load(run: Run, phase: int, cones: ContactCones) -> tuple[FloatArray, float]
     load = wrench_at(actions_of(scene)[phase], scene.object.center_of_gravity_m, run.phases[phase].pose)
     wrench = -np.append(load.force, load.moment / cones.length_m)
     size = float(np.linalg.norm(wrench))
-    return wrench / size, size
+    return wrench / (size or 1.0), size
 
 
 def _counting(n_contacts: int, choice: tuple[int, ...]) -> FloatArray:
