@@ -13,9 +13,7 @@ def cube(edge_m: float = 0.04, mass_kg: float | None = 1.0, pose: Pose | None = 
     return Object([Box((edge_m,) * 3)], mass_kg=mass_kg, pose=pose)
 
 
-def sprung(
-    random: np.random.Generator, friction: float = 0.0, n_springs: int = 3, *, turned: bool = False
-) -> Scene:
+def sprung(random: np.random.Generator, friction: float = 0.0, n_springs: int = 3, *, turned: bool = False) -> Scene:
     """A scene; ``turned``: a moment and a force that follows the object act, too."""
     axes = np.concatenate([np.eye(3), -np.eye(3)])
     points = [

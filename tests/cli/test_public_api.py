@@ -36,7 +36,17 @@ def test_all_names_every_public_class_and_function_once() -> None:
             "Proof",
             "Run",
         ),
-        *("RunFileError", "Runs", "Scene", "SceneError", "SceneFileError", "Spring", "Tolerances", "Variant", "Variation"),
+        *(
+            "RunFileError",
+            "Runs",
+            "Scene",
+            "SceneError",
+            "SceneFileError",
+            "Spring",
+            "Tolerances",
+            "Variant",
+            "Variation",
+        ),
         *("__version__", "compare", "load_run", "load_scene", "margin", "play", "run", "run_many", "save_run"),
         "with_critical_friction",
     }

@@ -59,7 +59,10 @@ WRONG = {
     "magnitude: 50,": ("", "11:15: loads[0].moments[0].magnitude: is missing; add it, for example magnitude: 50"),
     ", mass: 2}": ("}", "3:9: object.mass: is missing, and gravity acts beside other loads in loads[0] (all)"),
     "follows: true}]": ("follows: 1}]", "loads[0].moments[0].follows: is 1"),
-    "    gravity": ("    force: {direction: [1, 0, 0], at: [0, 0, 0]}\n    gravity", "loads[0].forces: stands beside force"),
+    "    gravity": (
+        "    force: {direction: [1, 0, 0], at: [0, 0, 0]}\n    gravity",
+        "loads[0].forces: stands beside force",
+    ),
     "preload: -3": ("prelaod: -3", "loads[0].springs[0].prelaod: is no known key; did you mean preload?"),
 }
 

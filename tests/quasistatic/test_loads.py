@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from balance import imbalance
+from cagepose import Box, Cage, Force, Load, Moment, Object, Pose, Run, Scene, Spring, Variation, run, run_many
 from quasistatic.paths import path_of
 from sprung_scenes import cube, sprung
-
-from cagepose import Box, Cage, Force, Load, Moment, Object, Pose, Run, Scene, Spring, Variation, run, run_many
 
 MM, G = 1e-3, 9.81
 FAR = [(0.9, 0.9, 0.9)]
@@ -28,9 +28,7 @@ def forces_of(result: Run) -> dict[str, float]:
 
 def test_a_part_hangs_where_its_springs_carry_its_weight() -> None:
     """Four vertical springs of 1 N/mm: it sinks by m g / (4 k), and touches nothing."""
-    springs = [
-        Spring((x, y, 0.02), (x, y, 0.12), 1000.0) for x in (-0.02, 0.02) for y in (-0.02, 0.02)
-    ]
+    springs = [Spring((x, y, 0.02), (x, y, 0.12), 1000.0) for x in (-0.02, 0.02) for y in (-0.02, 0.02)]
     result = ended(cube(mass_kg=2.0), FAR, Load("hang", gravity=(0, 0, -G), springs=springs))
     assert (result.verdict, result.phases[0].proof.stability) == ("rests", "stable")
     assert result.contacts == ()
@@ -60,6 +58,7 @@ def test_two_springs_along_a_line_hold_a_part_upright_or_do_not() -> None:
     """Of two opposite springs with a tension, at points outside of the centre of gravity, every freedom but the turn
     about their line is stable; pushed together they buckle.
     """
+
     def held(preload_n: float) -> Run:
         springs = [Spring((side * 0.02, 0, 0), (side * 0.07, 0, 0), 100.0, preload_n) for side in (-1, 1)]
         return ended(cube(), FAR, Load("between", springs=springs))
@@ -165,7 +164,11 @@ def test_a_force_that_follows_presses_with_all_of_it(follows: bool) -> None:
     normal, if it follows; else a part of it pushes the bar aside, against the pins there.
     """
     bar = Object([Box((0.1, 0.02, 0.02))])
-    points = [(0.055, 0.005, 0.0), (0.0551, -0.005, 0.0), *[(x, y, 0.0) for x in (-0.02, 0.02) for y in (-0.013, 0.013)]]
+    points = [
+        (0.055, 0.005, 0.0),
+        (0.0551, -0.005, 0.0),
+        *[(x, y, 0.0) for x in (-0.02, 0.02) for y in (-0.013, 0.013)],
+    ]
     result = ended(bar, points, Load("push", force=Force((1, 0, 0), (0, 0, 0), 2.0, follows=follows)))
     yaw, found = result.pose.euler_zyx[0], forces_of(result)
     assert (result.verdict, yaw) == ("rests", pytest.approx(np.arctan(0.01), abs=1e-12))
@@ -217,7 +220,9 @@ def test_rows_of_a_batch_have_the_bits_of_runs() -> None:
     rows = run_many(scene, Variation(object_position_m=positions, object_euler_zyx=turns))
     for row in range(6):
         held = scene.object
-        placed = Object(held.boxes, held.center_of_gravity_m, pose=Pose(positions[row], euler_zyx=turns[row]), mass_kg=1.0)
+        placed = Object(
+            held.boxes, held.center_of_gravity_m, pose=Pose(positions[row], euler_zyx=turns[row]), mass_kg=1.0
+        )
         single = run(Scene(placed, scene.cage, scene.loads, friction_coefficient=0.1))
         assert rows.verdict[row] == single.verdict
         assert np.array_equal(rows.position_m[row, 0], single.pose.position_m)

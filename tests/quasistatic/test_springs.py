@@ -6,12 +6,12 @@ import warnings
 from collections import Counter
 
 import numpy as np
+
 from balance import imbalance
+from cagepose import Cage, Load, Pose, Scene, Spring, run
 from quasistatic.paths import RESTS, depth, distance, path_of, potential
 from quasistatic.test_end_poses import descended, is_isolated
 from sprung_scenes import cube, sprung
-
-from cagepose import Cage, Load, Pose, Scene, Spring, run
 
 UNBALANCED = 1e-7
 """Of the load. A balance with friction leaves up to 1e-9 of its terms, and a spring's are more than its tension."""
@@ -29,7 +29,9 @@ def test_the_potential_never_rises_and_nothing_goes_in(say, cases):
         deepest = max(deepest, *(depth(scene, pose) for pose in path_of(result.phases[0])))
         if result.verdict in RESTS:
             assert imbalance(scene, result.phases[0]) <= UNBALANCED, f"scene {number}"
-    say(f"springs: {dict(verdicts)}; the potential rose by {greatest:.1e} of load times size, points {deepest:.1e} deep")
+    say(
+        f"springs: {dict(verdicts)}; the potential rose by {greatest:.1e} of load times size, points {deepest:.1e} deep"
+    )
     assert greatest <= 1e-12
     assert deepest <= 2e-9
     assert verdicts["escapes"] == 0
@@ -103,13 +105,15 @@ def hessian(scene: Scene, pose: Pose, step: float = 1e-4) -> np.ndarray:
         angle = float(np.linalg.norm(z[3:]))
         axis = z[3:] / angle if angle else np.zeros(3)
         turn = Pose(quaternion_wxyz=(np.cos(angle / 2.0), *(np.sin(angle / 2.0) * axis)))
-        turned = Pose(pose.position_m + scene.size_m * z[:3], (turn @ Pose(quaternion_wxyz=pose.quaternion_wxyz)).quaternion_wxyz)
+        turned = Pose(
+            pose.position_m + scene.size_m * z[:3], (turn @ Pose(quaternion_wxyz=pose.quaternion_wxyz)).quaternion_wxyz
+        )
         return potential(scene, scene.loads[0], turned)
 
     found = np.zeros((6, 6))
     for j, one in enumerate(step * np.eye(6)):
         for k, other in enumerate(step * np.eye(6)):
-            found[j, k] = (
-                value(one + other) - value(one - other) - value(other - one) + value(-one - other)
-            ) / (4.0 * step**2)
+            found[j, k] = (value(one + other) - value(one - other) - value(other - one) + value(-one - other)) / (
+                4.0 * step**2
+            )
     return found

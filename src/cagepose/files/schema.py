@@ -190,7 +190,9 @@ class ForceModel(_Mapping):
     )
     at: Vector = Field(description="The point it acts at, in the object's frame.", examples=[[0, 0, 0]])
     magnitude: Positive | None = Field(
-        None, description="Newtons; left out, where nothing but gravity acts beside it: one unit of force.", examples=[10]
+        None,
+        description="Newtons; left out, where nothing but gravity acts beside it: one unit of force.",
+        examples=[10],
     )
     follows: bool | None = Field(
         None, description="Whether it turns with the object; left out: its direction stays fixed in the world."
@@ -222,7 +224,9 @@ class SpringModel(_Mapping):
         examples=[0.5],
     )
     preload: Number | None = Field(
-        None, description="Its tension at the object's start pose, newtons; below zero it pushes; left out: 0.", examples=[2]
+        None,
+        description="Its tension at the object's start pose, newtons; below zero it pushes; left out: 0.",
+        examples=[2],
     )
 
 

@@ -102,9 +102,7 @@ class Spring:
     stiffness_n_per_m: float
     preload_n: float
 
-    def __init__(
-        self, at_m: ArrayLike, to_m: ArrayLike, stiffness_n_per_m: float, preload_n: float = 0.0
-    ) -> None:
+    def __init__(self, at_m: ArrayLike, to_m: ArrayLike, stiffness_n_per_m: float, preload_n: float = 0.0) -> None:
         """
         Raises
         ------

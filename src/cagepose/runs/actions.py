@@ -61,9 +61,9 @@ def _actions_of_phase(scene: Scene, load: Load) -> np.ndarray:
         found["kind"][index] = SPRING
         found["arm_object"][index], found["anchor_world"][index] = spring.at_object_m - center, spring.to_world_m
         found["stiffness"][index] = spring.stiffness_n_per_m
-        found["tension_at_zero"][index] = tensions_at_zero(
-            spring, start.position_m[None], start.quaternion_wxyz[None]
-        )[0]
+        found["tension_at_zero"][index] = tensions_at_zero(spring, start.position_m[None], start.quaternion_wxyz[None])[
+            0
+        ]
     return found
 
 
@@ -91,7 +91,7 @@ def acting_pushes(load: Load, forces: FloatArray) -> list[Push]:
 
 def is_one_force(scene: Scene, load: Load) -> bool:
     """Whether besides its weight a phase has at most one dead force, or such as one is equal to."""
-    if load.moments or load.springs or any([push.follows for push in load.pushes]):
+    if load.moments or load.springs or any(push.follows for push in load.pushes):
         return False
     return len(load.pushes) < 2 or len(acting_pushes(load, scaled_load(scene, load).forces)) == 1
 

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
-
-import numpy as np
 
 from cagepose.kernels.quasistatic.run import QuasistaticRules
 from cagepose.kernels.quasistatic.step import RULE_NAMES, STUCK
-from cagepose.model.load import Load, Spring
+from cagepose.model.load import Load
 from cagepose.model.scene import Scene
 from cagepose.runs.run import PhaseRun
 from cagepose.runs.warnings_of_runs import (
@@ -17,6 +14,7 @@ from cagepose.runs.warnings_of_runs import (
     lost_weight_warnings,
     proof_warnings,
     seam_warnings,
+    spring_warnings,
     unrun_warnings,
     weight_warnings,
 )
@@ -27,8 +25,6 @@ STEP_LIMIT = 3000
 """Steps in a phase after which a run is named "limit"."""
 
 
-MET = 1e-6
-"""In sizes of the scene: a shorter spring counts as one whose ends have met."""
 REMEDY = "change the friction coefficient by a hundredth, or move a point or the start by a millionth of the size"
 """Of a run that failed: most hang on contacts that fit exactly."""
 
@@ -45,27 +41,20 @@ def quasistatic_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: flo
     yield from lost_weight_warnings(scene, len(phases))
     for phase in phases:
         yield from edge_warnings(phase)
-    yield from _failure_warnings(phases[-1], scene, scene.loads[len(phases) - 1])
+        yield from spring_warnings(scene, phase)
+    yield from _failure_warnings(phases[-1], scene.loads[len(phases) - 1])
     yield from unrun_warnings(scene, phases)
     yield from proof_warnings(phases, friction)
 
 
-def _failure_warnings(phase: PhaseRun, scene: Scene, load: Load) -> Iterator[str]:
+def _failure_warnings(phase: PhaseRun, load: Load) -> Iterator[str]:
     """Why a phase failed, with which contacts, and what to change."""
     has_potential = not load.moments and not any(push.follows for push in load.pushes)
     touching = ", ".join(dict.fromkeys(contact.point for contact in phase.contacts)) or "no point"
-    met = [number for number, spring in enumerate(load.springs, start=1) if _have_met(spring, phase, scene)]
-    if phase.verdict in ("limit", "stalled") and met:
+    if phase.verdict == "limit" and not has_potential:
         yield (
-            f"{phase.name}: the ends of spring {' '.join(map(str, met))} have met, where its pull has no direction; hold"
-            " it farther away, or give the object a stop before that"
-        )
-    elif phase.verdict == "limit" and not has_potential:
-        angle = sum(event.motion.angle_rad for event in phase.events if event.motion is not None)
-        yield (
-            f"{phase.name}: it still moved after {STEP_LIMIT} steps, touching {touching}, with turns of"
-            f" {math.degrees(angle):.0f} deg between events in all: moments, and forces that follow, can drive an object"
-            " for ever; give it a stop or a spring"
+            f"{phase.name}: it still moved after {STEP_LIMIT} steps, touching {touching}: moments, and forces that"
+            " follow, can drive an object round for ever; give it a stop or a spring"
         )
     elif phase.verdict == "limit":
         yield f"{phase.name}: it still moved after {STEP_LIMIT} steps, touching {touching}; {REMEDY}"
@@ -76,8 +65,3 @@ def _failure_warnings(phase: PhaseRun, scene: Scene, load: Load) -> Iterator[str
         )
     elif phase.verdict == "stalled":
         yield f"{phase.name}: no step got on that keeps the contacts of {touching}; {REMEDY}"
-
-
-def _have_met(spring: Spring, phase: PhaseRun, scene: Scene) -> bool:
-    here = phase.pose.transform(spring.at_object_m)
-    return float(np.linalg.norm(spring.to_world_m - here)) <= MET * scene.size_m

@@ -5,9 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
+import numpy as np
+
 from cagepose.model.scene import Scene
+from cagepose.runs.actions import tensions_at_zero
 from cagepose.runs.load_scaling import WEIGHT_BESIDE_FORCE, scaled_load
 from cagepose.runs.run import FAILURES, PhaseRun
+
+MET = 1e-6
+"""In sizes of the scene: the ends of a shorter spring count as one point."""
 
 
 def seam_warnings(scene: Scene) -> Iterator[str]:
@@ -42,6 +48,21 @@ def lost_weight_warnings(scene: Scene, n_phases: int) -> Iterator[str]:
                 f"{load.name}: the weight of the phase before no longer acts (give gravity in this phase to keep it)"
             )
             return
+
+
+def spring_warnings(scene: Scene, phase: PhaseRun) -> Iterator[str]:
+    """Springs whose pull has no direction where a phase has ended."""
+    start = scene.object.pose_world_object
+    springs = next(load.springs for load in scene.loads if load.name == phase.name)
+    for number, spring in enumerate(springs, start=1):
+        length_m = float(np.linalg.norm(spring.to_world_m - phase.pose.transform(spring.at_object_m)))
+        if length_m <= MET * scene.size_m and tensions_at_zero(
+            spring, start.position_m[None], start.quaternion_wxyz[None]
+        ):
+            yield (
+                f"{phase.name}: the ends of spring {number} have met, where it pulls nowhere; hold it farther away, or"
+                " give the object a stop before that"
+            )
 
 
 def unrun_warnings(scene: Scene, phases: Sequence[PhaseRun]) -> Iterator[str]:

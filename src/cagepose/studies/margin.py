@@ -91,8 +91,9 @@ class Margin:
 def margin(run: Run, phase: int = -1) -> Margin | None:
     """Say how large an extra force and moment a phase's end still balances, and what each contact may carry.
 
-    Returns None where the phase did not end in a balance, or in one of what acts alone, on springs for example; where contacts without play carry its load to second order,
-    by forces without bound; and where points on edges have more than 729 choices of faces.
+    Returns None where the phase did not end in a balance, or in one without contacts or without a load on them, as on
+    springs; where contacts without play carry its load to second order, by forces without bound; and where points on
+    edges have more than 729 choices of faces.
 
     Parameters
     ----------

@@ -85,8 +85,9 @@ class PlayRest:
 
 
 def play_rests(scene: Scene) -> tuple[PlayRest, ...]:
-    """Say where each phase's load leaves the object, if its play is small and nothing rubs: of phases with a weight, and
-    with what one dead force is equal to. Others are left out.
+    """Say where each phase's load leaves the object, if its play is small and nothing rubs.
+
+    Left out are phases with more than a weight and what one dead force is equal to.
 
     The answer is where the load has done all the work that the cage allows. `cagepose.run` follows the way there, with
     friction, and proves the rest.

@@ -163,7 +163,9 @@ class SceneDrawing:
             if act.to_world_m is not None:
                 whole = float(self.aspect.max())
                 way = self._shown(act.to_world_m) - at
-                far = at + way * min(1.0, LONGEST_SPRING * whole / max(float(np.linalg.norm(way * self.stretch)), 1e-300))
+                far = at + way * min(
+                    1.0, LONGEST_SPRING * whole / max(float(np.linalg.norm(way * self.stretch)), 1e-300)
+                )
                 line = coil(at * self.stretch, far * self.stretch, COIL * whole) / self.stretch
                 panel.plot(*line.T, color=BLACK, linewidth=0.9, zorder=9)
                 panel.text(*far, f" {name}", fontsize=7.0, color=BLACK, zorder=9)

@@ -85,9 +85,7 @@ def has_circulation(load: PhaseLoad) -> bool:
 
 
 @kernel
-def write_circulation(
-    load: PhaseLoad, position: Vector, quaternion: Quaternion, frame: Frame, out: FloatArray
-) -> None:
+def write_circulation(load: PhaseLoad, position: Vector, quaternion: Quaternion, frame: Frame, out: FloatArray) -> None:
     """Write the antisymmetric part of the load's stiffness, (6, 6): what no potential has."""
     for j in range(6):
         for k in range(6):

@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 
 from cagepose.kernels.algebra.pose import Quaternion, quaternion_product, rotated
 from cagepose.kernels.algebra.record import FloatArray, Rows
-from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled, vector_from
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.native.kernel import kernel
 

@@ -30,7 +30,7 @@ ROUNDING = 1e-15
 STRAIGHT_TRAVEL = 1e-14
 """Radians for each length of the object: a motion that turns by less is a travel."""
 OUT_OF_REACH = 10.0
-"""In sizes of the scene from all cage points: an object that flies on there, wherever its load turns to, has escaped."""
+"""In sizes of the scene from all cage points: an object that flies on there has escaped, wherever its load turns to."""
 
 
 class Setting(NamedTuple):

@@ -19,6 +19,7 @@ from cagepose.kernels.algebra.least_squares import (
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.algebra.span import extend, write_complement, write_outside, write_reduced
+from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.curvature import write_curvature
 from cagepose.kernels.contact.load_curvature import has_circulation, write_circulation

@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from cagepose.files.units import from_metres
 from cagepose.files.words import LengthWords
 from cagepose.model.checks import FloatArray
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.run import AT_REST, FAILURES
-from cagepose.studies.comparison import ENDS, same_pose
 from cagepose.studies.acts import Act
+from cagepose.studies.comparison import ENDS, same_pose
 from cagepose.views.viewer.playback import Playback, Row, Shot, Touches
 from cagepose.views.viewer.stage import EXAGGERATIONS, MOST_ADDED, Stage
 
