@@ -193,8 +193,16 @@ def test_what_flies_away_has_escaped_and_what_a_spring_pulls_back_has_not() -> N
     ahead = [(0.1, 0.0, 0.0), (0.0, 0.05, 0.0), (0.0, -0.05, 0.0)]
     away = Load("jet", force=Force((-1, 0, 0), (0, 1e-5, 0), 1.0, follows=True))
     assert ended(cube(), ahead, away).verdict == "escapes"
-    round_and_round = Load("jet", force=Force((-1, 0, 0), (0, 5e-3, 0), 1.0, follows=True))
-    assert ended(cube(), ahead, round_and_round).verdict == "limit"
+    jet = Force((-1, 0, 0), (0, 5e-3, 0), 1.0, follows=True)
+    assert ended(cube(), ahead, Load("jet", force=jet)).verdict == "limit"  # round and round
+    falls = Load("jet", gravity=(0, 0, -G), forces=[jet])
+    above = [(0.05, 0.05, 0.1), (-0.05, 0.05, 0.1)]
+    helix = ended(cube(), above, falls)
+    assert (helix.verdict, len(path_of(helix.phases[0]))) == ("escapes", 5)  # not ten sizes away
+    on_the_way = ended(cube(), [*above, (0.01, 0.0, -0.1)], falls)
+    assert on_the_way.phases[0].events[0].hit == ("C3",)
+    bent = Load("jet", forces=[jet, Force((0, 0, -1), (0.001, 0, 0), 1.0)])  # tumbles
+    assert ended(cube(), above, bent).verdict in ("escapes", "limit")
     bound = Load("jet", forces=[Force((-1, 0, 0), (0, 0, 0), 1.0)], springs=[Spring((0, 0, 0), (0.1, 0, 0), 1e-3)])
     result = ended(cube(), ahead, bound)
     assert result.verdict == "rests"  # a kilometre away

@@ -15,9 +15,9 @@ from cagepose.kernels.native.kernel import kernel
 
 DEAD_FORCE, FOLLOWING_FORCE, DEAD_MOMENT, FOLLOWING_MOMENT, SPRING = 0, 1, 2, 3, 4
 """Kinds of actions. What is dead keeps its direction in the world, what follows keeps it in the object."""
-STRAIGHT, BENT, BOUND = 0, 1, 2
-"""How an object flies that touches nothing: its centre of gravity along a straight line; along another way; or so that
-a spring pulls it back."""
+STRAIGHT, WINDING, BENT, BOUND = 0, 1, 2, 3
+"""How an object flies that touches nothing: its centre of gravity along a straight line; on a helix that is carried
+along one; along another way; or so that a spring pulls it back."""
 ARCS_PER_TURN = 5.0
 """Along a step the direction of a spring may change by so many times what the object may turn."""
 SHORTEST = 1e-12
@@ -228,23 +228,38 @@ def longest_pull(
 
 @kernel
 def flight(load: PhaseLoad) -> int:
-    """Return how an object flies that touches nothing: STRAIGHT, BENT or BOUND."""
-    found = STRAIGHT
+    """Return how an object flies that touches nothing: STRAIGHT, WINDING, BENT or BOUND (5.32)."""
+    follows, turns_away, found = False, False, STRAIGHT
     for which in range(len(load.actions)):
         action = load.actions[which]
+        if is_idle(action):
+            continue
         if action.kind == SPRING:
             found = max(found, BOUND if action.stiffness > 0.0 else BENT)
         elif action.kind == FOLLOWING_FORCE:
-            found = max(found, BENT)
+            follows = True
+        elif action.kind == DEAD_MOMENT or norm(vector_from(action.arm_object)) > 0.0:
+            turns_away = True  # its moment is not the same in the object's frame
+    if follows:
+        found = max(found, BENT if turns_away else WINDING)
     return found
 
 
 @kernel
-def total_dead_force(load: PhaseLoad) -> Vector:
-    """Return the sum of the forces that keep their direction."""
-    total = (0.0, 0.0, 0.0)
+def drift_and_sway(load: PhaseLoad, position: Vector, quaternion: Quaternion, spin: Vector) -> tuple[Vector, float]:
+    """Return the mean velocity of the centre of gravity of an object that flies, STRAIGHT or WINDING, with a spin, and
+    how far it strays from a straight line along it (5.32).
+    """
+    dead, following = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for which in range(len(load.actions)):
         action = load.actions[which]
         if action.kind == DEAD_FORCE:
-            total = plus(total, vector_from(action.vector))
-    return total
+            dead = plus(dead, vector_from(action.vector))
+        elif action.kind == FOLLOWING_FORCE:
+            following = plus(following, acting(action, load.origin_world, position, quaternion).force)
+    rate = norm(spin)
+    if rate == 0.0:
+        return plus(dead, following), 0.0
+    axis = scaled(spin, 1.0 / rate)
+    rise = scaled(axis, dot(axis, following))
+    return plus(dead, rise), 2.0 * norm(minus(following, rise)) / rate

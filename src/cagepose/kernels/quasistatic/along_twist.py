@@ -14,7 +14,16 @@ from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, row, scale
 from cagepose.kernels.collision.first_contact import allowed_depth, first_contact_screw, first_contact_travel
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
 from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
-from cagepose.kernels.contact.loads import BOUND, STRAIGHT, PhaseLoad, flight, total_dead_force, total_load, work_done
+from cagepose.kernels.contact.loads import (
+    BENT,
+    BOUND,
+    STRAIGHT,
+    PhaseLoad,
+    drift_and_sway,
+    flight,
+    total_load,
+    work_done,
+)
 from cagepose.kernels.contact.metric import Body, moved_along_twist
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
@@ -289,21 +298,24 @@ def stepped(
 
 
 @kernel
-def nothing_ahead(setting: Setting, position: Vector, velocity: Vector) -> bool:
-    """Whether an object that touches nothing has got away.
+def nothing_ahead(setting: Setting, position: Vector, quaternion: Quaternion, velocity: Vector, spin: Vector) -> bool:
+    """Whether an object that touches nothing, and begins to move with a velocity and a spin, has got away (5.32).
 
-    Under dead forces and moments the centre of gravity goes straight along the force: no cage point may ever be met on
-    this way. Under what follows the object, or pulls with a constant force, the way is not known beforehand: it has got
-    away when it is out of reach and goes on. A spring with stiffness brings it back.
+    Where the way of its centre of gravity is known for ever, straight or winding, no cage point may be met on it. A way
+    that is not straight also leads away where it is out of reach and goes on. A spring with stiffness brings it back.
     """
     kind = flight(setting.load)
-    if kind != STRAIGHT:
-        return kind != BOUND and is_out_of_reach(setting, position, velocity)
-    force = total_dead_force(setting.load)
-    size = norm(force)
+    if kind == BOUND:
+        return False
+    if kind != STRAIGHT and is_out_of_reach(setting, position, velocity):
+        return True
+    if kind == BENT:
+        return False
+    drift, sway = drift_and_sway(setting.load, position, quaternion, spin)
+    size = norm(drift)
     if size == 0.0:
         return False
-    along = scaled(force, 1.0 / size)
+    along = scaled(drift, 1.0 / size)
     for point in range(len(setting.geometry.points_world)):
         ahead = 0.0
         distance = 0.0
@@ -312,7 +324,7 @@ def nothing_ahead(setting: Setting, position: Vector, velocity: Vector) -> bool:
         for k in range(3):
             away = setting.geometry.points_world[point, k] - position[k] - max(ahead, 0.0) * along[k]
             distance += away * away
-        if math.sqrt(distance) <= setting.body.reach_m:
+        if math.sqrt(distance) <= setting.body.reach_m + sway:
             return False
     return True
 

@@ -158,6 +158,13 @@ def next_twist(
 
 
 @kernel
+def is_gone(setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace) -> bool:
+    """Whether an object that no contact carries has got away."""
+    velocity, spin = twist_of(work.scratch[0].solver.y, frame_at(setting.body, quaternion))
+    return nothing_ahead(setting, position, quaternion, velocity, spin)
+
+
+@kernel
 def gap_left(contacts: ContactSet) -> float:
     """Return the greatest distance, to either side, of a contact that stays on its face from it."""
     greatest = 0.0
@@ -275,7 +282,7 @@ def next_step(
     twist = next_twist(setting, position, quaternion, frame_at(setting.body, quaternion), state.turn_step_rad, work)
     rule = carried_by(work.contacts)
     motion = TRAVEL if norm(twist.spin) == 0.0 else SCREW
-    if rule == FREE and nothing_ahead(setting, position, twist.velocity):
+    if rule == FREE and is_gone(setting, position, quaternion, work):
         write_step(work, step, rule, TRAVEL, position, quaternion)
         return ESCAPES, here, fits
     amount, as_planned, end, turned = furthest_step(
