@@ -33,7 +33,7 @@ POINT_LOOKS: Mapping[str, Look] = {
 TOGETHER = 0.04
 """Points nearer than this fraction of the picture share one label."""
 MARGIN = 0.04
-SECOND_HEAD, LONGEST_SPRING, COIL = 0.8, 1.0, 0.012
+SECOND_HEAD, LONGEST_SPRING, COIL = 0.8, 0.5, 0.012
 """Where a moment's arrow has its other head; in lengths of the picture, the greatest length of a spring that is drawn,
 and the radius of its coils."""
 """Room around the scene, as a fraction of each edge."""
