@@ -218,6 +218,51 @@ def test_a_constant_pull_that_has_come_home_is_no_rest_and_says_so() -> None:
     assert any("ends of" in warning for warning in result.warnings)
 
 
+def test_a_spring_is_as_long_in_each_phase_as_since_the_start() -> None:
+    """The part falls by 3 mm in the first phase; the second has a spring of 0.5 N/mm, with 1 N at the start."""
+    spring = Spring((0, 0, 0.02), (0, 0, 0.2), 500.0, 1.0)
+    falls, pulls = Load("falls", gravity=(0, 0, -G)), Load("pulls", gravity=(0, 0, -G), springs=[spring])
+    result = ended(cube(pose=Pose((0.0, 0.0, 0.023))), FLOOR, falls, pulls)
+    assert result.verdict == "rests"
+    assert sum(forces_of(result).values()) == pytest.approx(G - 2.5, rel=1e-12)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_the_world_has_no_place_of_its_own(turned: bool) -> None:
+    """Cage, object, springs, forces and moments moved and turned together end moved and turned together."""
+    random = np.random.default_rng(12)
+    frame = Pose((30.0, -20.0, 10.0), euler_zyx=(0.7, -0.4, 1.9))
+    for _ in range(5):
+        scene = sprung(random, turned=turned)
+        load = scene.loads[0]
+        here = Load(
+            "all",
+            gravity=frame.rotation @ (0.0, 0.0, -G),
+            forces=[
+                force
+                if force.follows
+                else Force(frame.rotation @ force.direction, force.at_object_m, force.magnitude_n)
+                for force in load.forces
+            ],
+            moments=[
+                moment if moment.follows else Moment(frame.rotation @ moment.direction, moment.magnitude_nm)
+                for moment in load.moments
+            ],
+            springs=[
+                Spring(
+                    spring.at_object_m, frame.transform(spring.to_world_m), spring.stiffness_n_per_m, spring.preload_n
+                )
+                for spring in load.springs
+            ],
+        )
+        there = run(Scene(cube(pose=frame), Cage(scene.cage.points_cage, pose=frame), [here]))
+        back = frame.inverse() @ there.pose
+        result = run(scene)
+        assert there.verdict == result.verdict
+        assert back.position_m == pytest.approx(result.pose.position_m, abs=1e-11)
+        assert back.rotation == pytest.approx(result.pose.rotation, abs=1e-9)
+
+
 def test_rows_of_a_batch_have_the_bits_of_runs() -> None:
     """Also where the start varies, and with it the springs' length there."""
     random = np.random.default_rng(4)

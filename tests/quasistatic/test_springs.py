@@ -8,7 +8,7 @@ from collections import Counter
 import numpy as np
 
 from balance import imbalance
-from cagepose import Cage, Load, Pose, Scene, Spring, run
+from cagepose import Cage, Contact, Load, Pose, Scene, Spring, run
 from quasistatic.paths import RESTS, depth, distance, path_of, potential
 from quasistatic.test_end_poses import descended, is_isolated
 from sprung_scenes import cube, sprung
@@ -29,6 +29,7 @@ def test_the_potential_never_rises_and_nothing_goes_in(say, cases):
         deepest = max(deepest, *(depth(scene, pose) for pose in path_of(result.phases[0])))
         if result.verdict in RESTS:
             assert imbalance(scene, result.phases[0]) <= UNBALANCED, f"scene {number}"
+            assert all(is_in_cone(contact, scene.friction_coefficient or 0.0) for contact in result.contacts)
     say(
         f"springs: {dict(verdicts)}; the potential rose by {greatest:.1e} of load times size, points {deepest:.1e} deep"
     )
@@ -36,6 +37,13 @@ def test_the_potential_never_rises_and_nothing_goes_in(say, cases):
     assert deepest <= 2e-9
     assert verdicts["escapes"] == 0
     assert verdicts["limit"] + verdicts["stalled"] == 0
+
+
+def is_in_cone(contact: Contact, friction: float) -> bool:
+    normal, tangential = contact.force_normal_n, contact.force_tangential_n
+    assert normal is not None
+    assert tangential is not None
+    return normal >= 0.0 and float(np.linalg.norm(tangential)) <= friction * normal + 1e-9
 
 
 def test_slsqp_finds_no_lower_pose_beside_a_rest_on_springs(say, cases):

@@ -91,7 +91,9 @@ def test_sliders_change_what_they_name(tmp_path: Path) -> None:
     path = tmp_path / "plate.yaml"
     path.write_text(TEXT, encoding="utf-8")
     made = {control.label: control for control in controls(read_scene_text(path)) if control.group == "fasten"}
-    assert {"force 1 direction y", "force 1 acts at x", "moment 1", "spring 1 stiffness", "spring 2 preload"} <= set(made)
+    assert {"force 1 direction y", "force 1 acts at x", "moment 1", "spring 1 stiffness", "spring 2 preload"} <= set(
+        made
+    )
     assert (made["spring 1 stiffness"].unit, made["moment 1"].unit) == ("N/mm", "N mm")
     for label in ("moment 1", "spring 1 stiffness", "spring 2 preload"):
         control = made[label]

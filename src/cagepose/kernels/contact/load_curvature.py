@@ -1,5 +1,5 @@
-"""How a load changes with the pose: the Hessian of what has a potential and the symmetric part of the rest (5.29), and
-the other part of that, its circulation (5.30).
+"""How a load changes with the pose: the Hessian of what has a potential and the symmetric part of the rest (5.28), and
+the other part of that, its circulation (5.29).
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""What acts on the object: forces, moments and springs, their wrench and their work, equations (5.2) and (5.26) to
-(5.28). How they change with the pose is in `load_curvature`.
+"""What acts on the object: forces, moments and springs, their wrench and their work, (5.2), (5.26) and (5.27). How they
+change with the pose is in `load_curvature`.
 """
 
 from __future__ import annotations
@@ -146,7 +146,7 @@ def joining_twist(
     start: Vector, start_turned: Quaternion, end: Vector, end_turned: Quaternion
 ) -> tuple[Vector, Vector]:
     """Return (velocity of the centre of gravity at the start, spin) of the screw that leads from one pose to another in
-    a unit of time, by the smaller angle (5.28).
+    a unit of time, by the smaller angle (5.27).
     """
     back = (start_turned[0], -start_turned[1], -start_turned[2], -start_turned[3])
     turn = quaternion_product(end_turned, back)
@@ -170,7 +170,7 @@ def work_done(load: PhaseLoad, start: Vector, start_turned: Quaternion, end: Vec
     """Return the work of a phase's load between two poses of the centre of gravity.
 
     That of dead forces and springs is what their potential falls, (5.2) and (5.26). That of moments, and of what
-    follows, is taken along the screw that joins the poses: their power along it is constant (5.28).
+    follows, is taken along the screw that joins the poses: their power along it is constant (5.27).
     """
     work = 0.0
     for which in range(len(load.actions)):
@@ -206,7 +206,7 @@ def longest_pull(
     turn_step_rad: float,
     size_m: float,
 ) -> float:
-    """Return how much of a twist springs keep their direction for (5.27); inf: there are none, or none moves.
+    """Return how much of a twist springs keep their direction for (5.31); inf: there are none, or none moves.
 
     A spring whose tension is in proportion to its length has no part in that: its force is linear in the pose.
     """

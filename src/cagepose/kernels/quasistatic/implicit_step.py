@@ -87,7 +87,7 @@ def keep_along_faces(contacts: ContactSet, locked: PassiveSet, work: ImplicitSte
 @kernel
 def rho_against_circulation(work: ImplicitStepWorkspace) -> float:
     """Return the rho with which steps shrink fastest where the stiffness is S + A and S alone is in the matrix: |A|^2
-    over the least curvature, as |rho y - A y| is to be far below |(rho + S) y| (5.31).
+    over the least curvature, as |rho y - A y| is to be far below |(rho + S) y| (5.30).
     """
     size = confine(work.circulation, work.held)
     write_matrix(work, 0.0)

@@ -363,7 +363,7 @@ def stability(
 
     On the cone of twists that close no contact, the least curvature is an eigenvalue over the span of one of its faces,
     and its eigenvector lies in that face. So all sets of contacts that may open are held in turn. Where the load turns
-    round on what is held free, only positive curvature says something (5.30).
+    round on what is held free, only positive curvature says something (5.29).
     """
     at_limit = find_held(contacts, statuses, friction, locked, work, system)
     n_held, n_ways = work.held.used, work.ways.used
