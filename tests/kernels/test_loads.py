@@ -31,7 +31,6 @@ KINDS = {
     "following moment": FOLLOWING_MOMENT,
     "spring": SPRING,
 }
-ORIGIN = (0.3, -0.2, 0.1)
 
 
 def body() -> Body:
@@ -48,9 +47,9 @@ def load(kind: int, random: np.random.Generator) -> PhaseLoad:
     action.vector[:] = random.normal(size=3)
     action.arm_object[:] = random.normal(size=3)
     if kind == SPRING:
-        action.anchor_world[:] = 3.0 * random.normal(size=3)
+        action.anchor[:] = 3.0 * random.normal(size=3)
         action.stiffness, action.tension_at_zero = random.uniform(0.5, 2.0), random.normal()
-    return PhaseLoad(actions, ORIGIN)
+    return actions
 
 
 def pose(random: np.random.Generator) -> tuple:
@@ -75,7 +74,7 @@ def moved(at: tuple, y: np.ndarray) -> tuple:
 
 
 def power(load: PhaseLoad, at: tuple, velocity: np.ndarray, spin: np.ndarray) -> float:
-    one = acting(load.actions[0], load.origin_world, *at)
+    one = acting(load[0], *at)
     return one.share * float(np.dot(one.force, velocity) + np.dot(one.moment, spin))
 
 
@@ -136,9 +135,9 @@ def test_the_joining_twist_leads_to_the_pose(angle: float) -> None:
 
 def test_a_spring_whose_tension_is_its_length_times_stiffness_is_linear_also_at_length_zero() -> None:
     acts = load(SPRING, np.random.default_rng(1))
-    action = acts.actions[0]
+    action = acts[0]
     action.tension_at_zero, action.arm_object[:] = 0.0, 0.0
-    here = tuple(np.array(action.anchor_world) - ORIGIN)
+    here = tuple(action.anchor)
     upright = (1.0, 0.0, 0.0, 0.0)
     out = np.zeros(7)
     assert write_load(acts, here, upright, frame_at(body(), upright), out) == 0.0

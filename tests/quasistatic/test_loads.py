@@ -264,19 +264,24 @@ def test_the_world_has_no_place_of_its_own(turned: bool) -> None:
 
 
 def test_rows_of_a_batch_have_the_bits_of_runs() -> None:
-    """Also where the start varies, and with it the springs' length there."""
+    """Also where start and cage vary, and with them the springs' length at the start and the middle of the cage."""
     random = np.random.default_rng(4)
     scene = sprung(random, friction=0.1)
     start = scene.object.pose_world_object
     positions = start.position_m + 1e-3 * random.uniform(-1, 1, (6, 3))
     turns = 0.01 * random.uniform(-1, 1, (6, 3))
-    rows = run_many(scene, Variation(object_position_m=positions, object_euler_zyx=turns))
+    cages, tilts = 1e-4 * random.uniform(-1, 1, (6, 3)), 0.01 * random.uniform(-1, 1, (6, 3))
+    rows = run_many(
+        scene,
+        Variation(object_position_m=positions, object_euler_zyx=turns, cage_position_m=cages, cage_euler_zyx=tilts),
+    )
     for row in range(6):
         held = scene.object
         placed = Object(
             held.boxes, held.center_of_gravity_m, pose=Pose(positions[row], euler_zyx=turns[row]), mass_kg=1.0
         )
-        single = run(Scene(placed, scene.cage, scene.loads, friction_coefficient=0.1))
+        cage = Cage(scene.cage.points_cage, pose=Pose(cages[row], euler_zyx=tilts[row]))
+        single = run(Scene(placed, cage, scene.loads, friction_coefficient=0.1))
         assert rows.verdict[row] == single.verdict
         assert np.array_equal(rows.position_m[row, 0], single.pose.position_m)
         assert np.array_equal(rows.quaternion_wxyz[row, 0], single.pose.quaternion_wxyz)

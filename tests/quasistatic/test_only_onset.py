@@ -19,7 +19,7 @@ from cagepose.kernels.algebra.least_squares import empty_system
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.contact.contact_set import ContactSet, empty_contact_set
 from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS, NewtonWorkspace
-from cagepose.kernels.outcome.cases import phase_load, start_of
+from cagepose.kernels.outcome.cases import start_of
 from cagepose.kernels.stability.proof import empty_proof_workspace, stand_at
 from cagepose.kernels.stability.relaxation import CLOSED, N_COLUMNS, UNDECIDED
 from cagepose.kernels.stability.strong import NOT_SHOWN, OTHER_FOUND, SECTORS, UNIQUE, ModeTree, other_onset
@@ -335,9 +335,7 @@ def held_blocks(random: np.random.Generator, friction: float) -> Iterator[Held]:
             continue
         part, at = part_of(scene), empty_proof_workspace(scene.geometry)
         case = start_of(0, part, cases_of(scene, friction, phase.pose), scene.cage.points_world())
-        stand_at(
-            case.geometry, part.body, case.position, case.quaternion, phase_load(case, 0), case.tolerances.touch_m, at
-        )
+        stand_at(case.geometry, part.body, case.position, case.quaternion, case.actions[0], case.tolerances.touch_m, at)
         rows = [at.contacts.rows[i] for i in range(at.contacts.used[0]) if at.contacts.states[i].chosen]
         load = at.scratch[0].solver.load
         yield Held(np.array([row.columns for row in rows]), friction, load / np.linalg.norm(load))

@@ -24,7 +24,6 @@ from cagepose.runs.load_scaling import one_force, scaled_load
 
 HARDLY_TENSE = 1e-12
 """In the terms of a spring's tension: a smaller one at length zero is rounding. The spring's force is then linear."""
-ORIGIN = (0.0, 0.0, 0.0)
 
 
 class Wrench(NamedTuple):
@@ -59,7 +58,8 @@ def _actions_of_phase(scene: Scene, load: Load) -> np.ndarray:
         found["vector"][index] = moment.magnitude_nm * moment.direction
     for index, spring in enumerate(load.springs, start=len(found) - len(load.springs)):
         found["kind"][index] = SPRING
-        found["arm_object"][index], found["anchor_world"][index] = spring.at_object_m - center, spring.to_world_m
+        found["arm_object"][index] = spring.at_object_m - center
+        found["anchor"][index] = spring.to_world_m - cage_middle(scene)
         found["stiffness"][index] = spring.stiffness_n_per_m
         found["tension_at_zero"][index] = tensions_at_zero(spring, start.position_m[None], start.quaternion_wxyz[None])[
             0
@@ -100,29 +100,47 @@ def tensions_at_zero(spring: Spring, positions_m: FloatArray, quaternions: Float
     """Return the tension that a spring would have if its ends met, newtons, (n,), for objects that start at poses,
     (n, 3) and (n, 4). Number by number, so that a row has the same bits as alone.
     """
-    x, y, z = spring.at_object_m
+    turned = _turned(quaternions, *spring.at_object_m)
+    ways = [spring.to_world_m[axis] - (positions_m[:, axis] + turned[axis]) for axis in range(3)]
+    pulls = spring.stiffness_n_per_m * np.sqrt(ways[0] * ways[0] + ways[1] * ways[1] + ways[2] * ways[2])
+    tensions = spring.preload_n - pulls
+    is_rounding = np.abs(tensions) <= HARDLY_TENSE * (abs(spring.preload_n) + pulls)
+    return np.where(is_rounding, 0.0, tensions)
+
+
+def cage_middle(scene: Scene) -> FloatArray:
+    """Return the middle of the cage points in the world, (3,), metres."""
+    pose = scene.cage.pose_world_cage
+    return cage_middles(scene.cage.points_cage[None], pose.position_m[None], pose.quaternion_wxyz[None])[0]
+
+
+def cage_middles(points_cage_m: FloatArray, positions_m: FloatArray, quaternions: FloatArray) -> FloatArray:
+    """Return the middles of cages in the world, (n, 3), metres, from which kernels see all positions.
+
+    Points are (n, n_points, 3), poses (n, 3) and (n, 4), each also one row for all. Number by number, as below.
+    """
+    middles = points_cage_m.cumsum(axis=1)[:, -1] / points_cage_m.shape[1]
+    found: FloatArray = positions_m + np.stack(_turned(quaternions, *middles.T), axis=1)
+    return found
+
+
+def _turned(quaternions: FloatArray, x: FloatArray, y: FloatArray, z: FloatArray) -> tuple[FloatArray, ...]:
+    """Return vectors turned by quaternions, (n, 4): as `cagepose.kernels.algebra.pose.rotated` does."""
     w, i, j, k = quaternions.T
-    # 2 (r x a) and then a + w t + r x t, with r the vector part: `cagepose.kernels.algebra.pose.rotated`
     t = (2.0 * (j * z - k * y), 2.0 * (k * x - i * z), 2.0 * (i * y - j * x))
-    turned = (
+    return (
         x + w * t[0] + (j * t[2] - k * t[1]),
         y + w * t[1] + (k * t[0] - i * t[2]),
         z + w * t[2] + (i * t[1] - j * t[0]),
     )
-    ways = [spring.to_world_m[axis] - (positions_m[:, axis] + turned[axis]) for axis in range(3)]
-    pulls = spring.stiffness_n_per_m * np.sqrt(ways[0] * ways[0] + ways[1] * ways[1] + ways[2] * ways[2])
-    tensions: FloatArray = spring.preload_n - pulls
-    return np.where(np.abs(tensions) <= HARDLY_TENSE * (abs(spring.preload_n) + pulls), 0.0, tensions)
 
 
-def wrench_at(actions: np.ndarray, center_m: FloatArray, pose: Pose) -> Wrench:
-    """Return the sum of a phase's actions on an object at a pose, whose centre of gravity is ``center_m`` in its frame,
-    (3,), metres.
-    """
-    center, turned = as_vector(pose.transform(center_m)), pose.as_tuples()[1]
+def wrench_at(scene: Scene, phase: int, pose: Pose) -> Wrench:
+    """Return the sum of all that acts in a phase while the object is at a pose."""
+    center = pose.transform(scene.object.center_of_gravity_m) - cage_middle(scene)
     force, moment = np.zeros(3), np.zeros(3)
-    for action in actions:
-        one = acting(action, ORIGIN, center, turned)
+    for action in actions_of(scene)[phase]:
+        one = acting(action, as_vector(center), pose.as_tuples()[1])
         force += one.share * np.array(one.force)
         moment += one.share * np.array(one.moment)
     return Wrench(force, moment)

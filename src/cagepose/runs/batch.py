@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import Rows
-from cagepose.kernels.contact.loads import SPRING, Action
+from cagepose.kernels.contact.loads import SPRING, PhaseLoad
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.cases import Cases
 from cagepose.kernels.outcome.endings import empty_endings
@@ -18,7 +18,7 @@ from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.geometry import cage_sizes, object_size
 from cagepose.model.pose import Pose, quaternions_of
 from cagepose.model.scene import FARTHEST_START, Scene
-from cagepose.runs.actions import actions_of, tensions_at_zero
+from cagepose.runs.actions import actions_of, cage_middles, tensions_at_zero
 from cagepose.runs.cases import cases_of, part_of
 from cagepose.runs.load_scaling import scaled_pushes
 from cagepose.runs.methods import Method
@@ -102,16 +102,18 @@ def _quaternions(angles: FloatArray | None, pose: Pose) -> FloatArray:
     return pose.quaternion_wxyz[None] if angles is None else quaternions_of(angles)
 
 
-def _actions(scene: Scene, columns: dict[str, FloatArray]) -> Rows[Rows[Rows[Action]]]:
+def _actions(scene: Scene, columns: dict[str, FloatArray]) -> Rows[Rows[PhaseLoad]]:
     varied = [name for name in columns if name.startswith("force_")]
-    starts = [name for name in columns if name.startswith("object_") and any(load.springs for load in scene.loads)]
+    starts = list[str]()
+    if any(load.springs for load in scene.loads):
+        starts = [name for name in columns if name.startswith(("object_", "cage_", "points_"))]
     n_rows = len(columns[(varied + starts)[0]]) if varied or starts else 1
     actions = np.repeat(actions_of(scene)[None], n_rows, axis=0)
     if varied:
         _vary_force(scene, columns, actions)
     if starts:
         _vary_springs(scene, columns, actions)
-    return cast(Rows[Rows[Rows[Action]]], actions)
+    return cast(Rows[Rows[PhaseLoad]], actions)
 
 
 def _vary_force(scene: Scene, columns: dict[str, FloatArray], actions: np.ndarray) -> None:
@@ -130,11 +132,19 @@ def _vary_force(scene: Scene, columns: dict[str, FloatArray], actions: np.ndarra
 
 
 def _vary_springs(scene: Scene, columns: dict[str, FloatArray], actions: np.ndarray) -> None:
-    """Write the springs' tensions, which are those of the preload where the object starts."""
-    start = scene.object.pose_world_object
+    """Write the springs' tensions, which are those of the preload where the object starts, and where they are held as
+    seen from the middle of the cage.
+    """
+    start, cage = scene.object.pose_world_object, scene.cage.pose_world_cage
+    middles = cage_middles(
+        columns.get("points_cage_m", scene.cage.points_cage[None]),
+        columns.get("cage_position_m", cage.position_m[None]),
+        _quaternions(columns.get("cage_euler_zyx"), cage),
+    )
     positions = columns.get("object_position_m", start.position_m[None])
     quaternions = _quaternions(columns.get("object_euler_zyx"), start)
     for place, load in enumerate(scene.loads):
         springs = np.flatnonzero(actions["kind"][0, place] == SPRING)
         for column, spring in zip(springs, load.springs, strict=True):
+            actions["anchor"][:, place, column] = spring.to_world_m - middles
             actions["tension_at_zero"][:, place, column] = tensions_at_zero(spring, positions, quaternions)

@@ -9,7 +9,7 @@ import numpy as np
 
 from cagepose.kernels.algebra.record import Rows, empty_record
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
-from cagepose.kernels.contact.loads import Action
+from cagepose.kernels.contact.loads import PhaseLoad
 from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.cases import Cases, Part
@@ -61,7 +61,7 @@ def cases_of(scene: Scene, friction: float, start: Pose | None = None) -> Cases:
         held.quaternion_wxyz[None],
         np.array([scene.size_m]),
         np.array([friction]),
-        cast(Rows[Rows[Rows[Action]]], actions_of(scene)[None]),
+        cast(Rows[Rows[PhaseLoad]], actions_of(scene)[None]),
         kernel_tolerances(1.0, scene.tolerances.touch),
     )
 

@@ -12,7 +12,7 @@ import numpy as np
 from cagepose.kernels.contact.contact_set import SAME_NORMAL
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
 from cagepose.model.checks import FloatArray
-from cagepose.runs.actions import actions_of, wrench_at
+from cagepose.runs.actions import wrench_at
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, Contact, Run
@@ -176,8 +176,7 @@ def _cones(run: Run, phase: int, contacts: list[Contact]) -> ContactCones:
 
 def _load(run: Run, phase: int, cones: ContactCones) -> tuple[FloatArray, float]:
     """Return the wrench that contacts have to give, (6,), and the length that it was divided by."""
-    scene = run.scene
-    load = wrench_at(actions_of(scene)[phase], scene.object.center_of_gravity_m, run.phases[phase].pose)
+    load = wrench_at(run.scene, phase, run.phases[phase].pose)
     wrench = -np.append(load.force, load.moment / cones.length_m)
     size = float(np.linalg.norm(wrench))
     return wrench / (size or 1.0), size

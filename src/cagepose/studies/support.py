@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cagepose.model.checks import FloatArray, unit_vector
-from cagepose.runs.actions import actions_of, wrench_at
+from cagepose.runs.actions import wrench_at
 from cagepose.runs.run import Run
 
 
@@ -74,7 +74,7 @@ def _load_line(run: Run, phase_index: int) -> tuple[FloatArray, FloatArray]:
         return unit_vector(load.gravity_world, "gravity"), pose.transform(center)
     if load.force is not None and not load.needs_newtons and not load.force.follows:
         return load.force.direction, pose.transform(load.force.at_object_m)
-    force, moment = wrench_at(actions_of(scene)[phase_index], center, pose)
+    force, moment = wrench_at(scene, phase_index, pose)
     square = float(force @ force)
     if square == 0.0:
         raise ValueError(f"what acts in phase {load.name!r} has no direction: its forces cancel")

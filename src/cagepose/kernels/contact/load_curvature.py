@@ -38,11 +38,11 @@ def way_of_point(component: int, arm: Vector, frame: Frame) -> Vector:
 
 @kernel
 def add_spring_curvature(
-    action: Action, origin: Vector, position: Vector, quaternion: Quaternion, frame: Frame, out: FloatArray
+    action: Action, position: Vector, quaternion: Quaternion, frame: Frame, out: FloatArray
 ) -> None:
     """Add the Hessian of a spring's potential: of its pull at the arm that turns, and of the pull that changes."""
     arm = arm_of(action, quaternion)
-    way = spring_vector(action, origin, position, arm)
+    way = spring_vector(action, position, arm)
     length = norm(way)
     across = action.stiffness  # tension over length
     if action.tension_at_zero != 0.0 and length > 0.0:
@@ -61,27 +61,27 @@ def add_load_curvature(
     load: PhaseLoad, position: Vector, quaternion: Quaternion, frame: Frame, out: FloatArray
 ) -> None:
     """Add what a phase's load adds to S, (6, 6). That of moments, dead or following, is zero."""
-    for which in range(len(load.actions)):
-        action = load.actions[which]
+    for which in range(len(load)):
+        action = load[which]
         if is_idle(action):
             continue
         if action.kind == DEAD_FORCE:
             force, arm = vector_from(action.vector), arm_of(action, quaternion)
             add_turned_arm(force, arm, -1.0, frame.axes, frame.radii, out)
         elif action.kind == SPRING:
-            add_spring_curvature(action, load.origin_world, position, quaternion, frame, out)
+            add_spring_curvature(action, position, quaternion, frame, out)
         elif action.kind == FOLLOWING_FORCE:
-            force = acting(action, load.origin_world, position, quaternion).force
+            force = acting(action, position, quaternion).force
             add_coupling(force, 0.5, frame.axes, frame.radii, out)
 
 
 @kernel
 def has_circulation(load: PhaseLoad) -> bool:
     """Whether a part of a phase's load has no potential."""
-    for which in range(len(load.actions)):
-        if load.actions[which].kind != DEAD_FORCE and load.actions[which].kind != SPRING:
-            return True
-    return False
+    found = False
+    for which in range(len(load)):
+        found = found or (load[which].kind != DEAD_FORCE and load[which].kind != SPRING)
+    return found
 
 
 @kernel
@@ -90,11 +90,11 @@ def write_circulation(load: PhaseLoad, position: Vector, quaternion: Quaternion,
     for j in range(6):
         for k in range(6):
             out[j, k] = 0.0
-    for which in range(len(load.actions)):
-        action = load.actions[which]
+    for which in range(len(load)):
+        action = load[which]
         if action.kind == DEAD_FORCE or action.kind == SPRING:
             continue
-        one = acting(action, load.origin_world, position, quaternion)
+        one = acting(action, position, quaternion)
         sign = -0.5 if action.kind == DEAD_MOMENT else 0.5
         for j in range(3):
             turned = cross(one.force, frame.axes[j])

@@ -35,8 +35,8 @@ class Action:
         Force or moment: in the world, or in the object's frame where it follows.
     arm_object
         Where a force or a spring acts, from the centre of gravity, in the object's frame, metres.
-    anchor_world
-        Where a spring is held, metres.
+    anchor
+        Where a spring is held, as seen from the middle of the cage points, as positions are; metres.
     stiffness
         Of a spring, force for each metre.
     tension_at_zero
@@ -46,16 +46,13 @@ class Action:
     kind: int
     vector: Annotated[FloatArray, 3]
     arm_object: Annotated[FloatArray, 3]
-    anchor_world: Annotated[FloatArray, 3]
+    anchor: Annotated[FloatArray, 3]
     stiffness: float
     tension_at_zero: float
 
 
-class PhaseLoad(NamedTuple):
-    """All that acts in a phase, the weight first; positions of kernels are seen from ``origin_world``."""
-
-    actions: Rows[Action]
-    origin_world: Vector
+PhaseLoad = Rows[Action]
+"""All that acts in a phase, the weight first."""
 
 
 class Acting(NamedTuple):
@@ -82,13 +79,13 @@ def is_idle(action: Action) -> bool:
 
 
 @kernel
-def spring_vector(action: Action, origin: Vector, position: Vector, arm: Vector) -> Vector:
+def spring_vector(action: Action, position: Vector, arm: Vector) -> Vector:
     """Return the way from where a spring acts to where it is held."""
-    return minus(minus(vector_from(action.anchor_world), origin), plus(position, arm))
+    return minus(vector_from(action.anchor), plus(position, arm))
 
 
 @kernel
-def acting(action: Action, origin: Vector, position: Vector, quaternion: Quaternion) -> Acting:
+def acting(action: Action, position: Vector, quaternion: Quaternion) -> Acting:
     """Return what an action does at a pose."""
     vector = vector_from(action.vector)
     if action.kind == DEAD_FORCE:
@@ -101,7 +98,7 @@ def acting(action: Action, origin: Vector, position: Vector, quaternion: Quatern
     if action.kind == FOLLOWING_MOMENT:
         return Acting((0.0, 0.0, 0.0), rotated(quaternion, vector), 1.0)
     arm = arm_of(action, quaternion)
-    way = spring_vector(action, origin, position, arm)
+    way = spring_vector(action, position, arm)
     length = norm(way)
     if length == 0.0:  # it has no direction
         return Acting((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 1.0)
@@ -115,10 +112,10 @@ def write_load(load: PhaseLoad, position: Vector, quaternion: Quaternion, frame:
     """Write the scaled wrench of a phase's load, D^-1/2 w; return the length of its terms, which may cancel."""
     terms = 0.0
     force, moment = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    for which in range(len(load.actions)):
-        if is_idle(load.actions[which]):
+    for which in range(len(load)):
+        if is_idle(load[which]):
             continue
-        one = acting(load.actions[which], load.origin_world, position, quaternion)
+        one = acting(load[which], position, quaternion)
         write_scaled_wrench(one.force, one.moment, frame, out)
         terms += math.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2 + out[3] ** 2 + out[4] ** 2 + out[5] ** 2)
         force, moment = plus(force, scaled(one.force, one.share)), plus(moment, scaled(one.moment, one.share))
@@ -130,10 +127,10 @@ def write_load(load: PhaseLoad, position: Vector, quaternion: Quaternion, frame:
 def total_load(load: PhaseLoad, position: Vector, quaternion: Quaternion, size_m: float) -> float:
     """Return the sum of what a phase's forces and springs are made of, and of its moments over a length."""
     total = 0.0
-    for which in range(len(load.actions)):
-        action = load.actions[which]
+    for which in range(len(load)):
+        action = load[which]
         if action.kind == SPRING:
-            total += norm(acting(action, load.origin_world, position, quaternion).force)
+            total += norm(acting(action, position, quaternion).force)
         elif action.kind == DEAD_FORCE or action.kind == FOLLOWING_FORCE:
             total += norm(vector_from(action.vector))
         else:
@@ -173,8 +170,8 @@ def work_done(load: PhaseLoad, start: Vector, start_turned: Quaternion, end: Vec
     follows, is taken along the screw that joins the poses: their power along it is constant (5.27).
     """
     work = 0.0
-    for which in range(len(load.actions)):
-        action = load.actions[which]
+    for which in range(len(load)):
+        action = load[which]
         if is_idle(action):
             continue
         arm, turned_arm = arm_of(action, start_turned), arm_of(action, end_turned)
@@ -182,8 +179,8 @@ def work_done(load: PhaseLoad, start: Vector, start_turned: Quaternion, end: Vec
         if action.kind == DEAD_FORCE:
             work += dot(vector_from(action.vector), moved)
         elif action.kind == SPRING:
-            before = spring_vector(action, load.origin_world, start, arm)
-            after = spring_vector(action, load.origin_world, end, turned_arm)
+            before = spring_vector(action, start, arm)
+            after = spring_vector(action, end, turned_arm)
             lengths = norm(before) + norm(after)
             mean = 0.5 * action.stiffness
             if lengths > 0.0:
@@ -191,7 +188,7 @@ def work_done(load: PhaseLoad, start: Vector, start_turned: Quaternion, end: Vec
             work += mean * dot(moved, plus(before, after))
         else:
             velocity, spin = joining_twist(start, start_turned, end, end_turned)
-            one = acting(action, load.origin_world, start, start_turned)
+            one = acting(action, start, start_turned)
             work += dot(one.force, velocity) + dot(one.moment, spin)
     return work
 
@@ -211,13 +208,13 @@ def longest_pull(
     A spring whose tension is in proportion to its length has no part in that: its force is linear in the pose.
     """
     amount = math.inf
-    for which in range(len(load.actions)):
-        action = load.actions[which]
+    for which in range(len(load)):
+        action = load[which]
         if action.kind != SPRING:
             continue
         arm = arm_of(action, quaternion)
         speed = norm(plus(velocity, cross(spin, arm)))
-        length = norm(spring_vector(action, load.origin_world, position, arm))
+        length = norm(spring_vector(action, position, arm))
         longest = max(length, size_m)
         if action.tension_at_zero != 0.0:
             longest = ARCS_PER_TURN * turn_step_rad * max(length, SHORTEST * size_m)
@@ -230,8 +227,8 @@ def longest_pull(
 def flight(load: PhaseLoad) -> int:
     """Return how an object flies that touches nothing: STRAIGHT, WINDING, BENT or BOUND (5.32)."""
     follows, turns_away, found = False, False, STRAIGHT
-    for which in range(len(load.actions)):
-        action = load.actions[which]
+    for which in range(len(load)):
+        action = load[which]
         if is_idle(action):
             continue
         if action.kind == SPRING:
@@ -251,12 +248,12 @@ def drift_and_sway(load: PhaseLoad, position: Vector, quaternion: Quaternion, sp
     how far it strays from a straight line along it (5.32).
     """
     dead, following = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    for which in range(len(load.actions)):
-        action = load.actions[which]
+    for which in range(len(load)):
+        action = load[which]
         if action.kind == DEAD_FORCE:
             dead = plus(dead, vector_from(action.vector))
         elif action.kind == FOLLOWING_FORCE:
-            following = plus(following, acting(action, load.origin_world, position, quaternion).force)
+            following = plus(following, acting(action, position, quaternion).force)
     rate = norm(spin)
     if rate == 0.0:
         return plus(dead, following), 0.0

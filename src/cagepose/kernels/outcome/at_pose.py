@@ -6,7 +6,7 @@ import math
 
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.native.kernel import entry
-from cagepose.kernels.outcome.cases import Cases, Part, phase_load, start_of
+from cagepose.kernels.outcome.cases import Cases, Part, start_of
 from cagepose.kernels.outcome.publish import begin, end_phase
 from cagepose.kernels.outcome.records import Outcome
 from cagepose.kernels.outcome.trace import RESTS
@@ -45,7 +45,7 @@ def critical_friction(phase: int, part: Part, cases: Cases, points_world: FloatA
     Parameters as for `judge_start`.
     """
     start = start_of(0, part, cases, points_world)
-    load, touch_m = phase_load(start, phase), start.tolerances.touch_m
+    load, touch_m = start.actions[phase], start.tolerances.touch_m
     if not stand_at(start.geometry, part.body, start.position, start.quaternion, load, touch_m, at):
         return math.nan
     return least_friction_of_faces(at)

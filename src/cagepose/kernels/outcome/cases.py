@@ -9,7 +9,7 @@ from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances, scaled_tolerances
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, row, scaled
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
-from cagepose.kernels.contact.loads import Action, PhaseLoad
+from cagepose.kernels.contact.loads import PhaseLoad
 from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.native.kernel import kernel
 
@@ -63,7 +63,7 @@ class Cases(NamedTuple):
     object_quaternions: FloatArray
     sizes_m: FloatArray
     frictions: FloatArray
-    actions: Rows[Rows[Rows[Action]]]
+    actions: Rows[Rows[PhaseLoad]]
     tolerances: KernelTolerances
 
 
@@ -90,7 +90,7 @@ class Start(NamedTuple):
     size_m: float
     friction: float
     tolerances: KernelTolerances
-    actions: Rows[Rows[Action]]
+    actions: Rows[PhaseLoad]
 
 
 @kernel
@@ -133,12 +133,6 @@ def start_of(case: int, part: Part, cases: Cases, points_world: FloatArray) -> S
         scaled_tolerances(cases.tolerances, size_m),
         cases.actions[row_of(len(cases.actions), case)],
     )
-
-
-@kernel
-def phase_load(start: Start, phase: int) -> PhaseLoad:
-    """Return all that acts in a phase of a case."""
-    return PhaseLoad(start.actions[phase], start.origin_world)
 
 
 @kernel

@@ -7,7 +7,7 @@ from cagepose.kernels.algebra.vector import Vector, vector_from
 from cagepose.kernels.collision.contacts import is_near_edge
 from cagepose.kernels.contact.metric import frame_at, twist_of
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.outcome.cases import Part, Start, object_position, phase_load
+from cagepose.kernels.outcome.cases import Part, Start, object_position
 from cagepose.kernels.outcome.motion import motion_between, motion_of_twist
 from cagepose.kernels.outcome.records import Outcome, PhaseRecord
 from cagepose.kernels.outcome.trace import LET_GO, NONE, RESTS, SCREW, STALLED, Trace
@@ -37,7 +37,7 @@ def judge_end(
         part.body,
         position,
         quaternion,
-        phase_load(start, phase),
+        start.actions[phase],
         start.friction,
         start.size_m,
         start.tolerances,

@@ -11,7 +11,7 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.native.kernel import entry, kernel
-from cagepose.kernels.outcome.cases import Cases, Part, Start, is_valid, phase_load, start_of
+from cagepose.kernels.outcome.cases import Cases, Part, Start, is_valid, start_of
 from cagepose.kernels.outcome.endings import INVALID, Endings, write_ending
 from cagepose.kernels.outcome.publish import NO_BALANCE, begin, end_phase, judge_end, publish_events
 from cagepose.kernels.outcome.records import Outcome
@@ -61,7 +61,7 @@ def phase_from(
     setting = Setting(
         start.geometry,
         part.body,
-        phase_load(start, phase),
+        start.actions[phase],
         start.size_m,
         start.friction,
         turn_step_rad,

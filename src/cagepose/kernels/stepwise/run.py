@@ -21,7 +21,7 @@ from cagepose.kernels.collision.first_contact import first_contact_travel
 from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement, is_clear_of, place_object
 from cagepose.kernels.contact.loads import PhaseLoad, arm_of
 from cagepose.kernels.native.kernel import entry, kernel
-from cagepose.kernels.outcome.cases import Cases, Part, Start, is_valid, phase_load, start_of
+from cagepose.kernels.outcome.cases import Cases, Part, Start, is_valid, start_of
 from cagepose.kernels.outcome.endings import INVALID, Endings, write_ending
 from cagepose.kernels.outcome.publish import begin, end_phase, publish_events
 from cagepose.kernels.outcome.records import Outcome
@@ -162,13 +162,13 @@ def was_met(trace: Trace, last: int, size_m: float, resolution_m: float) -> bool
 @kernel
 def is_push(load: PhaseLoad) -> bool:
     """Whether a phase has a force: gravity beside it is ignored then (R8b)."""
-    return len(load.actions) > 1 and norm(vector_from(load.actions[1].vector)) > 0.0
+    return len(load) > 1 and norm(vector_from(load[1].vector)) > 0.0
 
 
 @kernel
 def load_at(load: PhaseLoad, position: Vector, quaternion: Quaternion) -> PointLoad:
     """Return the load on the object at a pose: its direction is the world's, its point the object's (R8b)."""
-    action = load.actions[1 if is_push(load) else 0]
+    action = load[1 if is_push(load) else 0]
     force = vector_from(action.vector)
     return PointLoad(scaled(force, 1.0 / norm(force)), plus(position, arm_of(action, quaternion)))
 
@@ -188,7 +188,7 @@ def phase_run(
     The contacts of the phase before keep their order. A step depends on the pose and on that order alone, so that any
     step of a run can be made again.
     """
-    geometry, tolerances, actions = start.geometry, start.tolerances, phase_load(start, phase)
+    geometry, tolerances, actions = start.geometry, start.tolerances, start.actions[phase]
     placement, touching, trace = work.placement, work.touching, work.trace
     rules = rules_of(of_size, start.friction, start.size_m)
     pushes = is_push(actions)
