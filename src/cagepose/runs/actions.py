@@ -105,13 +105,15 @@ def tensions_at_zero(spring: Spring, positions_m: FloatArray, quaternions: Float
     pulls = spring.stiffness_n_per_m * np.sqrt(ways[0] * ways[0] + ways[1] * ways[1] + ways[2] * ways[2])
     tensions = spring.preload_n - pulls
     is_rounding = np.abs(tensions) <= HARDLY_TENSE * (abs(spring.preload_n) + pulls)
-    return np.where(is_rounding, 0.0, tensions)
+    kept: FloatArray = np.where(is_rounding, 0.0, tensions)
+    return kept
 
 
 def cage_middle(scene: Scene) -> FloatArray:
     """Return the middle of the cage points in the world, (3,), metres."""
     pose = scene.cage.pose_world_cage
-    return cage_middles(scene.cage.points_cage[None], pose.position_m[None], pose.quaternion_wxyz[None])[0]
+    found: FloatArray = cage_middles(scene.cage.points_cage[None], pose.position_m[None], pose.quaternion_wxyz[None])[0]
+    return found
 
 
 def cage_middles(points_cage_m: FloatArray, positions_m: FloatArray, quaternions: FloatArray) -> FloatArray:
