@@ -128,7 +128,7 @@ def acting(scene: Scene, load: Load) -> list[Acting]:
         assert down is not None
         return [Acting(down / np.linalg.norm(down) if mass is None else mass * down, center)]
     magnitude = load.force.magnitude_n
-    push = Acting(load.force.direction_world * (1.0 if magnitude is None else magnitude), load.force.at_object_m)
+    push = Acting(load.force.direction * (1.0 if magnitude is None else magnitude), load.force.at_object_m)
     if down is None:
         return [push]
     if mass is not None and magnitude is not None:

@@ -70,7 +70,7 @@ def batch(one: Run) -> Answer:
     pushes = [load for load in scene.loads if load.force is not None]
     directions = rng.normal(size=(3, 3)) if len(pushes) == 1 else None
     if directions is not None and pushes[0].force is not None:
-        directions[1] = pushes[0].force.direction_world
+        directions[1] = pushes[0].force.direction
     rows = run_many(
         scene,
         Variation(friction_coefficient=frictions, cage_position_m=positions, force_direction_world=directions),

@@ -43,7 +43,7 @@ def _load(load: Load) -> dict[str, Any]:
     if load.gravity_world is not None:
         entry["gravity"] = _plain(load.gravity_world)
     if load.force is not None:
-        entry["force"] = {"direction": _plain(load.force.direction_world), "at": _plain(load.force.at_object_m)}
+        entry["force"] = {"direction": _plain(load.force.direction), "at": _plain(load.force.at_object_m)}
         if load.force.magnitude_n is not None:
             entry["force"]["magnitude"] = load.force.magnitude_n
     return entry

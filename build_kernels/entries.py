@@ -15,7 +15,8 @@ from cagepose.kernels.algebra.program_bound import extents
 from cagepose.kernels.algebra.record import dtype_of, empty_record, empty_rows
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
 from cagepose.kernels.collision.geometry import Geometry, empty_placement, place_object
-from cagepose.kernels.contact.metric import Body, PhaseLoad
+from cagepose.kernels.contact.loads import Action
+from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.outcome.at_pose import critical_friction, judge_start
 from cagepose.kernels.outcome.cases import Cases, Part
 from cagepose.kernels.outcome.endings import empty_endings
@@ -61,10 +62,10 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield place_object, (geometry, ORIGIN, UPRIGHT, empty_placement(geometry))
 
     part = Part(vectors, vectors, np.zeros((1, 3, 3)), 1, empty_record(Body), ORIGIN)
-    loads = np.zeros((1, 1), dtype_of(PhaseLoad))
+    actions = np.zeros((1, 1, 1), dtype_of(Action))
     points = np.zeros((1, 1, 3))
     cases = Cases(
-        vectors, quaternions, points, vectors, quaternions, numbers, numbers, numbers, numbers, loads, tolerances
+        vectors, quaternions, points, vectors, quaternions, numbers, numbers, numbers, numbers, actions, tolerances
     )
     outcome, endings = empty_outcome(1, 1, 1, 1), empty_endings(1, 1, 1)
     proof = empty_proof_workspace(geometry)

@@ -14,9 +14,18 @@ def imbalance(scene: Scene, phase: PhaseRun) -> float:
     weighed = scaled_load(scene, load)
     center = phase.pose.transform(scene.object.center_of_gravity_m)
     acts = [(weighed.gravity, center)]
-    if load.force is not None:
-        acts.append((weighed.force, phase.pose.transform(load.force.at_object_m)))
-    size_of_load = sum(np.linalg.norm(force) for force, _ in acts)
+    rotation, couples = phase.pose.rotation, np.zeros(3)
+    for push, force in zip(load.pushes, weighed.forces, strict=True):
+        acts.append((rotation @ force if push.follows else force, phase.pose.transform(push.at_object_m)))
+    for turning in load.moments:
+        couples += turning.magnitude_nm * (rotation @ turning.direction if turning.follows else turning.direction)
+    for spring in load.springs:
+        here = phase.pose.transform(spring.at_object_m)
+        way, start = spring.to_world_m - here, scene.object.pose_world_object.transform(spring.at_object_m)
+        longer = np.linalg.norm(way) - np.linalg.norm(spring.to_world_m - start)
+        pull = (spring.preload_n + spring.stiffness_n_per_m * longer) / np.linalg.norm(way)
+        acts.append((pull * way, here))
+    size_of_load = sum(np.linalg.norm(force) for force, _ in acts) + np.linalg.norm(couples) / scene.size_m
     points = dict(zip(scene.cage.names, scene.cage.points_world(), strict=True))
     for contact in phase.contacts:
         assert contact.force_normal_n is not None
@@ -24,5 +33,5 @@ def imbalance(scene: Scene, phase: PhaseRun) -> float:
         force = contact.force_tangential_n - contact.force_normal_n * contact.normal_world
         acts.append((force, points[contact.point]))
     net = sum(force for force, _ in acts)
-    moment = sum(np.cross(at - center, force) for force, at in acts)
+    moment = couples + sum(np.cross(at - center, force) for force, at in acts)
     return float(max(np.linalg.norm(net), np.linalg.norm(moment) / scene.size_m) / size_of_load)

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from cagepose.model.cage import Cage as Cage
     from cagepose.model.load import Force as Force
     from cagepose.model.load import Load as Load
+    from cagepose.model.load import Moment as Moment
+    from cagepose.model.load import Spring as Spring
     from cagepose.model.parts import Box as Box
     from cagepose.model.parts import Object as Object
     from cagepose.model.pose import Pose as Pose
@@ -80,7 +82,7 @@ _HOMES = {
         "SceneFileError",
     ),
     "cagepose.model.cage": ("Cage",),
-    "cagepose.model.load": ("Force", "Load"),
+    "cagepose.model.load": ("Force", "Load", "Moment", "Spring"),
     "cagepose.model.parts": ("Box", "Object"),
     "cagepose.model.pose": ("Pose",),
     "cagepose.model.scene": ("Adjustable", "Scene"),
@@ -125,6 +127,7 @@ __all__ = [
     "Margin",
     "MissingExtraError",
     "ModeTree",
+    "Moment",
     "Motion",
     "Object",
     "OtherOnset",
@@ -140,6 +143,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "SceneFileError",
+    "Spring",
     "Tolerances",
     "Variant",
     "Variation",

@@ -24,6 +24,7 @@ def test_all_names_every_public_class_and_function_once() -> None:
             "Load",
             "Margin",
             "MissingExtraError",
+            "Moment",
             "Motion",
             "Object",
             "Parting",
@@ -35,7 +36,8 @@ def test_all_names_every_public_class_and_function_once() -> None:
             "Proof",
             "Run",
         ),
-        *("RunFileError", "Runs", "Scene", "SceneError", "SceneFileError", "Tolerances", "Variant", "Variation"),
+        *("RunFileError", "Runs", "Scene", "SceneError", "SceneFileError", "Spring", "Tolerances", "Variant"),
+        "Variation",
         *(
             "Certificate",
             "CertificateCheck",

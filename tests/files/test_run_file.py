@@ -85,11 +85,16 @@ def test_a_loaded_run_can_be_run_again_with_the_same_result(sample_text: str, tm
 
 @pytest.mark.parametrize("path", SAVED, ids=[path.stem for path in SAVED])
 def test_a_run_that_an_earlier_version_saved_is_read_without_loss(path: Path) -> None:
-    """They were written when each class had a record of its own: every key and number of theirs comes back."""
+    """They were written when each class had a record of its own, and a load one force: every key and number of theirs
+    comes back.
+    """
     record = record_of(load_run(path))
     for phase in record["phases"]:
         assert [phase["proof"].pop(key) for key in ("gap_work", "largest_force")] == [None, None]  # they are newer
     assert record["scene"].pop("friction_of") == {}  # it is newer
+    for load in record["scene"]["loads"]:
+        assert [load.pop(key) for key in ("forces", "moments", "springs")] == [[], [], []]
+        assert load["force"] is None or load["force"].pop("follows") is False
     assert record == json.loads(path.read_text(encoding="utf-8"))["exact"]
 
 

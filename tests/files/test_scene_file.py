@@ -88,7 +88,7 @@ adjustable: {height: {key: object.pose.position.2, range: [5, 15]}}
     assert (scene.adjustable[0].name, scene.adjustable[0].low, scene.adjustable[0].high) == ("height", 5.0, 15.0)
     force = scene.loads[1].force
     assert force is not None
-    assert (force.direction_world.tolist(), force.at_object_m.tolist()) == ([0.0, 0.6, 0.8], [0.001, 0.002, 0.003])
+    assert (force.direction.tolist(), force.at_object_m.tolist()) == ([0.0, 0.6, 0.8], [0.001, 0.002, 0.003])
     assert force.magnitude_n == 7.0
 
 

@@ -19,7 +19,9 @@ def test_the_starter_runs_through_all_its_phases_and_ends_in_a_proven_rest() -> 
     assert [phase.verdict for phase in result.phases] == ["rests", "rests"]
     assert [(phase.proof.verdict, phase.proof.needs_friction) for phase in result.phases] == [("rests", False)] * 2
     assert result.phases[-1].proof.stability == "stable"
-    assert result.warnings == ()
+    assert [warning.split(" (")[0] for warning in result.warnings] == [
+        "clamp: the weight of the phase before no longer acts"
+    ]
 
 
 def test_the_rules_of_the_paper_hold_the_starter_before_its_last_stop() -> None:
@@ -32,11 +34,15 @@ def test_the_rules_of_the_paper_hold_the_starter_before_its_last_stop() -> None:
     assert warning.startswith("clamp: the mechanics contradicts this verdict")
 
 
-def test_the_starter_names_every_key_of_the_schema() -> None:
+SEVERAL_LOADS = {"forces", "moments", "springs", "follows", "to", "stiffness", "preload"}
+"""Keys that a first scene has no use for."""
+
+
+def test_the_starter_names_every_key_of_the_schema_but_those_of_several_loads() -> None:
     schema = scene_json_schema()
     text = starter_text("x")
     for part in (schema, *schema["$defs"].values()):
-        for key in part["properties"]:
+        for key in part["properties"].keys() - SEVERAL_LOADS:
             assert re.search(rf"\b{key}\b", text), key
 
 

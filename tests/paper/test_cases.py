@@ -38,7 +38,7 @@ def same_scene(one: Scene, other: Scene) -> None:
         if load.gravity_world is not None:
             assert_allclose(load.gravity_world, twin.gravity_world, atol=1e-15)
         if load.force is not None:
-            assert_allclose(load.force.direction_world, twin.force.direction_world, atol=1e-15)
+            assert_allclose(load.force.direction, twin.force.direction, atol=1e-15)
             assert_allclose(load.force.at_object_m, twin.force.at_object_m, atol=1e-15)
 
 

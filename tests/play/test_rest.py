@@ -26,7 +26,7 @@ def unbalanced(scene: Scene, pose: Pose, load: Load, forces: tuple[PressedPoint,
         down = load.gravity_world / np.linalg.norm(load.gravity_world)
         pulls.append((down, pose.transform(scene.object.center_of_gravity_m)))
     if load.force is not None:
-        pulls.append((load.force.direction_world, pose.transform(load.force.at_object_m)))
+        pulls.append((load.force.direction, pose.transform(load.force.at_object_m)))
     for pressed in forces:
         point = points[scene.cage.names.index(pressed.point)]
         box = next(box for box in scene.object.boxes if box.name == pressed.box)

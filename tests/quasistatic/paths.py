@@ -38,12 +38,19 @@ def path_poses(result: Run) -> Iterator[Pose]:
 
 
 def potential(scene: Scene, load: Load, pose: Pose) -> float:
-    """Potential of a phase's dead loads, -sum F . x, x where each acts, in units of total force times size."""
+    """Potential of a phase's dead forces, -sum F . x, x where each acts, and springs, in units of total force times
+    size; a spring counts there with its preload and what it pulls when it is longer by a size.
+    """
     weighed = scaled_load(scene, load)
     value = -weighed.gravity @ pose.transform(scene.object.center_of_gravity_m)
-    if load.force is not None:
-        value -= weighed.force @ pose.transform(load.force.at_object_m)
-    total = np.linalg.norm(weighed.gravity) + np.linalg.norm(weighed.force)
+    for push, force in zip(load.pushes, weighed.forces, strict=True):
+        value -= force @ pose.transform(push.at_object_m)
+    total = np.linalg.norm(weighed.gravity) + np.linalg.norm(weighed.forces)
+    for spring in load.springs:
+        ends = [place.transform(spring.at_object_m) for place in (scene.object.pose_world_object, pose)]
+        start, length = (float(np.linalg.norm(spring.to_world_m - end)) for end in ends)
+        value += spring.preload_n * (length - start) + 0.5 * spring.stiffness_n_per_m * (length - start) ** 2
+        total += abs(spring.preload_n) + spring.stiffness_n_per_m * scene.size_m
     return float(value / (total * scene.size_m))
 
 

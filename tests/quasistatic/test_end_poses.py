@@ -126,7 +126,7 @@ def programmed(scene, load):
     for _ in range(60):
         center = pose.transform(scene.object.center_of_gravity_m)
         at = pose.transform(load.force.at_object_m) - center
-        wrench = np.concatenate([load.force.direction_world, np.cross(at, load.force.direction_world) / scene.size_m])
+        wrench = np.concatenate([load.force.direction, np.cross(at, load.force.direction) / scene.size_m])
         arms, normals = faces.points - center, faces.axes_object @ pose.rotation.T
         # A gap falls with the object's velocity at the point along the normal.
         jacobian = np.hstack([normals, np.cross(arms, normals) / scene.size_m])

@@ -22,7 +22,7 @@ def lifted(scene, load, phase):
     carried = sum(contact.force_normal_n or 0.0 for contact in phase.contacts)
     total = sum(
         float(np.linalg.norm(part))
-        for part in (load.gravity_world, load.force and load.force.direction_world)
+        for part in (load.gravity_world, load.force and load.force.direction)
         if part is not None
     )
     return carried / total * scene.tolerances.touch

@@ -328,7 +328,7 @@ def held_blocks(random: np.random.Generator, friction: float) -> Iterator[Held]:
             part.body,
             case.position,
             case.quaternion,
-            case.loads[0],
+            case.actions[0],
             case.friction,
             case.tolerances.touch_m,
             at,

@@ -252,7 +252,7 @@ def test_calls_that_mean_nothing_are_refused() -> None:
         run_many([block(), block()], Variation(friction_coefficient=[0.1]))
     with pytest.raises(SceneError, match="threads: is 0"):
         run_many(block(), threads=0)
-    with pytest.raises(SceneError, match="force: varies, but 0 phases"):
+    with pytest.raises(SceneError, match="force: varies, but the scene has 0"):
         run_many(falling_cube(), Variation(force_magnitude_n=[1.0]))
     assert cagepose.run_many is run_many
 

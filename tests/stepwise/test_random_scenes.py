@@ -38,7 +38,7 @@ def swings_past_its_balance(result: Run) -> bool:
     """Whether the last phase has a turn at whose end the load turns the object the other way (or a full turn)."""
     phase = result.phases[-1]
     load = result.scene.loads[len(result.phases) - 1]
-    direction = load.gravity_world if load.force is None else load.force.direction_world
+    direction = load.gravity_world if load.force is None else load.force.direction
     at = result.scene.object.center_of_gravity_m if load.force is None else load.force.at_object_m
     for event in phase.events:
         motion = event.motion

@@ -245,7 +245,7 @@ def test_where_the_object_was_drawn_does_not_matter(cases):
         loads = [
             load
             if load.force is None
-            else Load(load.name, force=Force(load.force.direction_world, load.force.at_object_m + shift))
+            else Load(load.name, force=Force(load.force.direction, load.force.at_object_m + shift))
             for load in scene.loads
         ]
         found, expected = run(Scene(moved, scene.cage, loads)), run(scene)

@@ -30,7 +30,7 @@ def mapped(scene, *, frame=None, scale=1.0, flip=None, order=None):
     for load in scene.loads:
         gravity = None if load.gravity_world is None else frame.rotation @ (flip * load.gravity_world)
         force = load.force and Force(
-            frame.rotation @ (flip * load.force.direction_world), flip * load.force.at_object_m * scale
+            frame.rotation @ (flip * load.force.direction), flip * load.force.at_object_m * scale
         )
         loads.append(Load(load.name, gravity=gravity, force=force))
     return Scene(

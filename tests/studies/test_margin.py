@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cagepose import Box, Cage, Load, Margin, Object, Pose, Run, Scene, load_scene, margin, run
+from cagepose import Box, Cage, Load, Margin, Object, Pose, Run, Scene, Spring, load_scene, margin, run
 from cagepose.files.document import run_document
 from cagepose.studies.contact_cones import ConeProgram, ContactCones, contact_cones
 from cagepose.studies.equal_stiffness import equally_stiff_forces
@@ -236,3 +236,17 @@ def test_all_extra_loads_inside_are_balanced_and_one_just_outside_is_not(frictio
         extra[axes] = found.direction
         assert left_of(cones, load - 1.01 * found.found * extra) > 1e-8
     assert n_finite >= 4
+
+
+def test_a_part_that_nothing_touches_has_no_margin_and_one_under_a_spring_has_its_pull() -> None:
+    """A cube on four legs, pressed down by 7 N at its middle beside its weight of 3 N: a quarter of both on each."""
+    spring = Spring((0.0, 0.0, 0.0), (0.0, 0.0, -0.05), 100.0, 7.0)
+    held = Object([Box((0.02, 0.02, 0.02))], mass_kg=3.0 / 9.81)
+    load = Load("hold", gravity=(0.0, 0.0, -9.81), springs=[spring])
+    legs = [(x, y, -0.01) for x in (-0.008, 0.008) for y in (-0.008, 0.008)]
+    found = margin(run(Scene(held, Cage(legs), [load], friction_coefficient=0.3)))
+    assert found is not None
+    assert found.in_newtons
+    assert [contact.equally_stiff_n for contact in found.contacts] == pytest.approx([2.5] * 4, rel=1e-9)
+    hung = Load("hang", gravity=(0.0, 0.0, -9.81), springs=[Spring((0, 0, 0.01), (0, 0, 0.1), 100.0)])
+    assert margin(run(Scene(held, Cage([(0.5, 0.5, 0.5)]), [hung]))) is None

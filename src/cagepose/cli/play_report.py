@@ -78,6 +78,12 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
         print_all(why, "", Text(HALVED), "")
     for rest in rests:
         print_all(_rest(rest, unit))
+    asked = {rest.phase for rest in rests}
+    for load in play.scene.loads:
+        if load.name not in asked:
+            print_all(
+                Text(f"{load.name} has more than a weight and one force: where it leaves the object says cagepose run")
+            )
     print_all(Text(f"analysis {play.analysis_s * 1e3:.3g} ms, certificate {play.certificate_s * 1e3:.3g} ms"))
 
 

@@ -177,7 +177,7 @@ def _firmness(phase: PhaseRun) -> str:
     if phase.verdict not in AT_REST or proof.stability is None:
         return ""
     left = f", free along {' '.join(proof.undetermined)}" if proof.undetermined else ""
-    return f" ({proof.stability}{left})"
+    return f" ({'stability not shown' if proof.stability == 'not shown' else proof.stability}{left})"
 
 
 def _proof(run: Run) -> str:

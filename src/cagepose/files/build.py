@@ -10,10 +10,10 @@ import numpy as np
 
 from cagepose.errors import Key, Problem, SceneError
 from cagepose.files.points_file import PointsTable
-from cagepose.files.schema import BoxModel, ForceModel, LoadModel, PoseModel, SceneModel
+from cagepose.files.schema import BoxModel, ForceModel, LoadModel, MomentModel, PoseModel, SceneModel, SpringModel
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.cage import Cage
-from cagepose.model.load import Force, Load
+from cagepose.model.load import Force, Load, Moment, Spring
 from cagepose.model.parts import Box, Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Adjustable, Scene
@@ -34,7 +34,7 @@ def build_scene(model: SceneModel, table: PointsTable | None) -> Scene:
     builder = _Builder(model.units.length if model.units else "mm")
     held = builder.make(("object",), builder.object, model)
     cage = builder.make(("cage",), builder.cage, model, table)
-    loads = [builder.make(("loads", index), builder.load, load) for index, load in enumerate(model.loads)]
+    loads = [builder.make(("loads", index), builder.load, load, index) for index, load in enumerate(model.loads)]
     tolerances = builder.make(("tolerances",), builder.tolerances, model)
     if builder.problems or held is None or cage is None or tolerances is None:
         raise SceneError(builder.problems)
@@ -97,11 +97,31 @@ class _Builder:
         points, names = point_rows(model, table)
         return Cage(to_metres(points, self.unit), names, self.pose(model.cage.pose))
 
-    def load(self, model: LoadModel) -> Load:
-        return Load(model.name, gravity=model.gravity, force=None if model.force is None else self.force(model.force))
+    def load(self, model: LoadModel, index: int) -> Load | None:
+        springs = [
+            self.make(("loads", index, "springs", number), self.spring, spring)
+            for number, spring in enumerate(model.springs or [])
+        ]
+        if None in springs:
+            return None
+        return Load(
+            model.name,
+            gravity=model.gravity,
+            force=None if model.force is None else self.force(model.force),
+            forces=[self.force(force) for force in model.forces or []],
+            moments=[self.moment(moment) for moment in model.moments or []],
+            springs=[spring for spring in springs if spring is not None],
+        )
 
     def force(self, model: ForceModel) -> Force:
-        return Force(model.direction, to_metres(model.at, self.unit), model.magnitude)
+        return Force(model.direction, to_metres(model.at, self.unit), model.magnitude, follows=bool(model.follows))
+
+    def moment(self, model: MomentModel) -> Moment:
+        return Moment(model.direction, float(to_metres(model.magnitude, self.unit)), follows=bool(model.follows))
+
+    def spring(self, model: SpringModel) -> Spring:
+        per_metre = model.stiffness / float(to_metres(1.0, self.unit))
+        return Spring(to_metres(model.at, self.unit), to_metres(model.to, self.unit), per_metre, model.preload or 0.0)
 
     def tolerances(self, model: SceneModel) -> Tolerances:
         given = model.tolerances

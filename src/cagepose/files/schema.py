@@ -94,7 +94,9 @@ class _Mapping(BaseModel):
 
 
 class UnitsModel(_Mapping):
-    """Units of the file. Angles are always degrees, masses kilograms, forces newtons."""
+    """Units of the file. Angles are always degrees, masses kilograms, forces newtons; moments and stiffnesses have the
+    file's unit of length.
+    """
 
     length: LengthUnit = Field("mm", description="Unit of every length in this file.")
 
@@ -180,21 +182,73 @@ class CageModel(_Mapping):
 
 
 class ForceModel(_Mapping):
-    """A push whose direction stays fixed in the world."""
+    """A push at one point of the object."""
 
-    direction: Direction = Field(description="Where it pushes to, in the world; any length.", examples=[[1, 0, 0]])
+    direction: Direction = Field(
+        description="Where it pushes to, any length: in the world, or in the object's frame where the force follows.",
+        examples=[[1, 0, 0]],
+    )
     at: Vector = Field(description="The point it acts at, in the object's frame.", examples=[[0, 0, 0]])
-    magnitude: Positive | None = Field(None, description="Newtons; left out: one unit of force.", examples=[10])
+    magnitude: Positive | None = Field(
+        None,
+        description="Newtons; left out, where nothing but gravity acts beside it: one unit of force.",
+        examples=[10],
+    )
+    follows: bool | None = Field(
+        None, description="Whether it turns with the object; left out: its direction stays fixed in the world."
+    )
+
+
+class MomentModel(_Mapping):
+    """A pure moment, the same about every point."""
+
+    direction: Direction = Field(
+        description="Its axis, right-handed, any length: in the world, or in the object's frame where it follows.",
+        examples=[[0, 0, 1]],
+    )
+    magnitude: Positive = Field(description="Newtons times the file's unit of length (N mm with mm).", examples=[50])
+    follows: bool | None = Field(
+        None, description="Whether its axis turns with the object; left out: it stays fixed in the world."
+    )
+
+
+class SpringModel(_Mapping):
+    """A straight spring from a point of the object to a point of the world. Its tension along the line is the preload
+    plus the stiffness times what it is longer than at the object's start pose.
+    """
+
+    at: Vector = Field(description="Where it holds the object, in the object's frame.", examples=[[0, 0, 0]])
+    to: Vector = Field(description="Where it is held itself, in the world.", examples=[[0, 0, 50]])
+    stiffness: Annotated[float, Field(ge=0.0, le=LARGEST)] = Field(
+        description="Newtons for each unit of length of the file (N/mm with mm); 0: the tension is the preload.",
+        examples=[0.5],
+    )
+    preload: Number | None = Field(
+        None,
+        description="Its tension at the object's start pose, newtons; below zero it pushes; left out: 0.",
+        examples=[2],
+    )
 
 
 class LoadModel(_Mapping):
-    """One phase of the run: gravity, a force, or both. A phase without gravity has none."""
+    """One phase of the run: all that acts together. A phase without gravity has none."""
 
     name: Name = Field(description="Shown with the phase's events.", examples=["gravity"])
     gravity: Direction | None = Field(
         None, description="Direction; its length (m/s^2) counts only together with a mass.", examples=[[0, 0, -1]]
     )
     force: ForceModel | None = Field(None, description="A push at one point of the object.")
+    forces: Annotated[list[ForceModel], Field(min_length=1)] | None = Field(
+        None,
+        description="Instead of force: several pushes.",
+        examples=[[{"direction": [1, 0, 0], "at": [0, 0, 0], "magnitude": 10}]],
+    )
+    moments: Annotated[list[MomentModel], Field(min_length=1)] | None = Field(
+        None, description="Pure moments.", examples=[[{"direction": [0, 0, 1], "magnitude": 50}]]
+    )
+    springs: Annotated[list[SpringModel], Field(min_length=1)] | None = Field(
+        None, description="Springs.", examples=[[{"at": [0, 0, 0], "to": [0, 0, 50], "stiffness": 0.5}]]
+    )
 
 
 class FrictionModel(_Mapping):

@@ -130,6 +130,7 @@ class Scene:
         geometry = scene_geometry(object, cage, seams.bridges)
         _check_distance(object, cage, size_m, problems)
         _check_points_outside(object, cage, geometry, touch_m, size_m, problems)
+        _check_loads(object, loads, touch_m, problems)
         problems.raise_if_any()
         named = object.boxes
         for field, value in (
@@ -260,6 +261,22 @@ def _check_points_outside(
         if depths[point_index] <= TOUCH_GREATEST * size_m:
             remedy = "move the point out, move the object's start pose, or raise tolerances.touch"
         problems.add(("cage", "points", cage.names[point_index]), f"{where}; {remedy}")
+
+
+def _check_loads(held: Object, loads: tuple[Load, ...], touch_m: float, problems: ProblemList) -> None:
+    for index, load in enumerate(loads):
+        if load.needs_newtons and load.gravity_world is not None and held.mass_kg is None:
+            problems.add(
+                ("object", "mass"),
+                f"is missing, and gravity acts beside other loads in loads[{index}] ({load.name}); give kilograms",
+            )
+        for number, spring in enumerate(load.springs):
+            at = held.pose_world_object.transform(spring.at_object_m)
+            if float(np.linalg.norm(spring.to_world_m - at)) <= touch_m:
+                problems.add(
+                    ("loads", index, "springs", number, "to"),
+                    "lies where the spring holds the object at the start, so it has no direction; move to or at",
+                )
 
 
 def millimetres(length_m: float) -> str:

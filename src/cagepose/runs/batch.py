@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import Rows
-from cagepose.kernels.contact.metric import PhaseLoad
+from cagepose.kernels.contact.loads import SPRING, PhaseLoad
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.cases import Cases
 from cagepose.kernels.outcome.endings import empty_endings
@@ -18,7 +18,8 @@ from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.geometry import cage_sizes, object_size
 from cagepose.model.pose import Pose, quaternions_of
 from cagepose.model.scene import FARTHEST_START, Scene
-from cagepose.runs.cases import cases_of, dead_loads, part_of
+from cagepose.runs.actions import actions_of, cage_middles, tensions_at_zero
+from cagepose.runs.cases import cases_of, part_of
 from cagepose.runs.load_scaling import scaled_pushes
 from cagepose.runs.methods import Method
 from cagepose.runs.variation import Variation
@@ -89,7 +90,7 @@ def _varied(scene: Scene, friction: float, columns: dict[str, FloatArray]) -> Ca
         _owned(columns.get("friction_coefficient", base.frictions)),
         base.point_frictions,
         base.box_frictions,
-        _loads(scene, columns),
+        _actions(scene, columns),
         base.tolerances,
     )
 
@@ -103,21 +104,49 @@ def _quaternions(angles: FloatArray | None, pose: Pose) -> FloatArray:
     return pose.quaternion_wxyz[None] if angles is None else quaternions_of(angles)
 
 
-def _loads(scene: Scene, columns: dict[str, FloatArray]) -> Rows[Rows[PhaseLoad]]:
+def _actions(scene: Scene, columns: dict[str, FloatArray]) -> Rows[Rows[PhaseLoad]]:
     varied = [name for name in columns if name.startswith("force_")]
-    n_rows = len(columns[varied[0]]) if varied else 1
-    loads = np.repeat(dead_loads(scene)[None], n_rows, axis=0)
-    if not varied:
-        return cast(Rows[Rows[PhaseLoad]], loads)
-    ((place, load, force),) = [(k, load, load.force) for k, load in enumerate(scene.loads) if load.force is not None]
-    directions, magnitudes = force.direction_world[None], columns.get("force_magnitude_n")
+    starts = list[str]()
+    if any(load.springs for load in scene.loads):
+        starts = [name for name in columns if name.startswith(("object_", "cage_", "points_"))]
+    n_rows = len(columns[(varied + starts)[0]]) if varied or starts else 1
+    actions = np.repeat(actions_of(scene)[None], n_rows, axis=0)
+    if varied:
+        _vary_force(scene, columns, actions)
+    if starts:
+        _vary_springs(scene, columns, actions)
+    return cast(Rows[Rows[PhaseLoad]], actions)
+
+
+def _vary_force(scene: Scene, columns: dict[str, FloatArray], actions: np.ndarray) -> None:
+    """Write the one force of the scene, and the weight beside it, into each row."""
+    ((place, load, force),) = [(k, load, force) for k, load in enumerate(scene.loads) for force in load.pushes]
+    directions, magnitudes = force.direction[None], columns.get("force_magnitude_n")
     if "force_direction_world" in columns:
         directions = unit_rows(columns["force_direction_world"])
     if magnitudes is None and force.magnitude_n is not None:
         magnitudes = np.array([force.magnitude_n])
-    weighed = scaled_pushes(scene.object.mass_kg, load.gravity_world, directions, magnitudes)
-    loads["forces_world"][:, place, 0] = weighed.gravity
-    loads["forces_world"][:, place, 1] = weighed.force
+    weights, forces, _ = scaled_pushes(scene.object.mass_kg, load.gravity_world, directions, magnitudes)
+    actions["vector"][:, place, 0] = weights
+    actions["vector"][:, place, 1] = forces
     if "force_at_object_m" in columns:
-        loads["arms_object"][:, place, 1] = columns["force_at_object_m"] - scene.object.center_of_gravity_m
-    return cast(Rows[Rows[PhaseLoad]], loads)
+        actions["arm_object"][:, place, 1] = columns["force_at_object_m"] - scene.object.center_of_gravity_m
+
+
+def _vary_springs(scene: Scene, columns: dict[str, FloatArray], actions: np.ndarray) -> None:
+    """Write the springs' tensions, which are those of the preload where the object starts, and where they are held as
+    seen from the middle of the cage.
+    """
+    start, cage = scene.object.pose_world_object, scene.cage.pose_world_cage
+    middles = cage_middles(
+        columns.get("points_cage_m", scene.cage.points_cage[None]),
+        columns.get("cage_position_m", cage.position_m[None]),
+        _quaternions(columns.get("cage_euler_zyx"), cage),
+    )
+    positions = columns.get("object_position_m", start.position_m[None])
+    quaternions = _quaternions(columns.get("object_euler_zyx"), start)
+    for place, load in enumerate(scene.loads):
+        springs = np.flatnonzero(actions["kind"][0, place] == SPRING)
+        for column, spring in zip(springs, load.springs, strict=True):
+            actions["anchor"][:, place, column] = spring.to_world_m - middles
+            actions["tension_at_zero"][:, place, column] = tensions_at_zero(spring, positions, quaternions)

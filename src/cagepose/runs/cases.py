@@ -9,16 +9,17 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from cagepose.kernels.algebra.record import Rows, dtype_of, empty_record
+from cagepose.kernels.algebra.record import Rows, empty_record
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
-from cagepose.kernels.contact.metric import Body, PhaseLoad
+from cagepose.kernels.contact.loads import PhaseLoad
+from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.cases import Cases, Part
 from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.methods import DEFAULT_METRIC
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.runs.load_scaling import scaled_load
+from cagepose.runs.actions import actions_of
 
 
 def part_of(scene: Scene) -> Part:
@@ -64,7 +65,7 @@ def cases_of(scene: Scene, friction: float, start: Pose | None = None) -> Cases:
         np.array([friction]),
         _own_frictions(scene, scene.cage.names, len(scene.cage.names)),
         _own_frictions(scene, [str(box.name) for box in scene.object.boxes], len(scene.geometry.half_sizes)),
-        cast(Rows[Rows[PhaseLoad]], dead_loads(scene)[None]),
+        cast(Rows[Rows[PhaseLoad]], actions_of(scene)[None]),
         kernel_tolerances(1.0, scene.tolerances.touch),
     )
 
@@ -79,17 +80,6 @@ def _own_frictions(scene: Scene, names: Sequence[str], n: int) -> FloatArray:
 def contact_friction(scene: Scene, friction: float, point: str, box: str) -> float:
     """Return the coefficient of a contact, with ``friction`` where neither its point nor its box has one."""
     return scene.friction_of.get(point, scene.friction_of.get(box, friction))
-
-
-def dead_loads(scene: Scene) -> np.ndarray:
-    """Return the loads of all phases as records, (n_phases,)."""
-    loads = np.zeros(len(scene.loads), dtype_of(PhaseLoad))
-    for index, load in enumerate(scene.loads):
-        weighed = scaled_load(scene, load)
-        loads["forces_world"][index] = weighed.gravity, weighed.force
-        if load.force is not None:
-            loads["arms_object"][index, 1] = load.force.at_object_m - scene.object.center_of_gravity_m
-    return loads
 
 
 _PREPARED: WeakKeyDictionary[Scene, dict[float, tuple[Slots, Slots]]] = WeakKeyDictionary()

@@ -13,8 +13,10 @@ from cagepose.kernels.quasistatic import run as quasistatic_kernels
 from cagepose.kernels.quasistatic.step import RULE_NAMES
 from cagepose.kernels.quasistatic.workspace import empty_quasistatic_workspace
 from cagepose.kernels.stepwise import run as stepwise_kernels
+from cagepose.model.load import Load
 from cagepose.model.methods import DEFAULT_FRICTION, DEFAULT_METHOD, METHODS
 from cagepose.model.scene import Scene
+from cagepose.runs.actions import is_one_force
 from cagepose.runs.quasistatic import quasistatic_rules, quasistatic_warnings
 from cagepose.runs.run import PhaseRun
 from cagepose.runs.stepwise import stepwise_rules, stepwise_warnings
@@ -32,6 +34,8 @@ class Method:
         Of its rules, by code.
     joins_steps
         Whether steps of one kind are one event, with a path.
+    takes_one_force
+        Whether it runs only loads of a weight, or of what one force with a fixed direction is equal to.
     run, run_cases, repeat
         Kernels that run a scene once, many cases of it, and some steps of a run again.
     rules
@@ -45,6 +49,7 @@ class Method:
     name: str
     rule_names: tuple[str, ...]
     joins_steps: bool
+    takes_one_force: bool
     run: Entry[None]
     run_cases: Entry[None]
     repeat: Entry[None]
@@ -67,6 +72,7 @@ REGISTRY = {
         "stepwise",
         stepwise_kernels.RULE_NAMES,
         False,
+        True,
         stepwise_kernels.run_stepwise,
         stepwise_kernels.run_stepwise_cases,
         stepwise_kernels.repeat_stepwise,
@@ -78,6 +84,7 @@ REGISTRY = {
         "quasistatic",
         RULE_NAMES,
         True,
+        False,
         quasistatic_kernels.run_quasistatic,
         quasistatic_kernels.run_quasistatic_cases,
         quasistatic_kernels.repeat_quasistatic,
@@ -99,9 +106,33 @@ def chosen_method(scene: Scene, method: str | None = None) -> Method:
     Raises
     ------
     SceneError
-        An unknown method.
+        An unknown method, or one that does not run what acts in the scene.
     """
-    chosen = method or scene.method or DEFAULT_METHOD
-    if chosen not in REGISTRY:
-        raise SceneError([Problem(("method",), f"is {chosen!r}; known methods: {', '.join(METHODS)}")])
-    return REGISTRY[chosen]
+    name = method or scene.method or DEFAULT_METHOD
+    if name not in REGISTRY:
+        raise SceneError([Problem(("method",), f"is {name!r}; known methods: {', '.join(METHODS)}")])
+    chosen = REGISTRY[name]
+    if chosen.takes_one_force:
+        problems = [
+            Problem(
+                ("loads", index),
+                f"{load.name!r} has {_beyond_one_force(load)}, which the {name} method does not run; use"
+                f" {DEFAULT_METHOD}",
+            )
+            for index, load in enumerate(scene.loads)
+            if not is_one_force(scene, load)
+        ]
+        if problems:
+            raise SceneError(problems)
+    return chosen
+
+
+def _beyond_one_force(load: Load) -> str:
+    """Say what of a load no force at one point stands for."""
+    if load.springs:
+        return "springs"
+    if load.moments:
+        return "moments"
+    if any(push.follows for push in load.pushes):
+        return "a force that follows the object"
+    return "forces that do not come to one force at one point of the object"

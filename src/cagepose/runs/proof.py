@@ -8,7 +8,7 @@ from typing import Literal
 from cagepose.model.checks import FloatArray
 
 ProofVerdict = Literal["rests", "may rest", "moves"]
-Stability = Literal["stable", "marginal", "unstable"]
+Stability = Literal["stable", "marginal", "unstable", "not shown"]
 Uniqueness = Literal["strong", "weak", "not shown"]
 
 
@@ -53,7 +53,8 @@ class Proof:
     needs_friction
         Whether there is a balance with friction only.
     stability
-        Against small disturbances; None where the object moves.
+        Against small disturbances; "not shown" where loads that have no potential may decide it; None where the object
+        moves.
     undetermined
         Freedoms in the cage's frame ("x", "y", "z", "roll", "pitch", "yaw") along which the load does not tell poses
         apart, with "and others" where these do not span them all.

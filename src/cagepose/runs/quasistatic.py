@@ -6,12 +6,15 @@ from collections.abc import Iterator, Sequence
 
 from cagepose.kernels.quasistatic.run import QuasistaticRules
 from cagepose.kernels.quasistatic.step import RULE_NAMES, STUCK
+from cagepose.model.load import Load
 from cagepose.model.scene import Scene
 from cagepose.runs.run import PhaseRun
 from cagepose.runs.warnings_of_runs import (
     edge_warnings,
+    lost_weight_warnings,
     proof_warnings,
     seam_warnings,
+    spring_warnings,
     unrun_warnings,
     weight_warnings,
 )
@@ -35,17 +38,26 @@ def quasistatic_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: flo
     """What a careful reader should know: seams, weights, contacts on edges, and what is less than a proven rest."""
     yield from seam_warnings(scene)
     yield from weight_warnings(scene, len(phases))
+    yield from lost_weight_warnings(scene, len(phases))
     for phase in phases:
         yield from edge_warnings(phase)
-    yield from _failure_warnings(phases[-1])
+        yield from spring_warnings(scene, phase)
+    if not any(spring_warnings(scene, phases[-1])):  # they say why
+        yield from _failure_warnings(phases[-1], scene.loads[len(phases) - 1])
     yield from unrun_warnings(scene, phases)
     yield from proof_warnings(phases, friction)
 
 
-def _failure_warnings(phase: PhaseRun) -> Iterator[str]:
+def _failure_warnings(phase: PhaseRun, load: Load) -> Iterator[str]:
     """Why a phase failed, with which contacts, and what to change."""
+    has_potential = not load.moments and not any(push.follows for push in load.pushes)
     touching = ", ".join(dict.fromkeys(contact.point for contact in phase.contacts)) or "no point"
-    if phase.verdict == "limit":
+    if phase.verdict == "limit" and not has_potential:
+        yield (
+            f"{phase.name}: it still moved after {STEP_LIMIT} steps, touching {touching}: moments, and forces that"
+            " follow, can drive an object round for ever; give it a stop or a spring"
+        )
+    elif phase.verdict == "limit":
         yield f"{phase.name}: it still moved after {STEP_LIMIT} steps, touching {touching}; {REMEDY}"
     elif phase.verdict == "stalled" and phase.events and phase.events[-1].rule == RULE_NAMES[STUCK]:
         yield (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -23,8 +22,8 @@ from cagepose.kernels.stability.second_order import STABILITY_NAMES
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.runs.actions import load_size
 from cagepose.runs.cases import body_of
-from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.proof import FreeMotion, Proof
 
 REASONS = {
@@ -35,6 +34,7 @@ REASONS = {
     TOO_MANY_CHOICES: "the contacts can balance the load with the first faces at edges that were asked, of too many",
     TOO_MANY_CONTACTS: "more faces touch at one place than a proof has room for",
 }
+UNTOUCHED = "nothing touches, and all that acts is in balance by itself"
 NOT_SHOWN = "the contacts can balance the load with friction, but that the object cannot move was not shown"
 WEDGED = "; the contacts can press against each other without a load, as in a wedge"
 STOPPED = "; what they leave, contacts without play stop to second order, by forces without bound"
@@ -52,24 +52,27 @@ IN_SPAN = 1e-6
 def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Sequence[Sequence[str]]) -> list[Proof]:
     """Return the proof of each phase's end, given the poses there and the names of contacts that share forces."""
     phases: Any = outcome.phases
+    last_contacts = phases["n_contacts"].tolist()
     columns = zip(
         zip(*[phases[name].tolist() for name in NUMBERS], strict=True),
+        [0, *last_contacts],
+        last_contacts,
         phases["undetermined"],
         _free_motions(phases),
         ends,
-        _sizes(outcome, scene),
+        _sizes(outcome, scene, ends),
         shared,
-        strict=True,
+        strict=False,  # there is one more beginning than there are phases
     )
     found = list[Proof]()
-    for numbers, undetermined, motion, end, (gap_work, largest_force), names in columns:
+    for numbers, first, last, undetermined, motion, end, (gap_work, largest_force), names in columns:
         code, stability, residual, wedged, second, chained, clamped, n_undetermined = numbers
         held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
         is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
         found.append(
             Proof(
                 verdict="moves" if not held else "may rest" if is_open else "rests",
-                reason=REASONS.get(code, NOT_SHOWN)
+                reason=(REASONS.get(code, NOT_SHOWN) if last > first or not held else UNTOUCHED)
                 + (WEDGED if is_open and wedged else "")
                 + (STOPPED if held and second else "")
                 + (CHAINED if held and chained else "")
@@ -87,7 +90,7 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
     return found
 
 
-def _sizes(outcome: Outcome, scene: Scene) -> Iterator[tuple[float, float]]:
+def _sizes(outcome: Outcome, scene: Scene, ends: Sequence[Pose]) -> Iterator[tuple[float, float]]:
     """Yield `Proof.gap_work` and `Proof.largest_force` of each phase's end."""
     phases: Any = outcome.phases
     contacts: Any = outcome.contacts
@@ -95,21 +98,24 @@ def _sizes(outcome: Outcome, scene: Scene) -> Iterator[tuple[float, float]]:
     works = (normal * contacts["gap"]).tolist()
     squares = (normal * normal + (across * across) @ ONES).tolist()
     first = 0
-    for last, load_n in zip(phases["n_contacts"].tolist(), _load_sizes(scene), strict=False):
+    for last, load_n in zip(phases["n_contacts"].tolist(), _load_sizes(scene, ends), strict=False):
         largest = max(squares[first:last], default=0.0)
         yield sum(works[first:last]) / (load_n * scene.size_m), largest**0.5 / load_n
         first = last
 
 
 _LOAD_SIZES: WeakKeyDictionary[Scene, list[float]] = WeakKeyDictionary()
+"""A scene never changes: without springs its loads are of one size wherever the object is."""
 
 
-def _load_sizes(scene: Scene) -> list[float]:
-    """Return the lengths of the forces of each load, added up; a scene never changes, so that this is done once."""
-    if scene not in _LOAD_SIZES:
-        weighed = [scaled_load(scene, load) for load in scene.loads]
-        _LOAD_SIZES[scene] = [math.hypot(*load.gravity) + math.hypot(*load.force) for load in weighed]
-    return _LOAD_SIZES[scene]
+def _load_sizes(scene: Scene, ends: Sequence[Pose]) -> list[float]:
+    """Return the size of the load at the end of each phase."""
+    if scene in _LOAD_SIZES:
+        return _LOAD_SIZES[scene]
+    sizes = [load_size(scene, phase, end) for phase, end in enumerate(ends)]
+    if len(ends) == len(scene.loads) and not any(load.springs for load in scene.loads):
+        _LOAD_SIZES[scene] = sizes
+    return sizes
 
 
 def _free_motions(phases: Any) -> Iterator[FreeMotion | None]:

@@ -74,7 +74,7 @@ def stepwise_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: float)
     largest = 0.0
     start = scene.object.pose_world_object.inverse()
     for phase, load in zip(phases, scene.loads, strict=False):
-        if load.force is not None and load.gravity_world is not None:
+        if load.pushes and load.gravity_world is not None:
             yield f"{phase.name}: gravity is ignored beside a force (the paper's assumption C)"
         for number, event in enumerate(phase.events, start=1):
             largest = max(largest, *(abs(angle) for angle in (start @ event.pose_world_object).euler_zyx))

@@ -26,7 +26,8 @@ class Variation:
     friction_coefficient
         (n,).
     force_direction_world, force_at_object_m, force_magnitude_n
-        Of the one phase that has a force: (n, 3) of any length but zero, (n, 3) metres, and (n,) newtons.
+        Of the one force of all phases: (n, 3) of any length but zero, in the object's frame if it follows; (n, 3)
+        metres; and (n,) newtons.
     """
 
     cage_position_m: ArrayLike | None = None
@@ -46,7 +47,7 @@ class Variation:
         ------
         SceneError
             Another shape than a scene needs, NaN or infinite, unequal numbers of rows, a negative friction, a force
-            that is zero, or one where no phase or more than one has a force.
+            that is zero, or one where the scene has none or more than one.
         """
         given = {field.name: getattr(self, field.name) for field in fields(self)}
         shapes: dict[str, tuple[int, ...]] = {"points_cage_m": (-1, len(scene.cage.names), 3)}
@@ -61,9 +62,9 @@ class Variation:
         for name, array in found.items():
             if len(array) != n_runs:
                 problems.add((name,), f"has {len(array)} rows and {next(iter(found))} {n_runs}; give one for each run")
-        n_forces = sum(load.force is not None for load in scene.loads)
+        n_forces = sum(len(load.pushes) for load in scene.loads)
         if n_forces != 1 and any(name.startswith("force_") for name in found):
-            problems.add(("force",), f"varies, but {n_forces} phases of the scene have one; it must be one")
+            problems.add(("force",), f"varies, but the scene has {n_forces}; it must be one")
         if "friction_coefficient" in found:
             _check_all(found["friction_coefficient"] >= 0.0, "friction_coefficient", "is below zero", problems)
         if "force_magnitude_n" in found:

@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
 
 from cagepose.model.scene import Scene
+from cagepose.runs.actions import tensions_at_zero
 from cagepose.runs.load_scaling import WEIGHT_BESIDE_FORCE, scaled_load
 from cagepose.runs.run import FAILURES, PhaseRun
+
+MET = 1e-6
+"""In sizes of the scene: the ends of a shorter spring count as one point."""
 
 
 def seam_warnings(scene: Scene) -> Iterator[str]:
@@ -25,10 +32,36 @@ def edge_warnings(phase: PhaseRun) -> Iterator[str]:
 
 def weight_warnings(scene: Scene, n_phases: int) -> Iterator[str]:
     for load in scene.loads[:n_phases]:
-        if load.gravity_world is not None and load.force is not None and not scaled_load(scene, load).in_newtons:
+        if load.gravity_world is not None and load.pushes and not scaled_load(scene, load).in_newtons:
             yield (
                 f"{load.name}: gravity and force act together, but mass or magnitude is not given: the force dominates"
                 f" (weight = {WEIGHT_BESIDE_FORCE:g} of it)"
+            )
+
+
+def lost_weight_warnings(scene: Scene, n_phases: int) -> Iterator[str]:
+    """The first phase without the weight that a phase before it had."""
+    loads = scene.loads[:n_phases]
+    for before, load in pairwise(loads):
+        if before.gravity_world is not None and load.gravity_world is None:
+            yield (
+                f"{load.name}: the weight of the phase before no longer acts (give gravity in this phase to keep it)"
+            )
+            return
+
+
+def spring_warnings(scene: Scene, phase: PhaseRun) -> Iterator[str]:
+    """Springs whose pull has no direction where a phase has ended."""
+    start = scene.object.pose_world_object
+    springs = next(load.springs for load in scene.loads if load.name == phase.name)
+    for number, spring in enumerate(springs, start=1):
+        length_m = float(np.linalg.norm(spring.to_world_m - phase.pose.transform(spring.at_object_m)))
+        if length_m <= MET * scene.size_m and tensions_at_zero(
+            spring, start.position_m[None], start.quaternion_wxyz[None]
+        ):
+            yield (
+                f"{phase.name}: the ends of spring {number} have met, where it pulls nowhere; hold it farther away, or"
+                " give the object a stop before that"
             )
 
 
@@ -52,3 +85,5 @@ def proof_warnings(phases: Sequence[PhaseRun], friction: float) -> Iterator[str]
             yield f"{phase.name}: {proof.reason}"
         if phase.verdict in ("stable", "rests", "may rest") and proof.stability == "unstable":
             yield f"{phase.name}: the balance is unstable: the least disturbance moves the object on"
+        elif phase.verdict in ("stable", "rests", "may rest") and proof.stability == "not shown":
+            yield f"{phase.name}: the load has no potential here, so whether the balance is stable was not shown"

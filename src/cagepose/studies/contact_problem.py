@@ -14,8 +14,8 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.methods import DEFAULT_METRIC
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.runs.actions import wrench_at
 from cagepose.runs.cases import contact_friction
-from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import Run
 
@@ -166,10 +166,4 @@ def _scale(scene: Scene, pose: Pose) -> FloatArray:
 
 def _load(scene: Scene, pose: Pose, phase: int) -> FloatArray:
     """Return force and moment of a phase's load about the centre of gravity."""
-    load = scene.loads[phase]
-    weighed = scaled_load(scene, load)
-    wrench = np.append(weighed.gravity + weighed.force, np.zeros(3))
-    if load.force is not None:
-        arm = pose.rotation @ (load.force.at_object_m - scene.object.center_of_gravity_m)
-        wrench[3:] = np.cross(arm, weighed.force)
-    return wrench
+    return np.concatenate(wrench_at(scene, phase, pose))

@@ -12,7 +12,8 @@ import numpy as np
 from cagepose.kernels.contact.contact_set import SAME_NORMAL
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
 from cagepose.model.checks import FloatArray
-from cagepose.runs.cases import contact_friction, dead_loads
+from cagepose.runs.actions import wrench_at
+from cagepose.runs.cases import contact_friction
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, Contact, Run
@@ -91,8 +92,9 @@ class Margin:
 def margin(run: Run, phase: int = -1) -> Margin | None:
     """Say how large an extra force and moment a phase's end still balances, and what each contact may carry.
 
-    Returns None where the phase did not end in a balance; where contacts without play carry its load to second order,
-    by forces without bound; and where points on edges have more than 729 choices of faces.
+    Returns None where the phase did not end in a balance, or in one without contacts or without a load on them, as on
+    springs; where contacts without play carry its load to second order, by forces without bound; and where points on
+    edges have more than 729 choices of faces.
 
     Parameters
     ----------
@@ -108,7 +110,7 @@ def margin(run: Run, phase: int = -1) -> Margin | None:
     """
     number = range(len(run.phases))[phase]
     ended = run.phases[number]
-    if ended.verdict not in AT_REST or ended.proof.verdict == "moves":
+    if ended.verdict not in AT_REST or ended.proof.verdict == "moves" or not ended.contacts:
         return None
     contacts, groups = _faces(ended.contacts)
     choices = list(islice(product(*groups), CHOICES_LIMIT + 1))
@@ -116,6 +118,8 @@ def margin(run: Run, phase: int = -1) -> Margin | None:
         return None
     cones = _cones(run, number, contacts)
     load, size_n = _load(run, number, cones)
+    if size_n == 0.0:
+        return None
     found = _Choices(cones, load, [_counting(len(contacts), choice) for choice in choices])
     if not found.are_balanced:
         return None
@@ -175,12 +179,10 @@ def _cones(run: Run, phase: int, contacts: list[Contact]) -> ContactCones:
 
 def _load(run: Run, phase: int, cones: ContactCones) -> tuple[FloatArray, float]:
     """Return the wrench that contacts have to give, (6,), and the length that it was divided by."""
-    record = dead_loads(run.scene)[phase]
-    forces = record["forces_world"]
-    arms = record["arms_object"] @ run.phases[phase].pose.rotation.T
-    wrench = -np.append(forces.sum(axis=0), np.cross(arms, forces).sum(axis=0) / cones.length_m)
+    load = wrench_at(run.scene, phase, run.phases[phase].pose)
+    wrench = -np.append(load.force, load.moment / cones.length_m)
     size = float(np.linalg.norm(wrench))
-    return wrench / size, size
+    return wrench / (size or 1.0), size
 
 
 def _counting(n_contacts: int, choice: tuple[int, ...]) -> FloatArray:

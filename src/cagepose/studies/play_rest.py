@@ -21,6 +21,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.load import Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.runs.actions import acting_pushes, is_one_force
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.studies.play_frame import FREEDOMS, LENGTHS, PlayFrame, motion_after, range_goals
 
@@ -86,31 +87,35 @@ class PlayRest:
 def play_rests(scene: Scene) -> tuple[PlayRest, ...]:
     """Say where each phase's load leaves the object, if its play is small and nothing rubs.
 
+    Left out are phases with more than a weight and what one dead force is equal to.
+
     The answer is where the load has done all the work that the cage allows. `cagepose.run` follows the way there, with
     friction, and proves the rest.
     """
     frame = PlayFrame(scene)
     work = empty_play_workspace(frame.geometry)
-    goals, sizes = _load_goals(scene, frame)
+    loads = [load for load in scene.loads if is_one_force(scene, load)]
+    goals, sizes = _load_goals(scene, loads, frame)
     extremes = empty_rows(Extreme, len(goals))
     find_play(frame.geometry, goals, extremes, work)
     write_start(frame.geometry, work)
     return tuple(
-        _rest(scene, frame, work, load, float(sizes[index]), extremes[index]) for index, load in enumerate(scene.loads)
+        _rest(scene, frame, work, load, float(sizes[index]), extremes[index]) for index, load in enumerate(loads)
     )
 
 
-def _load_goals(scene: Scene, frame: PlayFrame) -> tuple[Rows[Goal], FloatArray]:
+def _load_goals(scene: Scene, loads: list[Load], frame: PlayFrame) -> tuple[Rows[Goal], FloatArray]:
     """Return the loads' work as goals, per unit of the larger force of each phase, and these forces."""
-    goals = empty_rows(Goal, len(scene.loads))
-    sizes = np.zeros(len(scene.loads))
-    for index, load in enumerate(scene.loads):
-        weight, force, _ = scaled_load(scene, load)
+    goals = empty_rows(Goal, len(loads))
+    sizes = np.zeros(len(loads))
+    for index, load in enumerate(loads):
+        weight, forces, _ = scaled_load(scene, load)
+        pushes = acting_pushes(load, forces)
+        force, at_object = (pushes[0].vector, pushes[0].at_object_m) if pushes else (np.zeros(3), np.zeros(3))
         sizes[index] = max(np.linalg.norm(weight), np.linalg.norm(force))
         goal = goals[index]
         goal.kind, goal.sign = SHIFT, 1.0
         goal.directions[:] = frame.vectors_from_world(np.stack([weight, force]) / sizes[index])
-        at_object = np.zeros(3) if load.force is None else load.force.at_object_m
         goal.starts[:] = frame.from_object(np.stack([scene.object.center_of_gravity_m, at_object]))
     return goals, sizes
 

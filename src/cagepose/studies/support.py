@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from cagepose.model.checks import FloatArray, unit_vector
-from cagepose.model.load import Load
-from cagepose.model.scene import Scene
+from cagepose.runs.actions import wrench_at
 from cagepose.runs.run import Run
 
 PARALLEL = 1e-6
@@ -46,32 +46,44 @@ class LoadView:
 
 
 def load_view(run: Run, phase_index: int) -> LoadView:
-    """Look along the load of a phase at the pose where the phase ended."""
-    load, phase = run.scene.loads[phase_index], run.phases[phase_index]
-    direction = load_direction_world(load)
+    """Look along the load of a phase at the pose where the phase ended.
+
+    Raises
+    ------
+    ValueError
+        The forces of the load cancel, so that it has no direction.
+    """
+    phase, (direction, through) = run.phases[phase_index], _load_line(run, phase_index)
     # The picture's vertical is y for a vertical load, else z: the world as people draw it.
     vertical = np.array([0.0, 1.0, 0.0]) if abs(direction[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
     up = unit_vector(vertical - (vertical @ direction) * direction, "up")
     right = np.cross(direction, up) + 0.0  # no negative zeros
     axes = np.stack([right, up], axis=1)
-    load_point = phase.pose.transform(load_point_object(run.scene, load)) @ axes
+    load_point = through @ axes
     names = {contact.point for contact in phase.contacts}
     touching = [index for index, name in enumerate(run.scene.cage.names) if name in names]
     polygon = convex_hull(run.scene.cage.points_world()[touching] @ axes)
     return LoadView(right, up, load_point, polygon, _margin(polygon, load_point))
 
 
-def load_direction_world(load: Load) -> FloatArray:
-    """Return the direction that counts: the force's, else that of gravity, (3,)."""
-    if load.force is not None:
-        return load.force.direction_world
-    assert load.gravity_world is not None
-    return unit_vector(load.gravity_world, "gravity")
+def _load_line(run: Run, phase_index: int) -> tuple[FloatArray, FloatArray]:
+    """Return the direction of the load at the end of a phase, (3,), and a point of its line in the world, metres.
 
-
-def load_point_object(scene: Scene, load: Load) -> FloatArray:
-    """Return where it acts, in the object's frame, (3,), metres."""
-    return scene.object.center_of_gravity_m if load.force is None else load.force.at_object_m
+    Of a weight and one force the force counts, as for the stepwise method; else it is the line along which the moment
+    of all that acts is least.
+    """
+    scene, load, pose = run.scene, run.scene.loads[phase_index], run.phases[phase_index].pose
+    center = scene.object.center_of_gravity_m
+    if load.is_weight_alone:
+        assert load.gravity_world is not None
+        return unit_vector(load.gravity_world, "gravity"), pose.transform(center)
+    if load.force is not None and not load.needs_newtons and not load.force.follows:
+        return load.force.direction, pose.transform(load.force.at_object_m)
+    force, moment = wrench_at(scene, phase_index, pose)
+    square = float(force @ force)
+    if square == 0.0:
+        raise ValueError(f"what acts in phase {load.name!r} has no direction: its forces cancel")
+    return force / math.sqrt(square), pose.transform(center) + np.cross(force, moment) / square
 
 
 def convex_hull(points: FloatArray) -> FloatArray:

@@ -61,7 +61,7 @@ def event_figure(run: Run, length_unit: LengthUnit = "mm") -> Figure:
     Each phase under a weight alone adds a view along it: the support region and the centre of gravity.
     """
     shots, n_left_out = _snapshots(run, length_unit)
-    weights = [index for index in range(len(run.phases)) if run.scene.loads[index].force is None]
+    weights = [index for index in range(len(run.phases)) if run.scene.loads[index].is_weight_alone]
     n_panels = len(shots) + len(weights)
     rows = math.ceil(n_panels / COLUMNS)
     with styled():

@@ -17,7 +17,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.run import Event, Motion
-from cagepose.studies.support import load_direction_world, load_point_object
+from cagepose.studies.acts import acts_of, coil
 from cagepose.views.style import BLACK, BLUE, GREY, ORANGE, PURPLE, SKY, VERMILLION, Look
 
 SLIMMEST = 0.45
@@ -33,6 +33,9 @@ POINT_LOOKS: Mapping[str, Look] = {
 TOGETHER = 0.04
 """Points nearer than this fraction of the picture share one label."""
 MARGIN = 0.04
+SECOND_HEAD, LONGEST_SPRING, COIL = 0.8, 0.5, 0.012
+"""Where a moment's arrow has its other head; in lengths of the picture, the greatest length of a spring that is drawn,
+and the radius of its coils."""
 """Room around the scene, as a fraction of each edge."""
 ZOOM, ZOOM_FLAT = 0.9, 1.15
 """Fills a panel with a scene as tall as wide, and a lower panel with a flat one."""
@@ -151,11 +154,28 @@ class SceneDrawing:
         labels.append((point, [name], touches))
 
     def _draw_load(self, panel: Axes3D, phase_index: int, pose: Pose) -> None:
+        """Draw what acts; a weight where nothing else does."""
         load = self.scene.loads[phase_index]
-        tip = self._shown(pose.transform(load_point_object(self.scene, load)))
-        tail = tip - self._length(0.3, load_direction_world(load))
-        panel.add_artist(_Arrow(tail, tip, BLACK))
-        panel.text(*tail, f" {load.name}", fontsize=7.0, color=BLACK, zorder=9)
+        acts = acts_of(self.scene, load)
+        for act in [act for act in acts if act.kind != "weight"] or acts:
+            at, direction = self._shown(pose.transform(act.at_object_m)), act.direction_at(pose)
+            name = load.name if act.kind == "weight" else act.name
+            if act.to_world_m is not None:
+                whole = float(self.aspect.max())
+                way = self._shown(act.to_world_m) - at
+                far = at + way * min(
+                    1.0, LONGEST_SPRING * whole / max(float(np.linalg.norm(way * self.stretch)), 1e-300)
+                )
+                line = coil(at * self.stretch, far * self.stretch, COIL * whole) / self.stretch
+                panel.plot(*line.T, color=BLACK, linewidth=0.9, zorder=9)
+                panel.text(*far, f" {name}", fontsize=7.0, color=BLACK, zorder=9)
+                continue
+            arrow = self._length(0.3, direction)
+            start, end = (at, at + arrow) if act.kind == "moment" else (at - arrow, at)
+            panel.add_artist(_Arrow(start, end, BLACK))
+            if act.kind == "moment":  # two heads
+                panel.add_artist(_Arrow(start, start + SECOND_HEAD * arrow, BLACK))
+            panel.text(*start, f" {name}", fontsize=7.0, color=BLACK, zorder=9)
 
     def _length(self, fraction: float, direction: FloatArray) -> FloatArray:
         """Return a vector along ``direction`` that looks as long as a fraction of the picture, stretched as it is."""

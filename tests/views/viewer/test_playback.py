@@ -55,9 +55,9 @@ def test_contact_forces_and_load_balance_in_the_last_shot_of_each_phase(rail):
         for point, force in zip(shot.touches.points, forces, strict=True):
             total += force
             moment += np.cross(film.points_world[point], force)
-        for load in film.loads[row.phase]:
-            total += load.force_world
-            moment += np.cross(shot.pose_world_object.transform(load.at_object_m), load.force_world)
+        for act in film.loads[row.phase]:
+            total += act.direction_at(shot.pose_world_object)
+            moment += np.cross(shot.pose_world_object.transform(act.at_object_m), act.direction)
         assert np.abs(total).max() < 2e-6  # beside a push without a mass, the weight of 1e-6 is not drawn
         assert np.abs(moment).max() < 2e-6 * rail.scene.size_m
 

@@ -68,7 +68,7 @@ def write_complement(basis: PassiveSet, free: FloatArray) -> int:
 
 @kernel
 def write_reduced(matrix: FloatArray, free: FloatArray, n_free: int, out: FloatArray) -> None:
-    """Write a symmetric (6, 6) matrix as it is seen by the first ``n_free`` rows of ``free``: F M F'."""
+    """Write a (6, 6) matrix as it is seen by the first ``n_free`` rows of ``free``: F M F'."""
     for i in range(n_free):
         for j in range(n_free):
             out[i, j] = 0.0

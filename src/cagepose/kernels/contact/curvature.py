@@ -2,7 +2,7 @@
 
     S = D^-1/2 (Hess V - sum lambda_i Hess g_i + sum phi_i . Hess u_i) D^-1/2
 
-V is the potential of the dead loads, g_i the gap of a sliding contact (a plane of the object over a point of the
+V is the potential of the load, g_i the gap of a sliding contact (a plane of the object over a point of the
 world), u_i the way of the object's material at a sticking one.
 """
 
@@ -11,9 +11,11 @@ from __future__ import annotations
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.second_order import add_coupling, add_turned_arm
-from cagepose.kernels.algebra.vector import plus, row, scaled, vector_from
+from cagepose.kernels.algebra.vector import Vector, plus, scaled, vector_from
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
-from cagepose.kernels.contact.metric import Frame, PhaseLoad, load_arm
+from cagepose.kernels.contact.load_curvature import add_load_curvature
+from cagepose.kernels.contact.loads import PhaseLoad
+from cagepose.kernels.contact.metric import Frame
 from cagepose.kernels.native.kernel import kernel
 
 
@@ -34,13 +36,16 @@ def add_face_curvature(contact: ContactRow, carried: float, frame: Frame, out: F
 
 @kernel
 def write_curvature(
-    contacts: ContactSet, load: PhaseLoad, quaternion: Quaternion, frame: Frame, out: FloatArray
+    contacts: ContactSet,
+    load: PhaseLoad,
+    position: Vector,
+    quaternion: Quaternion,
+    frame: Frame,
+    out: FloatArray,
 ) -> None:
     """Write S, (6, 6), for the forces of the contacts, and which of them stick."""
     clear_matrix(out)
-    for which in range(2):
-        arm = load_arm(load, which, quaternion)
-        add_turned_arm(row(load.forces_world, which), arm, -1.0, frame.axes, frame.radii, out)
+    add_load_curvature(load, position, quaternion, frame, out)
     for i in range(contacts.used[0]):
         contact, state = contacts.rows[i], contacts.states[i]
         if state.forces[0] > 0.0 and not state.is_sticking:

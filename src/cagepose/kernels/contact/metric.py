@@ -1,4 +1,4 @@
-"""The metric D of motion from rest, the loads, and twists and wrenches in its units: equations (5.1) to (5.3).
+"""The metric D of motion from rest, and twists and wrenches in its units: equations (5.1) to (5.3).
 
 D is that of a rigid body of mass 1: D = diag(1, 1, 1, K), K the inertia about the centre of gravity. In "scaled"
 coordinates y = D^1/2 nu, along the principal axes of K, the metric is the identity, every component is a length, and
@@ -51,21 +51,6 @@ class Body:
     reach_m: float
 
 
-class PhaseLoad:
-    """The two forces of a phase (of which one may be zero), fixed in direction in the world; a record.
-
-    Attributes
-    ----------
-    forces_world
-        One row each.
-    arms_object
-        Where they act, from the centre of gravity, in the object's frame, metres.
-    """
-
-    forces_world: Annotated[FloatArray, 2, 3]
-    arms_object: Annotated[FloatArray, 2, 3]
-
-
 class Frame(NamedTuple):
     """The scaled coordinates at one pose: rows are the principal axes in the world."""
 
@@ -99,42 +84,6 @@ def twist_of(y: FloatArray, frame: Frame) -> tuple[Vector, Vector]:
     """Return (velocity of the centre of gravity, angular velocity) of a scaled twist: nu = D^-1/2 y."""
     turning = (y[3] / frame.radii[0], y[4] / frame.radii[1], y[5] / frame.radii[2])
     return (y[0], y[1], y[2]), transposed_times(frame.axes, turning)
-
-
-@kernel
-def load_arm(load: PhaseLoad, which: int, quaternion: Quaternion) -> Vector:
-    """Return where a load acts, from the centre of gravity, in the world."""
-    return rotated(quaternion, row(load.arms_object, which))
-
-
-@kernel
-def write_load(load: PhaseLoad, quaternion: Quaternion, frame: Frame, out: FloatArray) -> float:
-    """Write the scaled wrench of a phase's load, D^-1/2 w; return the length of its terms, which may cancel."""
-    terms = 0.0
-    force, moment = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    for which in range(2):
-        one = row(load.forces_world, which)
-        turning = cross(load_arm(load, which, quaternion), one)
-        write_scaled_wrench(one, turning, frame, out)
-        terms += math.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2 + out[3] ** 2 + out[4] ** 2 + out[5] ** 2)
-        force, moment = plus(force, one), plus(moment, turning)
-    write_scaled_wrench(force, moment, frame, out)
-    return terms
-
-
-@kernel
-def work_done(load: PhaseLoad, start: Vector, start_turned: Quaternion, end: Vector, end_turned: Quaternion) -> float:
-    """Return the work of a phase's load between two poses of the centre of gravity: what the potential falls (5.2)."""
-    work = 0.0
-    for which in range(2):
-        moved = minus(load_arm(load, which, end_turned), load_arm(load, which, start_turned))
-        work += dot(row(load.forces_world, which), plus(minus(end, start), moved))
-    return work
-
-
-@kernel
-def total_force(load: PhaseLoad) -> Vector:
-    return plus(row(load.forces_world, 0), row(load.forces_world, 1))
 
 
 @kernel

@@ -45,7 +45,7 @@ def critical_friction(phase: int, part: Part, cases: Cases, points_world: FloatA
     Parameters as for `judge_start`.
     """
     start = start_of(0, part, cases, points_world)
-    load, touch_m = start.loads[phase], start.tolerances.touch_m
+    load, touch_m = start.actions[phase], start.tolerances.touch_m
     if not stand_at(start.geometry, part.body, start.position, start.quaternion, load, start.friction, touch_m, at):
         return math.nan
     return least_friction_of_faces(at)

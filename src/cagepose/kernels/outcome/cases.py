@@ -10,7 +10,8 @@ from cagepose.kernels.algebra.tolerances import KernelTolerances, scaled_toleran
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, row, scaled
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
 from cagepose.kernels.contact.friction import Friction, friction_of
-from cagepose.kernels.contact.metric import Body, PhaseLoad
+from cagepose.kernels.contact.loads import PhaseLoad
+from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.native.kernel import kernel
 
 
@@ -52,8 +53,8 @@ class Cases(NamedTuple):
         Coefficient of friction of the scene, (n,).
     point_frictions, box_frictions
         Those of single cage points and boxes, (n_points,) and (n_boxes,), the same for all; NaN: none.
-    loads
-        (n, n_phases).
+    actions
+        What acts in each phase, (n, n_phases, n_actions); see `PhaseLoad`.
     tolerances
         For a scene of size 1; the same for all.
     """
@@ -67,7 +68,7 @@ class Cases(NamedTuple):
     frictions: FloatArray
     point_frictions: FloatArray
     box_frictions: FloatArray
-    loads: Rows[Rows[PhaseLoad]]
+    actions: Rows[Rows[PhaseLoad]]
     tolerances: KernelTolerances
 
 
@@ -83,7 +84,7 @@ class Start(NamedTuple):
         Of the centre of gravity, seen from the middle of the cage points, and the object's orientation.
     origin_world
         That middle.
-    size_m, friction, tolerances, loads
+    size_m, friction, tolerances, actions
         Those of the case.
     """
 
@@ -94,7 +95,7 @@ class Start(NamedTuple):
     size_m: float
     friction: Friction
     tolerances: KernelTolerances
-    loads: Rows[PhaseLoad]
+    actions: Rows[PhaseLoad]
 
 
 @kernel
@@ -135,7 +136,7 @@ def start_of(case: int, part: Part, cases: Cases, points_world: FloatArray) -> S
         size_m,
         friction_of(cases.frictions[row_of(len(cases.frictions), case)], cases.point_frictions, cases.box_frictions),
         scaled_tolerances(cases.tolerances, size_m),
-        cases.loads[row_of(len(cases.loads), case)],
+        cases.actions[row_of(len(cases.actions), case)],
     )
 
 

@@ -39,7 +39,7 @@ def judge_end(
         part.body,
         position,
         quaternion,
-        start.loads[phase],
+        start.actions[phase],
         start.friction,
         start.size_m,
         start.tolerances,

@@ -10,12 +10,22 @@ import numpy as np
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.tolerances import KernelTolerances
-from cagepose.kernels.algebra.vector import Vector, norm, row, scaled
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, row, scaled
 from cagepose.kernels.collision.first_contact import allowed_depth, first_contact_screw, first_contact_travel
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
 from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
 from cagepose.kernels.contact.friction import Friction
-from cagepose.kernels.contact.metric import Body, PhaseLoad, moved_along_twist, total_force, work_done
+from cagepose.kernels.contact.loads import (
+    BENT,
+    BOUND,
+    STRAIGHT,
+    PhaseLoad,
+    drift_and_sway,
+    flight,
+    total_load,
+    work_done,
+)
+from cagepose.kernels.contact.metric import Body, moved_along_twist
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
 from cagepose.kernels.quasistatic.projection import Constraints, add_constraint, empty_constraints, projected
@@ -27,8 +37,10 @@ POINTS_PUSHED = 8
 """Points that may be pushed out of the object after a step."""
 ROUNDING = 1e-15
 """In lengths of the terms of a load: a slower motion may be no motion."""
-STRAIGHT = 1e-14
+STRAIGHT_TRAVEL = 1e-14
 """Radians for each length of the object: a motion that turns by less is a travel."""
+OUT_OF_REACH = 10.0
+"""In sizes of the scene from all cage points: an object that flies on there has escaped, wherever its load turns to."""
 
 
 class Setting(NamedTuple):
@@ -88,7 +100,7 @@ class Twist(NamedTuple):
 @kernel
 def straightened(velocity: Vector, spin: Vector, reach_m: float, terms: float) -> Vector:
     """Return the spin, or zero where it is rounding, of the motion or of the terms of the load that it is left of."""
-    if norm(spin) * reach_m <= max(STRAIGHT * norm(velocity), ROUNDING * terms):
+    if norm(spin) * reach_m <= max(STRAIGHT_TRAVEL * norm(velocity), ROUNDING * terms):
         return (0.0, 0.0, 0.0)
     return spin
 
@@ -275,7 +287,8 @@ def stepped(
         constrain_to_face(geometry, placement, hit_point, hit_box, work.constraints)
     done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], work)
     if done:
-        rounding = setting.tolerances.resolution_m * total_load(setting.load)
+        total = total_load(setting.load, position, quaternion, setting.size_m)
+        rounding = setting.tolerances.resolution_m * total
         done = work_done(setting.load, position, quaternion, new_position, new_quaternion) >= -rounding
     if done:
         return True, new_position, new_quaternion
@@ -284,19 +297,24 @@ def stepped(
 
 
 @kernel
-def total_load(load: PhaseLoad) -> float:
-    """Return the sum of the magnitudes of a phase's forces."""
-    return norm(row(load.forces_world, 0)) + norm(row(load.forces_world, 1))
+def nothing_ahead(setting: Setting, position: Vector, quaternion: Quaternion, velocity: Vector, spin: Vector) -> bool:
+    """Whether an object that touches nothing, and begins to move with a velocity and a spin, has got away (5.32).
 
-
-@kernel
-def nothing_ahead(setting: Setting, position: Vector) -> bool:
-    """Whether no cage point can ever be met in free flight: the centre of gravity goes straight along the force."""
-    force = total_force(setting.load)
-    size = norm(force)
+    Where the way of its centre of gravity is known for ever, straight or winding, no cage point may be met on it. A way
+    that is not straight also leads away where it is out of reach and goes on. A spring with stiffness brings it back.
+    """
+    kind = flight(setting.load)
+    if kind == BOUND:
+        return False
+    if kind != STRAIGHT and is_out_of_reach(setting, position, velocity):
+        return True
+    if kind == BENT:
+        return False
+    drift, sway = drift_and_sway(setting.load, position, quaternion, spin)
+    size = norm(drift)
     if size == 0.0:
         return False
-    along = scaled(force, 1.0 / size)
+    along = scaled(drift, 1.0 / size)
     for point in range(len(setting.geometry.points_world)):
         ahead = 0.0
         distance = 0.0
@@ -305,7 +323,19 @@ def nothing_ahead(setting: Setting, position: Vector) -> bool:
         for k in range(3):
             away = setting.geometry.points_world[point, k] - position[k] - max(ahead, 0.0) * along[k]
             distance += away * away
-        if math.sqrt(distance) <= setting.body.reach_m:
+        if math.sqrt(distance) <= setting.body.reach_m + sway:
+            return False
+    return True
+
+
+@kernel
+def is_out_of_reach(setting: Setting, position: Vector, velocity: Vector) -> bool:
+    """Whether the object is sizes of the scene away from all cage points, and goes away from their middle."""
+    if dot(position, velocity) <= 0.0:
+        return False
+    for point in range(len(setting.geometry.points_world)):
+        away = norm(minus(row(setting.geometry.points_world, point), position))
+        if away <= OUT_OF_REACH * setting.size_m + setting.body.reach_m:
             return False
     return True
 

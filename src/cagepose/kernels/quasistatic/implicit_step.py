@@ -12,6 +12,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from cagepose.kernels.algebra.dense import add_across, cholesky, confine, frobenius_norm, solve_lower, solve_upper
+from cagepose.kernels.algebra.eigen import symmetric_eigen
 from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.contact_set import ContactSet
@@ -34,17 +35,21 @@ class ImplicitStepWorkspace:
     ----------
     curvature
         S, and then what `keep_along_faces` makes of it.
+    circulation
+        The part of the load's stiffness that has no potential.
     held
         Basis of what the contacts that carry hold.
-    factor
-        Cholesky factor, lower.
+    factor, vectors
+        Cholesky factor, lower, or eigenvalues and eigenvectors.
     b, delta
         Load and step in its coordinates, then the step.
     """
 
     curvature: Annotated[FloatArray, 6, 6]
+    circulation: Annotated[FloatArray, 6, 6]
     held: PassiveSet
     factor: Annotated[FloatArray, 6, 6]
+    vectors: Annotated[FloatArray, 6, 6]
     b: ScaledVector
     delta: ScaledVector
 
@@ -77,6 +82,20 @@ def keep_along_faces(contacts: ContactSet, locked: PassiveSet, work: ImplicitSte
         append_column(work.held, locked.basis[place], place, 0.0)
     add_across(work.curvature, work.held, confine(work.curvature, work.held))
     return least_rho
+
+
+@kernel
+def rho_against_circulation(work: ImplicitStepWorkspace) -> float:
+    """Return the rho with which steps shrink fastest where the stiffness is S + A and S alone is in the matrix: |A|^2
+    over the least curvature, as |rho y - A y| is to be far below |(rho + S) y| (5.30).
+    """
+    size = confine(work.circulation, work.held)
+    write_matrix(work, 0.0)
+    symmetric_eigen(work.factor, work.vectors, WRENCH)
+    least = work.factor[0, 0]
+    for k in range(1, WRENCH):
+        least = min(least, work.factor[k, k])
+    return size * max(1.0, size / least) if least > 0.0 else size
 
 
 @kernel

@@ -7,7 +7,8 @@ from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactSet, find_contacts
 from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, ON_THE_WAY, equilibrium
-from cagepose.kernels.contact.metric import frame_at, write_load
+from cagepose.kernels.contact.loads import write_load
+from cagepose.kernels.contact.metric import frame_at
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.along_twist import Setting, Twist, stepped
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
@@ -33,9 +34,9 @@ def is_held_on_the_way(setting: Setting, position: Vector, quaternion: Quaternio
             move_contact(work.ahead, i, kept)
             kept += 1
     work.ahead.used[0] = kept
-    work.scratch[0].solver.load_terms = write_load(setting.load, quaternion, frame, work.scratch[0].solver.load)
-    greatest = setting.friction.greatest
-    return equilibrium(work.ahead, frame, greatest, ON_THE_WAY, work.scratch[0].solver) <= HELD_BY_FRICTION
+    solver, greatest = work.scratch[0].solver, setting.friction.greatest
+    solver.load_terms = write_load(setting.load, position, quaternion, frame, solver.load)
+    return equilibrium(work.ahead, frame, greatest, ON_THE_WAY, solver) <= HELD_BY_FRICTION
 
 
 @kernel

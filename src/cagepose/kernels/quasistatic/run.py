@@ -61,7 +61,7 @@ def phase_from(
     setting = Setting(
         start.geometry,
         part.body,
-        start.loads[phase],
+        start.actions[phase],
         start.size_m,
         start.friction,
         turn_step_rad,
@@ -107,7 +107,7 @@ def run_quasistatic(
     begin(outcome)
     start = start_of(0, part, cases, work.points_world)
     position, quaternion = start.position, start.quaternion
-    for phase in range(len(start.loads)):
+    for phase in range(len(start.actions)):
         verdict, n_steps, end, turned = run_phase(start, part, rules, phase, position, quaternion, work)
         publish_events(work.trace, n_steps, True, position, quaternion, start, part, outcome)
         verdict = end_phase(verdict, phase, end, turned, start, part, work.proof, outcome)
@@ -144,7 +144,7 @@ def run_quasistatic_cases(
             endings.verdicts[case, 0] = INVALID
             continue
         position, quaternion = start.position, start.quaternion
-        for phase in range(len(start.loads)):
+        for phase in range(len(start.actions)):
             verdict, n_steps, position, quaternion = run_phase(start, part, rules, phase, position, quaternion, work)
             if verdict == RESTS:
                 endings.proofs[case, phase], _, _ = judge_end(phase, position, quaternion, start, part, work.proof)

@@ -24,7 +24,9 @@ from cagepose.kernels.contact.equilibrium import (
     MOVES_SOMEHOW,
     UNSOLVED,
 )
-from cagepose.kernels.contact.metric import Frame, frame_at, total_force, twist_of, write_load
+from cagepose.kernels.contact.load_curvature import has_circulation, write_circulation
+from cagepose.kernels.contact.loads import longest_pull, write_load
+from cagepose.kernels.contact.metric import Frame, frame_at, twist_of
 from cagepose.kernels.contact.onset import find_sticking, onset
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import ESCAPES, LET_GO, NONE, PLAIN, RESTS, SCREW, STALLED, TRAVEL, StepRecord
@@ -39,7 +41,12 @@ from cagepose.kernels.quasistatic.along_twist import (
     pushed_out,
     straightened,
 )
-from cagepose.kernels.quasistatic.implicit_step import curvature_along, implicit_step, keep_along_faces
+from cagepose.kernels.quasistatic.implicit_step import (
+    curvature_along,
+    implicit_step,
+    keep_along_faces,
+    rho_against_circulation,
+)
 from cagepose.kernels.quasistatic.projection import ON_FACE, keep_stopped
 from cagepose.kernels.quasistatic.rest_on_the_way import first_rest, is_held_on_the_way
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
@@ -116,7 +123,12 @@ def impending_motion(setting: Setting, frame: Frame, work: QuasistaticWorkspace)
 
 @kernel
 def next_twist(
-    setting: Setting, quaternion: Quaternion, frame: Frame, turn_step_rad: float, work: QuasistaticWorkspace
+    setting: Setting,
+    position: Vector,
+    quaternion: Quaternion,
+    frame: Frame,
+    turn_step_rad: float,
+    work: QuasistaticWorkspace,
 ) -> Twist:
     """Return the twist to follow from a pose that moves; forces and sticking are then those of the step."""
     contacts, scratch, friction = work.contacts, work.scratch[0], setting.friction.greatest
@@ -125,14 +137,25 @@ def next_twist(
     carries = carried_by(contacts) != FREE
     velocity, spin = twist_of(y, frame)
     spin = straightened(velocity, spin, setting.body.reach_m, scratch.solver.load_terms)
-    end = longest_step(velocity, spin, carries, turn_step_rad, setting.size_m)
+    load, size_m = setting.load, setting.size_m
+    end = min(
+        longest_step(velocity, spin, carries, turn_step_rad, size_m),
+        longest_pull(load, position, quaternion, velocity, spin, turn_step_rad, size_m),
+    )
     if end < math.inf:
-        write_curvature(contacts, setting.load, quaternion, frame, scratch.stiff.curvature)
+        write_curvature(contacts, load, position, quaternion, frame, scratch.stiff.curvature)
         rho = max(keep_along_faces(contacts, scratch.solver.locked, scratch.stiff), 1.0 / end)
+        if has_circulation(load):
+            write_circulation(load, position, quaternion, frame, scratch.stiff.circulation)
+            rho = max(rho, rho_against_circulation(scratch.stiff))
         is_stiff = abs(curvature_along(scratch.stiff.curvature, y)) * end > STIFF
         if is_stiff and implicit_step(contacts, work.turned, friction, rho, scratch.stiff, scratch.solver):
             velocity, spin = twist_of(scratch.stiff.delta, frame)
-            end = min(1.0, longest_step(velocity, spin, carries, turn_step_rad, setting.size_m))
+            end = min(
+                1.0,
+                longest_step(velocity, spin, carries, turn_step_rad, size_m),
+                longest_pull(load, position, quaternion, velocity, spin, turn_step_rad, size_m),
+            )
     return Twist(velocity, spin, end)
 
 
@@ -251,7 +274,7 @@ def next_step(
     for _ in range(REFINEMENTS + 1):
         note_touching(work)
         frame = frame_at(setting.body, quaternion)
-        solver.load_terms = write_load(setting.load, quaternion, frame, solver.load)
+        solver.load_terms = write_load(setting.load, position, quaternion, frame, solver.load)
         code = impending_motion(setting, frame, work) if fits else UNSOLVED
         keep_stopped(solver.stopped, position, frame, work.path.constraints)
         is_rest = code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
@@ -266,12 +289,14 @@ def next_step(
         return (RESTS if is_rest else STALLED), here, fits
 
     # Which way, and how far?
-    twist = next_twist(setting, quaternion, frame_at(setting.body, quaternion), state.turn_step_rad, work)
+    twist = next_twist(setting, position, quaternion, frame_at(setting.body, quaternion), state.turn_step_rad, work)
     rule = carried_by(work.contacts)
     motion = TRAVEL if norm(twist.spin) == 0.0 else SCREW
-    if rule == FREE and nothing_ahead(setting, position):
-        write_escape(work, step, total_force(setting.load), position, quaternion)
-        return ESCAPES, here, fits
+    if rule == FREE:
+        velocity, spin = twist_of(solver.y, frame_at(setting.body, quaternion))
+        if nothing_ahead(setting, position, quaternion, velocity, spin):
+            write_escape(work, step, velocity, position, quaternion)
+            return ESCAPES, here, fits
     amount, as_planned, end, turned = furthest_step(
         setting, work.placement, work.contacts, position, quaternion, twist, work.path
     )

@@ -28,7 +28,8 @@ from cagepose.kernels.contact.equilibrium import (
     return_to_choice,
 )
 from cagepose.kernels.contact.friction import Friction
-from cagepose.kernels.contact.metric import WRENCH, Body, Frame, PhaseLoad, ScaledVector, frame_at, write_load
+from cagepose.kernels.contact.loads import PhaseLoad, write_load
+from cagepose.kernels.contact.metric import WRENCH, Body, Frame, ScaledVector, frame_at
 from cagepose.kernels.contact.self_stress import forget_locked, write_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
@@ -118,7 +119,7 @@ def stand_at(
     frame = frame_at(body, quaternion)
     place_object(geometry, position, quaternion, at.placement)
     solver = at.scratch[0].solver
-    solver.load_terms = write_load(load, quaternion, frame, solver.load)
+    solver.load_terms = write_load(load, position, quaternion, frame, solver.load)
     return find_contacts(geometry, at.placement, friction, position, frame, touch_m, at.contacts)
 
 
@@ -169,7 +170,7 @@ def prove(
         find_shared(contacts, at.statuses, scratch.rest)
         return TOO_MANY_CHOICES, MARGINAL, 0
     one_choice = has_one_choice(contacts)
-    proof, steady = judge_faces(at, code, one_choice, greatest, load, quaternion, frame, size_m)
+    proof, steady = judge_faces(at, code, one_choice, greatest, load, position, quaternion, frame, size_m)
     if not one_choice:
         scratch.solver.residual = left
         find_held(contacts, at.statuses, greatest, scratch.solver.locked, scratch.rest, at.system)
@@ -179,7 +180,13 @@ def prove(
 
 @kernel
 def stability_of_rest(
-    at: ProofWorkspace, friction: float, load: PhaseLoad, quaternion: Quaternion, frame: Frame, size_m: float
+    at: ProofWorkspace,
+    friction: float,
+    load: PhaseLoad,
+    position: Vector,
+    quaternion: Quaternion,
+    frame: Frame,
+    size_m: float,
 ) -> int:
     """Return the code of stability of a rest with these faces; where it is not stable to first order and by curvature,
     what contacts without play stop counts as well.
@@ -189,7 +196,18 @@ def stability_of_rest(
     for _ in range(2):
         rest.ways.used = n_ways
         code = stability(
-            contacts, at.statuses, friction, solver.locked, load, quaternion, frame, terms, size_m, rest, at.system
+            contacts,
+            at.statuses,
+            friction,
+            solver.locked,
+            load,
+            position,
+            quaternion,
+            frame,
+            terms,
+            size_m,
+            rest,
+            at.system,
         )
         if code == STABLE_REST or solver.locked.used > 0:
             break
@@ -208,6 +226,7 @@ def judge_faces(
     one_choice: bool,
     friction: float,
     load: PhaseLoad,
+    position: Vector,
     quaternion: Quaternion,
     frame: Frame,
     size_m: float,
@@ -224,7 +243,7 @@ def judge_faces(
     for _ in range(CHOICES_LIMIT):
         if not one_choice:
             code = equilibrium_of_choice(contacts, frame, friction, AT_REST, solver)
-        steady = max(steady, stability_of_rest(at, friction, load, quaternion, frame, size_m))
+        steady = max(steady, stability_of_rest(at, friction, load, position, quaternion, frame, size_m))
         is_chained = is_chained or solver.is_chained
         if code != HELD_WITHOUT_FRICTION:
             proof = UNIQUENESS_NOT_SHOWN

@@ -18,7 +18,8 @@ from cagepose.kernels.contact.equilibrium import (
     return_to_choice,
 )
 from cagepose.kernels.contact.friction import Friction
-from cagepose.kernels.contact.metric import Body, Frame, PhaseLoad, frame_at
+from cagepose.kernels.contact.loads import PhaseLoad
+from cagepose.kernels.contact.metric import Body, Frame, frame_at
 from cagepose.kernels.contact.onset import freest_motion
 from cagepose.kernels.contact.self_stress import forget_locked, self_stress
 from cagepose.kernels.native.kernel import entry, kernel

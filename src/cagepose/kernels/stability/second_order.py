@@ -19,14 +19,22 @@ from cagepose.kernels.algebra.least_squares import (
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.algebra.span import extend, write_complement, write_outside, write_reduced
+from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet, is_smooth
 from cagepose.kernels.contact.curvature import write_curvature
-from cagepose.kernels.contact.metric import WRENCH, Frame, PhaseLoad, ScaledVector
+from cagepose.kernels.contact.load_curvature import has_circulation, write_circulation
+from cagepose.kernels.contact.loads import PhaseLoad
+from cagepose.kernels.contact.metric import WRENCH, Frame, ScaledVector
 from cagepose.kernels.native.kernel import kernel
 
-STABLE_REST, MARGINAL, UNSTABLE = 0, 1, 2
+STABLE_REST, MARGINAL, UNSTABLE, STABILITY_NOT_SHOWN = 0, 1, 2, 3
 """Codes of stability: the index into `STABILITY_NAMES`."""
-STABILITY_NAMES: tuple[Literal["stable", "marginal", "unstable"], ...] = ("stable", "marginal", "unstable")
+STABILITY_NAMES: tuple[Literal["stable", "marginal", "unstable", "not shown"], ...] = (
+    "stable",
+    "marginal",
+    "unstable",
+    "not shown",
+)
 
 AT_LIMIT = 1e-4
 """A tangential force this near to its cone (relative) is at the limit of friction, which nobody knows as well."""
@@ -342,6 +350,7 @@ def stability(
     friction: float,
     locked: PassiveSet,
     load: PhaseLoad,
+    position: Vector,
     quaternion: Quaternion,
     frame: Frame,
     terms: float,
@@ -353,20 +362,38 @@ def stability(
     to ``work.ways``.
 
     On the cone of twists that close no contact, the least curvature is an eigenvalue over the span of one of its faces,
-    and its eigenvector lies in that face. So all sets of contacts that may open are held in turn.
+    and its eigenvector lies in that face. So all sets of contacts that may open are held in turn. Where the load turns
+    round on what is held free, only positive curvature says something (5.29).
     """
     at_limit = find_held(contacts, statuses, friction, locked, work, system)
-    n_held = work.held.used
+    n_held, n_ways = work.held.used, work.ways.used
     n_one_sided = list_one_sided(contacts, statuses, work, system)
     code = MARGINAL if at_limit or n_one_sided < 0 else STABLE_REST
-    write_curvature(contacts, load, quaternion, frame, work.curvature)
+    write_curvature(contacts, load, position, quaternion, frame, work.curvature)
     flat = FLAT * max(frobenius_norm(work.curvature), terms / size_m)
     for chosen in range(1 << max(n_one_sided, 0)):
         work.held.used = n_held
         if hold_some(contacts, n_one_sided, chosen, work):
             code = max(code, least_curvature(contacts, n_one_sided, flat, work))
     work.held.used = n_held
+    if code != STABLE_REST and has_circulation(load):
+        write_circulation(load, position, quaternion, frame, work.curvature)
+        n_free = write_complement(work.held, work.free)
+        write_reduced(work.curvature, work.free, n_free, work.reduced)
+        if greatest_entry(work.reduced, n_free) > flat:
+            work.ways.used = n_ways
+            return STABILITY_NOT_SHOWN
     return code
+
+
+@kernel
+def greatest_entry(matrix: FloatArray, n: int) -> float:
+    """Return the greatest magnitude in the leading (n, n) block."""
+    greatest = 0.0
+    for i in range(n):
+        for j in range(n):
+            greatest = max(greatest, abs(matrix[i, j]))
+    return greatest
 
 
 @kernel

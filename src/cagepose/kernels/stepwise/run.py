@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances
-from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, row, scaled, vector_from
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.collision.first_contact import first_contact_travel
 from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement, is_clear_of, place_object
-from cagepose.kernels.contact.metric import PhaseLoad, load_arm
+from cagepose.kernels.contact.loads import PhaseLoad, arm_of
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.outcome.cases import Cases, Part, Start, is_valid, start_of
 from cagepose.kernels.outcome.endings import INVALID, Endings, write_ending
@@ -162,15 +162,15 @@ def was_met(trace: Trace, last: int, size_m: float, resolution_m: float) -> bool
 @kernel
 def is_push(load: PhaseLoad) -> bool:
     """Whether a phase has a force: gravity beside it is ignored then (R8b)."""
-    return norm(row(load.forces_world, 1)) > 0.0
+    return len(load) > 1 and norm(vector_from(load[1].vector)) > 0.0
 
 
 @kernel
 def load_at(load: PhaseLoad, position: Vector, quaternion: Quaternion) -> PointLoad:
     """Return the load on the object at a pose: its direction is the world's, its point the object's (R8b)."""
-    which = 1 if is_push(load) else 0
-    force = row(load.forces_world, which)
-    return PointLoad(scaled(force, 1.0 / norm(force)), plus(position, load_arm(load, which, quaternion)))
+    action = load[1 if is_push(load) else 0]
+    force = vector_from(action.vector)
+    return PointLoad(scaled(force, 1.0 / norm(force)), plus(position, arm_of(action, quaternion)))
 
 
 @kernel
@@ -188,12 +188,12 @@ def phase_run(
     The contacts of the phase before keep their order. A step depends on the pose and on that order alone, so that any
     step of a run can be made again.
     """
-    geometry, tolerances, phase_load = start.geometry, start.tolerances, start.loads[phase]
+    geometry, tolerances, actions = start.geometry, start.tolerances, start.actions[phase]
     placement, touching, trace = work.placement, work.touching, work.trace
     rules = rules_of(of_size, start.friction.scene, start.size_m)
-    pushes = is_push(phase_load)
+    pushes = is_push(actions)
     place_object(geometry, position, quaternion, placement)
-    load = load_at(phase_load, position, quaternion)
+    load = load_at(actions, position, quaternion)
     find_touching(geometry, placement, load, tolerances, touching)
     for count in range(step_limit):
         # Decide.
@@ -212,7 +212,7 @@ def phase_run(
         position, quaternion = pose_during(step, position, quaternion, 1.0)
         write_step(trace.rows[count], step, position, quaternion)
         # Find the contacts there, and which of them the motion has reached.
-        load = load_at(phase_load, position, quaternion)
+        load = load_at(actions, position, quaternion)
         place_object(geometry, position, quaternion, placement)
         find_touching(geometry, placement, load, tolerances, touching)
         for point in range(len(geometry.points_world)):
@@ -315,7 +315,7 @@ def run_stepwise(part: Part, cases: Cases, rules: StepwiseRules, work: StepwiseW
     start = start_of(0, part, cases, work.points_world)
     position, quaternion = start.position, start.quaternion
     forget_contacts(work.touching)
-    for phase in range(len(start.loads)):
+    for phase in range(len(start.actions)):
         verdict, n_steps, end, turned = phase_run(start, phase, position, quaternion, rules, rules.step_limit, work)
         publish_events(work.trace, n_steps, False, position, quaternion, start, part, outcome)
         verdict = end_phase(verdict, phase, end, turned, start, part, work.proof, outcome)
@@ -353,7 +353,7 @@ def run_stepwise_cases(
             continue
         position, quaternion = start.position, start.quaternion
         forget_contacts(work.touching)
-        for phase in range(len(start.loads)):
+        for phase in range(len(start.actions)):
             verdict, n_steps, position, quaternion = phase_run(
                 start, phase, position, quaternion, rules, rules.step_limit, work
             )

@@ -24,6 +24,9 @@ TURNS_PER_PLAY = 4.0
 MOST_TURN_DEG = 10.0
 REACH = 0.5
 """In sizes of the scene: where on the object a force can act."""
+AXES = ("x", "y", "z")
+LEAST, MOST = 0.1, 3.0
+"""Times what is given: the ends of a slider of a moment, a stiffness or a preload."""
 MOST_FRICTION = 1.0
 STEPS = 400
 """Of a slider from end to end."""
@@ -112,24 +115,42 @@ class _Maker:
 
     def _loads(self) -> list[Control]:
         made = []
-        axes = ("x", "y", "z")
         for index, load in enumerate(self.scene.loads):
             here = f"loads[{index}]"
             given = value_at(self.data, ("loads", index))
-            if load.force is None:
-                most = max(abs(value) for value in given["gravity"])
-                names = tuple(f"gravity {axis}" for axis in axes)
-                made += self._vector(load.name, names, "", f"{here}.gravity", given["gravity"], most, about_zero=True)
-                continue
-            direction = given["force"]["direction"]
-            most = max(abs(value) for value in direction)
-            names = tuple(f"direction {axis}" for axis in axes)
-            made += self._vector(load.name, names, "", f"{here}.force.direction", direction, most, about_zero=True)
-            names = tuple(f"acts at {axis}" for axis in axes)
-            made += self._vector(
-                load.name, names, self.unit, f"{here}.force.at", given["force"]["at"], REACH * self.size
-            )
+            if load.is_weight_alone:
+                made += self._directions(load.name, "gravity", f"{here}.gravity", given["gravity"])
+            elif load.force is not None:
+                made += self._force(load.name, "", f"{here}.force", given["force"])
+            for number, force in enumerate(given.get("forces") or []):
+                made += self._force(load.name, f"force {number + 1} ", f"{here}.forces[{number}]", force)
+            for number, moment in enumerate(given.get("moments") or []):
+                key, value = f"{here}.moments[{number}].magnitude", float(moment["magnitude"])
+                name, unit = f"moment {number + 1}", f"N {self.unit}"
+                made.append(self._slider(load.name, name, unit, key, None, value, LEAST * value, MOST * value))
+            for number, spring in enumerate(given.get("springs") or []):
+                made += self._spring(load.name, f"spring {number + 1}", f"{here}.springs[{number}]", spring)
         return made
+
+    def _force(self, group: str, name: str, key: str, given: dict[str, Any]) -> list[Control]:
+        labels = tuple(f"{name}acts at {axis}" for axis in AXES)
+        return [
+            *self._directions(group, f"{name}direction", f"{key}.direction", given["direction"]),
+            *self._vector(group, labels, self.unit, f"{key}.at", given["at"], REACH * self.size),
+        ]
+
+    def _directions(self, group: str, name: str, key: str, given: list[float]) -> list[Control]:
+        labels = tuple(f"{name} {axis}" for axis in AXES)
+        return self._vector(group, labels, "", key, given, max(abs(value) for value in given), about_zero=True)
+
+    def _spring(self, group: str, name: str, key: str, given: dict[str, Any]) -> list[Control]:
+        """Its stiffness; of one without, its preload."""
+        stiffness, preload = float(given["stiffness"]), float(given.get("preload") or 0.0)
+        if stiffness > 0.0:
+            unit, most = f"N/{self.unit}", MOST * stiffness
+            return [self._slider(group, f"{name} stiffness", unit, f"{key}.stiffness", None, stiffness, 0.0, most)]
+        ends = sorted((LEAST * preload, MOST * preload))
+        return [self._slider(group, f"{name} preload", "N", f"{key}.preload", None, preload, *ends)]
 
     def _options(self) -> list[Control]:
         chosen, friction = chosen_method(self.scene), self.scene.friction_coefficient

@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from cagepose.files.units import from_metres
 from cagepose.files.words import LengthWords
 from cagepose.model.checks import FloatArray
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.run import AT_REST, FAILURES
+from cagepose.studies.acts import Act
 from cagepose.studies.comparison import ENDS, same_pose
-from cagepose.views.viewer.playback import LoadArrow, Playback, Row, Shot, Touches
+from cagepose.views.viewer.playback import Playback, Row, Shot, Touches
 from cagepose.views.viewer.stage import EXAGGERATIONS, MOST_ADDED, Stage
 
 AMOUNT_DIGITS = 4
@@ -70,8 +69,8 @@ class _Writer:
             "greatestForce": self._greatest_force(),
             "forceUnit": self._force_unit(),
             "phases": [
-                {"name": phase.name, "loads": [self._load(arrow) for arrow in arrows]}
-                for phase, arrows in zip(run.phases, self.shown.loads, strict=True)
+                {"name": phase.name, "loads": [self._load(act) for act in acts]}
+                for phase, acts in zip(run.phases, self.shown.loads, strict=True)
             ],
             "rows": [self._row(row) for row in self.shown.rows],
             "touches": [self._touch(touches) for touches in self.touches],
@@ -130,11 +129,14 @@ class _Writer:
             "direction": _numbers(along @ before.rotation),
         }
 
-    def _load(self, arrow: LoadArrow) -> dict[str, Any]:
+    def _load(self, act: Act) -> dict[str, Any]:
         return {
-            "name": arrow.name,
-            "at": _numbers(arrow.at_object_m / self.stage.size_m),
-            "direction": _numbers(arrow.force_world / np.linalg.norm(arrow.force_world)),
+            "kind": act.kind,
+            "name": act.name,
+            "at": _numbers(act.at_object_m / self.stage.size_m),
+            "direction": _numbers(act.direction),
+            "follows": act.follows,
+            "to": None if act.to_world_m is None else _numbers(self.stage.place(act.to_world_m)),
         }
 
     def _greatest_force(self) -> float:

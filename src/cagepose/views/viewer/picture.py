@@ -10,6 +10,7 @@ from PIL import Image
 from cagepose.files.units import from_metres
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
+from cagepose.studies.acts import Act, coil
 from cagepose.views.viewer.caption import LOUD_INK, QUIET_INK, Caption, Label
 from cagepose.views.viewer.playback import Shot
 from cagepose.views.viewer.raster import Color, Raster
@@ -24,6 +25,9 @@ BLUE, SKY, GREY, DARK = (0.0, 0.447, 0.698), (0.337, 0.706, 0.914), (0.6, 0.6, 0
 ORANGE, VERMILLION, PURPLE, BLACK = (0.902, 0.624, 0.0), (0.835, 0.369, 0.0), (0.8, 0.475, 0.655), (0.05, 0.05, 0.05)
 BALL, FREE_BALL, ROD, LONGEST_ARROW, NORMAL = 0.01, 0.007, 0.0045, 0.22, 0.07
 """In sizes of the scene, as on the page."""
+SECOND_HEAD, LONGEST_SPRING, COIL = 0.8, 1.0, 0.012
+"""Where a moment's arrow has its other head; in sizes of the scene, the greatest length of a spring that is drawn, and
+the radius of its coils."""
 SEE_THROUGH = 0.3
 FEW_NAMES = 14
 """Of more contacts than these, only those are named that press or were just reached."""
@@ -78,9 +82,8 @@ class PictureMaker:
         """Choose scale and middle so that the ends of all events, the cage, the loads and the last forces fit."""
         ends = [self._shown(self.shown.shots[shot]) for shot in (0, *(row.last_shot for row in self.shown.rows))]
         places = [self.stage.place(pose.transform(self.corners_object)) for pose in ends]
-        for arrow in (arrow for loads in self.shown.loads for arrow in loads):
-            tip = self.stage.place(ends[-1].transform(arrow.at_object_m))
-            places.append((tip - LONGEST_ARROW * arrow.force_world / np.linalg.norm(arrow.force_world))[None])
+        for act in (act for acts in self.shown.loads for act in acts):
+            places.append(np.stack(self._ends(act, ends[-1])))
         last = self.shown.shots[-1].touches
         if last.forces_object is not None:
             places.append(self.points[last.points] - self.arrow_per_force * last.forces_object @ ends[-1].rotation.T)
@@ -158,11 +161,28 @@ class PictureMaker:
                 self._arrow(place - arrow, place, ROD, VERMILLION)
 
     def _draw_loads(self, shot: Shot, pose: Pose) -> None:
-        for arrow in self.shown.loads[shot.phase]:
-            tip = self.stage.place(pose.transform(arrow.at_object_m))
-            tail = tip - LONGEST_ARROW * arrow.force_world / np.linalg.norm(arrow.force_world)
-            self._arrow(tail, tip, 1.3 * ROD, BLACK)
-            self._name(tail, arrow.name, is_loud=True)
+        for act in self.shown.loads[shot.phase]:
+            start, end = self._ends(act, pose)
+            if act.kind == "spring":
+                line = self._pixels(coil(start, end, COIL))
+                self.raster.lines(line[:-1], line[1:], BLACK)
+            else:
+                self._arrow(start, end, 1.3 * ROD, BLACK)
+            if act.kind == "moment":  # two heads
+                self._arrow(start, start + SECOND_HEAD * (end - start), 1.3 * ROD, BLACK)
+            self._name(end if act.kind == "spring" else start, act.name, is_loud=True)
+
+    def _ends(self, act: Act, pose: Pose) -> tuple[FloatArray, FloatArray]:
+        """Return where an act's arrow starts and ends: that of a force ends where it acts, that of a moment starts at
+        the centre of gravity. A spring is drawn for `LONGEST_SPRING` at most.
+        """
+        at, direction = self.stage.place(pose.transform(act.at_object_m)), act.direction_at(pose)
+        if act.to_world_m is not None:
+            length = float(np.linalg.norm(self.stage.place(act.to_world_m) - at))
+            return at, at + min(length, LONGEST_SPRING) * direction
+        if act.kind == "moment":
+            return at, at + LONGEST_ARROW * direction
+        return at - LONGEST_ARROW * direction, at
 
     def _draw_motion(self, shot: Shot, pose: Pose) -> None:
         row = self.shown.rows[shot.row] if shot.row >= 0 else None

@@ -13,16 +13,14 @@ from numpy.typing import NDArray
 from cagepose.files.units import LengthUnit
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
-from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
+from cagepose.studies.acts import Act, acts_of
 from cagepose.views.viewer.surface import nearest_on_object
 
 SHOTS_PER_MOTION = 24
 """One second of film for each motion."""
 ESCAPE = 0.6
 """How much of a travel without end is shown, in sizes of the scene; of a turn, in radians."""
-LEAST_ARROW = 0.01
-"""A load or force below this fraction of the greatest of its phase is not drawn; its arrow would be a dot."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,25 +97,6 @@ class Row:
 
 
 @dataclass(frozen=True, eq=False)
-class LoadArrow:
-    """A weight or a push.
-
-    Attributes
-    ----------
-    name
-        "weight" or the phase's name.
-    at_object_m
-        Where it acts, in the object's frame, (3,), metres.
-    force_world
-        In newtons or parts of the load, (3,).
-    """
-
-    name: str
-    at_object_m: FloatArray
-    force_world: FloatArray
-
-
-@dataclass(frozen=True, eq=False)
 class Playback:
     """All that a viewer shows of a run.
 
@@ -132,7 +111,7 @@ class Playback:
     shots_per_motion
         How many shots each motion has.
     loads
-        For each phase that was run, what pushes.
+        For each phase that was run, what acts.
     """
 
     run: Run
@@ -141,7 +120,7 @@ class Playback:
     shots: tuple[Shot, ...]
     rows: tuple[Row, ...]
     shots_per_motion: int
-    loads: tuple[tuple[LoadArrow, ...], ...]
+    loads: tuple[tuple[Act, ...], ...]
 
     @property
     def greatest_force(self) -> float:
@@ -155,7 +134,7 @@ def playback(run: Run, length_unit: LengthUnit = "mm", shots_per_motion: int = S
     camera = _Camera(run, shots_per_motion)
     for phase_index, phase in enumerate(run.phases):
         camera.shoot(phase_index, phase)
-    loads = tuple(_load_arrows(run, index) for index in range(len(run.phases)))
+    loads = tuple(acts_of(run.scene, load) for load in run.scene.loads[: len(run.phases)])
     return Playback(
         run, length_unit, camera.points_world, tuple(camera.shots), tuple(camera.rows), shots_per_motion, loads
     )
@@ -237,13 +216,3 @@ def _force(contact: Contact) -> FloatArray | None:
     sideways = np.zeros(3) if contact.force_tangential_n is None else contact.force_tangential_n
     force: FloatArray = sideways - contact.force_normal_n * contact.normal_world
     return force
-
-
-def _load_arrows(run: Run, phase: int) -> tuple[LoadArrow, ...]:
-    load = run.scene.loads[phase]
-    weighed = scaled_load(run.scene, load)
-    arrows = [LoadArrow("weight", run.scene.object.center_of_gravity_m, weighed.gravity)]
-    if load.force is not None:
-        arrows.append(LoadArrow(load.name, load.force.at_object_m, weighed.force))
-    greatest = max(float(np.linalg.norm(arrow.force_world)) for arrow in arrows)
-    return tuple(arrow for arrow in arrows if float(np.linalg.norm(arrow.force_world)) > LEAST_ARROW * greatest)

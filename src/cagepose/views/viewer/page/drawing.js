@@ -6,8 +6,38 @@ const COLORS = {
   load: [0.05, 0.05, 0.05, 1], axis: [0.8, 0.475, 0.655, 1], trace: [0, 0.447, 0.698, 1], center: [0, 0.447, 0.698, 1],
 };
 const BALL = 0.01, ROD = 0.0045, LONGEST_ARROW = 0.22, NORMAL = 0.07;
+const SECOND_HEAD = 0.8; // of a moment's arrow, where its other head is
+const LONGEST_SPRING = 1.0, COIL = 0.012, COILS = 7, COIL_POINTS = 8, STRAIGHT_ENDS = 0.15; // of a spring
 const FEW_NAMES = 14; // of more contacts than these, only those are named that press or were just reached
 const LEAST_FORCE = 1e-9; // parts of the greatest; what is less is rounding
+
+// Where a load's arrow starts and ends: that of a force ends where it acts, that of a moment starts at the centre of
+// gravity; a spring leads to where it is held, or part of the way.
+function loadEnds(load, pose) {
+  const at = carried(pose, load.at);
+  if (load.kind === "spring") {
+    const way = sub(load.to, at);
+    return [at, add(at, times(Math.min(1, LONGEST_SPRING / (norm(way) || 1)), way))];
+  }
+  const arrow = times(LONGEST_ARROW, load.follows ? rotated(pose.q, load.direction) : load.direction);
+  return load.kind === "moment" ? [at, add(at, arrow)] : [sub(at, arrow), at];
+}
+
+// A spring between two points, as a line that winds.
+function coil(start, end) {
+  const way = sub(end, start);
+  if (norm(way) === 0) return [start, end];
+  const helper = Math.abs(way[2]) < 0.9 * norm(way) ? [0, 0, 1] : [1, 0, 0];
+  const aside = unit(cross(way, helper));
+  const up = unit(cross(way, aside));
+  const on = (share) => add(start, times(share, way));
+  const wound = Array.from({ length: COILS * COIL_POINTS + 1 }, (_, k) => {
+    const turn = 2 * Math.PI * k / COIL_POINTS;
+    const axis = on(STRAIGHT_ENDS + (1 - 2 * STRAIGHT_ENDS) * k / (COILS * COIL_POINTS));
+    return add(axis, add(times(COIL * Math.cos(turn), aside), times(COIL * Math.sin(turn), up)));
+  });
+  return [start, on(STRAIGHT_ENDS), ...wound, on(1 - STRAIGHT_ENDS), end];
+}
 
 class Drawing {
   constructor(stage, canvas, overlay, changed) {
@@ -55,7 +85,7 @@ class Drawing {
     const signs = [-0.5, 0.5].flatMap((x) => [-0.5, 0.5].flatMap((y) => [-0.5, 0.5].map((z) => [x, y, z])));
     const corners = ends.flatMap((pose) => stage.data.boxes.flatMap((box) => signs.map((sign) =>
       carried(composed(pose, { p: box.position, q: box.quaternion }), sign.map((value, axis) => value * box.size[axis])))));
-    const tails = stage.data.phases.flatMap((phase) => phase.loads).map((load) => sub(carried(end, load.at), times(LONGEST_ARROW, load.direction)));
+    const tails = stage.data.phases.flatMap((phase) => phase.loads).flatMap((load) => loadEnds(load, end));
     const pressing = stage.shots.at(-1).touches.filter((touch) => touch.force).map((touch) =>
       sub(stage.point(touch.point, k), times(LONGEST_ARROW / stage.data.greatestForce, rotated(end.q, touch.force))));
     return [...corners, ...tails, ...pressing, ...stage.data.names.map((_, index) => stage.point(index, k))];
@@ -105,10 +135,12 @@ class Drawing {
 
   drawLoads(shot, pose, labels) {
     for (const load of this.stage.data.phases[shot.phase].loads) {
-      const tip = carried(pose, load.at);
-      const tail = sub(tip, times(LONGEST_ARROW, load.direction));
-      this.painter.arrow(tail, tip, 1.3 * ROD, COLORS.load);
-      labels.push([tail, load.name, "#000"]);
+      const [start, end] = loadEnds(load, pose);
+      if (load.kind === "spring") this.painter.polyline(coil(start, end), COLORS.load);
+      else this.painter.arrow(start, end, 1.3 * ROD, COLORS.load);
+      // A moment's arrow has two heads.
+      if (load.kind === "moment") this.painter.arrow(start, add(start, times(SECOND_HEAD, sub(end, start))), 1.3 * ROD, COLORS.load);
+      labels.push([load.kind === "spring" ? end : start, load.name, "#000"]);
     }
   }
 

@@ -1,0 +1,157 @@
+"""What acts in a phase as kernels take it: `Action` records, and their sum at a pose."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from cagepose.kernels.algebra.record import dtype_of
+from cagepose.kernels.contact.loads import (
+    DEAD_FORCE,
+    DEAD_MOMENT,
+    FOLLOWING_FORCE,
+    FOLLOWING_MOMENT,
+    SPRING,
+    Action,
+    acting,
+    total_load,
+)
+from cagepose.model.checks import FloatArray, as_vector
+from cagepose.model.load import Load, Spring
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
+from cagepose.runs.load_scaling import one_force, scaled_load
+
+HARDLY_TENSE = 1e-12
+"""In the terms of a spring's tension: a smaller one at length zero is rounding. The spring's force is then linear."""
+
+
+class Wrench(NamedTuple):
+    """A force and its moment about the centre of gravity, (3,) each, in the world."""
+
+    force: FloatArray
+    moment: FloatArray
+
+
+def actions_of(scene: Scene) -> np.ndarray:
+    """Return what acts in each phase, (n_phases, n_actions): the weight, forces, moments and springs, then such as do
+    nothing.
+    """
+    of_phases = [_actions_of_phase(scene, load) for load in scene.loads]
+    found = np.zeros((len(of_phases), max(map(len, of_phases))), dtype_of(Action))
+    for index, actions in enumerate(of_phases):
+        found[index, : len(actions)] = actions
+    return found
+
+
+def _actions_of_phase(scene: Scene, load: Load) -> np.ndarray:
+    center, start = scene.object.center_of_gravity_m, scene.object.pose_world_object
+    weighed = scaled_load(scene, load)
+    pushes = acting_pushes(load, weighed.forces)
+    found = np.zeros(1 + len(pushes) + len(load.moments) + len(load.springs), dtype_of(Action))
+    found["vector"][0] = weighed.gravity
+    for index, push in enumerate(pushes, start=1):
+        found["kind"][index] = FOLLOWING_FORCE if push.follows else DEAD_FORCE
+        found["vector"][index], found["arm_object"][index] = push.vector, push.at_object_m - center
+    for index, moment in enumerate(load.moments, start=1 + len(pushes)):
+        found["kind"][index] = FOLLOWING_MOMENT if moment.follows else DEAD_MOMENT
+        found["vector"][index] = moment.magnitude_nm * moment.direction
+    for index, spring in enumerate(load.springs, start=len(found) - len(load.springs)):
+        found["kind"][index] = SPRING
+        found["arm_object"][index] = spring.at_object_m - center
+        found["anchor"][index] = spring.to_world_m - cage_middle(scene)
+        found["stiffness"][index] = spring.stiffness_n_per_m
+        found["tension_at_zero"][index] = tensions_at_zero(spring, start.position_m[None], start.quaternion_wxyz[None])[
+            0
+        ]
+    return found
+
+
+class Push(NamedTuple):
+    """A force that acts: as a vector (3,), in the world or in the object's frame if it follows it, at a point (3,)."""
+
+    follows: bool
+    vector: FloatArray
+    at_object_m: FloatArray
+
+
+def acting_pushes(load: Load, forces: FloatArray) -> list[Push]:
+    """Return a phase's forces, (n, 3), each at its point; dead forces that one force is equal to are that one.
+
+    So the stepwise method, which knows one force, sees what such forces come to.
+    """
+    pushes = [Push(push.follows, force, push.at_object_m) for push, force in zip(load.pushes, forces, strict=True)]
+    dead = [push for push in pushes if not push.follows]
+    if len(dead) > 1:
+        one = one_force(np.array([push.vector for push in dead]), np.array([push.at_object_m for push in dead]))
+        if one is not None:
+            return [Push(False, *one), *(push for push in pushes if push.follows)]
+    return pushes
+
+
+def is_one_force(scene: Scene, load: Load) -> bool:
+    """Whether besides its weight a phase has at most one dead force, or such as one is equal to."""
+    if load.moments or load.springs or any(push.follows for push in load.pushes):
+        return False
+    return len(load.pushes) < 2 or len(acting_pushes(load, scaled_load(scene, load).forces)) == 1
+
+
+def tensions_at_zero(spring: Spring, positions_m: FloatArray, quaternions: FloatArray) -> FloatArray:
+    """Return the tension that a spring would have if its ends met, newtons, (n,), for objects that start at poses,
+    (n, 3) and (n, 4). Number by number, so that a row has the same bits as alone.
+    """
+    turned = _turned(quaternions, *spring.at_object_m)
+    ways = [spring.to_world_m[axis] - (positions_m[:, axis] + turned[axis]) for axis in range(3)]
+    pulls = spring.stiffness_n_per_m * np.sqrt(ways[0] * ways[0] + ways[1] * ways[1] + ways[2] * ways[2])
+    tensions = spring.preload_n - pulls
+    is_rounding = np.abs(tensions) <= HARDLY_TENSE * (abs(spring.preload_n) + pulls)
+    kept: FloatArray = np.where(is_rounding, 0.0, tensions)
+    return kept
+
+
+def cage_middle(scene: Scene) -> FloatArray:
+    """Return the middle of the cage points in the world, (3,), metres."""
+    pose = scene.cage.pose_world_cage
+    found: FloatArray = cage_middles(scene.cage.points_cage[None], pose.position_m[None], pose.quaternion_wxyz[None])[0]
+    return found
+
+
+def cage_middles(points_cage_m: FloatArray, positions_m: FloatArray, quaternions: FloatArray) -> FloatArray:
+    """Return the middles of cages in the world, (n, 3), metres, from which kernels see all positions.
+
+    Points are (n, n_points, 3), poses (n, 3) and (n, 4), each also one row for all. Number by number, as below.
+    """
+    middles = points_cage_m.cumsum(axis=1)[:, -1] / points_cage_m.shape[1]
+    found: FloatArray = positions_m + np.stack(_turned(quaternions, *middles.T), axis=1)
+    return found
+
+
+def _turned(quaternions: FloatArray, x: FloatArray, y: FloatArray, z: FloatArray) -> tuple[FloatArray, ...]:
+    """Return vectors turned by quaternions, (n, 4): as `cagepose.kernels.algebra.pose.rotated` does."""
+    w, i, j, k = quaternions.T
+    t = (2.0 * (j * z - k * y), 2.0 * (k * x - i * z), 2.0 * (i * y - j * x))
+    return (
+        x + w * t[0] + (j * t[2] - k * t[1]),
+        y + w * t[1] + (k * t[0] - i * t[2]),
+        z + w * t[2] + (i * t[1] - j * t[0]),
+    )
+
+
+def load_size(scene: Scene, phase: int, pose: Pose) -> float:
+    """Return the lengths of all that acts in a phase while the object is at a pose, added up: of weight and forces, of
+    what the springs' tensions are made of, and the moments over the scene's size.
+    """
+    center = pose.transform(scene.object.center_of_gravity_m) - cage_middle(scene)
+    return total_load(actions_of(scene)[phase], as_vector(center), pose.as_tuples()[1], scene.size_m)
+
+
+def wrench_at(scene: Scene, phase: int, pose: Pose) -> Wrench:
+    """Return the sum of all that acts in a phase while the object is at a pose."""
+    center = pose.transform(scene.object.center_of_gravity_m) - cage_middle(scene)
+    force, moment = np.zeros(3), np.zeros(3)
+    for action in actions_of(scene)[phase]:
+        one = acting(action, as_vector(center), pose.as_tuples()[1])
+        force += one.share * np.array(one.force)
+        moment += one.share * np.array(one.moment)
+    return Wrench(force, moment)
