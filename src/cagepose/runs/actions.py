@@ -92,6 +92,8 @@ def acting_pushes(load: Load, forces: FloatArray) -> list[Push]:
 
 def is_one_force(scene: Scene, load: Load) -> bool:
     """Whether besides its weight a phase has at most one dead force, or such as one is equal to."""
+    if not load.forces and not load.moments and not load.springs:
+        return load.force is None or not load.force.follows
     if load.moments or load.springs or any(push.follows for push in load.pushes):
         return False
     return len(load.pushes) < 2 or len(acting_pushes(load, scaled_load(scene, load).forces)) == 1

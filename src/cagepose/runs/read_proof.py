@@ -40,9 +40,10 @@ WEDGED = "; the contacts can press against each other without a load, as in a we
 STOPPED = "; what they leave, contacts without play stop to second order, by forces without bound"
 CHAINED = "; contacts without play hold each other in turn: the least play frees it"
 CLAMPED = "; it hangs on contacts that no load keeps closed: what opens one of them for a moment frees it"
-NUMBERS = (
-    "proof", "stability", "residual", "wedged", "is_second_order", "is_chained", "is_clamped", "n_undetermined",
-)  # fmt: skip
+NUMBERS = [
+    *("proof", "stability", "residual", "wedged", "is_second_order", "is_chained", "is_clamped"),
+    *("n_contacts", "n_undetermined"),
+]
 """Fields of a phase's record that are one number."""
 ONES = np.ones(3)
 IN_SPAN = 1e-6
@@ -52,21 +53,18 @@ IN_SPAN = 1e-6
 def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Sequence[Sequence[str]]) -> list[Proof]:
     """Return the proof of each phase's end, given the poses there and the names of contacts that share forces."""
     phases: Any = outcome.phases
-    last_contacts = phases["n_contacts"].tolist()
     columns = zip(
-        zip(*[phases[name].tolist() for name in NUMBERS], strict=True),
-        [0, *last_contacts],
-        last_contacts,
+        phases[NUMBERS].tolist(),
         phases["undetermined"],
         _free_motions(phases),
         ends,
         _sizes(outcome, scene, ends),
         shared,
-        strict=False,  # there is one more beginning than there are phases
+        strict=True,
     )
-    found = list[Proof]()
-    for numbers, first, last, undetermined, motion, end, (gap_work, largest_force), names in columns:
-        code, stability, residual, wedged, second, chained, clamped, n_undetermined = numbers
+    found, first = list[Proof](), 0
+    for numbers, undetermined, motion, end, (gap_work, largest_force), names in columns:
+        code, stability, residual, wedged, second, chained, clamped, last, n_undetermined = numbers
         held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
         is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
         found.append(
@@ -87,6 +85,7 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
                 largest_force=largest_force if held else None,
             )
         )
+        first = last
     return found
 
 

@@ -247,7 +247,7 @@ def judge_faces(
         is_chained = is_chained or solver.is_chained
         if code != HELD_WITHOUT_FRICTION:
             proof = UNIQUENESS_NOT_SHOWN
-            if steady == STABLE_REST and hangs_on_a_clamp(contacts, frame, friction, solver):
+            if steady == STABLE_REST and hangs_on_a_clamp(contacts, friction, solver):
                 steady, at.scratch[0].is_clamped = MARGINAL, True
         if one_choice:
             return proof, steady

@@ -23,6 +23,7 @@ from cagepose.kernels.contact.metric import Body, Frame, frame_at
 from cagepose.kernels.contact.onset import freest_motion
 from cagepose.kernels.contact.self_stress import forget_locked, self_stress
 from cagepose.kernels.native.kernel import entry, kernel
+from cagepose.kernels.stability.clamp import parts_for_good
 from cagepose.kernels.stability.proof import (
     OTHER_ONSET,
     PROVEN_MOVES,
@@ -31,6 +32,7 @@ from cagepose.kernels.stability.proof import (
     ProofWorkspace,
     prove,
 )
+from cagepose.kernels.stability.second_order import MARGINAL, STABLE_REST
 from cagepose.kernels.stability.strong import OTHER_FOUND, UNIQUE, other_onset
 
 
@@ -108,6 +110,18 @@ def search_onsets(friction: float, frame: Frame, at: ProofWorkspace) -> int:
 
 
 @kernel
+def is_lost(friction: float, frame: Frame, at: ProofWorkspace) -> bool:
+    """Whether a rest beside which another motion can begin hangs on a contact that no load keeps closed."""
+    contacts, work = at.contacts, at.scratch[0]
+    left = work.solver.residual
+    keep_choice(contacts)
+    work.is_clamped = parts_for_good(contacts, friction, work.solver)
+    return_to_choice(contacts, frame, friction, AT_REST, work.solver)
+    work.solver.residual = left
+    return bool(work.is_clamped)
+
+
+@kernel
 def first_motion(friction: float, frame: Frame, at: ProofWorkspace) -> None:
     """Write into ``at.scratch[0].solver.y`` how an object begins to move that does so by `prove`.
 
@@ -147,7 +161,10 @@ def judge(
     at.scratch[0].wedged = False
     code, steady, n_undetermined = prove(geometry, body, position, quaternion, load, friction, size_m, tolerances, at)
     if code == UNIQUENESS_NOT_SHOWN:
-        code = search_onsets(friction.greatest, frame_at(body, quaternion), at)
+        frame = frame_at(body, quaternion)
+        code = search_onsets(friction.greatest, frame, at)
+        if code != PROVEN_UNIQUE and steady == STABLE_REST and is_lost(friction.greatest, frame, at):
+            steady = MARGINAL
     elif code == PROVEN_MOVES:
         first_motion(friction.greatest, frame_at(body, quaternion), at)
     return code, steady, n_undetermined
