@@ -39,7 +39,7 @@ NOT_SHOWN = "the contacts can balance the load with friction, but that the objec
 WEDGED = "; the contacts can press against each other without a load, as in a wedge"
 STOPPED = "; what they leave, contacts without play stop to second order, by forces without bound"
 CHAINED = "; contacts without play hold each other in turn: the least play frees it"
-CLAMPED = "; it hangs on contacts that no load keeps closed: what opens one of them for a moment frees it"
+CLAMPED = "; it seems to hang on contacts that no load keeps closed: what opens one of them for a moment may free it"
 NUMBERS = [
     *("proof", "stability", "residual", "wedged", "is_second_order", "is_chained", "is_clamped"),
     *("n_contacts", "n_undetermined"),

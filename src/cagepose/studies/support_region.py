@@ -1,4 +1,4 @@
-"""Where the centre of gravity may be for the contacts to balance a weight, seen along it: `support_region`, (5.27).
+"""Where the centre of gravity may be for the contacts to balance a weight, seen along it: `support_region`, (5.34).
 
 On level ground without friction it is the polygon of the contacts. On slopes, with friction, or between walls it is
 not: there forces that point elsewhere than up make it larger, smaller or empty.

@@ -14,7 +14,7 @@ from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.equilibrium import least_residual
 from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.contact.onset import motion_with_faces
-from cagepose.kernels.contact.self_stress import count_chosen, self_stress
+from cagepose.kernels.contact.self_stress import self_stress
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
@@ -32,15 +32,15 @@ def is_balanced_without(contacts: ContactSet, i: int, friction: float, work: Con
 
 
 @kernel
-def leave_one_out(contacts: ContactSet, friction: float, work: ContactWorkspace) -> bool:
-    """Leave out one of the contacts that press against each other; False: the load needs all of them."""
+def leave_one_out(contacts: ContactSet, friction: float, work: ContactWorkspace) -> int:
+    """Leave out one of the contacts that press against each other, and return it; -1: the load needs all of them."""
     cone = work.stress.cone
     for k in range(cone.passive.used):
-        i = cone.contacts[cone.passive.labels[k]]
+        i = int(cone.contacts[cone.passive.labels[k]])
         if is_balanced_without(contacts, i, friction, work):
-            return True
+            return i
         contacts.states[i].counts = True
-    return False
+    return -1
 
 
 @kernel
@@ -54,12 +54,17 @@ def hangs_on_a_clamp(contacts: ContactSet, friction: float, work: ContactWorkspa
     work
         Given: the load. The forces in its cones are lost.
     """
-    hangs = False
-    if contacts.used[0] > ASKED or work.locked.used > 0:  # contacts without play are judged by what they stop
+    left_out, hangs = 0, False
+    if contacts.used[0] > ASKED:
         return hangs
     while not hangs and self_stress(contacts, friction, work.stress) <= HELD:
-        hangs = not leave_one_out(contacts, friction, work)
-    count_chosen(contacts)
+        i = leave_one_out(contacts, friction, work)
+        hangs = i < 0
+        if not hangs:
+            left_out |= 1 << i
+    for i in range(contacts.used[0]):
+        if (left_out >> i) & 1:
+            contacts.states[i].counts = True
     return hangs
 
 
@@ -69,7 +74,7 @@ def parts_for_good(contacts: ContactSet, friction: float, work: ContactWorkspace
     of the contacts are lost, too.
     """
     parts = False
-    if contacts.used[0] > ASKED or work.locked.used > 0:
+    if contacts.used[0] > ASKED:
         return parts
     for i in range(contacts.used[0]):
         state, column, y = contacts.states[i], contacts.rows[i].columns[0], work.trial

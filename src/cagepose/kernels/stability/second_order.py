@@ -148,7 +148,8 @@ def find_held(
                 continue
             if lies_in_cone(contacts, statuses, i, -1.0, work, system):
                 statuses[i].is_equality = True
-                extend(work.held, contacts.rows[i].columns[0], IN_SPAN)
+                for which in range(3 if friction > 0.0 else 1):  # that balance may leave all of its friction to spare
+                    extend(work.held, contacts.rows[i].columns[which], IN_SPAN)
                 found = True
             else:
                 note_opened(contacts, statuses, work.scratch.residual)
