@@ -34,8 +34,9 @@ class Method:
         Of its rules, by code.
     joins_steps
         Whether steps of one kind are one event, with a path.
-    takes_one_force
-        Whether it runs only loads of a weight, or of what one force with a fixed direction is equal to.
+    takes_one_of_each
+        Whether it runs only loads of a weight, or of what one force with a fixed direction is equal to, and one
+        coefficient of friction.
     run, run_cases, repeat
         Kernels that run a scene once, many cases of it, and some steps of a run again.
     rules
@@ -49,7 +50,7 @@ class Method:
     name: str
     rule_names: tuple[str, ...]
     joins_steps: bool
-    takes_one_force: bool
+    takes_one_of_each: bool
     run: Entry[None]
     run_cases: Entry[None]
     repeat: Entry[None]
@@ -106,13 +107,13 @@ def chosen_method(scene: Scene, method: str | None = None) -> Method:
     Raises
     ------
     SceneError
-        An unknown method, or one that does not run what acts in the scene.
+        An unknown method, or one that does not run what acts in the scene, or its friction.
     """
     name = method or scene.method or DEFAULT_METHOD
     if name not in REGISTRY:
         raise SceneError([Problem(("method",), f"is {name!r}; known methods: {', '.join(METHODS)}")])
     chosen = REGISTRY[name]
-    if chosen.takes_one_force:
+    if chosen.takes_one_of_each:
         problems = [
             Problem(
                 ("loads", index),
@@ -122,6 +123,9 @@ def chosen_method(scene: Scene, method: str | None = None) -> Method:
             for index, load in enumerate(scene.loads)
             if not is_one_force(scene, load)
         ]
+        if scene.friction_of:
+            message = f"the {name} method has one friction for all; use {DEFAULT_METHOD}"
+            problems.append(Problem(("friction", "of"), message))
         if problems:
             raise SceneError(problems)
     return chosen

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from cagepose.errors import Problem, SceneError
 from cagepose.kernels.collision.turn import key_of_angle
 from cagepose.kernels.stepwise.run import StepwiseRules
 from cagepose.kernels.stepwise.slip import SlipRules
@@ -40,15 +39,7 @@ SMALL_POSE_RAD = math.radians(45.0)
 
 
 def stepwise_rules(scene: Scene) -> StepwiseRules:
-    """Return the numbers of the method for a scene of size 1; the angle of slip is that of each case's friction.
-
-    Raises
-    ------
-    SceneError
-        Friction of single points or boxes, of which the paper's rules know nothing.
-    """
-    if scene.friction_of:
-        raise SceneError([Problem(("friction", "of"), "the stepwise method has one friction for all; use quasistatic")])
+    """Return the numbers of the method for a scene of size 1; the angle of slip is that of each case's friction."""
     return StepwiseRules(
         SupportRules(
             LEAST_MOMENT,
