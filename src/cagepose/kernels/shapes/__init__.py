@@ -1,0 +1,1 @@
+"""Where parts with vertices, edges and faces, rounded by a radius, meet."""
