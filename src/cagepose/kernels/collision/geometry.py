@@ -1,4 +1,8 @@
-"""What does not change during a run (`Geometry`), and what follows from one pose (`Placement`)."""
+"""What does not change during a run (`Geometry`), and what follows from one pose (`Placement`).
+
+Cage points against boxes are told by the boxes' faces, here; all other pairs of parts by their features, in
+`cagepose.kernels.shapes`.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +15,12 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Matrix, Vector, matrix, minus, plus, row, times, transposed_times
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import entry, kernel
+from cagepose.kernels.shapes.features import Shapes, copied, place_shapes
+from cagepose.kernels.shapes.meetings import Meetings, empty_meetings, find_meetings
 
 
 class Geometry(NamedTuple):
-    """Boxes in the object's frame, cage points in the world.
+    """Boxes and shapes in the object's frame, cage points and shapes in the world.
 
     Where two boxes meet flush, the plane between them belongs to the inside of the object, but to the inside of
     neither box. A further box bridges each such seam (see `cagepose.model.seams`): it lies within the two, so it
@@ -30,6 +36,11 @@ class Geometry(NamedTuple):
         How many of the boxes are no bridges.
     points_world
         (n_points, 3), metres.
+    held, cage
+        All parts of the object, its own boxes first, and of the cage, its points first; empty where there are only
+        boxes and points.
+    touch_m
+        Parts within this distance touch.
     """
 
     half_sizes: FloatArray
@@ -37,6 +48,9 @@ class Geometry(NamedTuple):
     box_rotations: FloatArray
     n_own_boxes: int
     points_world: FloatArray
+    held: Shapes
+    cage: Shapes
+    touch_m: float
 
 
 class Placement(NamedTuple):
@@ -56,6 +70,12 @@ class Placement(NamedTuple):
         metres.
     arms
         Memory for the squared distance of each point from the axis of a turn, (n_points,), square metres.
+    held
+        The object's shapes in the world.
+    moved
+        Memory for them at a pose that is tried.
+    meetings
+        Where they touch the cage's.
     """
 
     box_positions: FloatArray
@@ -65,6 +85,9 @@ class Placement(NamedTuple):
     gaps: FloatArray
     depths: FloatArray
     arms: FloatArray
+    held: Shapes
+    moved: Shapes
+    meetings: Meetings
 
 
 def empty_placement(geometry: Geometry) -> Placement:
@@ -79,7 +102,27 @@ def empty_placement(geometry: Geometry) -> Placement:
         np.empty((n_boxes, n_points)),
         np.empty(n_points),
         np.empty(n_points),
+        copied(geometry.held),
+        copied(geometry.held),
+        empty_meetings(len(geometry.held.parts), len(geometry.cage.parts)),
     )
+
+
+def most_elements(geometry: Geometry) -> int:
+    """Return how many points and shapes the cage has (plain Python)."""
+    return max(len(geometry.points_world), len(geometry.cage.parts))
+
+
+class PlacedCage(NamedTuple):
+    """Memory for the cage of a case, in the world: its points, (n_points, 3), metres, and its shapes."""
+
+    points_world: FloatArray
+    shapes: Shapes
+
+
+def empty_cage(geometry: Geometry) -> PlacedCage:
+    """Return memory for the cage of a case (plain Python)."""
+    return PlacedCage(np.empty_like(geometry.points_world), copied(geometry.cage))
 
 
 @kernel
@@ -123,6 +166,11 @@ def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, p
                 points_box[0, point], points_box[1, point], points_box[2, point] = x, y, z
                 gaps[point] = box_gap((x, y, z), half_size)
                 depths[point] = max(depths[point], -gaps[point])
+    if len(geometry.held.parts) > 0:
+        place_shapes(geometry.held, position, quaternion, placement.held)
+        find_meetings(
+            placement.held, geometry.cage, geometry.n_own_boxes, n_points, geometry.touch_m, placement.meetings
+        )
 
 
 @kernel

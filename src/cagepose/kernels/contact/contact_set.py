@@ -1,8 +1,8 @@
-"""The contacts at one pose as the mechanics needs them: one row for each face that a point touches, with its wrenches.
+"""The contacts at one pose as the mechanics needs them: one row for each place where two parts touch, with its wrenches.
 
 A point that touches several faces of one box lies on an edge: going in means that every one of them goes in (2.4), so
 one face that holds or leaves is enough. Such faces form a group, of which one is chosen at a time. Faces of different
-boxes hold each on its own.
+boxes hold each on its own. The same holds for sharp features of two shapes that meet at one place with several normals.
 """
 
 from __future__ import annotations
@@ -19,6 +19,9 @@ from cagepose.kernels.collision.geometry import Geometry, Placement, box_point
 from cagepose.kernels.contact.friction import Friction, friction_share
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.bend import Bend, curvatures, write_bend
+from cagepose.kernels.shapes.meeting import Meeting
+from cagepose.kernels.shapes.meetings import is_at_place, most_meetings
 
 SAME_NORMAL = 1e-9
 """Radians. Flush faces of two boxes give one contact."""
@@ -32,17 +35,19 @@ class ContactRow:
 
     Attributes
     ----------
-    point, box, axis
-        Indices of the cage point, the box and the axis of the face.
-    side
-        +1 or -1: which of the two faces along the axis.
+    point, box
+        Indices of the cage's point or shape, and of the object's box or shape.
+    axis, side
+        Of the box's face over a point: index of the axis, and +1 or -1.
+    feature, cage_feature
+        Of shapes that touch: indices of their features; -1: they are a point and a box.
     gap
-        Distance from the plane of the face, below zero inside, metres.
+        Distance, below zero: how deep, metres.
     group
         The first row of the same point and box; -1: the row does not count, as flush faces of another box say all
         that it does.
     directions, arm
-        Outward unit normal and two tangents, rows, and the point as seen from the centre of gravity, in the world. The
+        Outward unit normal and two tangents, rows, and the place as seen from the centre of gravity, in the world. The
         tangents are as long as the contact's coefficient of friction is of the greatest one, so that one coefficient
         does for all contacts: with tangential forces and slip in this unit Coulomb's law reads the same.
     columns
@@ -54,6 +59,8 @@ class ContactRow:
     box: int
     axis: int
     side: float
+    feature: int
+    cage_feature: int
     gap: float
     group: int
     directions: Annotated[FloatArray, 3, 3]
@@ -97,16 +104,38 @@ class ContactState:
 
 
 class ContactSet(NamedTuple):
-    """The contacts at one pose, 0 to used - 1 (``used`` is (1,)): their geometry, and what they do."""
+    """The contacts at one pose, 0 to used - 1 (``used`` is (1,)): their geometry, and what they do.
+
+    ``bends`` are those of rows whose ``feature`` is not -1; there are none without shapes.
+    """
 
     used: IntArray
     rows: Rows[ContactRow]
     states: Rows[ContactState]
+    bends: Rows[Bend]
 
 
-def empty_contact_set(n_rows: int) -> ContactSet:
+def empty_contact_set(n_rows: int, n_bends: int = 0) -> ContactSet:
     """Return a set with memory for ``n_rows`` contacts (plain Python)."""
-    return ContactSet(np.zeros(1, np.int64), empty_rows(ContactRow, n_rows), empty_rows(ContactState, n_rows))
+    return ContactSet(
+        np.zeros(1, np.int64),
+        empty_rows(ContactRow, n_rows),
+        empty_rows(ContactState, n_rows),
+        empty_rows(Bend, n_bends),
+    )
+
+
+def most_contacts(geometry: Geometry) -> int:
+    """Return how many contacts there may be at one pose (plain Python)."""
+    return CONTACTS_PER_POINT * len(geometry.points_world) + most_meetings(
+        len(geometry.held.parts), len(geometry.cage.parts)
+    )
+
+
+def contact_set_for(geometry: Geometry) -> ContactSet:
+    """Return a set with memory for all contacts that there may be at one pose (plain Python)."""
+    n_rows = most_contacts(geometry)
+    return empty_contact_set(n_rows, n_rows if len(geometry.held.parts) > 0 else 0)
 
 
 @kernel
@@ -156,6 +185,7 @@ def append_contact(
     contact = contacts.rows[contacts.used[0]]
     share = friction_share(friction, point, box)
     contact.point, contact.box, contact.axis, contact.side = point, box, axis, side
+    contact.feature = contact.cage_feature = -1
     for k in range(3):
         contact.arm[k] = arm[k]
     for j in range(3):
@@ -208,4 +238,101 @@ def find_contacts(
                 for i in range(first, contacts.used[0]):
                     contacts.rows[i].group = -1
                     choose(contacts, i, False)
+    return add_meetings(geometry, placement, friction, center, frame, touch_m, contacts)
+
+
+@kernel
+def add_meetings(
+    geometry: Geometry,
+    placement: Placement,
+    friction: Friction,
+    center: Vector,
+    frame: Frame,
+    touch_m: float,
+    contacts: ContactSet,
+) -> bool:
+    """Append the contacts of shapes; False: there are more than there is room for.
+
+    Meetings of two parts at one place are a group: parts that are apart along any of the normals are apart.
+    """
+    meetings = placement.meetings
+    if meetings.used[0] < 0 or contacts.used[0] + meetings.used[0] > len(contacts.rows):
+        return False
+    for at in range(meetings.used[0]):
+        met = meetings.rows[at]
+        if met.is_hidden or is_in_group(placement, at, touch_m):
+            continue
+        first = contacts.used[0]
+        for other in range(at, meetings.used[0]):
+            row = meetings.rows[other]
+            if row.part != met.part or row.cage_part != met.cage_part:
+                break
+            if not row.is_hidden and is_at_place(meetings, at, other, touch_m):
+                append_meeting(geometry, placement, friction, other, first, center, frame, contacts)
     return True
+
+
+@kernel
+def is_in_group(placement: Placement, at: int, touch_m: float) -> bool:
+    """Whether a meeting of the same parts before this one is at the same place."""
+    rows = placement.meetings.rows
+    for before in range(at - 1, -1, -1):
+        if rows[before].part != rows[at].part or rows[before].cage_part != rows[at].cage_part:
+            return False
+        if not rows[before].is_hidden and is_at_place(placement.meetings, before, at, touch_m):
+            return True
+    return False
+
+
+@kernel
+def tangents_to(normal: Vector) -> tuple[Vector, Vector]:
+    """Return two unit vectors across a unit normal and each other."""
+    x, y, z = abs(normal[0]), abs(normal[1]), abs(normal[2])
+    least = (
+        1.0 if x <= y and x <= z else 0.0,
+        1.0 if y < x and y <= z else 0.0,
+        1.0 if z < x and z < y else 0.0,
+    )
+    one = cross(normal, least)
+    one = scaled(one, 1.0 / norm(one))
+    return one, cross(normal, one)
+
+
+@kernel
+def append_meeting(
+    geometry: Geometry,
+    placement: Placement,
+    friction: Friction,
+    at: int,
+    first: int,
+    center: Vector,
+    frame: Frame,
+    contacts: ContactSet,
+) -> None:
+    """Append one contact of shapes to the group that begins with row ``first``."""
+    met = placement.meetings.rows[at]
+    place = contacts.used[0]
+    contact = contacts.rows[place]
+    contact.point, contact.box, contact.axis, contact.side = met.cage_part, met.part, 0, 1.0
+    contact.feature, contact.cage_feature = met.feature, met.cage_feature
+    contact.gap, contact.group = met.gap, first
+    choose(contacts, place, place == first)
+    normal, arm = vector_from(met.normal), minus(vector_from(met.place), center)
+    share = friction_share(friction, met.cage_part, met.part)
+    one, other = tangents_to(normal)
+    directions = (normal, scaled(one, share), scaled(other, share))
+    for k in range(3):
+        contact.arm[k] = arm[k]
+    for j in range(3):
+        for k in range(3):
+            contact.directions[j, k] = directions[j][k]
+        write_scaled_wrench(directions[j], cross(arm, directions[j]), frame, contact.columns[j])
+    found = curvatures(
+        placement.held,
+        met.feature,
+        geometry.cage,
+        met.cage_feature,
+        Meeting(True, met.gap, normal, vector_from(met.place)),
+    )
+    write_bend(found, normal, arm, frame.axes, frame.radii, contacts.bends[place])
+    contacts.used[0] += 1

@@ -2,8 +2,8 @@
 
     S = D^-1/2 (Hess V - sum lambda_i Hess g_i + sum phi_i . Hess u_i) D^-1/2
 
-V is the potential of the load, g_i the gap of a sliding contact (a plane of the object over a point of the
-world), u_i the way of the object's material at a sticking one.
+V is the potential of the load, g_i the gap of a sliding contact, u_i the way of the object's material at a sticking one:
+along the normal with what rolling adds, which moves the place of contact on both bodies.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.second_order import add_coupling, add_turned_arm
 from cagepose.kernels.algebra.vector import Vector, plus, scaled, vector_from
-from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
+from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.load_curvature import add_load_curvature
 from cagepose.kernels.contact.loads import PhaseLoad
 from cagepose.kernels.contact.metric import Frame
@@ -27,11 +27,21 @@ def clear_matrix(out: FloatArray) -> None:
 
 
 @kernel
-def add_face_curvature(contact: ContactRow, carried: float, frame: Frame, out: FloatArray) -> None:
+def add_face_curvature(contacts: ContactSet, i: int, carried: float, frame: Frame, out: FloatArray) -> None:
     """Add what a contact that slides, and carries so much, adds to S: -carried Hess g."""
+    contact = contacts.rows[i]
     normal, arm = vector_from(contact.directions[0]), vector_from(contact.arm)
     add_turned_arm(normal, arm, -carried, frame.axes, frame.radii, out)
     add_coupling(normal, -carried, frame.axes, frame.radii, out)
+    if contact.feature >= 0:
+        add_matrix(contacts.bends[i].sliding, -carried, out)
+
+
+@kernel
+def add_matrix(matrix: FloatArray, factor: float, out: FloatArray) -> None:
+    for j in range(6):
+        for k in range(6):
+            out[j, k] += factor * matrix[j, k]
 
 
 @kernel
@@ -49,9 +59,11 @@ def write_curvature(
     for i in range(contacts.used[0]):
         contact, state = contacts.rows[i], contacts.states[i]
         if state.forces[0] > 0.0 and not state.is_sticking:
-            add_face_curvature(contact, state.forces[0], frame, out)
+            add_face_curvature(contacts, i, state.forces[0], frame, out)
         elif state.forces[0] > 0.0:
             force = (0.0, 0.0, 0.0)
             for j in range(3):
                 force = plus(force, scaled(vector_from(contact.directions[j]), state.forces[j]))
             add_turned_arm(force, vector_from(contact.arm), 1.0, frame.axes, frame.radii, out)
+            if contact.feature >= 0:
+                add_matrix(contacts.bends[i].rolling, state.forces[0], out)

@@ -7,7 +7,6 @@ moments can be compared with forces. A scaled vector is an array of six: three f
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, NamedTuple
 
 from cagepose.kernels.algebra.pose import Quaternion, quaternion_about, quaternion_product, rotated
@@ -15,16 +14,12 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import (
     Matrix,
     Vector,
-    cross,
-    dot,
-    minus,
-    plus,
     row,
-    scaled,
     times,
     transposed_times,
 )
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.motion import motion_of, moved_point
 
 WRENCH = 6
 """Numbers of a wrench or twist."""
@@ -90,20 +85,9 @@ def twist_of(y: FloatArray, frame: Frame) -> tuple[Vector, Vector]:
 def moved_along_twist(
     position: Vector, quaternion: Quaternion, velocity: Vector, spin: Vector, amount: float
 ) -> tuple[Vector, Quaternion]:
-    """Move a pose by ``amount`` along a constant twist: an exact screw, equation (2.3), wherever its axis lies.
-
-    With V the velocity of the moving point for each radian and V_perp its part across the axis a, the point moves by
-    V_perp sin s + (V_perp x a)(cos s - 1) + a (a.V) s: nothing here grows with the distance of the axis.
-    """
-    rate = math.sqrt(dot(spin, spin))
-    angle = rate * amount
-    if angle == 0.0:
-        return plus(position, scaled(velocity, amount)), quaternion
-    axis = scaled(spin, 1.0 / rate)
-    per_radian = scaled(velocity, 1.0 / rate)
-    rise = dot(per_radian, axis)
-    across = minus(per_radian, scaled(axis, rise))
-    half_sine = math.sin(0.5 * angle)
-    moved = plus(scaled(across, math.sin(angle)), scaled(cross(across, axis), -2.0 * half_sine * half_sine))
-    turn = quaternion_about(axis, angle)
-    return plus(position, plus(moved, scaled(axis, rise * angle))), quaternion_product(turn, quaternion)
+    """Move a pose by ``amount`` along a constant twist: an exact screw, equation (2.3), wherever its axis lies."""
+    motion = motion_of(position, velocity, spin)
+    moved = moved_point(motion, position, amount)
+    if motion.rate * amount == 0.0:
+        return moved, quaternion
+    return moved, quaternion_product(quaternion_about(motion.axis, motion.rate * amount), quaternion)

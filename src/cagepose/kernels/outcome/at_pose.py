@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.collision.geometry import PlacedCage
 from cagepose.kernels.native.kernel import entry
 from cagepose.kernels.outcome.cases import Cases, Part, start_of
 from cagepose.kernels.outcome.publish import begin, end_phase
@@ -16,7 +16,7 @@ from cagepose.kernels.stability.proof import ProofWorkspace, stand_at
 
 @entry
 def judge_start(
-    phase: int, part: Part, cases: Cases, points_world: FloatArray, at: ProofWorkspace, outcome: Outcome
+    phase: int, part: Part, cases: Cases, cage: PlacedCage, at: ProofWorkspace, outcome: Outcome
 ) -> None:
     """Judge the start pose of the first case under the load of a phase.
 
@@ -26,25 +26,25 @@ def judge_start(
         Index of the load.
     part, cases
         The scene.
-    points_world, at
+    cage, at
         Scratch.
     outcome
         Filled: the phase's record and its contacts.
 
     """
     begin(outcome)
-    start = start_of(0, part, cases, points_world)
+    start = start_of(0, part, cases, cage)
     end_phase(RESTS, phase, start.position, start.quaternion, start, part, at, outcome)
 
 
 @entry
-def critical_friction(phase: int, part: Part, cases: Cases, points_world: FloatArray, at: ProofWorkspace) -> float:
+def critical_friction(phase: int, part: Part, cases: Cases, cage: PlacedCage, at: ProofWorkspace) -> float:
     """Return the least coefficient of friction at which the contacts can balance the load of a phase at the start pose
     of the first case (5.17); inf: none; NaN: there are too many contacts, or choices of faces, to tell.
 
     Parameters as for `judge_start`.
     """
-    start = start_of(0, part, cases, points_world)
+    start = start_of(0, part, cases, cage)
     load, touch_m = start.actions[phase], start.tolerances.touch_m
     if not stand_at(start.geometry, part.body, start.position, start.quaternion, load, start.friction, touch_m, at):
         return math.nan

@@ -7,12 +7,13 @@ from typing import NamedTuple
 from cagepose.kernels.algebra.pose import Quaternion, rotated
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances, scaled_tolerances
-from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, row, scaled
-from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
+from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, row, scaled, vector_from
+from cagepose.kernels.collision.geometry import Geometry, PlacedCage, Placement, place_object
 from cagepose.kernels.contact.friction import Friction, friction_of
 from cagepose.kernels.contact.loads import PhaseLoad
 from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.features import Shapes, place_shapes
 
 
 class Part(NamedTuple):
@@ -22,6 +23,8 @@ class Part(NamedTuple):
     ----------
     half_sizes, box_positions, box_rotations, n_own_boxes
         As in `Geometry`, but seen from the centre of gravity.
+    shapes
+        All its parts, its own boxes first, likewise seen; empty where it has boxes and the cage points alone.
     body
         Its inertia.
     center_object
@@ -32,6 +35,7 @@ class Part(NamedTuple):
     box_positions: FloatArray
     box_rotations: FloatArray
     n_own_boxes: int
+    shapes: Shapes
     body: Body
     center_object: Vector
 
@@ -45,6 +49,8 @@ class Cases(NamedTuple):
         The cage's pose in the world, (n, 3) metres and (n, 4).
     points_cage
         (n, n_points, 3), metres.
+    shapes_cage
+        All parts of the cage, its points first, in its frame, the same for all; empty like `Part.shapes`.
     object_positions, object_quaternions
         The object's pose in the world at the start.
     sizes_m
@@ -62,6 +68,7 @@ class Cases(NamedTuple):
     cage_positions: FloatArray
     cage_quaternions: FloatArray
     points_cage: FloatArray
+    shapes_cage: Shapes
     object_positions: FloatArray
     object_quaternions: FloatArray
     sizes_m: FloatArray
@@ -79,9 +86,9 @@ class Start(NamedTuple):
     Attributes
     ----------
     geometry
-        Cage points as seen from their middle, boxes as seen from the centre of gravity.
+        Cage points and shapes as seen from their middle, boxes and shapes of the object from the centre of gravity.
     position, quaternion
-        Of the centre of gravity, seen from the middle of the cage points, and the object's orientation.
+        Of the centre of gravity, seen from the middle of the cage, and the object's orientation.
     origin_world
         That middle.
     size_m, friction, tolerances, actions
@@ -111,38 +118,57 @@ def quaternion_row(quaternions: FloatArray, index: int) -> Quaternion:
 
 
 @kernel
-def start_of(case: int, part: Part, cases: Cases, points_world: FloatArray) -> Start:
-    """Return how a case starts; the cage points are written into ``points_world``."""
+def start_of(case: int, part: Part, cases: Cases, cage: PlacedCage) -> Start:
+    """Return how a case starts; its cage is written into ``cage``."""
+    points_world, n_elements = cage.points_world, max(len(cage.points_world), len(cage.shapes.parts))
     points = cases.points_cage[row_of(len(cases.points_cage), case)]
     turned = quaternion_row(cases.cage_quaternions, row_of(len(cases.cage_quaternions), case))
     middle = (0.0, 0.0, 0.0)
     for point in range(len(points)):
         middle = plus(middle, row(points, point))
-    middle = scaled(middle, 1.0 / len(points))
+    for which in range(len(points), n_elements):
+        middle = plus(middle, vector_from(cases.shapes_cage.parts[which].middle))
+    middle = scaled(middle, 1.0 / n_elements)
     for point in range(len(points)):
         placed = rotated(turned, minus(row(points, point), middle))
         for k in range(3):
             points_world[point, k] = placed[k]
+    if len(cage.shapes.parts) > 0:
+        place_shapes(cases.shapes_cage, scaled(rotated(turned, middle), -1.0), turned, cage.shapes)
+        for point in range(len(points)):  # these may differ from case to case
+            for k in range(3):
+                cage.shapes.parts[point].middle[k] = points_world[point, k]
+                cage.shapes.features[cage.shapes.parts[point].first].point[k] = points_world[point, k]
     cage_position = row(cases.cage_positions, row_of(len(cases.cage_positions), case))
     origin = plus(cage_position, rotated(turned, middle))
     position = row(cases.object_positions, row_of(len(cases.object_positions), case))
     quaternion = quaternion_row(cases.object_quaternions, row_of(len(cases.object_quaternions), case))
     size_m = cases.sizes_m[row_of(len(cases.sizes_m), case)]
+    tolerances = scaled_tolerances(cases.tolerances, size_m)
     return Start(
-        Geometry(part.half_sizes, part.box_positions, part.box_rotations, part.n_own_boxes, points_world),
+        Geometry(
+            part.half_sizes,
+            part.box_positions,
+            part.box_rotations,
+            part.n_own_boxes,
+            points_world,
+            part.shapes,
+            cage.shapes,
+            tolerances.touch_m,
+        ),
         plus(minus(position, origin), rotated(quaternion, part.center_object)),
         quaternion,
         origin,
         size_m,
         friction_of(cases.frictions[row_of(len(cases.frictions), case)], cases.point_frictions, cases.box_frictions),
-        scaled_tolerances(cases.tolerances, size_m),
+        tolerances,
         cases.actions[row_of(len(cases.actions), case)],
     )
 
 
 @kernel
 def is_valid(start: Start, farthest: float, points_vary: bool, placement: Placement) -> bool:
-    """Whether the object starts within ``farthest`` sizes of the cage, no point is inside it, and no two points that
+    """Whether the object starts within ``farthest`` sizes of the cage, nothing of it is inside it, and no two points that
     vary are one. The placement is that of the start afterwards.
     """
     if norm(start.position) > farthest * start.size_m:
@@ -156,6 +182,11 @@ def is_valid(start: Start, farthest: float, points_vary: bool, placement: Placem
             for other in range(point):
                 if norm(minus(row(points, other), row(points, point))) <= touch_m:
                     return False
+    gaps = placement.meetings.gaps
+    for one in range(gaps.shape[0]):
+        for other in range(gaps.shape[1]):
+            if gaps[one, other] < -touch_m:
+                return False
     return True
 
 

@@ -31,7 +31,7 @@ class Endings(NamedTuple):
     positions, quaternions
         The object's pose in the world, (n, n_phases, 3) metres and (n, n_phases, 4).
     touching
-        Which cage points touch, (n, n_phases, n_points).
+        Which of the cage's points and shapes touch, (n, n_phases, n_elements).
     """
 
     verdicts: NDArray[np.int64]
@@ -42,7 +42,7 @@ class Endings(NamedTuple):
     touching: NDArray[np.bool_]
 
 
-def empty_endings(n_runs: int, n_phases: int, n_points: int) -> Endings:
+def empty_endings(n_runs: int, n_phases: int, n_elements: int) -> Endings:
     """Return memory for the ends of many runs (plain Python)."""
     return Endings(
         np.full((n_runs, n_phases), NOT_RUN),
@@ -50,7 +50,7 @@ def empty_endings(n_runs: int, n_phases: int, n_points: int) -> Endings:
         np.zeros((n_runs, n_phases), np.int64),
         np.full((n_runs, n_phases, 3), np.nan),
         np.full((n_runs, n_phases, 4), np.nan),
-        np.zeros((n_runs, n_phases, n_points), np.bool_),
+        np.zeros((n_runs, n_phases, n_elements), np.bool_),
     )
 
 

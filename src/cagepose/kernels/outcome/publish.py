@@ -67,7 +67,7 @@ def end_phase(
     record = outcome.phases[phase]
     record.verdict = verdict
     publish_proof(code, stability, n_undetermined, position, quaternion, start, part, at, record)
-    publish_contacts(start, at, outcome)
+    publish_contacts(start, position, at, outcome)
     record.n_events, record.n_steps, record.n_contacts = (
         outcome.counts[EVENTS],
         outcome.counts[STEPS],
@@ -147,17 +147,18 @@ def publish_events(
 
 
 @kernel
-def publish_contacts(start: Start, at: ProofWorkspace, outcome: Outcome) -> None:
+def publish_contacts(start: Start, position: Vector, at: ProofWorkspace, outcome: Outcome) -> None:
     """Append the contacts of a proof."""
     for i in range(at.contacts.used[0]):
         found, forces = at.contacts.rows[i], at.contacts.states[i].forces
         contact = outcome.contacts[outcome.counts[CONTACTS]]
         contact.point, contact.box, contact.gap = found.point, found.box, found.gap
-        contact.near_edge = is_near_edge(
+        contact.near_edge = found.feature < 0 and is_near_edge(
             start.geometry, at.placement, found.box, found.point, found.axis, start.tolerances.touch_m
         )
         contact.force_normal, contact.is_shared = forces[0], at.statuses[i].is_shared
         for k in range(3):
+            contact.place[k] = start.origin_world[k] + position[k] + found.arm[k]
             contact.normal[k] = found.directions[0, k]
             contact.force_tangential[k] = -(forces[1] * found.directions[1, k] + forces[2] * found.directions[2, k])
         outcome.counts[CONTACTS] += 1

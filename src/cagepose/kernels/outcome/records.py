@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
-from cagepose.kernels.contact.contact_set import CONTACTS_PER_POINT
 from cagepose.kernels.outcome.trace import StepRecord
 
 
@@ -83,16 +82,16 @@ class EventRecord:
 
 
 class ContactRecord:
-    """One cage point on one face at the end of a phase; a record.
+    """One place where the object and the cage touch at the end of a phase; a record.
 
     Attributes
     ----------
     point, box
-        Indices.
-    normal, gap
-        Outward unit normal of the face, and the distance from it, below zero inside.
+        Indices of the cage's point or shape and of the object's box or shape.
+    place, normal, gap
+        Where in the world, outward unit normal of the object, and the distance, below zero inside.
     near_edge
-        Whether the point lies within the touch tolerance of an edge of the union's surface.
+        Whether a point lies within the touch tolerance of an edge of the surface of the union of boxes.
     force_normal, force_tangential
         Force on the object: its part along -n, and the rest.
     is_shared
@@ -101,6 +100,7 @@ class ContactRecord:
 
     point: int
     box: int
+    place: Annotated[FloatArray, 3]
     normal: Annotated[FloatArray, 3]
     gap: float
     near_edge: bool
@@ -119,7 +119,8 @@ class Outcome(NamedTuple):
     phases, events, contacts
         One after the other, in the order of the phases.
     touching, hit
-        Which points touch after each event, and which of them it reached, (n_events, n_points).
+        Which of the cage's points and shapes touch after each event, and which of them it reached, (n_events,
+        n_elements).
     path
         Position and quaternion of the object after each step, (n_steps, 7).
     steps, order
@@ -137,18 +138,18 @@ class Outcome(NamedTuple):
     order: NDArray[np.int64]
 
 
-def empty_outcome(n_phases: int, n_steps: int, n_points: int, n_ordered: int) -> Outcome:
+def empty_outcome(n_phases: int, n_steps: int, n_elements: int, n_contacts: int, n_ordered: int) -> Outcome:
     """Return an outcome for at most ``n_steps`` steps in a phase (plain Python); ``n_ordered``: points whose order of
-    touching the method keeps, all or none.
+    touching the method keeps, all or none. ``n_contacts``: the most at one pose.
     """
     n_events = n_phases * n_steps
     return Outcome(
         np.zeros(4, np.int64),
         empty_rows(PhaseRecord, n_phases),
         empty_rows(EventRecord, n_events),
-        empty_rows(ContactRecord, n_phases * CONTACTS_PER_POINT * n_points),
-        np.zeros((n_events, n_points), np.bool_),
-        np.zeros((n_events, n_points), np.bool_),
+        empty_rows(ContactRecord, n_phases * n_contacts),
+        np.zeros((n_events, n_elements), np.bool_),
+        np.zeros((n_events, n_elements), np.bool_),
         np.zeros((n_events, 7)),
         empty_rows(StepRecord, n_events),
         np.zeros((n_events, n_ordered), np.int64),

@@ -74,8 +74,9 @@ class StepRecord:
 
 
 class Trace(NamedTuple):
-    """The steps of one phase; which points touch after each, and which of them it reached, (n_steps, n_points); and the
-    points that touched before it, longest first, then -1, where a method asks for that order.
+    """The steps of one phase; which of the cage's points and shapes touch after each, and which of them it reached,
+    (n_steps, n_elements); and the points that touched before it, longest first, then -1, where a method asks for that
+    order.
     """
 
     rows: Rows[StepRecord]
@@ -84,11 +85,11 @@ class Trace(NamedTuple):
     order: NDArray[np.int64]
 
 
-def empty_trace(n_steps: int, n_points: int, n_ordered: int) -> Trace:
+def empty_trace(n_steps: int, n_elements: int, n_ordered: int) -> Trace:
     """Return memory for the steps of a phase (plain Python); ``n_ordered``: all points, or none if no order is kept."""
     return Trace(
         empty_rows(StepRecord, n_steps),
-        np.zeros((n_steps, n_points), np.bool_),
-        np.zeros((n_steps, n_points), np.bool_),
+        np.zeros((n_steps, n_elements), np.bool_),
+        np.zeros((n_steps, n_elements), np.bool_),
         np.zeros((n_steps, n_ordered), np.int64),
     )

@@ -10,8 +10,9 @@ import numpy as np
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.tolerances import KernelTolerances
-from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, row, scaled
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, row, scaled, vector_from
 from cagepose.kernels.collision.first_contact import allowed_depth, first_contact_screw, first_contact_travel
+from cagepose.kernels.collision.first_meeting import NO_HIT, Hit, first_meeting
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
 from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
 from cagepose.kernels.contact.friction import Friction
@@ -28,13 +29,24 @@ from cagepose.kernels.contact.loads import (
 from cagepose.kernels.contact.metric import Body, moved_along_twist
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
-from cagepose.kernels.quasistatic.projection import Constraints, add_constraint, empty_constraints, projected
+from cagepose.kernels.quasistatic.projection import (
+    GAP,
+    Constraints,
+    add_constraint,
+    constrain_features,
+    empty_constraints,
+    projected,
+)
 from cagepose.kernels.quasistatic.straying import STRAYED, strayed
+from cagepose.kernels.shapes.meetings import most_meetings
+from cagepose.kernels.shapes.motion import motion_of
 
 HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
 POINTS_PUSHED = 8
-"""Points that may be pushed out of the object after a step."""
+"""Points and shapes that may be pushed out of the object after a step."""
+NONE_DEEP, UNKNOWN_DEEP = -1, -2
+"""Instead of a meeting that is too deep."""
 ROUNDING = 1e-15
 """In lengths of the terms of a load: a slower motion may be no motion."""
 STRAIGHT_TRAVEL = 1e-14
@@ -70,15 +82,20 @@ class Setting(NamedTuple):
 
 
 class StepWorkspace(NamedTuple):
-    """Workspace for one step: contacts to keep, and the depth allowed to each point, (n_points,), metres."""
+    """Workspace for one step: contacts to keep, and the depth allowed to each point, (n_points,), and to each pair of
+    shapes, (n_parts, n_cage_parts), metres.
+    """
 
     constraints: Constraints
     allowed: FloatArray
+    allowed_shapes: FloatArray
 
 
-def empty_step_workspace(n_points: int) -> StepWorkspace:
-    """Return a workspace for ``n_points`` cage points (plain Python)."""
-    return StepWorkspace(empty_constraints(3 * n_points + POINTS_PUSHED), np.zeros(n_points))
+def empty_step_workspace(geometry: Geometry) -> StepWorkspace:
+    """Return a workspace for one step (plain Python)."""
+    n_points, pairs = len(geometry.points_world), (len(geometry.held.parts), len(geometry.cage.parts))
+    n_constraints = 3 * (n_points + most_meetings(*pairs)) + POINTS_PUSHED
+    return StepWorkspace(empty_constraints(n_constraints), np.zeros(n_points), np.zeros(pairs))
 
 
 class Twist(NamedTuple):
@@ -128,8 +145,48 @@ def first_contact(
     position: Vector,
     quaternion: Quaternion,
     twist: Twist,
-) -> tuple[float, int, int]:
-    """Return (amount, point, box) of the first contact along a twist, but for what touches already.
+) -> Hit:
+    """Return the first contact along a twist, but for what touches already: of points and boxes, or of shapes."""
+    hit = first_point(setting, placement, contacts, position, quaternion, twist)
+    if len(placement.held.parts) == 0:
+        return hit
+    motion = motion_of(position, twist.velocity, twist.spin)
+    end = min(hit.amount, twist.end)
+    if motion.rate == 0.0:
+        other = first_meeting(setting.geometry, placement, motion, end, 0.0, 0.0)
+        return other if other.amount < hit.amount else hit
+    astray = strayed(
+        setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end, placement.moved
+    )
+    near, other = 0.0, NO_HIT
+    for _ in range(most_pairs(placement)):
+        other = first_meeting(setting.geometry, placement, motion, end, near, STRAYED * astray)
+        if other.point < 0 or other.gap <= near:
+            break
+        reach = STRAYED * strayed(
+            setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, other.amount, placement.moved
+        )
+        if other.gap > reach:
+            break
+        near = reach
+    return other if other.amount < hit.amount else hit
+
+
+@kernel
+def most_pairs(placement: Placement) -> int:
+    return placement.meetings.gaps.size
+
+
+@kernel
+def first_point(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+) -> Hit:
+    """Return the first contact of a point and a box along a twist, but for what touches already.
 
     Contacts that stay on their faces stray on a screw, by the square of its length, and are put back afterwards. Where
     a point is met because of that, not because it came nearer, it is passed over: whether it is reached shows at the
@@ -145,7 +202,9 @@ def first_contact(
         )
         amount = distance / speed
     else:
-        astray = strayed(setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end)
+        astray = strayed(
+            setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end, placement.moved
+        )
         near, near_depth = 0.0, STRAYED * astray
         angle, point, box = math.inf, -1, -1
         for _ in range(len(setting.geometry.points_world)):
@@ -164,14 +223,16 @@ def first_contact(
             if point < 0 or placement.gaps[box, point] <= near:
                 break
             met = angle / rate
-            reach = STRAYED * strayed(setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, met)
+            reach = STRAYED * strayed(
+                setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, met, placement.moved
+            )
             if placement.gaps[box, point] > reach:
                 break
             near = reach
         amount = angle / rate
-    if amount > end:
-        return math.inf, -1, -1
-    return amount, point, box
+    if amount > end or point < 0:
+        return NO_HIT
+    return Hit(amount, point, box, -1, -1, placement.gaps[box, point])
 
 
 @kernel
@@ -203,7 +264,10 @@ def constrain_contacts(
     constraints.scratch[0].used = 0
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
-        if stays_on_face(contacts, i):
+        if stays_on_face(contacts, i) and contact.feature >= 0:
+            kept = contact.gap if contact.gap > closed_m else 0.0
+            constrain_features(constraints, contact.feature, contact.cage_feature, GAP, kept)
+        elif stays_on_face(contacts, i):
             at = geometry.half_sizes[contact.box, contact.axis]
             if contact.gap > closed_m:
                 at += contact.gap
@@ -212,6 +276,9 @@ def constrain_contacts(
         contact = contacts.rows[i]
         if contacts.states[i].forces[0] > 0.0 and contacts.states[i].is_sticking:
             for turn in range(1, 3):
+                if contact.feature >= 0:
+                    constrain_features(constraints, contact.feature, contact.cage_feature, turn, 0.0)
+                    continue
                 axis = (contact.axis + turn) % 3
                 at = placement.points_box[contact.box, axis, contact.point]
                 add_constraint(constraints, contact.point, contact.box, axis, 1.0, at)
@@ -249,15 +316,48 @@ def pushed_out(
     for _ in range(POINTS_PUSHED):
         if work.constraints.scratch[0].used > 0:
             holds, position, quaternion = projected(
-                geometry, setting.body, position, quaternion, work.constraints, setting.size_m
+                geometry, setting.body, position, quaternion, work.constraints, setting.size_m, placement.moved
             )
         place_object(geometry, position, quaternion, placement)
-        point = deepest_offender(placement, work.allowed)
-        if point < 0 or not holds:
+        point, meeting = deepest_offender(placement, work.allowed), deepest_meeting(geometry, placement, work)
+        if not holds or (point < 0 and meeting == NONE_DEEP):
             break
-        if not constrain_to_face(geometry, placement, point, box_around(geometry, placement, point), work.constraints):
+        if point >= 0:
+            box = box_around(geometry, placement, point)
+            if not constrain_to_face(geometry, placement, point, box, work.constraints):
+                return False, position, quaternion
+        elif meeting == UNKNOWN_DEEP or not constrain_meeting(placement, meeting, work.constraints):
             return False, position, quaternion
-    return holds and deepest_offender(placement, work.allowed) < 0, position, quaternion
+    is_out = deepest_offender(placement, work.allowed) < 0 and deepest_meeting(geometry, placement, work) == NONE_DEEP
+    return holds and is_out, position, quaternion
+
+
+@kernel
+def deepest_meeting(geometry: Geometry, placement: Placement, work: StepWorkspace) -> int:
+    """Return the meeting of shapes that is farthest deeper than it may; UNKNOWN_DEEP: parts are, but at no known place;
+    NONE_DEEP: none is.
+    """
+    meetings, found, worst = placement.meetings, NONE_DEEP, 0.0
+    if meetings.used[0] < 0:
+        return UNKNOWN_DEEP
+    for one in range(meetings.gaps.shape[0]):
+        for other in range(meetings.gaps.shape[1]):
+            if -meetings.gaps[one, other] - work.allowed_shapes[one, other] > worst:
+                found, worst = UNKNOWN_DEEP, -meetings.gaps[one, other] - work.allowed_shapes[one, other]
+    worst = 0.0
+    for at in range(meetings.used[0]):
+        row = meetings.rows[at]
+        excess = -row.gap - work.allowed_shapes[row.part, row.cage_part]
+        if excess > worst and not row.is_hidden:
+            found, worst = at, excess
+    return found
+
+
+@kernel
+def constrain_meeting(placement: Placement, at: int, constraints: Constraints) -> bool:
+    """Constrain the gap of a meeting that is too deep to zero."""
+    row = placement.meetings.rows[at]
+    return constrain_features(constraints, row.feature, row.cage_feature, GAP, 0.0)
 
 
 @kernel
@@ -269,8 +369,7 @@ def stepped(
     quaternion: Quaternion,
     twist: Twist,
     amount: float,
-    hit_point: int,
-    hit_box: int,
+    hit: Hit,
     work: StepWorkspace,
 ) -> tuple[bool, Vector, Quaternion]:
     """Move by ``amount``, keep the contacts that carry on their faces, and put the one that is hit on its own.
@@ -282,9 +381,11 @@ def stepped(
     geometry = setting.geometry
     constrain_contacts(geometry, placement, contacts, setting.tolerances.rounding_m, work.constraints)
     moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
-    if hit_point >= 0:
+    if hit.feature >= 0:
+        constrain_features(work.constraints, hit.feature, hit.cage_feature, GAP, 0.0)
+    elif hit.point >= 0:
         place_object(geometry, moved[0], moved[1], placement)
-        constrain_to_face(geometry, placement, hit_point, hit_box, work.constraints)
+        constrain_to_face(geometry, placement, hit.point, hit.box, work.constraints)
     done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], work)
     if done:
         total = total_load(setting.load, position, quaternion, setting.size_m)
@@ -325,6 +426,12 @@ def nothing_ahead(setting: Setting, position: Vector, quaternion: Quaternion, ve
             distance += away * away
         if math.sqrt(distance) <= setting.body.reach_m + sway:
             return False
+    cage = setting.geometry.cage.parts
+    for which in range(len(setting.geometry.points_world), len(cage)):
+        arm = minus(vector_from(cage[which].middle), position)
+        away = norm(minus(arm, scaled(along, max(dot(arm, along), 0.0))))
+        if away <= setting.body.reach_m + sway + cage[which].reach:
+            return False
     return True
 
 
@@ -337,14 +444,23 @@ def is_out_of_reach(setting: Setting, position: Vector, velocity: Vector) -> boo
         away = norm(minus(row(setting.geometry.points_world, point), position))
         if away <= OUT_OF_REACH * setting.size_m + setting.body.reach_m:
             return False
+    cage = setting.geometry.cage.parts
+    for which in range(len(setting.geometry.points_world), len(cage)):
+        away = norm(minus(vector_from(cage[which].middle), position)) - cage[which].reach
+        if away <= OUT_OF_REACH * setting.size_m + setting.body.reach_m:
+            return False
     return True
 
 
 @kernel
 def allow_depths(placement: Placement, tolerances: KernelTolerances, work: StepWorkspace) -> None:
-    """Write how deep each point may be after the step: no deeper than it is."""
+    """Write how deep each point and each pair of shapes may be after the step: no deeper than it is."""
     for point in range(len(work.allowed)):
         work.allowed[point] = allowed_depth(placement.depths[point], tolerances)
+    gaps = placement.meetings.gaps
+    for one in range(gaps.shape[0]):
+        for other in range(gaps.shape[1]):
+            work.allowed_shapes[one, other] = allowed_depth(-gaps[one, other], tolerances)
 
 
 @kernel
@@ -363,7 +479,8 @@ def furthest_step(
     nothing is ahead.
     """
     allow_depths(placement, setting.tolerances, work)
-    amount, hit_point, hit_box = first_contact(setting, placement, contacts, position, quaternion, twist)
+    hit = first_contact(setting, placement, contacts, position, quaternion, twist)
+    amount = hit.amount
     edge_crossing = first_edge_crossing(
         setting.geometry,
         placement,
@@ -376,16 +493,16 @@ def furthest_step(
         setting.tolerances.touch_m,
     )
     if edge_crossing < amount:
-        amount, hit_point, hit_box = edge_crossing, -1, -1
+        amount, hit = edge_crossing, NO_HIT
     if twist.end < amount:
         amount = twist.end
     if amount == math.inf:
         return amount, True, position, quaternion
     for halving in range(HALVINGS):
         done, new_position, new_quaternion = stepped(
-            setting, placement, contacts, position, quaternion, twist, amount, hit_point, hit_box, work
+            setting, placement, contacts, position, quaternion, twist, amount, hit, work
         )
         if done:
             return amount, halving == 0, new_position, new_quaternion
-        amount, hit_point, hit_box = 0.5 * amount, -1, -1
+        amount, hit = 0.5 * amount, NO_HIT
     return 0.0, False, position, quaternion

@@ -8,12 +8,18 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled
 from cagepose.kernels.collision.geometry import Geometry, Placement, box_point, point_in_box, vector_in_box
 from cagepose.kernels.collision.screw import next_below
-from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
+from cagepose.kernels.contact.contact_set import ContactRow, ContactSet, stays_on_face
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.straying import STRAYED, strayed
+from cagepose.kernels.shapes.along_motion import place_moved
+from cagepose.kernels.shapes.meeting import both_reach, meeting
+from cagepose.kernels.shapes.meetings import slack_of
+from cagepose.kernels.shapes.motion import Motion, motion_of
 
 CLEAR = 2.0
 """In touch tolerances: how far beyond the edge a contact is let go, so that it does not touch the next face too."""
+HALVINGS = 50
+"""Of a motion, to find where a contact of two shapes ends."""
 
 
 @kernel
@@ -22,6 +28,40 @@ def travel_to_edge(coordinate: float, rate: float, limit: float) -> float:
     if rate == 0.0:
         return math.inf
     return max(0.0, (math.copysign(limit, rate) - coordinate) / rate)
+
+
+@kernel
+def still_meet(
+    geometry: Geometry, placement: Placement, contact: ContactRow, motion: Motion, amount: float, touch_m: float
+) -> bool:
+    """Whether two features still reach where they meet, after an amount of a motion."""
+    held, moved = placement.held, placement.moved
+    place_moved(held, contact.feature, motion, amount, moved)
+    met = meeting(moved, contact.feature, geometry.cage, contact.cage_feature)
+    slack = CLEAR * slack_of(held, contact.box, geometry.cage, contact.point, touch_m)
+    return both_reach(moved, contact.feature, geometry.cage, contact.cage_feature, met, slack, 2.0 * CLEAR * touch_m)
+
+
+@kernel
+def end_of_meeting(
+    geometry: Geometry, placement: Placement, contact: ContactRow, motion: Motion, end: float, touch_m: float
+) -> float:
+    """Return the amount of a motion, up to ``end``, after which a contact runs over the end of one of its features;
+    inf: it does not.
+    """
+    if end == math.inf:
+        held, cage = placement.held.parts[contact.box], geometry.cage.parts[contact.point]
+        end = 2.0 * (held.reach + cage.reach + touch_m) / norm(motion.velocity)
+    if still_meet(geometry, placement, contact, motion, end, touch_m):
+        return math.inf
+    low, high = 0.0, end
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if still_meet(geometry, placement, contact, motion, middle, touch_m):
+            low = middle
+        else:
+            high = middle
+    return high
 
 
 @kernel
@@ -46,6 +86,10 @@ def first_edge_crossing(
         contact = contacts.rows[i]
         if not stays_on_face(contacts, i):
             continue
+        if contact.feature >= 0:
+            motion = motion_of(center, velocity, spin)
+            first = min(first, end_of_meeting(geometry, placement, contact, motion, min(end, first), touch_m))
+            continue
         box = contact.box
         half_size = row(geometry.half_sizes, box)
         point_box = box_point(placement, box, contact.point)
@@ -68,7 +112,9 @@ def first_edge_crossing(
                 wave = (limit - side * point_box[k], -side * lever[k], side * across[k], side * rise[k])
                 crossing = next_below(wave, 0.0, end * rate) / rate
                 if crossing < first and crossing <= end:
-                    reach = STRAYED * strayed(geometry, contacts, center, quaternion, velocity, spin, crossing)
+                    reach = STRAYED * strayed(
+                        geometry, contacts, center, quaternion, velocity, spin, crossing, placement.moved
+                    )
                     if wave[0] > reach:
                         first = crossing
     return first if first <= end else math.inf

@@ -10,10 +10,11 @@ import math
 from typing import Annotated, NamedTuple
 
 from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear
-from cagepose.kernels.algebra.pose import Quaternion, rotated
+from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion, rotated
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, plus, row, scaled, transposed_times
 from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.contact.contact_set import tangents_to
 from cagepose.kernels.contact.metric import (
     WRENCH,
     Body,
@@ -25,6 +26,8 @@ from cagepose.kernels.contact.metric import (
     write_scaled_wrench,
 )
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.features import Shapes, place_feature
+from cagepose.kernels.shapes.meeting import meeting
 
 ROUNDS = 12
 ON_FACE = 4e-16
@@ -36,21 +39,30 @@ DEPENDENT = 1e-5
 play can be tilted by the root of rounding, and to make up for that would take long ways."""
 
 
+GAP, ALONG = 0, 1
+"""Which number of two features a constraint is about: their gap, or (1 and 2) the way along each tangent."""
+
+
 class PositionConstraint:
-    """A coordinate of a cage point, in the frame of a box, that shall have a given value; a record.
+    """A number that shall have a given value; a record.
 
     Attributes
     ----------
     point, box, axis, side
-        As in `ContactRow`: side * (coordinate of the point along the box's axis) ...
+        Of a point and a box, as in `ContactRow`: side * (coordinate of the point along the box's axis) ...
+    feature, cage_feature, which
+        ... or of two features, -1 if they are not: their gap, or how far they slip from now on ...
     target
-        ... is to be this, metres: half the size of the box for a point on its face.
+        ... is to be this, metres: half the size of the box for a point on its face, zero for a slip.
     """
 
     point: int
     box: int
     axis: int
     side: float
+    feature: int
+    cage_feature: int
+    which: int
     target: float
 
 
@@ -102,15 +114,65 @@ def add_constraint(constraints: Constraints, point: int, box: int, axis: int, si
         if constraint.point == point and constraint.box == box and constraint.axis == axis:
             return False
     constraint = constraints.rows[n]
-    constraint.point, constraint.box, constraint.axis, constraint.side, constraint.target = (
-        point,
-        box,
-        axis,
-        side,
-        target,
-    )
+    constraint.point, constraint.box, constraint.axis, constraint.side = point, box, axis, side
+    constraint.feature = constraint.cage_feature = -1
+    constraint.target = target
     constraints.scratch[0].used = n + 1
     return True
+
+
+@kernel
+def constrain_features(constraints: Constraints, feature: int, cage_feature: int, which: int, target: float) -> bool:
+    """Constrain the gap of two features, or their slip; False: there is no room, or it is done already."""
+    n = constraints.scratch[0].used
+    if n == len(constraints.rows):
+        return False
+    for i in range(n):
+        constraint = constraints.rows[i]
+        if (constraint.feature, constraint.cage_feature, constraint.which) == (feature, cage_feature, which):
+            return False
+    constraint = constraints.rows[n]
+    constraint.point = constraint.box = constraint.axis = -1
+    constraint.feature, constraint.cage_feature, constraint.which = feature, cage_feature, which
+    constraint.target = target
+    constraints.scratch[0].used = n + 1
+    return True
+
+
+@kernel
+def box_axis(geometry: Geometry, box: int, axis: int) -> Vector:
+    """Return an axis of a box in the object's frame."""
+    r = geometry.box_rotations
+    return (r[box, 0, axis], r[box, 1, axis], r[box, 2, axis])
+
+
+class Lack(NamedTuple):
+    """What a constraint lacks, metres, and the direction and the arm of a motion of the object that makes up for it."""
+
+    value: float
+    direction: Vector
+    arm: Vector
+
+
+@kernel
+def lack(
+    geometry: Geometry, constraint: PositionConstraint, position: Vector, quaternion: Quaternion, moved: Shapes
+) -> Lack:
+    """Return what a constraint lacks at a pose; inf: it means nothing there."""
+    if constraint.feature < 0:
+        back = (quaternion[0], -quaternion[1], -quaternion[2], -quaternion[3])
+        axis_object = scaled(box_axis(geometry, constraint.box, constraint.axis), constraint.side)
+        arm = minus(row(geometry.points_world, constraint.point), position)
+        from_box = minus(rotated(back, arm), row(geometry.box_positions, constraint.box))
+        return Lack(dot(axis_object, from_box) - constraint.target, rotated(quaternion, axis_object), arm)
+    place_feature(geometry.held, constraint.feature, position, matrix_from_quaternion(quaternion), moved)
+    met = meeting(moved, constraint.feature, geometry.cage, constraint.cage_feature)
+    arm = minus(met.place, position)
+    if not met.is_one:
+        return Lack(math.inf, met.normal, arm)
+    if constraint.which == GAP:
+        return Lack(met.gap - constraint.target, met.normal, arm)
+    return Lack(0.0, tangents_to(met.normal)[constraint.which - ALONG], arm)
 
 
 @kernel
@@ -128,15 +190,14 @@ def keep_stopped(stopped: PassiveSet, position: Vector, frame: Frame, constraint
 
 
 @kernel
-def box_axis(geometry: Geometry, box: int, axis: int) -> Vector:
-    """Return an axis of a box in the object's frame."""
-    r = geometry.box_rotations
-    return (r[box, 0, axis], r[box, 1, axis], r[box, 2, axis])
-
-
-@kernel
 def projected(
-    geometry: Geometry, body: Body, position: Vector, quaternion: Quaternion, constraints: Constraints, size_m: float
+    geometry: Geometry,
+    body: Body,
+    position: Vector,
+    quaternion: Quaternion,
+    constraints: Constraints,
+    size_m: float,
+    moved: Shapes,
 ) -> tuple[bool, Vector, Quaternion]:
     """Move the object so that all constraints hold; return (whether they do, position, quaternion).
 
@@ -146,7 +207,6 @@ def projected(
     worst_before = math.inf
     for _ in range(ROUNDS):
         frame = frame_at(body, quaternion)
-        back = (quaternion[0], -quaternion[1], -quaternion[2], -quaternion[3])
         clear(work.basis, WRENCH, 1.0)
         work.basis.dependent = DEPENDENT
         for i in range(work.n_stopped):
@@ -157,15 +217,13 @@ def projected(
             append_column(work.basis, work.column, i, 0.0)
         worst = 0.0
         for i in range(work.used):
-            constraint = rows[i]
-            axis_object = scaled(box_axis(geometry, constraint.box, constraint.axis), constraint.side)
-            arm = minus(row(geometry.points_world, constraint.point), position)
-            from_box = minus(rotated(back, arm), row(geometry.box_positions, constraint.box))
-            direction = rotated(quaternion, axis_object)
-            write_scaled_wrench(direction, cross(arm, direction), frame, work.column)
+            lacks = lack(geometry, rows[i], position, quaternion, moved)
+            if lacks.value == math.inf:
+                return False, position, quaternion
+            write_scaled_wrench(lacks.direction, cross(lacks.arm, lacks.direction), frame, work.column)
             place = work.basis.used
             if append_column(work.basis, work.column, i, 0.0):
-                values[place] = dot(axis_object, from_box) - constraint.target
+                values[place] = lacks.value
                 worst = max(worst, abs(values[place]))
         if worst <= ON_FACE * size_m or worst >= worst_before:
             return worst <= 1e3 * ON_FACE * size_m, position, quaternion

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
+from cagepose.kernels.collision.first_meeting import NO_HIT
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactSet, find_contacts
 from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, ON_THE_WAY, equilibrium
@@ -50,20 +51,24 @@ def touches_box(contacts: ContactSet, point: int, box: int) -> bool:
 
 @kernel
 def move_contact(contacts: ContactSet, source: int, target: int) -> None:
-    """Move what the contact problem needs of one row to another (groups begin anew at the target)."""
+    """Move what the contact problem needs of one row to another; its whole group is moved as far."""
     if source == target:
         return
     rows = contacts.rows
     old, new = rows[source], rows[target]
-    new.point, new.box = old.point, old.box
-    same_group = target > 0 and rows[target - 1].point == new.point and rows[target - 1].box == new.box
-    new.group = -1 if old.group < 0 else rows[target - 1].group if same_group else target
+    new.point, new.box, new.feature, new.cage_feature = old.point, old.box, old.feature, old.cage_feature
+    new.group = -1 if old.group < 0 else old.group - source + target
     for j in range(3):
         new.arm[j] = old.arm[j]
         for k in range(3):
             new.directions[j, k] = old.directions[j, k]
         for k in range(6):
             new.columns[j, k] = old.columns[j, k]
+    if old.feature >= 0:
+        there, here = contacts.bends[target], contacts.bends[source]
+        for j in range(6):
+            for k in range(6):
+                there.sliding[j, k], there.rolling[j, k] = here.sliding[j, k], here.rolling[j, k]
 
 
 @kernel
@@ -89,8 +94,7 @@ def first_rest(
             quaternion,
             twist,
             middle,
-            -1,
-            -1,
+            NO_HIT,
             work.path,
         )
         if done and is_held_on_the_way(setting, new_position, new_quaternion, work):

@@ -105,7 +105,7 @@ def run_quasistatic(
 
     """
     begin(outcome)
-    start = start_of(0, part, cases, work.points_world)
+    start = start_of(0, part, cases, work.cage)
     position, quaternion = start.position, start.quaternion
     for phase in range(len(start.actions)):
         verdict, n_steps, end, turned = run_phase(start, part, rules, phase, position, quaternion, work)
@@ -139,7 +139,7 @@ def run_quasistatic_cases(
         Filled.
     """
     for case in range(first, last):
-        start = start_of(case, part, cases, work.points_world)
+        start = start_of(case, part, cases, work.cage)
         if not is_valid(start, farthest, len(cases.points_cage) > 1, work.placement):
             endings.verdicts[case, 0] = INVALID
             continue
@@ -182,6 +182,6 @@ def repeat_quasistatic(
         Filled: the events that these steps are.
     """
     begin(outcome)
-    start, state = start_of(0, part, cases, work.points_world), state_of(first[0])
+    start, state = start_of(0, part, cases, work.cage), state_of(first[0])
     phase_from(start, part, rules.turn_step_rad, phase, state, n_steps, work)
     publish_events(work.trace, n_steps, True, state.position, state.quaternion, start, part, outcome)

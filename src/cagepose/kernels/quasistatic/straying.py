@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from cagepose.kernels.algebra.pose import Quaternion, rotated
+from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion, rotated
 from cagepose.kernels.algebra.vector import Vector, dot, minus, row
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
 from cagepose.kernels.contact.metric import moved_along_twist
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.projection import box_axis
+from cagepose.kernels.shapes.features import Shapes, place_feature
+from cagepose.kernels.shapes.meeting import meeting
 
 STRAYED = 2.0
 """Times the way that contacts stray: a point or an edge that was nearer than this is met because they do."""
@@ -23,6 +25,7 @@ def strayed(
     velocity: Vector,
     spin: Vector,
     amount: float,
+    moved: Shapes,
 ) -> float:
     """Return how far the contacts that stay on their faces leave them on a screw, until they are put back, metres."""
     end, turned = moved_along_twist(position, quaternion, velocity, spin, amount)
@@ -30,7 +33,11 @@ def strayed(
     farthest = 0.0
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
-        if stays_on_face(contacts, i):
+        if stays_on_face(contacts, i) and contact.feature >= 0:
+            place_feature(geometry.held, contact.feature, end, matrix_from_quaternion(turned), moved)
+            met = meeting(moved, contact.feature, geometry.cage, contact.cage_feature)
+            farthest = max(farthest, abs(met.gap - contact.gap))
+        elif stays_on_face(contacts, i):
             from_center = rotated(back, minus(row(geometry.points_world, contact.point), end))
             from_box = minus(from_center, row(geometry.box_positions, contact.box))
             along = contact.side * dot(box_axis(geometry, contact.box, contact.axis), from_box)

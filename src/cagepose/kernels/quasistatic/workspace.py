@@ -7,9 +7,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
-from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement
-from cagepose.kernels.contact.contact_set import CONTACTS_PER_POINT, ContactSet, empty_contact_set
+from cagepose.kernels.algebra.record import Rows, empty_rows
+from cagepose.kernels.collision.geometry import (
+    Geometry,
+    PlacedCage,
+    Placement,
+    empty_cage,
+    empty_placement,
+    most_elements,
+)
+from cagepose.kernels.contact.contact_set import ContactSet, contact_set_for
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.outcome.trace import Trace, empty_trace
 from cagepose.kernels.quasistatic.along_twist import StepWorkspace, empty_step_workspace
@@ -40,11 +47,11 @@ class QuasistaticWorkspace(NamedTuple):
     path
         Workspace of the steps.
     touched
-        Which points touched before the step, (n_points,).
+        Which of the cage's points and shapes touched before the step, (n_elements,).
     trace
         Steps of one phase.
-    points_world
-        Cage points of the case that is run, (n_points, 3).
+    cage
+        That of the case that is run.
     proof
         Workspace for the proof of a phase's end.
     """
@@ -57,23 +64,22 @@ class QuasistaticWorkspace(NamedTuple):
     path: StepWorkspace
     touched: NDArray[np.bool_]
     trace: Trace
-    points_world: FloatArray
+    cage: PlacedCage
     proof: ProofWorkspace
 
 
 def empty_quasistatic_workspace(geometry: Geometry, step_limit: int) -> QuasistaticWorkspace:
     """Return a workspace for one run at a time (plain Python)."""
-    n_points = len(geometry.points_world)
-    n_contacts = CONTACTS_PER_POINT * n_points
+    n_elements = most_elements(geometry)
     return QuasistaticWorkspace(
         empty_placement(geometry),
-        empty_contact_set(n_contacts),
-        empty_contact_set(n_contacts),
-        empty_contact_set(n_contacts),
+        contact_set_for(geometry),
+        contact_set_for(geometry),
+        contact_set_for(geometry),
         empty_rows(SolverWorkspace, 1),
-        empty_step_workspace(n_points),
-        np.zeros(n_points, np.bool_),
-        empty_trace(step_limit, n_points, 0),
-        np.zeros((n_points, 3)),
+        empty_step_workspace(geometry),
+        np.zeros(n_elements, np.bool_),
+        empty_trace(step_limit, n_elements, 0),
+        empty_cage(geometry),
         empty_proof_workspace(geometry),
     )

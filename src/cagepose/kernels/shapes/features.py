@@ -6,67 +6,123 @@ on all sides. Of each feature is known where its outward normals are, and where 
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from cagepose.kernels.algebra.pose import Quaternion, rotated
-from cagepose.kernels.algebra.record import FloatArray, IntArray
-from cagepose.kernels.algebra.vector import Vector, plus, row
+from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
+from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
+from cagepose.kernels.algebra.vector import Matrix, Vector, plus, times, vector_from
 from cagepose.kernels.native.kernel import kernel
 
 VERTEX, EDGE, FACE = 0, 1, 2
 """Kinds of features."""
 
 
-class Features(NamedTuple):
-    """The features of one body, in its own frame or in the world.
+class Feature:
+    """A vertex, an edge or a face, in the frame of its body or in the world; a record.
 
     Attributes
     ----------
-    kinds, parts
-        Of each, (n,): what it is, and the part of the body that it belongs to.
-    points
-        The vertex, one end of the edge, or a point of the face, of the core, (n, 3), metres.
-    directions
-        Unit vector along an edge, outward normal of a face, (n, 3); zero for a vertex.
-    lengths
-        Of edges, (n,), metres.
-    radii
-        Of the part, (n,), metres.
-    first_fences, fences, bounds
-        Half-spaces x . fence <= bound, (n_fences, 3) and (n_fences,); those of a feature begin at its place in
-        ``first_fences``, (n + 1,). Of a vertex and of an edge they hold its outward normals x (all bounds zero), of a
-        face its points x, as seen from ``points``.
+    kind
+        See above.
+    point
+        The vertex, one end of the edge, or a point of the face, of the core, metres.
+    direction
+        Unit vector along an edge, outward normal of a face.
+    length
+        Of an edge, metres.
+    radius
+        Added on all sides, metres.
+    first_fence, last_fence
+        Its fences, the last one not included.
     """
 
-    kinds: IntArray
-    parts: IntArray
-    points: FloatArray
-    directions: FloatArray
-    lengths: FloatArray
-    radii: FloatArray
-    first_fences: IntArray
-    fences: FloatArray
-    bounds: FloatArray
+    kind: int
+    point: Annotated[FloatArray, 3]
+    direction: Annotated[FloatArray, 3]
+    length: float
+    radius: float
+    first_fence: int
+    last_fence: int
+
+
+class Fence:
+    """A half-space x . direction <= bound; a record.
+
+    Those of a vertex and of an edge hold its outward normals x (the bound is zero), those of a face its points x, as
+    seen from `Feature.point`.
+    """
+
+    direction: Annotated[FloatArray, 3]
+    bound: float
+
+
+class ShapePart:
+    """One convex part of a body; a record.
+
+    Attributes
+    ----------
+    first, last
+        Its features, the last one not included.
+    middle, reach
+        A ball around it, metres.
+    least_length
+        Length of its shortest edge, metres; inf: it has none.
+    """
+
+    first: int
+    last: int
+    middle: Annotated[FloatArray, 3]
+    reach: float
+    least_length: float
+
+
+class Shapes(NamedTuple):
+    """The parts of one body, with all their features and fences."""
+
+    parts: Rows[ShapePart]
+    features: Rows[Feature]
+    fences: Rows[Fence]
+
+
+def no_shapes() -> Shapes:
+    """Return a body without parts (plain Python)."""
+    return Shapes(empty_rows(ShapePart, 0), empty_rows(Feature, 0), empty_rows(Fence, 0))
+
+
+def copied(shapes: Shapes) -> Shapes:
+    """Return shapes with memory of their own, for `place_shapes` to write to (plain Python)."""
+    return Shapes(*[np.array(rows) for rows in shapes])  # type: ignore[arg-type]
 
 
 @kernel
-def place_features(features: Features, position: Vector, quaternion: Quaternion, placed: Features) -> None:
-    """Write points, directions and fences as they are in the world with the body at a pose; all else is given."""
-    for i in range(len(features.kinds)):
-        point = plus(position, rotated(quaternion, row(features.points, i)))
-        direction = rotated(quaternion, row(features.directions, i))
+def place_feature(shapes: Shapes, i: int, position: Vector, rotation: Matrix, placed: Shapes) -> None:
+    """Write one feature as it is in the world with its body at a pose; its numbers are given."""
+    feature, there = shapes.features[i], placed.features[i]
+    point = plus(position, times(rotation, vector_from(feature.point)))
+    direction = times(rotation, vector_from(feature.direction))
+    for k in range(3):
+        there.point[k], there.direction[k] = point[k], direction[k]
+    for f in range(feature.first_fence, feature.last_fence):
+        fence = times(rotation, vector_from(shapes.fences[f].direction))
         for k in range(3):
-            placed.points[i, k], placed.directions[i, k] = point[k], direction[k]
-    for f in range(len(features.bounds)):
-        fence = rotated(quaternion, row(features.fences, f))
-        for k in range(3):
-            placed.fences[f, k] = fence[k]
+            placed.fences[f].direction[k] = fence[k]
 
 
-def copied(features: Features) -> Features:
-    """Return features with arrays of their own where `place_features` writes (plain Python)."""
-    return features._replace(
-        points=np.array(features.points), directions=np.array(features.directions), fences=np.array(features.fences)
-    )
+@kernel
+def place_part(shapes: Shapes, which: int, position: Vector, rotation: Matrix, placed: Shapes) -> None:
+    """Write the ball around one part as it is in the world."""
+    middle = plus(position, times(rotation, vector_from(shapes.parts[which].middle)))
+    for k in range(3):
+        placed.parts[which].middle[k] = middle[k]
+
+
+@kernel
+def place_shapes(shapes: Shapes, position: Vector, quaternion: Quaternion, placed: Shapes) -> None:
+    """Write all parts and features as they are in the world with their body at a pose; their numbers are given."""
+    rotation = matrix_from_quaternion(quaternion)
+    for which in range(len(shapes.parts)):
+        place_part(shapes, which, position, rotation, placed)
+    for i in range(len(shapes.features)):
+        place_feature(shapes, i, position, rotation, placed)

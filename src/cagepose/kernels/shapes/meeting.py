@@ -1,16 +1,8 @@
-"""How two features meet: gap, normal and place, and the two matrices of second order, equations (2.8) to (2.10).
+"""How two features meet: their gap, its normal and its place, equation (2.8); and whether both reach there.
 
-With h_A and h_B the support functions of two convex bodies, their gap is the greatest over all unit normals n of
--h_A(n) - h_B(-n). So its second derivative follows from how the places of contact move when the normal turns: by C_A and
-C_B, the radii of curvature of the two, across the normal. A vertex has zero, a plane infinite ones, an edge one of each,
-and a radius adds itself. With v the velocity of the object's material at the contact, and m = n x w for its angular
-velocity w,
-
-    gap'' = -n . (w x (w x a)) + v K v + 2 v L m - m P m,
-    K = 1/(C_A + C_B),  L = K C_A,  P = C_A K C_B,
-
-where a is the arm from the reference point. All three have limits where radii are infinite. What of the gap is open
-counts to C_B.
+What two features are to each other depends on no other part of their bodies: a vertex is asked how far it is from the
+plane of a face, an edge how far from the line of another. Whether they are the ones that can touch is told by their
+fences: the normal must be one of both, and the place on both.
 """
 
 from __future__ import annotations
@@ -18,14 +10,12 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, minus, norm, plus, row, scaled
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Features
+from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes
 
-PARALLEL = 1e-9
+PARALLEL = 1e-7
 """Sine: edges that make a smaller angle lie side by side, and meet at their ends."""
-
-NOTHING: Matrix = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 class Meeting(NamedTuple):
@@ -33,184 +23,134 @@ class Meeting(NamedTuple):
 
     Attributes
     ----------
-    is_there
-        Whether their closest points lie on both, and the normal is one of both: they can touch here.
+    is_one
+        Whether features of these kinds can touch.
     gap
-        Between the rounded features; below zero: how deep.
+        Between the rounded features; below zero: how deep, metres.
     normal, place
         Outward unit normal of the object; the object's point of contact, in the world.
-    relative, share, parallel
-        K, L and P, across the normal, in the world.
     """
 
-    is_there: bool
+    is_one: bool
     gap: float
     normal: Vector
     place: Vector
-    relative: Matrix
-    share: Matrix
-    parallel: Matrix
 
 
 @kernel
 def apart() -> Meeting:
     """Return that two features do not meet."""
-    zero = (0.0, 0.0, 0.0)
-    return Meeting(False, math.inf, zero, zero, NOTHING, NOTHING, NOTHING)
+    return Meeting(False, math.inf, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 @kernel
-def outer(a: Vector, b: Vector, factor: float) -> Matrix:
-    """Return factor * a b^T."""
-    return (scaled(b, factor * a[0]), scaled(b, factor * a[1]), scaled(b, factor * a[2]))
+def farthest_beyond(shapes: Shapes, i: int, normal: Vector) -> float:
+    """Return how far a direction is beyond the outward normals of a vertex or an edge, a sine; -inf: all are."""
+    farthest = -math.inf
+    for f in range(shapes.features[i].first_fence, shapes.features[i].last_fence):
+        farthest = max(farthest, dot(vector_from(shapes.fences[f].direction), normal))
+    return farthest
 
 
 @kernel
-def added(a: Matrix, b: Matrix) -> Matrix:
-    return (plus(a[0], b[0]), plus(a[1], b[1]), plus(a[2], b[2]))
-
-
-@kernel
-def across(normal: Vector, factor: float) -> Matrix:
-    """Return factor times the identity across a unit normal."""
-    n = outer(normal, normal, -factor)
-    return ((n[0][0] + factor, n[0][1], n[0][2]), (n[1][0], n[1][1] + factor, n[1][2]), (n[2][0], n[2][1], n[2][2] + factor))
-
-
-@kernel
-def has_normal(features: Features, i: int, normal: Vector, slack: float) -> bool:
-    """Whether a vertex or an edge has this outward normal, to the sine ``slack``."""
-    for f in range(features.first_fences[i], features.first_fences[i + 1]):
-        if dot(row(features.fences, f), normal) > slack:
+def reaches(shapes: Shapes, i: int, normal: Vector, core: Vector, slack: float, slack_m: float) -> bool:
+    """Whether a feature has this outward normal at this point of its core, to a sine and a length beyond its end."""
+    feature = shapes.features[i]
+    seen = minus(core, vector_from(feature.point))
+    if feature.kind == FACE:
+        for f in range(feature.first_fence, feature.last_fence):
+            if dot(vector_from(shapes.fences[f].direction), seen) > shapes.fences[f].bound + slack_m:
+                return False
+        return True
+    if feature.kind == EDGE:
+        along = dot(vector_from(feature.direction), seen)
+        if along < -slack_m or along > feature.length + slack_m:
             return False
-    return True
+    return farthest_beyond(shapes, i, normal) <= slack
 
 
 @kernel
-def holds_point(features: Features, i: int, point: Vector, slack_m: float) -> bool:
-    """Whether a point, as far as it lies along a face, lies in it."""
-    seen = minus(point, row(features.points, i))
-    for f in range(features.first_fences[i], features.first_fences[i + 1]):
-        if dot(row(features.fences, f), seen) > features.bounds[f] + slack_m:
-            return False
-    return True
+def both_reach(a: Shapes, i: int, b: Shapes, j: int, met: Meeting, slack: float, slack_m: float) -> bool:
+    """Whether two features can touch where they meet."""
+    if not met.is_one:
+        return False
+    one = minus(met.place, scaled(met.normal, a.features[i].radius))
+    other = plus(met.place, scaled(met.normal, met.gap + b.features[j].radius))
+    back = scaled(met.normal, -1.0)
+    return reaches(a, i, met.normal, one, slack, slack_m) and reaches(b, j, back, other, slack, slack_m)
 
 
 @kernel
-def vertex_and_face(a: Features, i: int, b: Features, j: int, slack: float, slack_m: float) -> Meeting:
+def vertex_and_face(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
     """A vertex of the object and a face of the cage."""
-    vertex, radius = row(a.points, i), a.radii[i]
-    normal = scaled(row(b.directions, j), -1.0)
-    if not has_normal(a, i, normal, slack) or not holds_point(b, j, vertex, slack_m):
-        return apart()
-    gap = dot(normal, minus(row(b.points, j), vertex)) - radius - b.radii[j]
-    return Meeting(
-        True, gap, normal, plus(vertex, scaled(normal, radius)), NOTHING, NOTHING, across(normal, radius)
-    )
+    vertex, radius = vector_from(a.features[i].point), a.features[i].radius
+    normal = scaled(vector_from(b.features[j].direction), -1.0)
+    gap = dot(normal, minus(vector_from(b.features[j].point), vertex)) - radius - b.features[j].radius
+    return Meeting(True, gap, normal, plus(vertex, scaled(normal, radius)))
 
 
 @kernel
-def face_and_vertex(a: Features, i: int, b: Features, j: int, slack: float, slack_m: float) -> Meeting:
+def face_and_vertex(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
     """A face of the object and a vertex of the cage."""
-    vertex, normal = row(b.points, j), row(a.directions, i)
-    if not has_normal(b, j, scaled(normal, -1.0), slack) or not holds_point(a, i, vertex, slack_m):
-        return apart()
-    height = dot(normal, minus(vertex, row(a.points, i))) - a.radii[i]
-    place = minus(vertex, scaled(normal, height))
-    return Meeting(True, height - b.radii[j], normal, place, NOTHING, across(normal, 1.0), across(normal, height))
+    vertex, normal = vector_from(b.features[j].point), vector_from(a.features[i].direction)
+    height = dot(normal, minus(vertex, vector_from(a.features[i].point))) - a.features[i].radius
+    return Meeting(True, height - b.features[j].radius, normal, minus(vertex, scaled(normal, height)))
 
 
 @kernel
-def edges_cross(a: Features, i: int, b: Features, j: int, slack: float, slack_m: float) -> Meeting:
+def edge_and_edge(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
     """Two edges that cross."""
-    u, w = row(a.directions, i), row(b.directions, j)
+    u, w = vector_from(a.features[i].direction), vector_from(b.features[j].direction)
     crossed = cross(u, w)
     sine = norm(crossed)
     if sine < PARALLEL:
         return apart()
-    start = minus(row(b.points, j), row(a.points, i))
-    # start + t w - s u is along the normal
-    s = dot(cross(start, w), crossed) / (sine * sine)
-    t = dot(cross(start, u), crossed) / (sine * sine)
-    if s < -slack_m or s > a.lengths[i] + slack_m or t < -slack_m or t > b.lengths[j] + slack_m:
-        return apart()
+    start = minus(vector_from(b.features[j].point), vector_from(a.features[i].point))
+    s = dot(cross(start, w), crossed) / (sine * sine)  # start + t w - s u is along the normal
     normal = scaled(crossed, 1.0 / sine)
     distance = dot(start, normal)
-    if distance < 0.0:
+    radius, others = a.features[i].radius, b.features[j].radius
+    if radius + others > 0.0:
+        turned = distance < 0.0
+    else:  # they may be a little into each other: which way is out?
+        turned = farthest_beyond(a, i, scaled(normal, -1.0)) < farthest_beyond(a, i, normal)
+    if turned:
         normal, distance = scaled(normal, -1.0), -distance
-    radius, others = a.radii[i], b.radii[j]
-    if not has_normal(a, i, normal, slack) or not has_normal(b, j, scaled(normal, -1.0), slack):
-        # edges without a radius may be a little into each other
-        normal, distance = scaled(normal, -1.0), -distance
-        if radius + others > 0.0 or distance < -slack_m or not has_normal(a, i, normal, slack):
-            return apart()
-        if not has_normal(b, j, scaled(normal, -1.0), slack):
-            return apart()
-    place = plus(plus(row(a.points, i), scaled(u, s)), scaled(normal, radius))
-    cosine = dot(u, w)
-    dual = scaled(minus(u, scaled(w, cosine)), 1.0 / (sine * sine))  # u* . u = 1, u* . w = 0
-    parallel = added(across(normal, radius), outer(u, u, distance * dot(dual, dual)))
-    parallel = added(parallel, added(outer(dual, u, -radius), outer(u, dual, -radius)))
-    return Meeting(True, distance - radius - others, normal, place, NOTHING, outer(dual, u, 1.0), parallel)
+    place = plus(plus(vector_from(a.features[i].point), scaled(u, s)), scaled(normal, radius))
+    return Meeting(True, distance - radius - others, normal, place)
 
 
 @kernel
-def round_ones(a: Features, i: int, b: Features, j: int, slack: float, slack_m: float) -> Meeting:
+def round_ones(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
     """A vertex and an edge, or two vertices, with a radius: their distance."""
-    radius, others = a.radii[i], b.radii[j]
+    radius, others = a.features[i].radius, b.features[j].radius
     if radius + others == 0.0:
         return apart()
-    on_object, on_cage, along = row(a.points, i), row(b.points, j), (0.0, 0.0, 0.0)
-    if a.kinds[i] == EDGE:
-        along = row(a.directions, i)
-        s = dot(minus(on_cage, on_object), along)
-        if s < -slack_m or s > a.lengths[i] + slack_m:
-            return apart()
-        on_object = plus(on_object, scaled(along, s))
-    elif b.kinds[j] == EDGE:
-        along = row(b.directions, j)
-        s = dot(minus(on_object, on_cage), along)
-        if s < -slack_m or s > b.lengths[j] + slack_m:
-            return apart()
-        on_cage = plus(on_cage, scaled(along, s))
-    between = minus(on_cage, on_object)
+    one, other = vector_from(a.features[i].point), vector_from(b.features[j].point)
+    if a.features[i].kind == EDGE:
+        along = vector_from(a.features[i].direction)
+        one = plus(one, scaled(along, dot(minus(other, one), along)))
+    elif b.features[j].kind == EDGE:
+        along = vector_from(b.features[j].direction)
+        other = plus(other, scaled(along, dot(minus(one, other), along)))
+    between = minus(other, one)
     distance = norm(between)
     if distance == 0.0:
         return apart()
     normal = scaled(between, 1.0 / distance)
-    if not has_normal(a, i, normal, slack) or not has_normal(b, j, scaled(normal, -1.0), slack):
-        return apart()
-    share = radius / distance
-    rest = distance - radius
-    relative = added(across(normal, 1.0 / distance), outer(along, along, -1.0 / distance))
-    shared = added(across(normal, share), outer(along, along, -share))
-    parallel = added(across(normal, share * rest), outer(along, along, -share * rest))
-    if a.kinds[i] == EDGE:
-        shared, parallel = added(shared, outer(along, along, 1.0)), added(parallel, outer(along, along, rest))
-    elif b.kinds[j] == EDGE:
-        parallel = added(parallel, outer(along, along, radius))
-    place = plus(on_object, scaled(normal, radius))
-    return Meeting(True, distance - radius - others, normal, place, relative, shared, parallel)
+    return Meeting(True, distance - radius - others, normal, plus(one, scaled(normal, radius)))
 
 
 @kernel
-def meeting(a: Features, i: int, b: Features, j: int, slack: float, slack_m: float) -> Meeting:
-    """Return how feature i of the object and feature j of the cage meet, both placed in the world.
-
-    Parameters
-    ----------
-    a, i, b, j
-        The features.
-    slack, slack_m
-        How far beyond its end a feature still counts: the sine of an angle, and metres.
-    """
-    one, other = a.kinds[i], b.kinds[j]
+def meeting(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
+    """Return how feature i of the object and feature j of the cage meet, both placed in the world."""
+    one, other = a.features[i].kind, b.features[j].kind
     if one == VERTEX and other == FACE:
-        return vertex_and_face(a, i, b, j, slack, slack_m)
+        return vertex_and_face(a, i, b, j)
     if one == FACE and other == VERTEX:
-        return face_and_vertex(a, i, b, j, slack, slack_m)
+        return face_and_vertex(a, i, b, j)
     if one == EDGE and other == EDGE:
-        return edges_cross(a, i, b, j, slack, slack_m)
+        return edge_and_edge(a, i, b, j)
     if one == FACE or other == FACE:
         return apart()
-    return round_ones(a, i, b, j, slack, slack_m)
+    return round_ones(a, i, b, j)

@@ -10,7 +10,7 @@ from cagepose.kernels.algebra.record import Rows, empty_rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement, place_object
-from cagepose.kernels.contact.contact_set import CONTACTS_PER_POINT, ContactSet, empty_contact_set, find_contacts
+from cagepose.kernels.contact.contact_set import ContactSet, contact_set_for, find_contacts, most_contacts
 from cagepose.kernels.contact.edges import (
     CHOICES_LIMIT,
     EVERY,
@@ -94,10 +94,10 @@ class ProofWorkspace(NamedTuple):
 
 def empty_proof_workspace(geometry: Geometry) -> ProofWorkspace:
     """Return a workspace for one proof (plain Python)."""
-    n_contacts = CONTACTS_PER_POINT * len(geometry.points_world)
+    n_contacts = most_contacts(geometry)
     return ProofWorkspace(
         empty_placement(geometry),
-        empty_contact_set(n_contacts),
+        contact_set_for(geometry),
         empty_rows(ContactStatus, n_contacts),
         empty_rows(AnalysisWorkspace, 1),
         empty_system(max(N_COLUMNS, n_contacts)),

@@ -275,7 +275,8 @@ def list_one_sided(
 @kernel
 def is_same_face(one: ContactRow, other: ContactRow) -> bool:
     """Whether two rows are flush faces of two boxes over one point."""
-    return one.point == other.point and inner(one.directions[0], other.directions[0], 3) > 1.0 - IN_SPAN
+    is_one_point = one.point == other.point and one.feature < 0 and other.feature < 0
+    return is_one_point and inner(one.directions[0], other.directions[0], 3) > 1.0 - IN_SPAN
 
 
 @kernel

@@ -270,8 +270,8 @@ class StepwiseWorkspace(NamedTuple):
         The state at the present pose.
     trace
         Steps of one phase.
-    points_world
-        Cage points of the case that is run, (n_points, 3).
+    cage
+        That of the case that is run.
     proof
         Workspace for the proof of a phase's end.
     """
@@ -279,7 +279,7 @@ class StepwiseWorkspace(NamedTuple):
     placement: Placement
     touching: Touching
     trace: Trace
-    points_world: FloatArray
+    cage: PlacedCage
     proof: ProofWorkspace
 
 
@@ -290,7 +290,7 @@ def empty_stepwise_workspace(geometry: Geometry, step_limit: int) -> StepwiseWor
         empty_placement(geometry),
         empty_touching(n_points),
         empty_trace(step_limit, n_points, n_points),
-        np.zeros((n_points, 3)),
+        empty_cage(geometry),
         empty_proof_workspace(geometry),
     )
 
@@ -312,7 +312,7 @@ def run_stepwise(part: Part, cases: Cases, rules: StepwiseRules, work: StepwiseW
 
     """
     begin(outcome)
-    start = start_of(0, part, cases, work.points_world)
+    start = start_of(0, part, cases, work.cage)
     position, quaternion = start.position, start.quaternion
     forget_contacts(work.touching)
     for phase in range(len(start.actions)):
@@ -347,7 +347,7 @@ def run_stepwise_cases(
         Filled.
     """
     for case in range(first, last):
-        start = start_of(case, part, cases, work.points_world)
+        start = start_of(case, part, cases, work.cage)
         if not is_valid(start, farthest, len(cases.points_cage) > 1, work.placement):
             endings.verdicts[case, 0] = INVALID
             continue
@@ -358,7 +358,7 @@ def run_stepwise_cases(
                 start, phase, position, quaternion, rules, rules.step_limit, work
             )
             write_ending(endings, case, phase, verdict, n_steps, position, quaternion, start, part)
-            for point in range(len(work.points_world)):
+            for point in range(len(work.cage.points_world)):
                 endings.touching[case, phase, point] = work.touching.is_touching[point]
             if verdict != STABLE:
                 break
@@ -389,7 +389,7 @@ def repeat_stepwise(
         Filled: the events that these steps are.
     """
     begin(outcome)
-    start, q = start_of(0, part, cases, work.points_world), first[0].start_quaternion
+    start, q = start_of(0, part, cases, work.cage), first[0].start_quaternion
     position, quaternion = vector_from(first[0].start_position), (q[0], q[1], q[2], q[3])
     touching = work.touching
     forget_contacts(touching)

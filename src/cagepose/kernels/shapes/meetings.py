@@ -1,0 +1,244 @@
+"""Where the parts of two bodies touch at one pose, and how far apart they are otherwise.
+
+Convex parts are apart if along one direction they are: the normal of a face, or that across two edges, which is an
+outward normal of both. The greatest such distance is that of overlapping parts, below zero, and no more than that of
+parts that are apart; there, features that reach where they meet are nearest, and tell it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.along_motion import can_touch
+from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes
+from cagepose.kernels.shapes.meeting import both_reach, farthest_beyond, meeting
+
+ROOM_FOR_PAIR, MOST_ROOM = 32, 4096
+"""Meetings that there is memory for: of each pair of parts, and of all."""
+SAME_NORMAL = 1e-9
+"""Radians. Meetings at one place with normals nearer than this are one."""
+SAME_PLACE = 4.0
+"""In touch tolerances: meetings nearer to each other are at one place."""
+PROBE, PROBE_MARGIN = 3.0, 1.5
+"""In touch tolerances, as in `cagepose.kernels.collision.contacts`."""
+
+
+class Touching:
+    """Two features that touch; a record.
+
+    Attributes
+    ----------
+    part, cage_part, feature, cage_feature
+        Indices.
+    gap, normal, place
+        As in `Meeting`.
+    is_hidden
+        Whether another part of one of the bodies covers the place.
+    """
+
+    part: int
+    cage_part: int
+    feature: int
+    cage_feature: int
+    gap: float
+    normal: Annotated[FloatArray, 3]
+    place: Annotated[FloatArray, 3]
+    is_hidden: bool
+
+
+class Meetings(NamedTuple):
+    """What touches at one pose.
+
+    Attributes
+    ----------
+    used
+        How many rows count, (1,); -1: there are more than there is memory for.
+    rows
+        One for each meeting within the touch tolerance; those of a pair of parts follow each other.
+    gaps
+        Of each pair of parts, (n_parts, n_cage_parts), metres: how far apart they are at least; below zero, how deep
+        they are in each other.
+    """
+
+    used: IntArray
+    rows: Rows[Touching]
+    gaps: FloatArray
+
+
+def most_meetings(n_parts: int, n_cage_parts: int) -> int:
+    """Return how many meetings of so many parts there is memory for (plain Python)."""
+    return min(ROOM_FOR_PAIR * n_parts * n_cage_parts, MOST_ROOM)
+
+
+def empty_meetings(n_parts: int, n_cage_parts: int) -> Meetings:
+    """Return memory for the meetings of so many parts (plain Python)."""
+    rows = empty_rows(Touching, most_meetings(n_parts, n_cage_parts))
+    return Meetings(np.zeros(1, np.int64), rows, np.zeros((n_parts, n_cage_parts)))
+
+
+@kernel
+def slack_of(a: Shapes, one: int, b: Shapes, other: int, touch_m: float) -> float:
+    """Return the sine by which parts that touch all along their shortest edge may be tilted."""
+    least = min(a.parts[one].least_length, b.parts[other].least_length)
+    return min(0.1, max(1e-9, SAME_PLACE * touch_m / least))
+
+
+@kernel
+def balls_apart(a: Shapes, one: int, b: Shapes, other: int) -> float:
+    """Return how far apart the balls around two parts are."""
+    between = minus(vector_from(a.parts[one].middle), vector_from(b.parts[other].middle))
+    return norm(between) - a.parts[one].reach - b.parts[other].reach
+
+
+@kernel
+def tells_apart(a: Shapes, i: int, b: Shapes, j: int, normal: Vector, slack: float) -> bool:
+    """Whether two features are those of their parts that are farthest along the normal of their meeting."""
+    one, other = a.features[i].kind, b.features[j].kind
+    if one == FACE:
+        return farthest_beyond(b, j, scaled(normal, -1.0)) <= slack
+    if other == FACE:
+        return farthest_beyond(a, i, normal) <= slack
+    if one == EDGE and other == EDGE:
+        return farthest_beyond(a, i, normal) <= slack and farthest_beyond(b, j, scaled(normal, -1.0)) <= slack
+    return False
+
+
+@kernel
+def meet_parts(a: Shapes, one: int, b: Shapes, other: int, touch_m: float, found: Meetings) -> float:
+    """Append the meetings of two parts; return how far apart they are at least, below zero how deep in each other."""
+    slack, slack_m = slack_of(a, one, b, other, touch_m), 2.0 * touch_m
+    first = found.used[0]
+    separation, nearest = -math.inf, math.inf
+    for i in range(a.parts[one].first, a.parts[one].last):
+        for j in range(b.parts[other].first, b.parts[other].last):
+            if not can_touch(a, i, b, j):
+                continue
+            met = meeting(a, i, b, j)
+            if not met.is_one:
+                continue
+            if tells_apart(a, i, b, j, met.normal, slack):
+                separation = max(separation, met.gap)
+            if not both_reach(a, i, b, j, met, slack, slack_m):
+                continue
+            if met.gap > touch_m:
+                nearest = min(nearest, met.gap)
+                continue
+            if found.used[0] == len(found.rows):
+                found.used[0] = first
+                return math.nan
+            row = found.rows[found.used[0]]
+            row.part, row.cage_part, row.feature, row.cage_feature = one, other, i, j
+            row.gap, row.is_hidden = met.gap, False
+            for k in range(3):
+                row.normal[k], row.place[k] = met.normal[k], met.place[k]
+            found.used[0] += 1
+    keep_nearest(found, first, 2.0 * min(separation, 0.0) - touch_m, touch_m)
+    for at in range(first, found.used[0]):
+        nearest = min(nearest, found.rows[at].gap)
+    return nearest if nearest < math.inf else separation
+
+
+@kernel
+def keep_nearest(found: Meetings, first: int, least_gap: float, touch_m: float) -> None:
+    """Keep, of the meetings of two parts, those that are not deeper than the parts are in each other (these are on their
+    far sides), and each normal at a place once.
+    """
+    kept = first
+    for at in range(first, found.used[0]):
+        row, is_new = found.rows[at], found.rows[at].gap >= least_gap
+        for before in range(first, kept):
+            is_new = is_new and not is_same(found, at, before, touch_m)
+        if is_new:
+            move_row(row, found.rows[kept])
+            kept += 1
+    found.used[0] = kept
+
+
+@kernel
+def is_at_place(found: Meetings, one: int, other: int, touch_m: float) -> bool:
+    """Whether two meetings are at one place."""
+    between = minus(vector_from(found.rows[one].place), vector_from(found.rows[other].place))
+    return norm(between) <= SAME_PLACE * touch_m
+
+
+@kernel
+def is_same(found: Meetings, one: int, other: int, touch_m: float) -> bool:
+    """Whether two meetings have the same normal at the same place."""
+    turn = minus(vector_from(found.rows[one].normal), vector_from(found.rows[other].normal))
+    return norm(turn) <= SAME_NORMAL and is_at_place(found, one, other, touch_m)
+
+
+@kernel
+def move_row(row: Touching, to: Touching) -> None:
+    to.part, to.cage_part, to.feature, to.cage_feature = row.part, row.cage_part, row.feature, row.cage_feature
+    to.gap, to.is_hidden = row.gap, row.is_hidden
+    for k in range(3):
+        to.normal[k], to.place[k] = row.normal[k], row.place[k]
+
+
+@kernel
+def depth_in_part(shapes: Shapes, which: int, point: Vector) -> float:
+    """Return how deep a point is in a part, metres; near rounded edges, too much."""
+    beyond, nearest = -math.inf, math.inf
+    for i in range(shapes.parts[which].first, shapes.parts[which].last):
+        feature = shapes.features[i]
+        seen = minus(point, vector_from(feature.point))
+        along = dot(vector_from(feature.direction), seen)
+        if feature.kind == FACE:
+            beyond = max(beyond, along - feature.radius)
+        elif feature.kind == VERTEX:
+            nearest = min(nearest, norm(seen) - feature.radius)
+        elif 0.0 <= along <= feature.length:
+            nearest = min(nearest, norm(minus(seen, scaled(vector_from(feature.direction), along))) - feature.radius)
+    return -beyond if beyond > -math.inf else -nearest
+
+
+@kernel
+def covers(shapes: Shapes, which: int, i: int, place: Vector, normal: Vector, touch_m: float) -> bool:
+    """Whether another part of a body covers a place of a part's feature, with this outward normal."""
+    feature = shapes.features[i]
+    probe = plus(place, scaled(normal, PROBE * touch_m))
+    if feature.kind == FACE:
+        seen = minus(place, vector_from(feature.point))
+        for f in range(feature.first_fence, feature.last_fence):
+            fence = vector_from(shapes.fences[f].direction)
+            beyond = dot(fence, seen) - shapes.fences[f].bound
+            if beyond > -touch_m:
+                probe = minus(probe, scaled(fence, beyond + PROBE * touch_m))
+    for another in range(len(shapes.parts)):
+        if another != which and depth_in_part(shapes, another, probe) > PROBE_MARGIN * touch_m:
+            return True
+    return False
+
+
+@kernel
+def find_meetings(held: Shapes, cage: Shapes, n_boxes: int, n_points: int, touch_m: float, found: Meetings) -> None:
+    """Find all meetings of two bodies, both placed in the world, but those of the object's first ``n_boxes`` parts with
+    the cage's first ``n_points``: of boxes and points `cagepose.kernels.collision` knows.
+    """
+    found.used[0] = 0
+    for one in range(len(held.parts)):
+        for other in range(len(cage.parts)):
+            found.gaps[one, other] = math.inf
+            if one < n_boxes and other < n_points:
+                continue
+            gap = balls_apart(held, one, cage, other)
+            if gap <= touch_m:
+                gap = meet_parts(held, one, cage, other, touch_m, found)
+                if math.isnan(gap):
+                    found.used[0] = -1
+                    return
+            found.gaps[one, other] = gap
+    for at in range(found.used[0]):
+        row = found.rows[at]
+        place, normal = vector_from(row.place), vector_from(row.normal)
+        there = plus(place, scaled(normal, row.gap))
+        row.is_hidden = covers(held, row.part, row.feature, place, normal, touch_m) or covers(
+            cage, row.cage_part, row.cage_feature, there, scaled(normal, -1.0), touch_m
+        )
