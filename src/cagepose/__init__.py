@@ -26,16 +26,23 @@ if TYPE_CHECKING:
     from cagepose.files.run_file import load_run as load_run
     from cagepose.files.run_file import save_run as save_run
     from cagepose.files.scene_file import load_scene as load_scene
+    from cagepose.model.box import Box as Box
     from cagepose.model.cage import Cage as Cage
     from cagepose.model.load import Force as Force
     from cagepose.model.load import Load as Load
     from cagepose.model.load import Moment as Moment
     from cagepose.model.load import Spring as Spring
-    from cagepose.model.parts import Box as Box
     from cagepose.model.parts import Object as Object
     from cagepose.model.pose import Pose as Pose
     from cagepose.model.scene import Adjustable as Adjustable
     from cagepose.model.scene import Scene as Scene
+    from cagepose.model.shapes import Capsule as Capsule
+    from cagepose.model.shapes import Cone as Cone
+    from cagepose.model.shapes import Convex as Convex
+    from cagepose.model.shapes import Cylinder as Cylinder
+    from cagepose.model.shapes import Disc as Disc
+    from cagepose.model.shapes import Shape as Shape
+    from cagepose.model.shapes import Sphere as Sphere
     from cagepose.model.tolerances import Tolerances as Tolerances
     from cagepose.runs.critical import with_critical_friction as with_critical_friction
     from cagepose.runs.many import Runs as Runs
@@ -81,11 +88,13 @@ _HOMES = {
         "SceneError",
         "SceneFileError",
     ),
+    "cagepose.model.box": ("Box",),
     "cagepose.model.cage": ("Cage",),
     "cagepose.model.load": ("Force", "Load", "Moment", "Spring"),
-    "cagepose.model.parts": ("Box", "Object"),
+    "cagepose.model.parts": ("Object",),
     "cagepose.model.pose": ("Pose",),
     "cagepose.model.scene": ("Adjustable", "Scene"),
+    "cagepose.model.shapes": ("Capsule", "Cone", "Convex", "Cylinder", "Disc", "Shape", "Sphere"),
     "cagepose.model.tolerances": ("Tolerances",),
     "cagepose.runs.critical": ("with_critical_friction",),
     "cagepose.runs.many": ("Runs", "run_many"),
@@ -110,14 +119,19 @@ __all__ = [
     "Box",
     "Cage",
     "CageposeError",
+    "Capsule",
     "Certificate",
     "CertificateCheck",
     "CertificateError",
     "ChosenFaces",
     "Comparison",
+    "Cone",
     "Contact",
     "ContactFace",
     "ContactMargin",
+    "Convex",
+    "Cylinder",
+    "Disc",
     "Event",
     "Force",
     "Frame",
@@ -143,6 +157,8 @@ __all__ = [
     "Scene",
     "SceneError",
     "SceneFileError",
+    "Shape",
+    "Sphere",
     "Spring",
     "Tolerances",
     "Variant",

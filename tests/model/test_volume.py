@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cagepose.model.parts import Box, Object
+from cagepose.model.box import Box
+from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.volume import union_moments
 

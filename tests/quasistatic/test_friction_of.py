@@ -111,7 +111,7 @@ def test_a_row_of_a_batch_is_the_run():
 
 
 def test_names_and_numbers_are_checked():
-    with pytest.raises(SceneError, match=r"friction.of.C9: is neither a cage point nor a box"):
+    with pytest.raises(SceneError, match=r"friction.of.C9: is neither in the cage nor in the object"):
         on_a_slope(0.1, 0.3, C9=0.1)
     with pytest.raises(SceneError, match=r"friction.of.C1: is -0.1; give a finite coefficient"):
         on_a_slope(0.1, 0.3, C1=-0.1)

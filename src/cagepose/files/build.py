@@ -12,9 +12,10 @@ from cagepose.errors import Key, Problem, SceneError
 from cagepose.files.points_file import PointsTable
 from cagepose.files.schema import BoxModel, ForceModel, LoadModel, MomentModel, PoseModel, SceneModel, SpringModel
 from cagepose.files.units import LengthUnit, to_metres
+from cagepose.model.box import Box
 from cagepose.model.cage import Cage
 from cagepose.model.load import Force, Load, Moment, Spring
-from cagepose.model.parts import Box, Object
+from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Adjustable, Scene
 from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT, Tolerances

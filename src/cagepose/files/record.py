@@ -29,7 +29,7 @@ from cagepose.runs.run import Motion
 
 Kind = TypeVar("Kind")
 
-FRAME = re.compile("_(world|object|cage|box)")
+FRAME = re.compile("_(world|object|cage|box|body|shape)(?![a-z])")
 PARTS_OF_A_SCENE = (Object, Cage, Tolerances)
 """Their fields stand among those of the scene."""
 KEYS = {
@@ -37,8 +37,9 @@ KEYS = {
     "names": "point_names",
     "points_cage": "points_m",
     "pose_world_cage": "cage_pose",
+    "Cage.shapes": "cage_shapes",
 }
-"""Of the attributes whose key is another than their name without its frame."""
+"""Of the attributes (of one class alone) whose key is another than their name without its frame."""
 INFINITE: dict[str, str | None] = {"distance_m": None}
 """What stands for an infinite number, which JSON has not, in some attributes; in all others, `NO_NUMBER`."""
 NO_NUMBER = "none"
@@ -52,6 +53,8 @@ def record_of(thing: object) -> dict[str, Any]:
         value = getattr(thing, field.attribute)
         if field.kind in PARTS_OF_A_SCENE:
             record |= record_of(value)
+        elif _choices(field.kind):
+            record[field.key] = [{item.kind: record_of(item)} for item in value]
         else:
             record[field.key] = _plain(value, field.attribute)
     return record
@@ -91,7 +94,8 @@ def _fields(kind: type) -> list[_Field]:
     attributes = {**{FRAME.sub("", name): name for name in kinds}, **{name: name for name in kinds}}
     return [
         _Field(
-            key=KEYS.get(attributes[argument], FRAME.sub("", attributes[argument])),
+            key=KEYS.get(f"{kind.__name__}.{attributes[argument]}")
+            or KEYS.get(attributes[argument], FRAME.sub("", attributes[argument])),
             argument=argument,
             attribute=attributes[argument],
             kind=kinds[attributes[argument]],
@@ -100,6 +104,13 @@ def _fields(kind: type) -> list[_Field]:
         for argument, parameter in signature(kind).parameters.items()
         if argument in attributes
     ]
+
+
+def _choices(kind: object) -> tuple[Any, ...]:
+    """Return the shapes of which a list holds any, each under its ``kind``; none: it is no such list."""
+    item = get_args(kind)[0] if get_origin(kind) is tuple else None
+    parts = get_args(item) if get_origin(item) in (Union, UnionType) else ()
+    return parts if all(_is_ours(part) for part in parts) else ()
 
 
 def _is_ours(kind: object) -> bool:
@@ -160,6 +171,10 @@ def _check_line(motion: Motion | FreeMotion) -> None:
 
 def _readable(kind: Any, attribute: str) -> Any:
     """Return the type that pydantic reads a kind of value by."""
+    if choices := _choices(kind):
+        columns: dict[str, Any] = {shape.kind: (_readable_class(shape), None) for shape in choices}
+        choice = create_model("Shape", __base__=_Record, **columns)
+        return list.__class_getitem__(Annotated[choice, AfterValidator(_the_one)])
     origin, parts = get_origin(kind), get_args(kind)
     if origin is Annotated:
         return _array(parts[1])
@@ -173,6 +188,12 @@ def _readable(kind: Any, attribute: str) -> Any:
     if kind is float:
         return Annotated[float, WrapValidator(partial(_number, INFINITE.get(attribute, NO_NUMBER)))]
     return _readable_class(kind) if _is_ours(kind) else kind
+
+
+def _the_one(choice: _Record) -> Any:
+    if len(choice.model_fields_set) != 1:
+        raise ValueError(f"holds {len(choice.model_fields_set)} of its kinds; one is right")
+    return getattr(choice, next(iter(choice.model_fields_set)))
 
 
 def _array(shape: tuple[int, ...]) -> Any:

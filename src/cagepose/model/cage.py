@@ -2,54 +2,89 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
+import numpy as np
 from numpy.typing import ArrayLike
 
-from cagepose.model.checks import FloatArray, ProblemList, duplicates, finite_array
+from cagepose.errors import Key
+from cagepose.model.box import Box
+from cagepose.model.checks import FloatArray, ProblemList, check_kinds, duplicates, finite_array
+from cagepose.model.naming import check_names, named, names_of
 from cagepose.model.pose import Pose
+from cagepose.model.shapes import AnyShape, Shape
 
 
 @dataclass(frozen=True, init=False, eq=False)
 class Cage:
-    """Fixed points in the world.
+    """Fixed points and shapes in the world.
 
     Attributes
     ----------
     points_cage
-        The points in the cage's own frame, (n, 3), metres.
+        The points in the cage's own frame, (n, 3), metres; n may be zero.
     names
-        One name for each; left out: "C1", "C2", ...
+        One name for each point; left out: "C1", "C2", ...
+    shapes
+        Boxes and other shapes in the cage's own frame, every one with a name.
     pose_world_cage
-        Moves all points at once: the misaligned mechanism.
+        Moves all points and shapes at once: the misaligned mechanism.
     """
 
     points_cage: Annotated[FloatArray, (-1, 3)]
     names: tuple[str, ...]
     pose_world_cage: Pose
+    shapes: tuple[Box | AnyShape, ...]
 
-    def __init__(self, points: ArrayLike, names: Sequence[str] | None = None, pose: Pose | None = None) -> None:
+    def __init__(
+        self,
+        points: ArrayLike = (),
+        names: Sequence[str] | None = None,
+        pose: Pose | None = None,
+        shapes: Iterable[Shape] = (),
+    ) -> None:
         """
         Raises
         ------
         SceneError
-            No points, not n x 3 finite numbers, a name used twice, or not one name for each point.
+            Neither points nor shapes, points that are not n x 3 finite numbers, a name used twice, or not one name for
+            each point.
         """
-        array = finite_array(points, (-1, 3), "points")
+        has_points = not (isinstance(points, Sequence | np.ndarray) and len(points) == 0)
+        array = (
+            finite_array(points, (-1, 3), "points") if has_points else finite_array(np.zeros((0, 3)), (0, 3), "points")
+        )
         default_names = tuple(f"C{index + 1}" for index in range(len(array)))
         given = default_names if names is None else tuple(str(name) for name in names)
         problems = ProblemList()
+        all_shapes = named(check_kinds(shapes, Shape, "shapes", problems))
+        problems.raise_if_any()
+        if not has_points and not all_shapes:
+            problems.add((), "has neither points nor shapes; give at least one of them")
         if len(given) != len(array):
             problems.add(("names",), f"holds {len(given)} names for {len(array)} points; give one for each")
         for name, indices in duplicates(given).items():
             problems.add(("points", name), f"is the name of {len(indices)} points; rename all but one")
+        places: list[tuple[Key, ...]] = [("points", name) for name in dict.fromkeys(given)]
+        places += [("shapes", index) for index in range(len(all_shapes))]
+        check_names([*dict.fromkeys(given), *names_of(all_shapes)], places, problems)
         problems.raise_if_any()
         object.__setattr__(self, "points_cage", array)
         object.__setattr__(self, "names", given)
         object.__setattr__(self, "pose_world_cage", pose or Pose())
+        object.__setattr__(self, "shapes", all_shapes)
+
+    @property
+    def element_names(self) -> tuple[str, ...]:
+        """The names of all points, then of all shapes."""
+        return (*self.names, *names_of(self.shapes))
 
     def points_world(self) -> FloatArray:
         """The points in the world, (n, 3), metres."""
         return self.pose_world_cage.transform(self.points_cage)
+
+    def nodes_cage(self) -> FloatArray:
+        """The points and those that tell where the shapes lie, in the cage's own frame, (n, 3), metres."""
+        return np.concatenate([self.points_cage, *(shape.nodes_body() for shape in self.shapes)])

@@ -11,6 +11,7 @@ from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
 from cagepose.model.parts import Object
 from cagepose.model.seams import PlacedBox, Seams, close_seams
+from cagepose.model.shapes import Shape
 
 
 def object_seams(held: Object, touch_m: float) -> Seams:
@@ -33,9 +34,9 @@ def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox]) -> Geomet
     """Return the boxes in the object's frame, its own first and then the bridges, and the cage points in the world."""
     placed = _placed(held) + bridges
     return Geometry(
-        half_sizes=np.array([box.half_size for box in placed]),
-        box_positions=np.array([box.position for box in placed]),
-        box_rotations=np.array([box.rotation for box in placed]),
+        half_sizes=np.array([box.half_size for box in placed]).reshape(-1, 3),
+        box_positions=np.array([box.position for box in placed]).reshape(-1, 3),
+        box_rotations=np.array([box.rotation for box in placed]).reshape(-1, 3, 3),
         n_own_boxes=len(held.boxes),
         points_world=np.ascontiguousarray(cage.points_world()),
     )
@@ -52,13 +53,18 @@ def scene_size(held: Object, cage: Cage) -> float:
 
     Each is measured as twice the greatest distance from the middle, so the size does not depend on any frame.
     """
-    return max(object_size(held), float(cage_sizes(cage.points_cage)))
+    return max(object_size(held), _body_size(cage.nodes_cage(), cage.shapes))
 
 
 def object_size(held: Object) -> float:
     """The object's diameter, metres."""
-    corners = np.concatenate([box.corners_object() for box in held.boxes])
-    return float(cage_sizes(corners))
+    return _body_size(np.concatenate([part.nodes_body() for part in held.parts]), held.shapes)
+
+
+def _body_size(nodes: FloatArray, shapes: tuple[Shape, ...]) -> float:
+    """The diameter of all nodes of a body and of its shapes, about the middle of the nodes."""
+    middle = nodes.mean(axis=0)
+    return max(float(cage_sizes(nodes)), *(2.0 * shape.farthest_m(middle) for shape in shapes), 0.0)
 
 
 def cage_sizes(points: FloatArray) -> FloatArray:

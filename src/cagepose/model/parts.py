@@ -1,70 +1,34 @@
-"""What is held: `Box` and `Object`."""
+"""What is held: `Object`."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cagepose.errors import SceneError
-from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, duplicates, finite_array
+from cagepose.errors import Key, Problem, SceneError
+from cagepose.model.box import Box
+from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, finite_array
+from cagepose.model.naming import check_names, named, names_of
 from cagepose.model.pose import Pose
-from cagepose.model.volume import BOX_SIGNS, VolumeMoments, union_moments
-
-
-@dataclass(frozen=True, init=False, eq=False)
-class Box:
-    """A rectangular block of the object.
-
-    Attributes
-    ----------
-    size_m
-        Full edge lengths, (3,), metres.
-    pose_object_box
-        Places the box's centre and axes in the object's frame.
-    name
-        Shown with its contacts; None becomes "box1", "box2", ... inside an `Object`.
-    """
-
-    size_m: FloatArray
-    pose_object_box: Pose
-    name: str | None
-
-    def __init__(self, size_m: ArrayLike, pose_object_box: Pose | None = None, name: str | None = None) -> None:
-        """
-        Raises
-        ------
-        SceneError
-            A size that is not three finite numbers above zero.
-        """
-        size = finite_array(size_m, (3,), "size")
-        problems = ProblemList()
-        check_kind(pose_object_box or Pose(), Pose, ("pose",), problems)
-        for axis, length in enumerate(size.tolist()):
-            if length <= 0.0:
-                problems.add(("size", axis), f"is {length!r} m; a box's edge lengths must be above zero")
-        problems.raise_if_any()
-        object.__setattr__(self, "size_m", size)
-        object.__setattr__(self, "pose_object_box", pose_object_box or Pose())
-        object.__setattr__(self, "name", name)
-
-    def corners_object(self) -> FloatArray:
-        """The eight corners in the object's frame, (8, 3), metres."""
-        return self.pose_object_box.transform(BOX_SIGNS * self.size_m / 2.0)
+from cagepose.model.shapes import AnyShape, Shape
+from cagepose.model.volume import VolumeMoments, union_moments
 
 
 @dataclass(frozen=True, init=False, eq=False)
 class Object:
-    """One rigid body: a union of boxes, a centre of gravity and the pose it starts from.
+    """One rigid body: a union of boxes and other shapes, a centre of gravity and the pose it starts from.
 
     Attributes
     ----------
     boxes
-        The boxes, every one with a name.
+        The boxes, every one with a name, those that were given among the shapes last.
+    shapes
+        The other shapes, every one with a name.
     center_of_gravity_m
         In the object's frame, (3,), metres. Left out: the centroid of the union's volume.
     mass_kg
@@ -74,19 +38,24 @@ class Object:
         the union.
     pose_world_object
         Where the run starts.
+    part_paths
+        For each of `parts`, where its numbers were given: ``("boxes", 0)``, ``("shapes", 2, "cylinder")``.
     """
 
     boxes: tuple[Box, ...]
+    shapes: tuple[AnyShape, ...]
     center_of_gravity_m: FloatArray
     mass_kg: float | None
     inertia_kg_m2: Annotated[FloatArray, (3, 3)] | None
     pose_world_object: Pose
+    part_paths: tuple[tuple[Key, ...], ...]
 
     def __init__(
         self,
-        boxes: Iterable[Box],
+        boxes: Iterable[Box] = (),
         center_of_gravity_m: ArrayLike | None = None,
         *,
+        shapes: Iterable[Shape] = (),
         pose: Pose | None = None,
         mass_kg: float | None = None,
         inertia_kg_m2: ArrayLike | None = None,
@@ -95,23 +64,21 @@ class Object:
         Raises
         ------
         SceneError
-            Arguments of other classes, no boxes, a name used twice, a mass that is not above zero, an inertia that no
-            body has or without a mass.
+            Arguments of other classes, neither boxes nor shapes, a name used twice, a mass that is not above zero, an
+            inertia that no body has or without a mass.
         """
         problems = ProblemList()
-        boxes = check_kinds(boxes, Box, "boxes", problems)
+        given_boxes = check_kinds(boxes, Box, "boxes", problems)
+        given_shapes = check_kinds(shapes, Shape, "shapes", problems)
         check_kind(pose or Pose(), Pose, ("pose",), problems)
         problems.raise_if_any()
-        named = tuple(
-            box if box.name is not None else Box(box.size_m, box.pose_object_box, f"box{index + 1}")
-            for index, box in enumerate(boxes)
-        )
-        if not named:
-            problems.add(("boxes",), "is empty; an object needs at least one box")
-        for name, indices in duplicates([str(box.name) for box in named]).items():
-            problems.add(
-                ("boxes", indices[1], "name"), f"{name!r} is already the name of boxes[{indices[0]}]; rename one"
-            )
+        placed: list[tuple[tuple[Key, ...], Any]] = [(("boxes", index), box) for index, box in enumerate(given_boxes)]
+        placed += [(("shapes", index, shape.kind), shape) for index, shape in enumerate(given_shapes)]
+        placed.sort(key=lambda part: not isinstance(part[1], Box))
+        parts = named(part for _, part in placed)
+        if not parts:
+            problems.add((), "has neither boxes nor shapes; give at least one of them")
+        check_names(names_of(parts), [path[:2] for path, _ in placed], problems)
         if mass_kg is not None and not (np.isfinite(mass_kg) and mass_kg > 0.0):
             problems.add(("mass",), f"is {mass_kg!r}; a mass must be a finite number above zero")
         inertia = None
@@ -122,7 +89,9 @@ class Object:
         if inertia_kg_m2 is not None and mass_kg is None:
             problems.add(("inertia",), "is given without a mass; give object.mass too, or leave the inertia out")
         problems.raise_if_any()
-        object.__setattr__(self, "boxes", named)
+        object.__setattr__(self, "boxes", tuple(part for part in parts if isinstance(part, Box)))
+        object.__setattr__(self, "shapes", tuple(part for part in parts if not isinstance(part, Box)))
+        object.__setattr__(self, "part_paths", tuple(path for path, _ in placed))
         if center_of_gravity_m is None:
             center = self._union_moments.centroid_m
         else:
@@ -131,6 +100,16 @@ class Object:
         object.__setattr__(self, "mass_kg", None if mass_kg is None else float(mass_kg))
         object.__setattr__(self, "inertia_kg_m2", inertia)
         object.__setattr__(self, "pose_world_object", pose or Pose())
+
+    @property
+    def parts(self) -> tuple[Box | AnyShape, ...]:
+        """All boxes, then all other shapes."""
+        return (*self.boxes, *self.shapes)
+
+    @property
+    def reach_m(self) -> float:
+        """The distance of the object's farthest point from its centre of gravity, metres."""
+        return max(part.farthest_m(self.center_of_gravity_m) for part in self.parts)
 
     @cached_property
     def gyration_m2(self) -> FloatArray:
@@ -153,6 +132,8 @@ class Object:
     @cached_property
     def _union_moments(self) -> VolumeMoments:
         """Taken once, and only where needed: 40 boxes that are turned in all ways take 0.6 s."""
+        if self.shapes:
+            raise SceneError([Problem((), "has shapes other than boxes; give center_of_gravity, mass and inertia")])
         return union_moments(
             np.array([box.size_m for box in self.boxes]) / 2.0,
             np.array([box.pose_object_box.position_m for box in self.boxes]),

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cagepose.errors import Key, key_path
 from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.model.cage import Cage
@@ -15,7 +16,9 @@ from cagepose.model.checks import ProblemList, check_kind, check_kinds, duplicat
 from cagepose.model.geometry import object_seams, scene_geometry, scene_size
 from cagepose.model.load import Load
 from cagepose.model.methods import Metric
+from cagepose.model.naming import names_of
 from cagepose.model.parts import Object
+from cagepose.model.shapes import Shape
 from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
 
 FARTHEST_START = 1e4
@@ -55,8 +58,8 @@ class Scene:
     friction_coefficient
         None: each method's own default.
     friction_of
-        Coefficients of single cage points and boxes, by name. A contact has that of its point, else that of its box,
-        else ``friction_coefficient``.
+        Coefficients of single points and shapes of the cage, and of single boxes and shapes of the object, by name. A
+        contact has that of the cage's, else that of the object's, else ``friction_coefficient``.
     method, metric
         How to run it; None: the default.
     tolerances
@@ -103,8 +106,9 @@ class Scene:
         ------
         SceneError
             Arguments of other classes, no loads, a phase name used twice, a negative friction coefficient, or one of
-            what is neither a point nor a box, cage points on top of each other, a cage point inside the object at the
-            start, a start too far from the cage, or a box thinner than what the touch tolerance can tell apart.
+            what is neither in the cage nor in the object, cage points on top of each other, a cage point inside a box
+            of the object at the start, a start too far from the cage, or a box or shape thinner than what the touch
+            tolerance can tell apart.
         """
         tolerances = tolerances or Tolerances()
         problems = ProblemList()
@@ -124,7 +128,7 @@ class Scene:
         _check_friction_of(friction_of, object, cage, problems)
         size_m = scene_size(object, cage)
         touch_m = tolerances.touch * size_m
-        _check_thickness(object, touch_m, problems)
+        _check_thickness(object, cage, touch_m, problems)
         _check_points_apart(cage, touch_m, problems)
         seams = object_seams(object, touch_m)
         geometry = scene_geometry(object, cage, seams.bridges)
@@ -187,26 +191,31 @@ _set_field = object.__setattr__
 
 
 def _check_friction_of(friction_of: dict[str, float], held: Object, cage: Cage, problems: ProblemList) -> None:
-    points, boxes = set(cage.names), {box.name for box in held.boxes}
+    elements, parts = set(cage.element_names), set(names_of(held.parts))
     for name, coefficient in friction_of.items():
         at = ("friction", "of", name)
-        if name in points and name in boxes:
-            problems.add(at, "is the name of a cage point and of a box; rename one of them")
-        elif name not in points and name not in boxes:
-            problems.add(at, "is neither a cage point nor a box; give the name of one")
+        if name in elements and name in parts:
+            problems.add(at, "is a name in the cage and in the object; rename one of the two")
+        elif name not in elements and name not in parts:
+            problems.add(at, "is neither in the cage nor in the object; give the name of a point, a box or a shape")
         if not (np.isfinite(coefficient) and coefficient >= 0.0):
             problems.add(at, f"is {coefficient!r}; give a finite coefficient, zero or above")
 
 
-def _check_thickness(held: Object, touch_m: float, problems: ProblemList) -> None:
+def _check_thickness(held: Object, cage: Cage, touch_m: float, problems: ProblemList) -> None:
     least_m = 10.0 * touch_m  # so that a point on one face is clear of the opposite one, and of probes from it
-    for index, box in enumerate(held.boxes):
-        for axis, length in enumerate(box.size_m.tolist()):
-            if length < least_m:
+    shapes: list[tuple[tuple[Key, ...], Shape]] = [
+        (("object", *path), part) for path, part in zip(held.part_paths, held.parts, strict=True)
+    ]
+    shapes += [(("cage", "shapes", index, shape.kind), shape) for index, shape in enumerate(cage.shapes)]
+    for path, shape in shapes:
+        for key, thickness in shape.thickness():
+            if thickness < least_m:
                 problems.add(
-                    ("object", "boxes", index, "size", axis),
-                    f"is {millimetres(length)}, too thin to tell its two faces apart (at least {millimetres(least_m)},"
-                    " ten times the touch tolerance); thicken the box or lower tolerances.touch",
+                    (*path, *key),
+                    f"is {millimetres(thickness)}, too thin to tell its two faces apart (at least"
+                    f" {millimetres(least_m)}, ten times the touch tolerance); thicken the {shape.kind} or lower"
+                    " tolerances.touch",
                 )
 
 
@@ -217,6 +226,8 @@ def _check_points_apart(cage: Cage, touch_m: float, problems: ProblemList) -> No
     to be removed is compared no more: n points at one place are n comparisons and n problems, not n^2.
     """
     points, names = cage.points_cage, cage.names
+    if not names:
+        return
     along = (points - points[0]) @ ASKEW
     order = np.argsort(along, kind="stable").tolist()
     near = np.searchsorted(along[order], along[order] + 2.0 * touch_m, side="right").tolist()  # twice: rounding
@@ -237,8 +248,9 @@ def _check_points_apart(cage: Cage, touch_m: float, problems: ProblemList) -> No
 
 def _check_distance(held: Object, cage: Cage, size_m: float, problems: ProblemList) -> None:
     """A start far from the cage leaves too few digits for the contact at the end of the first travel."""
-    middle = held.pose_world_object.transform(held.boxes[0].pose_object_box.position_m)
-    distance = float(np.linalg.norm(middle - cage.points_world().mean(axis=0)))
+    middle = held.pose_world_object.transform(held.parts[0].pose_body_shape.position_m)
+    nodes_world = cage.pose_world_cage.transform(cage.nodes_cage())
+    distance = float(np.linalg.norm(middle - nodes_world.mean(axis=0)))
     if distance > FARTHEST_START * size_m:
         problems.add(
             ("object", "pose", "position"),
@@ -250,11 +262,14 @@ def _check_distance(held: Object, cage: Cage, size_m: float, problems: ProblemLi
 def _check_points_outside(
     held: Object, cage: Cage, geometry: Geometry, touch_m: float, size_m: float, problems: ProblemList
 ) -> None:
+    if not held.boxes or not cage.names:
+        return
     depths, boxes = deepest_boxes(geometry, *held.pose_world_object.as_tuples())
     for point_index in np.nonzero(depths > touch_m)[0].tolist():
         box = int(boxes[point_index])
         if box < len(held.boxes):
-            where = f"starts {millimetres(depths[point_index])} inside object.boxes[{box}] ({held.boxes[box].name})"
+            path = key_path(("object", *held.part_paths[box][:2]))
+            where = f"starts {millimetres(depths[point_index])} inside {path} ({held.boxes[box].name})"
         else:
             where = "starts in the seam between two boxes that meet flush, so inside the object"
         remedy = "move the point out or move the object's start pose"

@@ -7,9 +7,10 @@ import statistics
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from cagepose.model.box import Box
 from cagepose.model.cage import Cage
 from cagepose.model.load import Load
-from cagepose.model.parts import Box, Object
+from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.paper.rail import ANGLES, misalignment, rail_scene

@@ -11,9 +11,10 @@ from typing import Literal
 
 import numpy as np
 
+from cagepose.model.box import Box
 from cagepose.model.cage import Cage
 from cagepose.model.load import Force, Load
-from cagepose.model.parts import Box, Object
+from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.model.tolerances import Tolerances

@@ -1,0 +1,237 @@
+"""The convex hull of points in space, as contact takes it: corners, edges, and flat faces with all their corners.
+
+Points are added one by one to a hull of triangles. On which side of a triangle a point lies is decided exactly, in
+whole numbers where rounding leaves it open, so that the triangles always close up; only then triangles that lie in one
+plane within `FLAT` are made one face. A corner that is left with fewer than three faces lies within a face or an edge:
+it is no corner.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.model.checks import FloatArray, unit_rows
+
+FLAT = 1e-9
+"""Points this close to a plane, a line or each other lie on it, as a fraction of the points' extent."""
+THIN = 10.0 * FLAT
+"""Points this close to a plane or a line span no more than that: faces of what is thicker are told apart."""
+DECIDED = 64.0 * float(np.finfo(np.float64).eps)
+"""Sides of a plane that floating point tells apart, as a fraction of the third power of the extent."""
+
+_Triangle = tuple[int, int, int]
+
+
+@dataclass(frozen=True, eq=False)
+class Hull:
+    """A convex hull, of points that span a volume, a polygon, a segment or a single point.
+
+    Attributes
+    ----------
+    vertices_m
+        Its corners, (n, 3), metres, in the order in which they were given.
+    edges
+        Index pairs of corners, (n_edges, 2).
+    faces
+        Loops of corner indices, counter-clockwise seen from outside. A polygon has two: one for each side.
+    normals
+        Unit outward normals of the faces, (n_faces, 3).
+    """
+
+    vertices_m: FloatArray
+    edges: NDArray[np.int64]
+    faces: tuple[tuple[int, ...], ...]
+    normals: FloatArray
+
+    @property
+    def dimension(self) -> int:
+        """3 for a volume, 2 for a polygon, 1 for a segment, 0 for a point."""
+        return 3 if len(self.faces) > 2 else len(self.faces) or len(self.edges)
+
+
+def hull_of(vertices_m: FloatArray) -> Hull:
+    """Return the convex hull of points (n, 3) in metres, n at least one; points that are no corners are left out."""
+    points = np.ascontiguousarray(vertices_m, dtype=np.float64)
+    extent = float(np.ptp(points, axis=0).max())
+    kept = _distinct(points, FLAT * extent)
+    points = points[kept]
+    # A power of two as unit of length changes no digit, and third powers neither vanish nor overflow.
+    scaled = (points - points[0]) / 2.0 ** float(np.frexp(extent)[1]) if extent > 0.0 else points - points[0]
+    size = float(np.ptp(scaled, axis=0).max())
+    tolerance = FLAT * size
+    simplex = _simplex(scaled, THIN * size)
+    if len(simplex) == 4:
+        faces = _merged(scaled, _triangles(points, scaled, simplex), tolerance)
+    elif len(simplex) == 3:
+        loop = _polygon(scaled, simplex, tolerance)
+        faces = [loop, loop[::-1]]
+    else:
+        faces = []
+    corners = sorted({corner for face in faces for corner in face} or simplex)
+    place = {corner: index for index, corner in enumerate(corners)}
+    loops = tuple(tuple(place[corner] for corner in face) for face in faces)
+    pairs = {(min(pair), max(pair)) for loop in loops for pair in zip(loop, loop[1:] + loop[:1], strict=True)}
+    if len(simplex) == 2:
+        pairs = {(0, 1)}
+    hull = Hull(
+        points[corners],
+        np.array(sorted(pairs), dtype=np.int64).reshape(-1, 2),
+        loops,
+        unit_rows(np.array([_area_vector(scaled[face]) for face in faces])) if faces else np.zeros((0, 3)),
+    )
+    for array in (hull.vertices_m, hull.edges, hull.normals):
+        array.setflags(write=False)
+    return hull
+
+
+def _distinct(points: FloatArray, tolerance: float) -> list[int]:
+    """Return the indices of the points, without those that lie on an earlier one."""
+    kept: list[int] = []
+    for index, point in enumerate(points):
+        if not kept or float(np.abs(points[kept] - point).max(axis=1).min()) > tolerance:
+            kept.append(index)
+    return kept
+
+
+def _simplex(points: FloatArray, tolerance: float) -> list[int]:
+    """Return up to four points that span all: each is the one farthest from what the ones before it span."""
+    chosen = [int(np.argmax(np.linalg.norm(points - points.mean(axis=0), axis=1)))]
+    rest = points - points[chosen[0]]
+    for _ in range(3):
+        distances = np.linalg.norm(rest, axis=1)
+        farthest = int(np.argmax(distances))
+        if distances[farthest] <= tolerance:
+            break
+        chosen.append(farthest)
+        direction = rest[farthest] / distances[farthest]
+        rest = rest - np.outer(rest @ direction, direction)
+    return chosen
+
+
+def _polygon(points: FloatArray, simplex: list[int], tolerance: float) -> list[int]:
+    """Return the outline of points that lie in one plane (Andrew's monotone chain)."""
+    origin, first, second = points[simplex]
+    along, across = unit_rows(np.array([first - origin, second - origin]))
+    normal = unit_rows(np.cross(along, across)[None])[0]
+    flat = (points - origin) @ np.array([along, np.cross(normal, along)]).T
+    order = np.lexsort((flat[:, 1], flat[:, 0])).tolist()
+
+    def chain(run: list[int]) -> list[int]:
+        built: list[int] = []
+        for corner in run:
+            while len(built) > 1 and _height(flat[built[-1]], flat[built[-2]], flat[corner]) <= tolerance:
+                built.pop()
+            built.append(corner)
+        return built[:-1]
+
+    return chain(order) + chain(order[::-1])
+
+
+def _height(point: FloatArray, start: FloatArray, end: FloatArray) -> float:
+    """How far a point lies to the right of a line, all in a plane."""
+    along, arm = end - start, point - start
+    length = float(np.hypot(*along))
+    return float(arm[0] * along[1] - arm[1] * along[0]) / length if length > 0.0 else 0.0
+
+
+def _triangles(points: FloatArray, scaled: FloatArray, simplex: list[int]) -> list[_Triangle]:
+    """Return the triangles of the hull, counter-clockwise seen from outside (incremental construction)."""
+    whole = _whole_numbers(points)
+    a, b, c, d = simplex
+    if _side(whole, (a, b, c), d) > 0:
+        b, c = c, b
+    triangles: list[_Triangle] = [(a, b, c), (a, d, b), (b, d, c), (c, d, a)]
+    normals = [_normal(scaled, triangle) for triangle in triangles]
+    for point in range(len(scaled)):
+        if point in simplex:
+            continue
+        starts = scaled[[triangle[0] for triangle in triangles]]
+        heights = np.einsum("ij,ij->i", np.array(normals), scaled[point] - starts).tolist()
+        visible = {
+            index
+            for index, height in enumerate(heights)
+            if height > DECIDED or (height > -DECIDED and _side(whole, triangles[index], point) > 0)
+        }
+        if not visible:
+            continue
+        sides = {side for index in visible for side in _sides(triangles[index])}
+        horizon = [side for side in sorted(sides) if side[::-1] not in sides]
+        triangles = [triangle for index, triangle in enumerate(triangles) if index not in visible]
+        normals = [normal for index, normal in enumerate(normals) if index not in visible]
+        for start, end in horizon:
+            triangles.append((start, end, point))
+            normals.append(_normal(scaled, (start, end, point)))
+    return triangles
+
+
+def _sides(triangle: _Triangle) -> list[tuple[int, int]]:
+    return list(pairwise((*triangle, triangle[0])))
+
+
+def _normal(points: FloatArray, triangle: _Triangle) -> FloatArray:
+    a, b, c = points[list(triangle)]
+    normal: FloatArray = np.cross(b - a, c - a)
+    return normal
+
+
+def _whole_numbers(points: FloatArray) -> list[tuple[int, int, int]]:
+    """Return the points times one power of two that makes all their coordinates whole numbers."""
+    ratios = [[float(value).as_integer_ratio() for value in point] for point in points]
+    common = max(denominator for point in ratios for _, denominator in point)
+    return [(*(top * (common // bottom) for top, bottom in point),) for point in ratios]  # type: ignore[misc]
+
+
+def _side(whole: list[tuple[int, int, int]], triangle: _Triangle, point: int) -> int:
+    """Return a number above zero where a point lies outside of a triangle's plane, exactly."""
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = (whole[corner] for corner in triangle)
+    px, py, pz = whole[point]
+    ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
+    return (uy * vz - uz * vy) * (px - ax) + (uz * vx - ux * vz) * (py - ay) + (ux * vy - uy * vx) * (pz - az)
+
+
+def _merged(points: FloatArray, triangles: list[_Triangle], tolerance: float) -> list[list[int]]:
+    """Make triangles that lie in one plane one face, and leave out what then is no corner."""
+    normals = np.array([_normal(points, triangle) for triangle in triangles])
+    areas = np.linalg.norm(normals, axis=1)
+    across = {side: index for index, triangle in enumerate(triangles) for side in _sides(triangle)}
+    face_of: dict[int, int] = {}
+    n_faces = 0
+    for seed in np.argsort(-areas, kind="stable").tolist():  # the greatest first: it tells its plane best
+        if seed in face_of:
+            continue
+        face_of[seed] = n_faces
+        heights = (points - points[triangles[seed][0]]) @ (normals[seed] / areas[seed])
+        is_on_plane = np.abs(heights) <= tolerance
+        reached = [seed]
+        for index in reached:
+            for start, end in _sides(triangles[index]):
+                beside = across[end, start]
+                if beside not in face_of and is_on_plane[list(triangles[beside])].all():
+                    face_of[beside] = n_faces
+                    reached.append(beside)
+        n_faces += 1
+    faces_at: dict[int, set[int]] = {}
+    following: list[dict[int, int]] = [{} for _ in range(n_faces)]
+    for index, triangle in enumerate(triangles):
+        for start, end in _sides(triangle):
+            faces_at.setdefault(start, set()).add(face_of[index])
+            if face_of[across[end, start]] != face_of[index]:
+                following[face_of[index]][start] = end
+    loops = []
+    for outline in following:
+        loop = [next(iter(outline))]
+        while (corner := outline[loop[-1]]) != loop[0]:
+            loop.append(corner)
+        loops.append([corner for corner in loop if len(faces_at[corner]) > 2])
+    return loops
+
+
+def _area_vector(loop: FloatArray) -> FloatArray:
+    """Return twice the area of a flat loop, along its normal."""
+    arms = loop[1:] - loop[0]
+    total: FloatArray = np.cross(arms[:-1], arms[1:]).sum(axis=0)
+    return total

@@ -1,0 +1,358 @@
+"""Shapes of parts and cages: `Sphere`, `Capsule`, `Cylinder`, `Cone`, `Convex`, `Disc`.
+
+Two families. The hull of some points, blown up by a radius (sphere, capsule, convex): `core` has the points. And
+what a straight line makes that turns about the shape's z axis (cylinder, cone, disc): `rims` has its round edges. A
+`Box` stands beside them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cagepose.errors import Key
+from cagepose.model.checks import FloatArray, ProblemList, check_kind, finite_array
+from cagepose.model.hull import Hull, hull_of
+from cagepose.model.pose import Pose
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Shape:
+    """What all shapes have.
+
+    Attributes
+    ----------
+    kind
+        As in a scene file: "sphere", ...
+    pose_body_shape
+        Places the shape in the frame of its body: the object or the cage.
+    name
+        Shown with its contacts; None becomes the kind and a number ("cylinder1") inside an `Object` or a `Cage`.
+    """
+
+    kind: ClassVar[str]
+    pose_body_shape: Pose
+    name: str | None
+
+    def _place(self, pose: Pose | None, name: str | None, problems: ProblemList) -> None:
+        """Set what all shapes have; raise what was found wrong with the whole shape."""
+        check_kind(pose or Pose(), Pose, ("pose",), problems)
+        problems.raise_if_any()
+        _set_field(self, "pose_body_shape", pose or Pose())
+        _set_field(self, "name", name)
+
+    def nodes_body(self) -> FloatArray:
+        """Points that tell where the shape lies, in its body's frame, (n, 3), metres: the core's, the rims' centres."""
+        raise NotImplementedError
+
+    def farthest_m(self, point_body: FloatArray) -> float:
+        """Return the distance of the shape's farthest point from a point (3,) of its body's frame, metres."""
+        raise NotImplementedError
+
+    def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
+        """Return how thick the shape is from side to side, metres, each with the path of the number that says so."""
+        raise NotImplementedError
+
+    def renamed(self, name: str) -> Self:
+        """Return the same shape with another name."""
+        other = object.__new__(type(self))
+        other.__dict__.update(self.__dict__, name=name)
+        return other
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Rounded(Shape):
+    """The hull of points, blown up by a radius."""
+
+    radius_m: float
+
+    def core(self) -> FloatArray:
+        """The points in the shape's own frame, (n, 3), metres."""
+        raise NotImplementedError
+
+    def nodes_body(self) -> FloatArray:
+        return self.pose_body_shape.transform(self.core())
+
+    def farthest_m(self, point_body: FloatArray) -> float:
+        return float(np.linalg.norm(self.nodes_body() - point_body, axis=1).max()) + self.radius_m
+
+    def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
+        return [(("radius",), 2.0 * self.radius_m)]
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Turned(Shape):
+    """What a straight line makes that turns about the shape's z axis, with flat ends."""
+
+    @property
+    def rims(self) -> tuple[tuple[float, float], ...]:
+        """Height z and radius of each end, from below, metres; a radius of zero is a tip."""
+        raise NotImplementedError
+
+    def nodes_body(self) -> FloatArray:
+        return self.pose_body_shape.transform(np.array([(0.0, 0.0, height) for height, _ in self.rims]))
+
+    def farthest_m(self, point_body: FloatArray) -> float:
+        x, y, z = self.pose_body_shape.inverse_transform(point_body).tolist()
+        return max(float(np.hypot(np.hypot(x, y) + radius, z - height)) for height, radius in self.rims)
+
+    def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
+        heights, radii = zip(*self.rims, strict=True)
+        along = [(("length",), heights[-1] - heights[0])] if len(heights) > 1 else []
+        return [(("radius",), 2.0 * max(radii)), *along]
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Sphere(Rounded):
+    """A ball about the shape's origin.
+
+    Attributes
+    ----------
+    radius_m
+        Metres.
+    """
+
+    kind: ClassVar[str] = "sphere"
+
+    def __init__(self, radius_m: float, pose_body_shape: Pose | None = None, name: str | None = None) -> None:
+        """
+        Raises
+        ------
+        SceneError
+            A radius that is not a finite number above zero.
+        """
+        problems = ProblemList()
+        _set_lengths(self, problems, radius=radius_m)
+        self._place(pose_body_shape, name, problems)
+
+    def core(self) -> FloatArray:
+        return np.zeros((1, 3))
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Capsule(Rounded):
+    """A round bar with round ends, along z, its middle at the shape's origin.
+
+    Attributes
+    ----------
+    radius_m
+        Metres.
+    length_m
+        Between the centres of the two round ends, metres.
+    """
+
+    kind: ClassVar[str] = "capsule"
+    length_m: float
+
+    def __init__(
+        self, radius_m: float, length_m: float, pose_body_shape: Pose | None = None, name: str | None = None
+    ) -> None:
+        """
+        Raises
+        ------
+        SceneError
+            A radius or a length that is not a finite number above zero.
+        """
+        problems = ProblemList()
+        _set_lengths(self, problems, radius=radius_m, length=length_m)
+        self._place(pose_body_shape, name, problems)
+
+    def core(self) -> FloatArray:
+        return np.array([(0.0, 0.0, -self.length_m / 2.0), (0.0, 0.0, self.length_m / 2.0)])
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Convex(Rounded):
+    """The convex hull of some points, blown up by a radius.
+
+    Attributes
+    ----------
+    vertices_m
+        The points in the shape's own frame, (n, 3), metres; those inside the hull change nothing.
+    radius_m
+        Metres; zero: sharp edges. With a radius the points need not span a volume: a single one makes a ball, two a
+        round bar, those of a polygon a plate with round edges.
+    """
+
+    kind: ClassVar[str] = "convex"
+    vertices_m: Annotated[FloatArray, (-1, 3)]
+
+    def __init__(
+        self,
+        vertices_m: ArrayLike,
+        radius_m: float = 0.0,
+        pose_body_shape: Pose | None = None,
+        name: str | None = None,
+    ) -> None:
+        """
+        Raises
+        ------
+        SceneError
+            Vertices that are not n x 3 finite numbers, a radius below zero, or vertices that span no volume without a
+            radius.
+        """
+        problems = ProblemList()
+        vertices = finite_array(vertices_m, (-1, 3), "vertices")
+        _set_lengths(self, problems, may_be_zero=("radius",), radius=radius_m)
+        _set_field(self, "vertices_m", vertices)
+        if not problems.problems and self.radius_m == 0.0 and self.hull.dimension < 3:
+            where = ("lie at one place", "lie on one line", "lie in one plane")[self.hull.dimension]
+            found = "are a single point, which has" if len(vertices) == 1 else f"{where}, so they have"
+            problems.add(("vertices",), f"{found} no volume; add a vertex elsewhere, or give the shape a radius")
+        self._place(pose_body_shape, name, problems)
+
+    @cached_property
+    def hull(self) -> Hull:
+        """Corners, edges and faces of the hull, in the shape's own frame."""
+        return hull_of(self.vertices_m)
+
+    def core(self) -> FloatArray:
+        return self.hull.vertices_m
+
+    def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
+        if self.hull.dimension < 3:
+            return super().thickness()
+        across_faces = np.ptp(self.hull.normals @ self.hull.vertices_m.T, axis=1)
+        return [(("vertices",), float(across_faces.min()) + 2.0 * self.radius_m)]
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Cylinder(Turned):
+    """A round bar with flat ends and sharp rims, along z, its middle at the shape's origin.
+
+    Attributes
+    ----------
+    radius_m, length_m
+        Metres.
+    """
+
+    kind: ClassVar[str] = "cylinder"
+    radius_m: float
+    length_m: float
+
+    def __init__(
+        self, radius_m: float, length_m: float, pose_body_shape: Pose | None = None, name: str | None = None
+    ) -> None:
+        """
+        Raises
+        ------
+        SceneError
+            A radius or a length that is not a finite number above zero.
+        """
+        problems = ProblemList()
+        _set_lengths(self, problems, radius=radius_m, length=length_m)
+        self._place(pose_body_shape, name, problems)
+
+    @property
+    def rims(self) -> tuple[tuple[float, float], ...]:
+        return (-self.length_m / 2.0, self.radius_m), (self.length_m / 2.0, self.radius_m)
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Cone(Turned):
+    """A frustum of a cone with flat ends, along z, its middle at the shape's origin.
+
+    Attributes
+    ----------
+    radius_bottom_m
+        At z = -length / 2, metres; zero: a tip.
+    radius_top_m
+        At z = length / 2, metres; zero: a tip. Two equal radii make a cylinder.
+    length_m
+        Metres.
+    """
+
+    kind: ClassVar[str] = "cone"
+    radius_bottom_m: float
+    radius_top_m: float
+    length_m: float
+
+    def __init__(
+        self,
+        radius_bottom_m: float,
+        radius_top_m: float,
+        length_m: float,
+        pose_body_shape: Pose | None = None,
+        name: str | None = None,
+    ) -> None:
+        """
+        Raises
+        ------
+        SceneError
+            A radius below zero, both zero, or a length that is not a finite number above zero.
+        """
+        problems = ProblemList()
+        _set_lengths(
+            self,
+            problems,
+            may_be_zero=("radius_bottom", "radius_top"),
+            radius_bottom=radius_bottom_m,
+            radius_top=radius_top_m,
+            length=length_m,
+        )
+        if not problems.problems and self.radius_bottom_m == self.radius_top_m == 0.0:
+            problems.add(
+                ("radius_bottom",), "is zero like radius_top, which leaves a line; give one of them above zero"
+            )
+        self._place(pose_body_shape, name, problems)
+
+    @property
+    def rims(self) -> tuple[tuple[float, float], ...]:
+        return (-self.length_m / 2.0, self.radius_bottom_m), (self.length_m / 2.0, self.radius_top_m)
+
+    def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
+        widest = max((self.radius_bottom_m, "radius_bottom"), (self.radius_top_m, "radius_top"))
+        return [((widest[1],), 2.0 * widest[0]), (("length",), self.length_m)]
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Disc(Turned):
+    """A flat round disc without thickness, across z, its middle at the shape's origin.
+
+    Attributes
+    ----------
+    radius_m
+        Metres.
+    """
+
+    kind: ClassVar[str] = "disc"
+    radius_m: float
+
+    def __init__(self, radius_m: float, pose_body_shape: Pose | None = None, name: str | None = None) -> None:
+        """
+        Raises
+        ------
+        SceneError
+            A radius that is not a finite number above zero.
+        """
+        problems = ProblemList()
+        _set_lengths(self, problems, radius=radius_m)
+        self._place(pose_body_shape, name, problems)
+
+    @property
+    def rims(self) -> tuple[tuple[float, float], ...]:
+        return ((0.0, self.radius_m),)
+
+
+AnyShape = Sphere | Capsule | Convex | Cylinder | Cone | Disc
+"""All but `Box`."""
+
+_set_field = object.__setattr__
+
+
+def _set_lengths(shape: Shape, problems: ProblemList, *, may_be_zero: Sequence[str] = (), **lengths_m: float) -> None:
+    """Check lengths and set each as the field of its key with its unit."""
+    for key, length in lengths_m.items():
+        is_number = np.isscalar(length) and np.isreal(length) and not isinstance(length, (bool, str))
+        if not is_number or not np.isfinite(length) or length < 0.0 or (length == 0.0 and key not in may_be_zero):
+            limit = "zero or above" if key in may_be_zero else "above zero"
+            problems.add(
+                (key,), f"is {float(length) if is_number else length!r}; give a finite number of metres, {limit}"
+            )
+        else:
+            _set_field(shape, f"{key}_m", float(length))
