@@ -14,7 +14,7 @@ from cagepose.kernels.algebra.pose import write_euler_zyx, write_quaternions
 from cagepose.kernels.algebra.program_bound import extents
 from cagepose.kernels.algebra.record import dtype_of, empty_record, empty_rows
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
-from cagepose.kernels.collision.geometry import Geometry, empty_placement, place_object
+from cagepose.kernels.collision.geometry import Geometry, empty_cage, empty_placement, place_object
 from cagepose.kernels.contact.loads import Action
 from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.outcome.at_pose import critical_friction, judge_start
@@ -35,6 +35,7 @@ from cagepose.kernels.quasistatic.run import (
     run_quasistatic_cases,
 )
 from cagepose.kernels.quasistatic.workspace import empty_quasistatic_workspace
+from cagepose.kernels.shapes.features import no_shapes
 from cagepose.kernels.stability.proof import empty_proof_workspace
 from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
 from cagepose.kernels.stepwise.run import (
@@ -54,23 +55,36 @@ UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     """Yield each entry and its arguments; only their types count."""
     vectors, quaternions, numbers = np.zeros((1, 3)), np.zeros((1, 4)), np.zeros(1)
-    geometry = Geometry(vectors, vectors, np.zeros((1, 3, 3)), 1, vectors)
+    shapes = no_shapes()
+    geometry = Geometry(vectors, vectors, np.zeros((1, 3, 3)), 1, vectors, shapes, shapes, 0.0)
     tolerances = kernel_tolerances(1.0, 1e-9)
 
     yield write_quaternions, (vectors, quaternions)
     yield write_euler_zyx, (quaternions, vectors)
     yield place_object, (geometry, ORIGIN, UPRIGHT, empty_placement(geometry))
 
-    part = Part(vectors, vectors, np.zeros((1, 3, 3)), 1, empty_record(Body), ORIGIN)
+    part = Part(vectors, vectors, np.zeros((1, 3, 3)), 1, shapes, empty_record(Body), ORIGIN)
     actions = np.zeros((1, 1, 1), dtype_of(Action))
     points = np.zeros((1, 1, 3))
     cases = Cases(
-        vectors, quaternions, points, vectors, quaternions, numbers, numbers, numbers, numbers, actions, tolerances
+        vectors,
+        quaternions,
+        points,
+        shapes,
+        vectors,
+        quaternions,
+        numbers,
+        numbers,
+        numbers,
+        numbers,
+        actions,
+        tolerances,
     )
-    outcome, endings = empty_outcome(1, 1, 1, 1), empty_endings(1, 1, 1)
+    cage = empty_cage(geometry)
+    outcome, endings = empty_outcome(1, 1, 1, 1, 1), empty_endings(1, 1, 1)
     proof = empty_proof_workspace(geometry)
-    yield judge_start, (0, part, cases, vectors, proof, outcome)
-    yield critical_friction, (0, part, cases, vectors, proof)
+    yield judge_start, (0, part, cases, cage, proof, outcome)
+    yield critical_friction, (0, part, cases, cage, proof)
     yield balance_with_faces, (0.0, proof)
     yield search_with_faces, (0.0, proof)
 

@@ -7,8 +7,10 @@ from functools import lru_cache
 import numpy as np
 
 from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.shapes.features import Shapes, copied, no_shapes, place_shapes
 from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
+from cagepose.model.features import shapes_of
 from cagepose.model.parts import Object
 from cagepose.model.seams import PlacedBox, Seams, close_seams
 from cagepose.model.shapes import Shape
@@ -30,8 +32,13 @@ def _seams_of(boxes: bytes, touch_m: float) -> Seams:
     return close_seams([PlacedBox(row[:3], row[3:6], row[6:].reshape(3, 3)) for row in rows], touch_m)
 
 
-def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox]) -> Geometry:
-    """Return the boxes in the object's frame, its own first and then the bridges, and the cage points in the world."""
+def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox], touch_m: float) -> Geometry:
+    """Return the boxes in the object's frame, its own first and then the bridges, and the cage points in the world; with
+    shapes, all parts of both as features.
+    """
+    in_cage = cage_shapes(held, cage)
+    in_world = copied(in_cage)
+    place_shapes(in_cage, *cage.pose_world_cage.as_tuples(), in_world)
     placed = _placed(held) + bridges
     return Geometry(
         half_sizes=np.array([box.half_size for box in placed]).reshape(-1, 3),
@@ -39,7 +46,17 @@ def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox]) -> Geomet
         box_rotations=np.array([box.rotation for box in placed]).reshape(-1, 3, 3),
         n_own_boxes=len(held.boxes),
         points_world=np.ascontiguousarray(cage.points_world()),
+        held=shapes_of(held.parts) if held.shapes or cage.shapes else no_shapes(),
+        cage=in_world,
+        touch_m=touch_m,
     )
+
+
+def cage_shapes(held: Object, cage: Cage) -> Shapes:
+    """Return all parts of the cage as features, its points first, in its frame; none where there are boxes and points
+    alone.
+    """
+    return shapes_of([*cage.points_cage, *cage.shapes]) if held.shapes or cage.shapes else no_shapes()
 
 
 def _placed(held: Object) -> list[PlacedBox]:

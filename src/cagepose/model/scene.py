@@ -131,7 +131,7 @@ class Scene:
         _check_thickness(object, cage, touch_m, problems)
         _check_points_apart(cage, touch_m, problems)
         seams = object_seams(object, touch_m)
-        geometry = scene_geometry(object, cage, seams.bridges)
+        geometry = scene_geometry(object, cage, seams.bridges, touch_m)
         _check_distance(object, cage, size_m, problems)
         _check_points_outside(object, cage, geometry, touch_m, size_m, problems)
         _check_loads(object, loads, touch_m, problems)

@@ -17,6 +17,7 @@ from cagepose.kernels.contact.loads import (
     acting,
     total_load,
 )
+from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.load import Load, Spring
 from cagepose.model.pose import Pose
@@ -113,18 +114,23 @@ def tensions_at_zero(spring: Spring, positions_m: FloatArray, quaternions: Float
 
 
 def cage_middle(scene: Scene) -> FloatArray:
-    """Return the middle of the cage points in the world, (3,), metres."""
-    pose = scene.cage.pose_world_cage
-    found: FloatArray = cage_middles(scene.cage.points_cage[None], pose.position_m[None], pose.quaternion_wxyz[None])[0]
+    """Return the middle of the cage's points and shapes in the world, (3,), metres."""
+    cage, pose = scene.cage, scene.cage.pose_world_cage
+    found: FloatArray = cage_middles(cage, cage.points_cage[None], pose.position_m[None], pose.quaternion_wxyz[None])[0]
     return found
 
 
-def cage_middles(points_cage_m: FloatArray, positions_m: FloatArray, quaternions: FloatArray) -> FloatArray:
+def cage_middles(
+    cage: Cage, points_cage_m: FloatArray, positions_m: FloatArray, quaternions: FloatArray
+) -> FloatArray:
     """Return the middles of cages in the world, (n, 3), metres, from which kernels see all positions.
 
-    Points are (n, n_points, 3), poses (n, 3) and (n, 4), each also one row for all. Number by number, as below.
+    Points are (n, n_points, 3), poses (n, 3) and (n, 4), each also one row for all; the shapes are those of ``cage``.
+    Number by number, as below.
     """
-    middles = points_cage_m.cumsum(axis=1)[:, -1] / points_cage_m.shape[1]
+    shapes = np.array([shape.nodes_body().mean(axis=0) for shape in cage.shapes]).reshape(1, -1, 3)
+    places = np.concatenate([points_cage_m, np.broadcast_to(shapes, (len(points_cage_m), *shapes.shape[1:]))], axis=1)
+    middles = places.cumsum(axis=1)[:, -1] / places.shape[1]
     found: FloatArray = positions_m + np.stack(_turned(quaternions, *middles.T), axis=1)
     return found
 

@@ -39,7 +39,7 @@ class Batch:
     def __init__(self, scene: Scene, method: Method, variation: Variation) -> None:
         self._scene, self._method = scene, method
         self.n_runs, columns = variation.columns(scene)
-        self.endings = empty_endings(self.n_runs, len(scene.loads), len(scene.cage.names))
+        self.endings = empty_endings(self.n_runs, len(scene.loads), len(scene.cage.element_names))
         self._part, self._cases = Slots(part_of(scene)), Slots(_varied(scene, method.friction(scene), columns))
         self._endings = Slots(self.endings)
         self._is_stopped = np.zeros(1, np.int64)
@@ -139,6 +139,7 @@ def _vary_springs(scene: Scene, columns: dict[str, FloatArray], actions: np.ndar
     """
     start, cage = scene.object.pose_world_object, scene.cage.pose_world_cage
     middles = cage_middles(
+        scene.cage,
         columns.get("points_cage_m", scene.cage.points_cage[None]),
         columns.get("cage_position_m", cage.position_m[None]),
         _quaternions(columns.get("cage_euler_zyx"), cage),

@@ -16,6 +16,8 @@ from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.cases import Cases, Part
 from cagepose.model.checks import FloatArray, as_vector
+from cagepose.model.features import shifted
+from cagepose.model.geometry import cage_shapes
 from cagepose.model.methods import DEFAULT_METRIC
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -30,6 +32,7 @@ def part_of(scene: Scene) -> Part:
         geometry.box_positions - center,
         geometry.box_rotations,
         geometry.n_own_boxes,
+        shifted(geometry.held, -center),
         body_of(scene),
         as_vector(center),
     )
@@ -38,8 +41,7 @@ def part_of(scene: Scene) -> Part:
 def body_of(scene: Scene) -> Body:
     """Return the metric of a scene: its inertia about the centre of gravity, or the same about every axis ("drag")."""
     gyration = scene.object.gyration_m2
-    corners = np.concatenate([box.corners_object() for box in scene.object.boxes])
-    reach_m = float(np.linalg.norm(corners - scene.object.center_of_gravity_m, axis=1).max())
+    reach_m = scene.object.reach_m
     if (scene.metric or DEFAULT_METRIC) == "drag":
         squares, axes = np.full(3, np.trace(gyration) / 3.0), np.eye(3)
     else:
@@ -59,22 +61,21 @@ def cases_of(scene: Scene, friction: float, start: Pose | None = None) -> Cases:
         cage.position_m[None],
         cage.quaternion_wxyz[None],
         scene.cage.points_cage[None],
+        cage_shapes(scene.object, scene.cage),
         held.position_m[None],
         held.quaternion_wxyz[None],
         np.array([scene.size_m]),
         np.array([friction]),
-        _own_frictions(scene, scene.cage.names, len(scene.cage.names)),
-        _own_frictions(scene, [str(box.name) for box in scene.object.boxes], len(scene.geometry.half_sizes)),
+        _own_frictions(scene, scene.cage.element_names),
+        _own_frictions(scene, [str(part.name) for part in scene.object.parts]),
         cast(Rows[Rows[PhaseLoad]], actions_of(scene)[None]),
         kernel_tolerances(1.0, scene.tolerances.touch),
     )
 
 
-def _own_frictions(scene: Scene, names: Sequence[str], n: int) -> FloatArray:
-    """Return the coefficients of friction of points or boxes, (n,): NaN for those without one, bridges among them."""
-    own = np.full(n, math.nan)
-    own[: len(names)] = [scene.friction_of.get(name, math.nan) for name in names]
-    return own
+def _own_frictions(scene: Scene, names: Sequence[str]) -> FloatArray:
+    """Return the coefficients of friction of points, boxes and shapes, (n,): NaN for those without one."""
+    return np.array([scene.friction_of.get(name, math.nan) for name in names])
 
 
 def contact_friction(scene: Scene, friction: float, point: str, box: str) -> float:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from cagepose.kernels.collision.geometry import PlacedCage, empty_cage
+from cagepose.kernels.contact.contact_set import most_contacts
 from cagepose.kernels.outcome import at_pose
 from cagepose.kernels.outcome.records import Outcome, empty_outcome
 from cagepose.kernels.stability.proof import ProofWorkspace, empty_proof_workspace
-from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.cases import cases_of, part_of
@@ -35,9 +36,9 @@ def judged_workspace(scene: Scene, pose: Pose, phase: int, friction: float) -> t
     IndexError
         The scene has no such phase.
     """
-    points, at = _points_world(scene, phase), empty_proof_workspace(scene.geometry)
-    outcome = empty_outcome(len(scene.loads), 1, len(points), 0)
-    at_pose.judge_start(phase, part_of(scene), cases_of(scene, friction, pose), points, at, outcome)
+    cage, at = _cage(scene, phase), empty_proof_workspace(scene.geometry)
+    outcome = empty_outcome(len(scene.loads), 1, len(scene.cage.element_names), most_contacts(scene.geometry), 0)
+    at_pose.judge_start(phase, part_of(scene), cases_of(scene, friction, pose), cage, at, outcome)
     return at, outcome
 
 
@@ -52,14 +53,14 @@ def critical_friction_at(scene: Scene, pose: Pose, phase: int, friction: float) 
     IndexError
         The scene has no such phase.
     """
-    points = _points_world(scene, phase)
+    cage = _cage(scene, phase)
     return at_pose.critical_friction(
-        phase, part_of(scene), cases_of(scene, friction, pose), points, empty_proof_workspace(scene.geometry)
+        phase, part_of(scene), cases_of(scene, friction, pose), cage, empty_proof_workspace(scene.geometry)
     )
 
 
-def _points_world(scene: Scene, phase: int) -> FloatArray:
-    """Return a workspace for the cage points; kernels check nothing, so the phase is checked here."""
+def _cage(scene: Scene, phase: int) -> PlacedCage:
+    """Return memory for the cage; kernels check nothing, so the phase is checked here."""
     if not 0 <= phase < len(scene.loads):
         raise IndexError(f"the scene has no phase {phase}; it has {len(scene.loads)}, counted from 0")
-    return scene.cage.points_world()
+    return empty_cage(scene.geometry)

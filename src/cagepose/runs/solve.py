@@ -7,6 +7,7 @@ import time
 from collections import OrderedDict
 from typing import Any, NamedTuple
 
+from cagepose.kernels.contact.contact_set import most_contacts
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.records import Outcome, empty_outcome
 from cagepose.model.scene import Scene
@@ -72,14 +73,20 @@ _WORKSPACES = _Workspaces()
 
 
 def _workspace(scene: Scene, method: Method, step_limit: int) -> _Workspace:
-    n_phases, n_points = len(scene.loads), len(scene.cage.names)
-    size = (method.name, n_phases, n_points, len(scene.geometry.half_sizes), step_limit)
+    n_phases, n_points, n_elements = len(scene.loads), len(scene.cage.names), len(scene.cage.element_names)
+    size = (method.name, n_phases, n_points, len(scene.geometry.half_sizes), *_sizes(scene), step_limit)
     kept = _WORKSPACES.by_size
     if size in kept:
         kept.move_to_end(size)
         return kept[size]
     if len(kept) == WORKSPACES_KEPT:
         kept.popitem(last=False)
-    outcome = empty_outcome(n_phases, step_limit, n_points, 0 if method.joins_steps else n_points)
+    n_ordered, n_contacts = 0 if method.joins_steps else n_points, most_contacts(scene.geometry)
+    outcome = empty_outcome(n_phases, step_limit, n_elements, n_contacts, n_ordered)
     kept[size] = _Workspace(Slots(method.workspace(scene.geometry, step_limit)), Slots(outcome), outcome)
     return kept[size]
+
+
+def _sizes(scene: Scene) -> tuple[int, ...]:
+    """How many parts, features and fences the shapes of a scene have."""
+    return tuple(len(rows) for shapes in (scene.geometry.held, scene.geometry.cage) for rows in shapes)

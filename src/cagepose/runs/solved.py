@@ -116,15 +116,15 @@ def read_events(scene: Scene, method: Method, outcome: Outcome) -> list[Event]:
         events["n_steps"].tolist(),
         strict=True,
     )
-    found, first = list[Event](), 0
+    found, first, elements = list[Event](), 0, scene.cage.element_names
     for rule, note, motion, hit, touching, pose, n_steps in columns:
         found.append(
             _made(
                 Event,
                 rule=method.rule_names[rule],
                 motion=motion,
-                hit=tuple(compress(scene.cage.names, hit)),
-                contacts=tuple(compress(scene.cage.names, touching)),
+                hit=tuple(compress(elements, hit)),
+                contacts=tuple(compress(elements, touching)),
                 pose_world_object=path[first + n_steps - 1] if path else pose,
                 note=NOTE_NAMES[note] if note < len(NOTE_NAMES) else None,
                 path=tuple(path[first : first + n_steps]),
@@ -163,7 +163,7 @@ def _motions(outcome: Outcome) -> Iterator[Motion | None]:
 
 def _contacts(scene: Scene, outcome: Outcome) -> list[Contact]:
     contacts: Any = outcome.contacts
-    point_names, box_names = scene.cage.names, [str(box.name) for box in scene.object.boxes]
+    point_names, box_names = scene.cage.element_names, [str(part.name) for part in scene.object.parts]
     columns = zip(
         contacts["point"].tolist(),
         contacts["box"].tolist(),

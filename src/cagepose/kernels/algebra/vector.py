@@ -66,6 +66,16 @@ def vector_from(array: NDArray[np.float64]) -> Vector:
 
 
 @kernel
+def matrix_from(array: NDArray[np.float64]) -> Matrix:
+    """A (3, 3) array."""
+    return (
+        (array[0, 0], array[0, 1], array[0, 2]),
+        (array[1, 0], array[1, 1], array[1, 2]),
+        (array[2, 0], array[2, 1], array[2, 2]),
+    )
+
+
+@kernel
 def times(m: Matrix, a: Vector) -> Vector:
     """m a."""
     return (dot(m[0], a), dot(m[1], a), dot(m[2], a))

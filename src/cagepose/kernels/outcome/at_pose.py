@@ -15,9 +15,7 @@ from cagepose.kernels.stability.proof import ProofWorkspace, stand_at
 
 
 @entry
-def judge_start(
-    phase: int, part: Part, cases: Cases, cage: PlacedCage, at: ProofWorkspace, outcome: Outcome
-) -> None:
+def judge_start(phase: int, part: Part, cases: Cases, cage: PlacedCage, at: ProofWorkspace, outcome: Outcome) -> None:
     """Judge the start pose of the first case under the load of a phase.
 
     Parameters

@@ -10,7 +10,7 @@ import numpy as np
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.tolerances import KernelTolerances
-from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, row, scaled, vector_from
+from cagepose.kernels.algebra.vector import Vector, cross, dot, matrix_from, minus, norm, plus, row, scaled, times, vector_from
 from cagepose.kernels.collision.first_contact import allowed_depth, first_contact_screw, first_contact_travel
 from cagepose.kernels.collision.first_meeting import NO_HIT, Hit, first_meeting
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
@@ -123,14 +123,24 @@ def straightened(velocity: Vector, spin: Vector, reach_m: float, terms: float) -
 
 
 @kernel
-def longest_step(velocity: Vector, spin: Vector, slides: bool, turn_step_rad: float, size_m: float) -> float:
-    """Return how much of a twist keeps its direction: its turn, and how far sliding contacts leave their faces, stay
-    small (5.11).
+def longest_step(
+    contacts: ContactSet, velocity: Vector, spin: Vector, slides: bool, turn_step_rad: float, size_m: float
+) -> float:
+    """Return how much of a twist keeps its direction: its turn, that of the normals of round shapes that slide, and how
+    far sliding contacts leave their faces, stay small (5.11).
     """
+    amount = math.inf
+    for i in range(contacts.used[0] if len(contacts.bends) > 0 else 0):
+        contact = contacts.rows[i]
+        if contact.feature >= 0 and stays_on_face(contacts, i):
+            way = plus(velocity, cross(spin, vector_from(contact.arm)))
+            turns = norm(times(matrix_from(contacts.bends[i].relative), way))
+            if turns > 0.0 and turns * amount > turn_step_rad:
+                amount = turn_step_rad / turns
     rate = norm(spin)
     if rate == 0.0:
-        return math.inf
-    amount = turn_step_rad / rate
+        return amount
+    amount = min(amount, turn_step_rad / rate)
     speed = norm(velocity)
     if slides and speed > 0.0:
         amount = min(amount, turn_step_rad * math.sqrt(0.5 * size_m / (rate * speed)))
@@ -155,9 +165,7 @@ def first_contact(
     if motion.rate == 0.0:
         other = first_meeting(setting.geometry, placement, motion, end, 0.0, 0.0)
         return other if other.amount < hit.amount else hit
-    astray = strayed(
-        setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end, placement.moved
-    )
+    astray = strayed(setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end, placement.moved)
     near, other = 0.0, NO_HIT
     for _ in range(most_pairs(placement)):
         other = first_meeting(setting.geometry, placement, motion, end, near, STRAYED * astray)
@@ -319,7 +327,7 @@ def pushed_out(
                 geometry, setting.body, position, quaternion, work.constraints, setting.size_m, placement.moved
             )
         place_object(geometry, position, quaternion, placement)
-        point, meeting = deepest_offender(placement, work.allowed), deepest_meeting(geometry, placement, work)
+        point, meeting = deepest_offender(placement, work.allowed), deepest_meeting(placement, work)
         if not holds or (point < 0 and meeting == NONE_DEEP):
             break
         if point >= 0:
@@ -328,12 +336,12 @@ def pushed_out(
                 return False, position, quaternion
         elif meeting == UNKNOWN_DEEP or not constrain_meeting(placement, meeting, work.constraints):
             return False, position, quaternion
-    is_out = deepest_offender(placement, work.allowed) < 0 and deepest_meeting(geometry, placement, work) == NONE_DEEP
+    is_out = deepest_offender(placement, work.allowed) < 0 and deepest_meeting(placement, work) == NONE_DEEP
     return holds and is_out, position, quaternion
 
 
 @kernel
-def deepest_meeting(geometry: Geometry, placement: Placement, work: StepWorkspace) -> int:
+def deepest_meeting(placement: Placement, work: StepWorkspace) -> int:
     """Return the meeting of shapes that is farthest deeper than it may; UNKNOWN_DEEP: parts are, but at no known place;
     NONE_DEEP: none is.
     """

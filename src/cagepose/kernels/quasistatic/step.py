@@ -139,7 +139,7 @@ def next_twist(
     spin = straightened(velocity, spin, setting.body.reach_m, scratch.solver.load_terms)
     load, size_m = setting.load, setting.size_m
     end = min(
-        longest_step(velocity, spin, carries, turn_step_rad, size_m),
+        longest_step(contacts, velocity, spin, carries, turn_step_rad, size_m),
         longest_pull(load, position, quaternion, velocity, spin, turn_step_rad, size_m),
     )
     if end < math.inf:
@@ -153,7 +153,7 @@ def next_twist(
             velocity, spin = twist_of(scratch.stiff.delta, frame)
             end = min(
                 1.0,
-                longest_step(velocity, spin, carries, turn_step_rad, size_m),
+                longest_step(contacts, velocity, spin, carries, turn_step_rad, size_m),
                 longest_pull(load, position, quaternion, velocity, spin, turn_step_rad, size_m),
             )
     return Twist(velocity, spin, end)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes
+from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes, write_feature, write_fence
 from cagepose.kernels.shapes.meeting import PARALLEL, both_reach, meeting
 from cagepose.kernels.shapes.motion import Motion, moved_point, turned, velocity_at
 
@@ -42,7 +42,7 @@ class Ahead(NamedTuple):
 
 
 @kernel
-def plane_ahead(motion: Motion, normal: Vector, height: float, point: Vector, way: Vector, level: float) -> Ahead:
+def plane_ahead(motion: Motion, normal: Vector, height: float, way: Vector, level: float) -> Ahead:
     """A point that moves with ``way`` over a plane, so high: both as seen from what the plane belongs to."""
     turn = dot(normal, motion.axis) if motion.rate > 0.0 else 1.0
     bend = motion.rate * norm(cross(motion.axis, way)) * math.sqrt(max(0.0, 1.0 - turn * turn))
@@ -120,7 +120,7 @@ def ahead(
     q = vector_from(b.features[j].point)
     if one == VERTEX and other == FACE:
         normal = vector_from(b.features[j].direction)
-        return plane_ahead(motion, normal, dot(normal, minus(p, q)) - radius, p, velocity_at(motion, p), level)
+        return plane_ahead(motion, normal, dot(normal, minus(p, q)) - radius, velocity_at(motion, p), level)
     if one == VERTEX:
         between = minus(p, q)
         if other == EDGE:
@@ -130,7 +130,7 @@ def ahead(
     along = turned(motion, vector_from(a.features[i].direction), amount)
     way = scaled(velocity_at(motion, q), -1.0)
     if one == FACE:
-        return plane_ahead(motion, along, dot(along, minus(q, p)) - radius, q, way, level)
+        return plane_ahead(motion, along, dot(along, minus(q, p)) - radius, way, level)
     if other == VERTEX:
         return distance_ahead(motion, across_line(minus(q, p), along), way, radius, level, span)
     return edges_ahead(motion, p, along, q, vector_from(b.features[j].direction), radius, level, side, span)
@@ -160,15 +160,12 @@ def can_touch(a: Shapes, i: int, b: Shapes, j: int) -> bool:
 @kernel
 def place_moved(a: Shapes, i: int, motion: Motion, amount: float, moved: Shapes) -> None:
     """Write a feature as it is after an amount."""
-    feature, there = a.features[i], moved.features[i]
+    feature = a.features[i]
     point = moved_point(motion, vector_from(feature.point), amount)
-    direction = turned(motion, vector_from(feature.direction), amount)
-    for k in range(3):
-        there.point[k], there.direction[k] = point[k], direction[k]
+    write_feature(feature, point, turned(motion, vector_from(feature.direction), amount), moved.features[i])
     for f in range(feature.first_fence, feature.last_fence):
         fence = turned(motion, vector_from(a.fences[f].direction), amount)
-        for k in range(3):
-            moved.fences[f].direction[k] = fence[k]
+        write_fence(fence, a.fences[f].bound, moved.fences[f])
 
 
 @kernel
@@ -222,13 +219,17 @@ def first_touch(
     moved
         Memory for the object's shapes.
     """
-    amount = 0.0
+    amount, was_apart = 0.0, False
     for _ in range(EVALUATIONS):
         rest = end - amount
         now = ahead(a, i, b, j, motion, amount, level, side, rest)
         if level > 0.0 and now.is_clear:
             level = 0.0
             continue
+        is_at_root = was_apart and now.value < 0.0  # by rounding
+        if is_at_root and touches_after(a, i, b, j, motion, amount, slack, slack_m, moved):
+            return amount
+        was_apart = now.value >= 0.0
         step = safe_step(now)
         if step >= rest:
             return math.inf
@@ -237,7 +238,7 @@ def first_touch(
             step = max(step, min(safe_step(narrow), NARROWER * step))
         if step > LEAST_STEP * end:
             amount += step
-        elif now.value >= 0.0 and touches_after(a, i, b, j, motion, amount, slack, slack_m, moved):
+        elif touches_after(a, i, b, j, motion, amount, slack, slack_m, moved):
             return amount
         else:
             amount += BEHIND * end

@@ -36,10 +36,13 @@ class Bend:
         Second derivative of their gap, (6, 6), metres.
     rolling
         How far the place where they touch moves along the normal as they roll, likewise.
+    relative
+        K, (3, 3): how the normal turns as they slide, radians for each metre.
     """
 
     sliding: Annotated[FloatArray, 6, 6]
     rolling: Annotated[FloatArray, 6, 6]
+    relative: Annotated[FloatArray, 3, 3]
 
 
 class Curvatures(NamedTuple):
@@ -132,6 +135,9 @@ def write_bend(found: Curvatures, normal: Vector, arm: Vector, axes: Matrix, rad
             sliding = dot(other, drawn) + dot(other, shared) + dot(one, times(share, other_turned)) - rolling
             out.sliding[j, k] = out.sliding[k, j] = sliding
             out.rolling[j, k] = out.rolling[k, j] = rolling
+    for j in range(3):
+        for k in range(3):
+            out.relative[j, k] = found.relative[j][k]
 
 
 @kernel

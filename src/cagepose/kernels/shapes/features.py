@@ -92,35 +92,50 @@ def no_shapes() -> Shapes:
 
 
 def copied(shapes: Shapes) -> Shapes:
-    """Return shapes with memory of their own, for `place_shapes` to write to (plain Python)."""
+    """Return shapes with memory of their own (plain Python)."""
     return Shapes(*[np.array(rows) for rows in shapes])  # type: ignore[arg-type]
 
 
 @kernel
 def place_feature(shapes: Shapes, i: int, position: Vector, rotation: Matrix, placed: Shapes) -> None:
-    """Write one feature as it is in the world with its body at a pose; its numbers are given."""
-    feature, there = shapes.features[i], placed.features[i]
+    """Write one feature as it is in the world with its body at a pose."""
+    feature = shapes.features[i]
     point = plus(position, times(rotation, vector_from(feature.point)))
-    direction = times(rotation, vector_from(feature.direction))
-    for k in range(3):
-        there.point[k], there.direction[k] = point[k], direction[k]
+    write_feature(feature, point, times(rotation, vector_from(feature.direction)), placed.features[i])
     for f in range(feature.first_fence, feature.last_fence):
         fence = times(rotation, vector_from(shapes.fences[f].direction))
-        for k in range(3):
-            placed.fences[f].direction[k] = fence[k]
+        write_fence(fence, shapes.fences[f].bound, placed.fences[f])
+
+
+@kernel
+def write_feature(feature: Feature, point: Vector, direction: Vector, out: Feature) -> None:
+    """Write a feature with another place and direction."""
+    out.kind, out.length, out.radius = feature.kind, feature.length, feature.radius
+    out.first_fence, out.last_fence = feature.first_fence, feature.last_fence
+    for k in range(3):
+        out.point[k], out.direction[k] = point[k], direction[k]
+
+
+@kernel
+def write_fence(direction: Vector, bound: float, out: Fence) -> None:
+    out.bound = bound
+    for k in range(3):
+        out.direction[k] = direction[k]
 
 
 @kernel
 def place_part(shapes: Shapes, which: int, position: Vector, rotation: Matrix, placed: Shapes) -> None:
-    """Write the ball around one part as it is in the world."""
-    middle = plus(position, times(rotation, vector_from(shapes.parts[which].middle)))
+    """Write one part as it is in the world, without its features."""
+    part, there = shapes.parts[which], placed.parts[which]
+    there.first, there.last, there.reach, there.least_length = part.first, part.last, part.reach, part.least_length
+    middle = plus(position, times(rotation, vector_from(part.middle)))
     for k in range(3):
-        placed.parts[which].middle[k] = middle[k]
+        there.middle[k] = middle[k]
 
 
 @kernel
 def place_shapes(shapes: Shapes, position: Vector, quaternion: Quaternion, placed: Shapes) -> None:
-    """Write all parts and features as they are in the world with their body at a pose; their numbers are given."""
+    """Write all parts and features as they are in the world with their body at a pose."""
     rotation = matrix_from_quaternion(quaternion)
     for which in range(len(shapes.parts)):
         place_part(shapes, which, position, rotation, placed)

@@ -14,11 +14,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
-from cagepose.kernels.algebra.record import FloatArray, Rows
+from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.collision.first_contact import first_contact_travel
-from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement, is_clear_of, place_object
+from cagepose.kernels.collision.geometry import (
+    Geometry,
+    PlacedCage,
+    Placement,
+    empty_cage,
+    empty_placement,
+    is_clear_of,
+    place_object,
+)
 from cagepose.kernels.contact.loads import PhaseLoad, arm_of
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.outcome.cases import Cases, Part, Start, is_valid, start_of
