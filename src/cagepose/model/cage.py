@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -76,7 +77,7 @@ class Cage:
         object.__setattr__(self, "pose_world_cage", pose or Pose())
         object.__setattr__(self, "shapes", all_shapes)
 
-    @property
+    @cached_property
     def element_names(self) -> tuple[str, ...]:
         """The names of all points, then of all shapes."""
         return (*self.names, *names_of(self.shapes))

@@ -32,6 +32,8 @@ def shapes_of(parts: Iterable[Box | Shape | FloatArray]) -> Shapes:
 
 def shifted(shapes: Shapes, by: FloatArray) -> Shapes:
     """Return shapes moved by a travel, metres."""
+    if len(shapes.parts) == 0:
+        return shapes
     moved = copied(shapes)
     moved.features["point"] += by  # type: ignore[index]
     moved.parts["middle"] += by  # type: ignore[index]

@@ -101,7 +101,7 @@ class Object:
         object.__setattr__(self, "inertia_kg_m2", inertia)
         object.__setattr__(self, "pose_world_object", pose or Pose())
 
-    @property
+    @cached_property
     def parts(self) -> tuple[Box | AnyShape, ...]:
         """All boxes, then all other shapes."""
         return (*self.boxes, *self.shapes)

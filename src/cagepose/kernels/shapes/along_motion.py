@@ -1,7 +1,7 @@
 """When two features touch first while the object moves at a constant twist.
 
 What is asked of two features is a smooth function F of the amount, above zero where they are apart: the distance of a
-vertex from the plane of a face, the squared distance of a vertex from another one or from a line, less that of touching,
+vertex from the plane of a face, the squared distance of a vertex from another one or from a line less that of touching,
 or, of two edges, the volume that they span. With F, its slope and bounds on its second derivative over the rest of the
 motion, steps are known that jump over no root; near one they become Newton's. Where F is zero it is asked whether both
 features reach there; if not, the search goes on behind.
@@ -138,7 +138,7 @@ def ahead(
 
 @kernel
 def safe_step(now: Ahead) -> float:
-    """Return how far F stays on its side of zero: to the first root of the parabola that bends there most; inf: none."""
+    """Return how far F stays on its side of zero: to the root of the parabola that bends there most; inf: none."""
     value, slope, bend = now.value, now.slope, now.low
     if value < 0.0:
         value, slope, bend = -value, -slope, -now.high

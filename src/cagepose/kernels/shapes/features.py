@@ -86,9 +86,8 @@ class Shapes(NamedTuple):
     fences: Rows[Fence]
 
 
-def no_shapes() -> Shapes:
-    """Return a body without parts (plain Python)."""
-    return Shapes(empty_rows(ShapePart, 0), empty_rows(Feature, 0), empty_rows(Fence, 0))
+NO_SHAPES = Shapes(empty_rows(ShapePart, 0), empty_rows(Feature, 0), empty_rows(Fence, 0))
+"""A body without parts."""
 
 
 def copied(shapes: Shapes) -> Shapes:

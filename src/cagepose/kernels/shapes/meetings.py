@@ -146,8 +146,8 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, touch_m: float, found
 
 @kernel
 def keep_nearest(found: Meetings, first: int, least_gap: float, touch_m: float) -> None:
-    """Keep, of the meetings of two parts, those that are not deeper than the parts are in each other (these are on their
-    far sides), and each normal at a place once.
+    """Keep, of the meetings of two parts, those that are not deeper than the parts are in each other (these are on
+    their far sides), and each normal at a place once.
     """
     kept = first
     for at in range(first, found.used[0]):
