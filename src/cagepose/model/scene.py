@@ -10,7 +10,7 @@ import numpy as np
 
 from cagepose.errors import Key, key_path
 from cagepose.kernels.collision.contacts import deepest_boxes
-from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.collision.geometry import Geometry, empty_placement, place_object
 from cagepose.model.cage import Cage
 from cagepose.model.checks import ProblemList, check_kind, check_kinds, duplicates
 from cagepose.model.geometry import object_seams, scene_geometry, scene_size
@@ -134,6 +134,7 @@ class Scene:
         geometry = scene_geometry(object, cage, seams.bridges, touch_m)
         _check_distance(object, cage, size_m, problems)
         _check_points_outside(object, cage, geometry, touch_m, size_m, problems)
+        _check_shapes_apart(object, cage, geometry, problems)
         _check_loads(object, loads, touch_m, problems)
         problems.raise_if_any()
         named = object.boxes
@@ -276,6 +277,23 @@ def _check_points_outside(
         if depths[point_index] <= TOUCH_GREATEST * size_m:
             remedy = "move the point out, move the object's start pose, or raise tolerances.touch"
         problems.add(("cage", "points", cage.names[point_index]), f"{where}; {remedy}")
+
+
+def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: ProblemList) -> None:
+    """Tell of each part of the object that starts in a part of the cage; of boxes and points is told above."""
+    if len(geometry.held.parts) == 0:
+        return
+    placement = empty_placement(geometry)
+    place_object(geometry, *held.pose_world_object.as_tuples(), placement)
+    gaps, n_points = placement.meetings.gaps, len(cage.names)
+    for one, other in np.argwhere(gaps < -geometry.touch_m).tolist():
+        part = key_path(("object", *held.part_paths[one][:2]))
+        path = ("cage", "points", cage.names[other]) if other < n_points else ("cage", "shapes", other - n_points)
+        problems.add(
+            path,
+            f"starts {millimetres(-gaps[one, other])} inside {part} ({held.parts[one].name}); move it out or move the"
+            " object's start pose",
+        )
 
 
 def _check_loads(held: Object, loads: tuple[Load, ...], touch_m: float, problems: ProblemList) -> None:

@@ -8,8 +8,9 @@ from typing import NamedTuple
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, vector_from
 from cagepose.kernels.collision.geometry import Geometry, Placement
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.along_motion import ahead, can_touch, first_touch, safe_step
-from cagepose.kernels.shapes.features import EDGE, Shapes
+from cagepose.kernels.shapes.along_motion import ahead, can_touch, first_touch, room_between_edges, safe_step
+from cagepose.kernels.shapes.body import place_asked
+from cagepose.kernels.shapes.features import EDGE, VERTEX, Shapes
 from cagepose.kernels.shapes.meeting import meeting
 from cagepose.kernels.shapes.meetings import balls_apart, slack_of
 from cagepose.kernels.shapes.motion import Motion, velocity_at
@@ -46,7 +47,7 @@ NO_HIT = Hit(math.inf, -1, -1, -1, -1, math.inf)
 
 
 @kernel
-def fastest(motion: Motion, middle: Vector, reach: float) -> float:
+def greatest_speed(motion: Motion, middle: Vector, reach: float) -> float:
     """Return a speed that no point of a ball around ``middle`` exceeds."""
     return norm(velocity_at(motion, middle)) + motion.rate * reach
 
@@ -66,12 +67,12 @@ def first_meeting(
 
     Features nearer than ``near_m`` may go ``near_depth_m`` deep. On a travel, parts that touch do not meet again.
     """
-    held, cage, touch_m = placement.held, geometry.cage, geometry.touch_m
+    held, cage, touch_m = placement.body.world, geometry.cage, geometry.touch_m
     n_points = len(geometry.points_world)
     hit = NO_HIT
     least = end
     for one in range(len(held.parts)):
-        speed = fastest(motion, vector_from(held.parts[one].middle), held.parts[one].reach)
+        speed = greatest_speed(motion, vector_from(held.parts[one].middle), held.parts[one].reach)
         if speed == 0.0:
             continue
         for other in range(len(cage.parts)):
@@ -81,17 +82,43 @@ def first_meeting(
             if gap > SAFE * speed * least or (motion.rate == 0.0 and gap <= touch_m):
                 continue
             until = least if motion.rate > 0.0 else min(least, until_past(held, one, cage, other, speed))
+            place_asked(geometry.held, one, placement.body)
+            if earliest_touch(held, one, cage, other, motion, until) >= until:
+                continue
             depth = min(near_depth_m, THIN * min(held.parts[one].reach, max(cage.parts[other].reach, touch_m)))
             slack = slack_of(held, one, cage, other, touch_m)
             for i in range(held.parts[one].first, held.parts[one].last):
                 for j in range(cage.parts[other].first, cage.parts[other].last):
                     found = first_of_features(
-                        held, i, cage, j, motion, until, near_m, depth, slack, touch_m, placement.moved
+                        held, i, cage, j, motion, until, speed, near_m, depth, slack, touch_m, placement.moved
                     )
                     if found[0] < least:
                         least = until = found[0]
                         hit = Hit(least, other, one, i, j, found[1])
     return hit
+
+
+@kernel
+def earliest_touch(held: Shapes, one: int, cage: Shapes, other: int, motion: Motion, until: float) -> float:
+    """Return an amount before which two parts do not touch: so long all of the one is beyond a face of the other."""
+    latest = 0.0
+    for i in range(held.parts[one].first_face, held.parts[one].last):
+        first = until
+        for j in range(cage.parts[other].first, cage.parts[other].last):
+            if first <= latest or cage.features[j].kind != VERTEX:
+                break
+            now = ahead(held, i, cage, j, motion, 0.0, 0.0, 0.0, until)
+            first = min(first, safe_step(now)) if now.value > 0.0 else 0.0
+        latest = max(latest, first)
+    for j in range(cage.parts[other].first_face, cage.parts[other].last):
+        first = until
+        for i in range(held.parts[one].first, held.parts[one].last):
+            if first <= latest or held.features[i].kind != VERTEX:
+                break
+            now = ahead(held, i, cage, j, motion, 0.0, 0.0, 0.0, until)
+            first = min(first, safe_step(now)) if now.value > 0.0 else 0.0
+        latest = max(latest, first)
+    return latest
 
 
 @kernel
@@ -102,6 +129,7 @@ def first_of_features(
     j: int,
     motion: Motion,
     until: float,
+    fastest: float,
     near_m: float,
     near_depth_m: float,
     slack: float,
@@ -114,13 +142,18 @@ def first_of_features(
     if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 0.0, until)) >= until:
         return math.inf, math.inf
     met = meeting(held, i, cage, j)
+    are_edges = held.features[i].kind == EDGE and cage.features[j].kind == EDGE
+    if are_edges:
+        room = room_between_edges(held, i, cage, j, motion, 0.0)
+        if room > SAFE * fastest * until or (room <= touch_m and not met.is_one):
+            return math.inf, math.inf
     if met.is_one and abs(met.gap) <= touch_m:
         return math.inf, math.inf
     level, side = 0.0, 0.0
     if met.is_one and abs(met.gap) <= near_m:
         level = near_depth_m
-        if held.features[i].kind == EDGE and cage.features[j].kind == EDGE:
+        if are_edges:
             crossed = cross(vector_from(held.features[i].direction), vector_from(cage.features[j].direction))
             side = -math.copysign(1.0, dot(met.normal, crossed))
-    found = first_touch(held, i, cage, j, motion, until, level, side, slack, 2.0 * touch_m, moved)
+    found = first_touch(held, i, cage, j, motion, until, fastest, level, side, slack, 2.0 * touch_m, moved)
     return found, met.gap

@@ -147,6 +147,29 @@ def safe_step(now: Ahead) -> float:
 
 
 @kernel
+def between_segments(p: Vector, u: Vector, length: float, q: Vector, w: Vector, other_length: float) -> float:
+    """Return how far apart two segments are that begin at p and q."""
+    between, cosine = minus(p, q), dot(u, w)
+    square = 1.0 - cosine * cosine
+    along, other_along = dot(between, u), dot(between, w)
+    s = 0.0
+    if square > 0.0:
+        s = min(max((cosine * other_along - along) / square, 0.0), length)
+    t = min(max(other_along + s * cosine, 0.0), other_length)
+    s = min(max(t * cosine - along, 0.0), length)
+    return norm(minus(plus(between, scaled(u, s)), scaled(w, t)))
+
+
+@kernel
+def room_between_edges(a: Shapes, i: int, b: Shapes, j: int, motion: Motion, amount: float) -> float:
+    """Return how far apart two edges are after an amount, without what is beyond their ends."""
+    one, other = a.features[i], b.features[j]
+    p, u = moved_point(motion, vector_from(one.point), amount), turned(motion, vector_from(one.direction), amount)
+    apart = between_segments(p, u, one.length, vector_from(other.point), vector_from(other.direction), other.length)
+    return apart - one.radius - other.radius
+
+
+@kernel
 def can_touch(a: Shapes, i: int, b: Shapes, j: int) -> bool:
     """Whether features of these kinds can touch: faces and edges meet at vertices and crossings."""
     one, other = a.features[i].kind, b.features[j].kind
@@ -196,6 +219,7 @@ def first_touch(
     j: int,
     motion: Motion,
     end: float,
+    fastest: float,
     level: float,
     side: float,
     slack: float,
@@ -210,6 +234,8 @@ def first_touch(
         The features, placed in the world.
     motion, end
         That of the object; the end is finite.
+    fastest
+        A speed that no point of its part exceeds.
     level
         How deep they may be in each other until they have been well apart, metres: more than they are.
     side
@@ -220,6 +246,7 @@ def first_touch(
         Memory for the object's shapes.
     """
     amount, was_apart = 0.0, False
+    are_edges = a.features[i].kind == EDGE and b.features[j].kind == EDGE
     for _ in range(EVALUATIONS):
         rest = end - amount
         now = ahead(a, i, b, j, motion, amount, level, side, rest)
@@ -231,6 +258,8 @@ def first_touch(
             return amount
         was_apart = now.value >= 0.0
         step = safe_step(now)
+        if are_edges:  # where they are side by side, the volume that they span tells nothing
+            step = max(step, room_between_edges(a, i, b, j, motion, amount) / fastest)
         if step >= rest:
             return math.inf
         if NARROWER * step < rest:
