@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, vector_from
 from cagepose.kernels.collision.geometry import Geometry, Placement
 from cagepose.kernels.native.kernel import kernel
@@ -67,35 +68,53 @@ def first_meeting(
 
     Features nearer than ``near_m`` may go ``near_depth_m`` deep. On a travel, parts that touch do not meet again.
     """
-    held, cage, touch_m = placement.body.world, geometry.cage, geometry.touch_m
+    held, cage, touch_m, earliest = placement.body.world, geometry.cage, geometry.touch_m, placement.earliest
     n_points = len(geometry.points_world)
-    hit = NO_HIT
-    least = end
     for one in range(len(held.parts)):
         speed = greatest_speed(motion, vector_from(held.parts[one].middle), held.parts[one].reach)
-        if speed == 0.0:
-            continue
         for other in range(len(cage.parts)):
-            if one < geometry.n_own_boxes and other < n_points:
+            earliest[one, other] = math.inf
+            if speed == 0.0 or (one < geometry.n_own_boxes and other < n_points):
                 continue
             gap = max(placement.meetings.gaps[one, other], balls_apart(held, one, cage, other))
-            if gap > SAFE * speed * least or (motion.rate == 0.0 and gap <= touch_m):
+            if gap > SAFE * speed * end or (motion.rate == 0.0 and gap <= touch_m):
                 continue
-            until = least if motion.rate > 0.0 else min(least, until_past(held, one, cage, other, speed))
             place_asked(geometry.held, one, placement.body)
-            if earliest_touch(held, one, cage, other, motion, until) >= until:
-                continue
-            depth = min(near_depth_m, THIN * min(held.parts[one].reach, max(cage.parts[other].reach, touch_m)))
-            slack = slack_of(held, one, cage, other, touch_m)
-            for i in range(held.parts[one].first, held.parts[one].last):
-                for j in range(cage.parts[other].first, cage.parts[other].last):
-                    found = first_of_features(
-                        held, i, cage, j, motion, until, speed, near_m, depth, slack, touch_m, placement.moved
-                    )
-                    if found[0] < least:
-                        least = until = found[0]
-                        hit = Hit(least, other, one, i, j, found[1])
+            until = end if motion.rate > 0.0 else min(end, until_past(held, one, cage, other, speed))
+            first = earliest_touch(held, one, cage, other, motion, until)
+            if first < until:
+                earliest[one, other] = max(first, gap / speed)
+    hit = NO_HIT
+    one, other = next_pair(earliest, end)
+    while one >= 0:
+        until = min(end, hit.amount)
+        speed = greatest_speed(motion, vector_from(held.parts[one].middle), held.parts[one].reach)
+        if motion.rate == 0.0:
+            until = min(until, until_past(held, one, cage, other, speed))
+        depth = min(near_depth_m, THIN * min(held.parts[one].reach, max(cage.parts[other].reach, touch_m)))
+        slack = slack_of(held, one, cage, other, touch_m)
+        for i in range(held.parts[one].first, held.parts[one].last):
+            for j in range(cage.parts[other].first, cage.parts[other].last):
+                found = first_of_features(
+                    held, i, cage, j, motion, until, speed, near_m, depth, slack, touch_m, placement.moved
+                )
+                if found[0] < until:
+                    until = found[0]
+                    hit = Hit(until, other, one, i, j, found[1])
+        earliest[one, other] = math.inf
+        one, other = next_pair(earliest, min(end, hit.amount))
     return hit
+
+
+@kernel
+def next_pair(earliest: FloatArray, end: float) -> tuple[int, int]:
+    """Return the pair of parts that can touch first, before ``end``; (-1, -1): there is none."""
+    found, least = (-1, -1), end
+    for one in range(earliest.shape[0]):
+        for other in range(earliest.shape[1]):
+            if earliest[one, other] < least:
+                found, least = (one, other), earliest[one, other]
+    return found
 
 
 @kernel
@@ -144,8 +163,8 @@ def first_of_features(
     met = meeting(held, i, cage, j)
     are_edges = held.features[i].kind == EDGE and cage.features[j].kind == EDGE
     if are_edges:
-        room = room_between_edges(held, i, cage, j, motion, 0.0)
-        if room > SAFE * fastest * until or (room <= touch_m and not met.is_one):
+        room, _ = room_between_edges(held, i, cage, j, motion, 0.0)
+        if room > SAFE * fastest * until:
             return math.inf, math.inf
     if met.is_one and abs(met.gap) <= touch_m:
         return math.inf, math.inf

@@ -77,6 +77,8 @@ class Placement(NamedTuple):
         Memory for them at a pose that is tried.
     meetings
         Where they touch the cage's.
+    earliest
+        Memory for the amount of a motion before which two parts do not touch, (n_parts, n_cage_parts).
     """
 
     box_positions: FloatArray
@@ -89,6 +91,7 @@ class Placement(NamedTuple):
     body: PlacedBody
     moved: Shapes
     meetings: Meetings
+    earliest: FloatArray
 
 
 def empty_placement(geometry: Geometry) -> Placement:
@@ -106,6 +109,7 @@ def empty_placement(geometry: Geometry) -> Placement:
         empty_body(geometry.held),
         copied(geometry.held),
         empty_meetings(len(geometry.held.parts), len(geometry.cage.parts)),
+        np.empty((len(geometry.held.parts), len(geometry.cage.parts))),
     )
 
 

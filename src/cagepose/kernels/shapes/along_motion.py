@@ -16,14 +16,16 @@ from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plu
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes, write_feature, write_fence
 from cagepose.kernels.shapes.meeting import PARALLEL, both_reach, meeting
-from cagepose.kernels.shapes.motion import Motion, moved_point, turned, velocity_at
+from cagepose.kernels.shapes.motion import Motion, moved_point, turned, turned_by_amount, velocity_at
 
 EVALUATIONS = 400
-"""Of F, for one pair of features. A contact that grazes may need them all: then it counts where the search has come."""
+"""Of F, for one pair of features. A contact that grazes may need them all: then it counts where the search has come, if
+the features reach there."""
 LEAST_STEP = 1e-15
 """In amounts of the whole motion: a shorter step is no progress."""
-BEHIND = 1e-9
-"""In amounts of the whole motion: how far behind a root that is no contact the search goes on."""
+BEHIND, FARTHER = 1e-9, 8.0
+"""In amounts of the whole motion: how far behind a root that is no contact the search goes on, and how many times that
+if it is still at one."""
 NARROWER = 4.0
 """Bounds over the rest of the motion are too wide where only a small part of it is stepped over: they are asked again
 over so many times that part."""
@@ -50,14 +52,19 @@ def plane_ahead(motion: Motion, normal: Vector, height: float, way: Vector, leve
 
 
 @kernel
-def distance_ahead(motion: Motion, between: Vector, way: Vector, radius: float, level: float, span: float) -> Ahead:
-    """A point at ``between`` from another one or from a line, that moves with ``way``, over a length of the motion."""
+def distance_ahead(
+    motion: Motion, between: Vector, way: Vector, across: Vector, radius: float, level: float, span: float
+) -> Ahead:
+    """A point at ``between`` from another one or from a line, over a length of the motion; it moves with ``way``, and
+    across the line with ``across``.
+    """
     speed, far, least = norm(way), norm(between), allowed_radius(radius, level)
-    bend = 2.0 * (far + speed * span) * motion.rate * norm(cross(motion.axis, way))
+    turning = motion.rate * norm(cross(motion.axis, way))
+    bend, slowest = 2.0 * (far + speed * span) * turning, max(0.0, norm(across) - turning * span)
     return Ahead(
         dot(between, between) - least * least,
         2.0 * dot(between, way),
-        -bend,
+        2.0 * slowest * slowest - bend,
         2.0 * speed * speed + bend,
         far > radius + level,
     )
@@ -101,10 +108,11 @@ def edges_ahead(
     rounded = allowed_radius(radius, level) ** 2
     cosine = dot(u, w)
     value = volume * volume - rounded * square
+    slowest = max(0.0, abs(slope) - bend * span)
     slope = 2.0 * (volume * slope + rounded * cosine * dot(turning, w))
     bend = 2.0 * far * bend + 4.0 * rounded * motion.rate * motion.rate
     fastest = speed + far * motion.rate
-    return Ahead(value, slope, -bend, 2.0 * fastest * fastest + bend, is_clear)
+    return Ahead(value, slope, 2.0 * slowest * slowest - bend, 2.0 * fastest * fastest + bend, is_clear)
 
 
 @kernel
@@ -116,7 +124,8 @@ def ahead(
     """
     one, other = a.features[i].kind, b.features[j].kind
     radius = a.features[i].radius + b.features[j].radius
-    p = moved_point(motion, vector_from(a.features[i].point), amount)
+    so_far = turned_by_amount(motion, amount)
+    p = moved_point(motion, vector_from(a.features[i].point), so_far)
     q = vector_from(b.features[j].point)
     if one == VERTEX and other == FACE:
         normal = vector_from(b.features[j].direction)
@@ -125,14 +134,18 @@ def ahead(
         between = minus(p, q)
         if other == EDGE:
             line = vector_from(b.features[j].direction)
-            between = across_line(between, line)
-        return distance_ahead(motion, between, velocity_at(motion, p), radius, level, span)
-    along = turned(motion, vector_from(a.features[i].direction), amount)
+            way = velocity_at(motion, p)
+            return distance_ahead(motion, across_line(between, line), way, across_line(way, line), radius, level, span)
+        way = velocity_at(motion, p)
+        return distance_ahead(motion, between, way, way, radius, level, span)
+    along = turned(motion, vector_from(a.features[i].direction), so_far)
     way = scaled(velocity_at(motion, q), -1.0)
     if one == FACE:
         return plane_ahead(motion, along, dot(along, minus(q, p)) - radius, way, level)
     if other == VERTEX:
-        return distance_ahead(motion, across_line(minus(q, p), along), way, radius, level, span)
+        return distance_ahead(
+            motion, across_line(minus(q, p), along), way, across_line(way, along), radius, level, span
+        )
     return edges_ahead(motion, p, along, q, vector_from(b.features[j].direction), radius, level, side, span)
 
 
@@ -142,7 +155,10 @@ def safe_step(now: Ahead) -> float:
     value, slope, bend = now.value, now.slope, now.low
     if value < 0.0:
         value, slope, bend = -value, -slope, -now.high
-    down = math.sqrt(slope * slope - 2.0 * bend * value) - slope
+    discriminant = slope * slope - 2.0 * bend * value
+    if discriminant < 0.0:
+        return math.inf
+    down = math.sqrt(discriminant) - slope
     return math.inf if down <= 0.0 else 2.0 * value / down
 
 
@@ -161,12 +177,12 @@ def between_segments(p: Vector, u: Vector, length: float, q: Vector, w: Vector, 
 
 
 @kernel
-def room_between_edges(a: Shapes, i: int, b: Shapes, j: int, motion: Motion, amount: float) -> float:
-    """Return how far apart two edges are after an amount, without what is beyond their ends."""
-    one, other = a.features[i], b.features[j]
-    p, u = moved_point(motion, vector_from(one.point), amount), turned(motion, vector_from(one.direction), amount)
+def room_between_edges(a: Shapes, i: int, b: Shapes, j: int, motion: Motion, amount: float) -> tuple[float, float]:
+    """Return how far apart two edges are after an amount, without what is beyond their ends, and the sine between."""
+    one, other, so_far = a.features[i], b.features[j], turned_by_amount(motion, amount)
+    p, u = moved_point(motion, vector_from(one.point), so_far), turned(motion, vector_from(one.direction), so_far)
     apart = between_segments(p, u, one.length, vector_from(other.point), vector_from(other.direction), other.length)
-    return apart - one.radius - other.radius
+    return apart - one.radius - other.radius, norm(cross(u, vector_from(other.direction)))
 
 
 @kernel
@@ -183,11 +199,11 @@ def can_touch(a: Shapes, i: int, b: Shapes, j: int) -> bool:
 @kernel
 def place_moved(a: Shapes, i: int, motion: Motion, amount: float, moved: Shapes) -> None:
     """Write a feature as it is after an amount."""
-    feature = a.features[i]
-    point = moved_point(motion, vector_from(feature.point), amount)
-    write_feature(feature, point, turned(motion, vector_from(feature.direction), amount), moved.features[i])
+    feature, so_far = a.features[i], turned_by_amount(motion, amount)
+    point = moved_point(motion, vector_from(feature.point), so_far)
+    write_feature(feature, point, turned(motion, vector_from(feature.direction), so_far), moved.features[i])
     for f in range(feature.first_fence, feature.last_fence):
-        fence = turned(motion, vector_from(a.fences[f].direction), amount)
+        fence = turned(motion, vector_from(a.fences[f].direction), so_far)
         write_fence(fence, a.fences[f].bound, moved.fences[f])
 
 
@@ -245,7 +261,7 @@ def first_touch(
     moved
         Memory for the object's shapes.
     """
-    amount, was_apart = 0.0, False
+    amount, was_apart, behind = 0.0, False, BEHIND * end
     are_edges = a.features[i].kind == EDGE and b.features[j].kind == EDGE
     for _ in range(EVALUATIONS):
         rest = end - amount
@@ -258,8 +274,11 @@ def first_touch(
             return amount
         was_apart = now.value >= 0.0
         step = safe_step(now)
-        if are_edges:  # where they are side by side, the volume that they span tells nothing
-            step = max(step, room_between_edges(a, i, b, j, motion, amount) / fastest)
+        if are_edges:  # side by side, the volume that they span tells nothing, and they meet at their ends
+            room, sine = room_between_edges(a, i, b, j, motion, amount)
+            if sine < PARALLEL and (room <= slack_m or sine + motion.rate * rest < PARALLEL):
+                return math.inf
+            step = max(step, room / fastest)
         if step >= rest:
             return math.inf
         if NARROWER * step < rest:
@@ -267,10 +286,12 @@ def first_touch(
             step = max(step, min(safe_step(narrow), NARROWER * step))
         if step > LEAST_STEP * end:
             amount += step
+            behind = BEHIND * end
         elif touches_after(a, i, b, j, motion, amount, slack, slack_m, moved):
             return amount
         else:
-            amount += BEHIND * end
+            amount += behind
+            behind *= FARTHER
             if amount >= end:
                 return math.inf
-    return amount
+    return amount if touches_after(a, i, b, j, motion, amount, slack, slack_m, moved) else math.inf
