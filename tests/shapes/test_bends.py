@@ -12,7 +12,6 @@ from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.shapes.bend import Bend, curvatures, write_bend
 from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes
 from cagepose.kernels.shapes.meeting import both_reach, meeting
-from cagepose.kernels.shapes.meetings import can_touch
 from cagepose.model.features import shapes_of
 from cagepose.model.shapes import Capsule, Convex, Sphere
 from shapes.convex_bodies import CUBE, body_of, placed_at
@@ -69,9 +68,8 @@ def touching(rng: np.random.Generator, n_pairs: int):
         held, cage = placed(part, pose), shapes_of([cage_part])
         for i in range(len(held.features)):
             for j in range(len(cage.features)):
-                if can_touch(held, i, cage, j) and both_reach(
-                    held, i, cage, j, met := meeting(held, i, cage, j), 1e-9, 1e-9
-                ):
+                met = meeting(held, i, cage, j)
+                if met.gap > -1e-9 and both_reach(held, i, cage, j, met, 1e-9, 1e-9):  # not on their far sides
                     yield held, i, cage, j, met
 
 
@@ -92,10 +90,10 @@ def digits():
         yield
 
 
-def test_normals_and_second_derivatives_are_those_of_the_gap(cases, say):
+def test_normals_and_second_derivatives_are_those_of_the_gap(say):
     rng, seen = np.random.default_rng(20), {}
     worst = [0.0, 0.0, 0.0]
-    for held, i, cage, j, met in touching(rng, cases(150, 2000)):
+    for held, i, cage, j, met in touching(rng, 150):
         one, other = held.features[i], cage.features[j]
         center, radii = rng.normal(size=3), rng.uniform(0.2, 3.0, 3)
         axes = Pose((0, 0, 0), rng.normal(size=4)).rotation

@@ -10,7 +10,7 @@ from cagepose.kernels.collision.geometry import Geometry, Placement
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.along_motion import ahead, can_touch, first_touch, safe_step
 from cagepose.kernels.shapes.features import EDGE, Shapes
-from cagepose.kernels.shapes.meeting import meeting
+from cagepose.kernels.shapes.meeting import both_reach, meeting
 from cagepose.kernels.shapes.meetings import balls_apart, slack_of
 from cagepose.kernels.shapes.motion import Motion, velocity_at
 
@@ -111,11 +111,12 @@ def first_of_features(
     """Return when two features that do not touch reach each other, inf if they do not, and how far apart they are."""
     if not can_touch(held, i, cage, j):
         return math.inf, math.inf
-    if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 0.0, until)) >= until:
+    if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
         return math.inf, math.inf
     met = meeting(held, i, cage, j)
     if met.is_one and abs(met.gap) <= touch_m:
-        return math.inf, math.inf
+        if motion.rate == 0.0 or both_reach(held, i, cage, j, met, slack, 2.0 * touch_m):
+            return math.inf, math.inf
     level, side = 0.0, 0.0
     if met.is_one and abs(met.gap) <= near_m:
         level = near_depth_m

@@ -78,8 +78,8 @@ def across_line(between: Vector, along: Vector) -> Vector:
 def edges_ahead(
     motion: Motion, p: Vector, u: Vector, q: Vector, w: Vector, radius: float, level: float, side: float, span: float
 ) -> Ahead:
-    """An edge through p along u that moves, and one through q along w; with ``radius`` zero, ``side`` tells the sign
-    with which they are apart; zero: both.
+    """An edge through p along u that moves, and one through q along w; with ``radius`` zero, ``side`` is the sign of the
+    volume with which they are apart.
     """
     crossed = cross(u, w)
     square = dot(crossed, crossed)
@@ -92,18 +92,18 @@ def edges_ahead(
     slope = dot(way, crossed) + dot(between, cross(turning, w))
     speed = norm(way)
     far = norm(between) + speed * span
-    bend = motion.rate * (norm(cross(motion.axis, way)) + 2.0 * speed + far * motion.rate)
+    sine = math.sqrt(square)
+    steepest = min(1.0, sine + motion.rate * span)
+    bend = motion.rate * (norm(cross(motion.axis, way)) * steepest + 2.0 * speed + far * motion.rate)
     if radius == 0.0:
-        sign = side if side != 0.0 else math.copysign(1.0, volume)
-        sine = math.sqrt(square)
-        return Ahead(sign * volume + level * sine, sign * slope, -bend, bend, sign * volume > level * sine)
+        return Ahead(side * volume + level * sine, side * slope, -bend, bend, side * volume > level * sine)
     is_clear = volume * volume > (radius + level) * (radius + level) * square
     rounded = allowed_radius(radius, level) ** 2
     cosine = dot(u, w)
     value = volume * volume - rounded * square
     slope = 2.0 * (volume * slope + rounded * cosine * dot(turning, w))
     bend = 2.0 * far * bend + 4.0 * rounded * motion.rate * motion.rate
-    fastest = speed + far * motion.rate
+    fastest = speed * steepest + far * motion.rate
     return Ahead(value, slope, -bend, 2.0 * fastest * fastest + bend, is_clear)
 
 
@@ -155,6 +155,86 @@ def can_touch(a: Shapes, i: int, b: Shapes, j: int) -> bool:
     if one == EDGE and other == EDGE:
         return True
     return a.features[i].radius + b.features[j].radius > 0.0
+
+
+@kernel
+def are_sharp_edges(a: Shapes, i: int, b: Shapes, j: int) -> bool:
+    """Whether two features are edges without a radius, which are apart on either side of each other."""
+    one, other = a.features[i], b.features[j]
+    return one.kind == EDGE and other.kind == EDGE and one.radius + other.radius == 0.0
+
+
+@kernel
+def distance_from(shapes: Shapes, i: int, point: Vector) -> float:
+    """Return how far a point is from a feature's core as far as it reaches; of a face, or less."""
+    feature = shapes.features[i]
+    seen, direction = minus(point, vector_from(feature.point)), vector_from(feature.direction)
+    if feature.kind == EDGE:
+        along = min(max(dot(direction, seen), 0.0), feature.length)
+        return norm(minus(seen, scaled(direction, along)))
+    if feature.kind == FACE:
+        beyond = 0.0
+        for f in range(feature.first_fence, feature.last_fence):
+            beyond = max(beyond, dot(vector_from(shapes.fences[f].direction), seen) - shapes.fences[f].bound)
+        return math.hypot(dot(direction, seen), beyond)
+    return norm(seen)
+
+
+@kernel
+def edge_end(shapes: Shapes, i: int) -> Vector:
+    """Return the other end of an edge."""
+    feature = shapes.features[i]
+    return plus(vector_from(feature.point), scaled(vector_from(feature.direction), feature.length))
+
+
+@kernel
+def edges_apart(a: Shapes, i: int, b: Shapes, j: int) -> float:
+    """Return how far apart the cores of two edges are; of parallel ones, or less."""
+    one, other = a.features[i], b.features[j]
+    p, q, u, w = (
+        vector_from(one.point),
+        vector_from(other.point),
+        vector_from(one.direction),
+        vector_from(other.direction),
+    )
+    least = min(
+        min(distance_from(b, j, p), distance_from(b, j, edge_end(a, i))),
+        min(distance_from(a, i, q), distance_from(a, i, edge_end(b, j))),
+    )
+    crossed, start = cross(u, w), minus(q, p)
+    square = dot(crossed, crossed)
+    if square < PARALLEL * PARALLEL:
+        return least - PARALLEL * min(one.length, other.length)
+    s, t = dot(cross(start, w), crossed) / square, dot(cross(start, u), crossed) / square
+    if 0.0 <= s <= one.length and 0.0 <= t <= other.length:
+        least = min(least, abs(dot(start, crossed)) / math.sqrt(square))
+    return least
+
+
+@kernel
+def clear_step(a: Shapes, i: int, b: Shapes, j: int, motion: Motion, amount: float, moved: Shapes) -> float:
+    """Return how much farther the motion surely leads without a contact of two features, by how far apart they are.
+
+    What F says of planes and lines where no feature is, needs no search then.
+    """
+    place_moved(a, i, motion, amount, moved)
+    one, other = a.features[i].kind, b.features[j].kind
+    if one == EDGE and other == EDGE:
+        away = edges_apart(moved, i, b, j)
+        speed = max(
+            norm(velocity_at(motion, vector_from(moved.features[i].point))),
+            norm(velocity_at(motion, edge_end(moved, i))),
+        )
+    elif one == VERTEX:
+        point = vector_from(moved.features[i].point)
+        away, speed = distance_from(b, j, point), norm(velocity_at(motion, point))
+    else:
+        point = vector_from(b.features[j].point)
+        away, speed = distance_from(moved, i, point), norm(velocity_at(motion, point))
+    away -= a.features[i].radius + b.features[j].radius
+    if away <= 0.0:
+        return 0.0
+    return away / speed if speed > 0.0 else math.inf
 
 
 @kernel
@@ -219,6 +299,9 @@ def first_touch(
     moved
         Memory for the object's shapes.
     """
+    is_sharp = are_sharp_edges(a, i, b, j)
+    if is_sharp and side == 0.0:
+        side = math.copysign(1.0, ahead(a, i, b, j, motion, 0.0, 0.0, 1.0, end).value)
     amount, was_apart = 0.0, False
     for _ in range(EVALUATIONS):
         rest = end - amount
@@ -229,13 +312,16 @@ def first_touch(
         is_at_root = was_apart and now.value < 0.0  # by rounding
         if is_at_root and touches_after(a, i, b, j, motion, amount, slack, slack_m, moved):
             return amount
+        if is_sharp and level == 0.0 and now.value < 0.0:  # lines that have crossed, but not where both edges are
+            side, now = -side, Ahead(-now.value, -now.slope, now.low, now.high, False)
         was_apart = now.value >= 0.0
         step = safe_step(now)
-        if step >= rest:
-            return math.inf
         if NARROWER * step < rest:
             narrow = ahead(a, i, b, j, motion, amount, level, side, NARROWER * step)
             step = max(step, min(safe_step(narrow), NARROWER * step))
+            step = max(step, clear_step(a, i, b, j, motion, amount, moved))
+        if step >= rest:
+            return math.inf
         if step > LEAST_STEP * end:
             amount += step
         elif touches_after(a, i, b, j, motion, amount, slack, slack_m, moved):
