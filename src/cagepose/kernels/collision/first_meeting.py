@@ -9,10 +9,10 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, vector_from
 from cagepose.kernels.collision.geometry import Geometry, Placement
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.along_motion import ahead, can_touch, first_touch, room_between_edges, safe_step
+from cagepose.kernels.shapes.along_motion import ahead, can_touch, clear_step, first_touch, safe_step
 from cagepose.kernels.shapes.body import place_asked
 from cagepose.kernels.shapes.features import EDGE, VERTEX, Shapes
-from cagepose.kernels.shapes.meeting import meeting
+from cagepose.kernels.shapes.meeting import both_reach, meeting
 from cagepose.kernels.shapes.meetings import balls_apart, slack_of
 from cagepose.kernels.shapes.motion import Motion, velocity_at
 
@@ -96,7 +96,7 @@ def first_meeting(
         for i in range(held.parts[one].first, held.parts[one].last):
             for j in range(cage.parts[other].first, cage.parts[other].last):
                 found = first_of_features(
-                    held, i, cage, j, motion, until, speed, near_m, depth, slack, touch_m, placement.moved
+                    held, i, cage, j, motion, until, near_m, depth, slack, touch_m, placement.moved
                 )
                 if found[0] < until:
                     until = found[0]
@@ -126,7 +126,7 @@ def earliest_touch(held: Shapes, one: int, cage: Shapes, other: int, motion: Mot
         for j in range(cage.parts[other].first, cage.parts[other].last):
             if first <= latest or cage.features[j].kind != VERTEX:
                 break
-            now = ahead(held, i, cage, j, motion, 0.0, 0.0, 0.0, until)
+            now = ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)
             first = min(first, safe_step(now)) if now.value > 0.0 else 0.0
         latest = max(latest, first)
     for j in range(cage.parts[other].first_face, cage.parts[other].last):
@@ -134,7 +134,7 @@ def earliest_touch(held: Shapes, one: int, cage: Shapes, other: int, motion: Mot
         for i in range(held.parts[one].first, held.parts[one].last):
             if first <= latest or held.features[i].kind != VERTEX:
                 break
-            now = ahead(held, i, cage, j, motion, 0.0, 0.0, 0.0, until)
+            now = ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)
             first = min(first, safe_step(now)) if now.value > 0.0 else 0.0
         latest = max(latest, first)
     return latest
@@ -148,7 +148,6 @@ def first_of_features(
     j: int,
     motion: Motion,
     until: float,
-    fastest: float,
     near_m: float,
     near_depth_m: float,
     slack: float,
@@ -158,21 +157,20 @@ def first_of_features(
     """Return when two features that do not touch reach each other, inf if they do not, and how far apart they are."""
     if not can_touch(held, i, cage, j):
         return math.inf, math.inf
-    if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 0.0, until)) >= until:
+    if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
+        return math.inf, math.inf
+    if clear_step(held, i, cage, j, motion, 0.0, moved) >= until:
         return math.inf, math.inf
     met = meeting(held, i, cage, j)
-    are_edges = held.features[i].kind == EDGE and cage.features[j].kind == EDGE
-    if are_edges:
-        room, _ = room_between_edges(held, i, cage, j, motion, 0.0)
-        if room > SAFE * fastest * until:
-            return math.inf, math.inf
-    if met.is_one and abs(met.gap) <= touch_m:
+    touches = met.is_one and abs(met.gap) <= touch_m
+    if touches and (motion.rate == 0.0 or both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)):
         return math.inf, math.inf
     level, side = 0.0, 0.0
-    if met.is_one and abs(met.gap) <= near_m:
-        level = near_depth_m
-        if are_edges:
+    if met.is_one and abs(met.gap) <= max(near_m, touch_m):
+        level = near_depth_m if abs(met.gap) <= near_m else 0.0
+        level = max(level, 2.0 * touch_m)  # they do not reach there now, but might
+        if held.features[i].kind == EDGE and cage.features[j].kind == EDGE:
             crossed = cross(vector_from(held.features[i].direction), vector_from(cage.features[j].direction))
             side = -math.copysign(1.0, dot(met.normal, crossed))
-    found = first_touch(held, i, cage, j, motion, until, fastest, level, side, slack, 2.0 * touch_m, moved)
+    found = first_touch(held, i, cage, j, motion, until, level, side, slack, 2.0 * touch_m, moved)
     return found, met.gap

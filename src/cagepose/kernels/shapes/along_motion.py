@@ -85,8 +85,8 @@ def across_line(between: Vector, along: Vector) -> Vector:
 def edges_ahead(
     motion: Motion, p: Vector, u: Vector, q: Vector, w: Vector, radius: float, level: float, side: float, span: float
 ) -> Ahead:
-    """An edge through p along u that moves, and one through q along w; with ``radius`` zero, ``side`` tells the sign
-    with which they are apart; zero: both.
+    """An edge through p along u that moves, and one through q along w; with ``radius`` zero, ``side`` is the sign of
+    the volume with which they are apart.
     """
     crossed = cross(u, w)
     square = dot(crossed, crossed)
@@ -99,11 +99,11 @@ def edges_ahead(
     slope = dot(way, crossed) + dot(between, cross(turning, w))
     speed = norm(way)
     far = norm(between) + speed * span
-    bend = motion.rate * (norm(cross(motion.axis, way)) + 2.0 * speed + far * motion.rate)
+    sine = math.sqrt(square)
+    steepest = min(1.0, sine + motion.rate * span)
+    bend = motion.rate * (norm(cross(motion.axis, way)) * steepest + 2.0 * speed + far * motion.rate)
     if radius == 0.0:
-        sign = side if side != 0.0 else math.copysign(1.0, volume)
-        sine = math.sqrt(square)
-        return Ahead(sign * volume + level * sine, sign * slope, -bend, bend, sign * volume > level * sine)
+        return Ahead(side * volume + level * sine, side * slope, -bend, bend, side * volume > level * sine)
     is_clear = volume * volume > (radius + level) * (radius + level) * square
     rounded = allowed_radius(radius, level) ** 2
     cosine = dot(u, w)
@@ -111,7 +111,7 @@ def edges_ahead(
     slowest = max(0.0, abs(slope) - bend * span)
     slope = 2.0 * (volume * slope + rounded * cosine * dot(turning, w))
     bend = 2.0 * far * bend + 4.0 * rounded * motion.rate * motion.rate
-    fastest = speed + far * motion.rate
+    fastest = speed * steepest + far * motion.rate
     return Ahead(value, slope, 2.0 * slowest * slowest - bend, 2.0 * fastest * fastest + bend, is_clear)
 
 
@@ -177,15 +177,6 @@ def between_segments(p: Vector, u: Vector, length: float, q: Vector, w: Vector, 
 
 
 @kernel
-def room_between_edges(a: Shapes, i: int, b: Shapes, j: int, motion: Motion, amount: float) -> tuple[float, float]:
-    """Return how far apart two edges are after an amount, without what is beyond their ends, and the sine between."""
-    one, other, so_far = a.features[i], b.features[j], turned_by_amount(motion, amount)
-    p, u = moved_point(motion, vector_from(one.point), so_far), turned(motion, vector_from(one.direction), so_far)
-    apart = between_segments(p, u, one.length, vector_from(other.point), vector_from(other.direction), other.length)
-    return apart - one.radius - other.radius, norm(cross(u, vector_from(other.direction)))
-
-
-@kernel
 def can_touch(a: Shapes, i: int, b: Shapes, j: int) -> bool:
     """Whether features of these kinds can touch: faces and edges meet at vertices and crossings."""
     one, other = a.features[i].kind, b.features[j].kind
@@ -194,6 +185,63 @@ def can_touch(a: Shapes, i: int, b: Shapes, j: int) -> bool:
     if one == EDGE and other == EDGE:
         return True
     return a.features[i].radius + b.features[j].radius > 0.0
+
+
+@kernel
+def are_sharp_edges(a: Shapes, i: int, b: Shapes, j: int) -> bool:
+    """Whether two features are edges without a radius, which are apart on either side of each other."""
+    one, other = a.features[i], b.features[j]
+    return one.kind == EDGE and other.kind == EDGE and one.radius + other.radius == 0.0
+
+
+@kernel
+def distance_from(shapes: Shapes, i: int, point: Vector) -> float:
+    """Return how far a point is from a feature's core as far as it reaches; of a face, or less."""
+    feature = shapes.features[i]
+    seen, direction = minus(point, vector_from(feature.point)), vector_from(feature.direction)
+    if feature.kind == EDGE:
+        along = min(max(dot(direction, seen), 0.0), feature.length)
+        return norm(minus(seen, scaled(direction, along)))
+    if feature.kind == FACE:
+        beyond = 0.0
+        for f in range(feature.first_fence, feature.last_fence):
+            beyond = max(beyond, dot(vector_from(shapes.fences[f].direction), seen) - shapes.fences[f].bound)
+        return math.hypot(dot(direction, seen), beyond)
+    return norm(seen)
+
+
+@kernel
+def clear_step(a: Shapes, i: int, b: Shapes, j: int, motion: Motion, amount: float, moved: Shapes) -> float:
+    """Return how much farther the motion surely leads without a contact of two features, by how far apart they are.
+
+    What F says of planes and lines where no feature is, needs no search then.
+    """
+    place_moved(a, i, motion, amount, moved)
+    one, other = moved.features[i], b.features[j]
+    if one.kind == EDGE and other.kind == EDGE:
+        p, u = vector_from(one.point), vector_from(one.direction)
+        away = between_segments(p, u, one.length, vector_from(other.point), vector_from(other.direction), other.length)
+        end = plus(p, scaled(u, one.length))
+        speed = max(norm(velocity_at(motion, p)), norm(velocity_at(motion, end)))
+    elif one.kind == VERTEX:
+        point = vector_from(one.point)
+        away, speed = distance_from(b, j, point), norm(velocity_at(motion, point))
+    else:
+        point = vector_from(other.point)
+        away, speed = distance_from(moved, i, point), norm(velocity_at(motion, point))
+    away -= one.radius + other.radius
+    if away <= 0.0:
+        return 0.0
+    return away / speed if speed > 0.0 else math.inf
+
+
+@kernel
+def stay_parallel(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, span: float) -> bool:
+    """Whether two edges stay side by side over a length of the motion: then they meet at their ends alone."""
+    one, other = moved.features[i], b.features[j]
+    if one.kind != EDGE or other.kind != EDGE:
+        return False
+    return norm(cross(vector_from(one.direction), vector_from(other.direction))) + motion.rate * span < PARALLEL
 
 
 @kernel
@@ -235,7 +283,6 @@ def first_touch(
     j: int,
     motion: Motion,
     end: float,
-    fastest: float,
     level: float,
     side: float,
     slack: float,
@@ -250,8 +297,6 @@ def first_touch(
         The features, placed in the world.
     motion, end
         That of the object; the end is finite.
-    fastest
-        A speed that no point of its part exceeds.
     level
         How deep they may be in each other until they have been well apart, metres: more than they are.
     side
@@ -261,8 +306,10 @@ def first_touch(
     moved
         Memory for the object's shapes.
     """
+    is_sharp = are_sharp_edges(a, i, b, j)
+    if is_sharp and side == 0.0:
+        side = math.copysign(1.0, ahead(a, i, b, j, motion, 0.0, 0.0, 1.0, end).value)
     amount, was_apart, behind = 0.0, False, BEHIND * end
-    are_edges = a.features[i].kind == EDGE and b.features[j].kind == EDGE
     for _ in range(EVALUATIONS):
         rest = end - amount
         now = ahead(a, i, b, j, motion, amount, level, side, rest)
@@ -272,18 +319,18 @@ def first_touch(
         is_at_root = was_apart and now.value < 0.0  # by rounding
         if is_at_root and touches_after(a, i, b, j, motion, amount, slack, slack_m, moved):
             return amount
+        if is_sharp and level == 0.0 and now.value < 0.0:  # lines that have crossed, but not where both edges are
+            side, now = -side, Ahead(-now.value, -now.slope, now.low, now.high, False)
         was_apart = now.value >= 0.0
         step = safe_step(now)
-        if are_edges:  # side by side, the volume that they span tells nothing, and they meet at their ends
-            room, sine = room_between_edges(a, i, b, j, motion, amount)
-            if sine < PARALLEL and (room <= slack_m or sine + motion.rate * rest < PARALLEL):
-                return math.inf
-            step = max(step, room / fastest)
-        if step >= rest:
-            return math.inf
         if NARROWER * step < rest:
             narrow = ahead(a, i, b, j, motion, amount, level, side, NARROWER * step)
             step = max(step, min(safe_step(narrow), NARROWER * step))
+            step = max(step, clear_step(a, i, b, j, motion, amount, moved))
+            if stay_parallel(moved, i, b, j, motion, rest):
+                return math.inf
+        if step >= rest:
+            return math.inf
         if step > LEAST_STEP * end:
             amount += step
             behind = BEHIND * end

@@ -111,6 +111,21 @@ def tells_apart(a: Shapes, i: int, b: Shapes, j: int, normal: Vector, slack: flo
 
 
 @kernel
+def apart_along(a: Shapes, one: int, b: Shapes, other: int, normal: Vector) -> float:
+    """Return how far apart two parts are along an outward normal of the first; they are no nearer than that."""
+    last, first, middle = -math.inf, math.inf, vector_from(a.parts[one].middle)
+    for i in range(a.parts[one].first, a.parts[one].last):
+        if a.features[i].kind == VERTEX:
+            height = dot(minus(vector_from(a.features[i].point), middle), normal)
+            last = max(last, height + a.features[i].radius)
+    for j in range(b.parts[other].first, b.parts[other].last):
+        if b.features[j].kind == VERTEX:
+            height = dot(minus(vector_from(b.features[j].point), middle), normal)
+            first = min(first, height - b.features[j].radius)
+    return first - last
+
+
+@kernel
 def meet_parts(a: Shapes, one: int, b: Shapes, other: int, touch_m: float, found: Meetings) -> float:
     """Append the meetings of two parts; return how far apart they are at least, below zero how deep in each other."""
     slack, slack_m = slack_of(a, one, b, other, touch_m), 2.0 * touch_m
@@ -124,7 +139,7 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, touch_m: float, found
             if not met.is_one:
                 continue
             if tells_apart(a, i, b, j, met.normal, slack):
-                separation = max(separation, met.gap)
+                separation = max(separation, apart_along(a, one, b, other, met.normal))
             if not both_reach(a, i, b, j, met, slack, slack_m):
                 continue
             if met.gap > touch_m:
@@ -138,7 +153,10 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, touch_m: float, found
     keep_nearest(found, first, 2.0 * min(separation, 0.0) - touch_m, touch_m)
     for at in range(first, found.used[0]):
         nearest = min(nearest, found.rows[at].gap)
-    return nearest if nearest < math.inf else separation
+    overlap = -separation - a.features[a.parts[one].first].radius - b.features[b.parts[other].first].radius
+    if nearest == math.inf or touch_m < overlap < math.inf:  # of cores: what reaches does so by the slack
+        return separation
+    return nearest
 
 
 @kernel
