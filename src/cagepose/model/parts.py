@@ -15,8 +15,9 @@ from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, finite_array
 from cagepose.model.naming import check_names, named, names_of
 from cagepose.model.pose import Pose
-from cagepose.model.shapes import AnyShape, Shape
-from cagepose.model.volume import VolumeMoments, union_moments
+from cagepose.model.shapes import AnyShape, Disc, Shape
+from cagepose.model.union import body_moments
+from cagepose.model.volume import VolumeMoments
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -97,6 +98,8 @@ class Object:
         else:
             center = finite_array(center_of_gravity_m, (3,), "center_of_gravity")
         object.__setattr__(self, "center_of_gravity_m", center)
+        if inertia is None and all(isinstance(part, Disc) for part in parts):
+            _ = self._union_moments  # says what is missing
         object.__setattr__(self, "mass_kg", None if mass_kg is None else float(mass_kg))
         object.__setattr__(self, "inertia_kg_m2", inertia)
         object.__setattr__(self, "pose_world_object", pose or Pose())
@@ -132,13 +135,11 @@ class Object:
     @cached_property
     def _union_moments(self) -> VolumeMoments:
         """Taken once, and only where needed: 40 boxes that are turned in all ways take 0.6 s."""
-        if self.shapes:
-            raise SceneError([Problem((), "has shapes other than boxes; give center_of_gravity, mass and inertia")])
-        return union_moments(
-            np.array([box.size_m for box in self.boxes]) / 2.0,
-            np.array([box.pose_object_box.position_m for box in self.boxes]),
-            np.array([box.pose_object_box.rotation for box in self.boxes]),
-        )
+        moments = body_moments(self.parts)
+        if moments is None:
+            remedy = "give its center_of_gravity, mass and inertia, or add a part with a volume"
+            raise SceneError([Problem((), f"has no volume, as discs have none; {remedy}")])
+        return moments
 
 
 def _checked_inertia(value: ArrayLike) -> FloatArray:
