@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cagepose import Box, Capsule, Cone, Convex, Cylinder, Disc, MissingExtraError, Object, Pose, SceneError, Sphere
-from cagepose.model.apart import are_apart, heights_m
+from cagepose.model.apart import are_apart
 from cagepose.model.shape_moments import shape_moments
 from cagepose.model.union import body_moments
 
@@ -131,6 +131,6 @@ def test_shapes_are_apart_if_and_only_if_a_plane_can_be_put_between_them(seed):
         Box((1, 2, 0.5), pose()),
     ]
     for one, other in combinations(shapes, 2):
-        gap_m = float(-(heights_m(one, across) + heights_m(other, -across)).min())
+        gap_m = float(-(one.heights_m(across) + other.heights_m(-across)).min())
         if gap_m > 0.0 or gap_m < -0.05:  # planes are 0.02 rad from each other
             assert are_apart(one, other) == are_apart(other, one) == (gap_m > 0.0), gap_m

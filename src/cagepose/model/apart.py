@@ -34,7 +34,7 @@ def are_apart(one: Shape, other: Shape) -> bool:
     ]
     directions = np.concatenate([_directions(vectors) for vectors in candidates])
     directions = np.concatenate([directions, -directions])
-    gaps = -heights_m(one, directions) - heights_m(other, -directions)
+    gaps = -one.heights_m(directions) - other.heights_m(-directions)
     return float(gaps.max(initial=-reach)) >= -WITHIN * reach or _gilbert(one, other, offset, WITHIN * reach)
 
 
@@ -80,17 +80,6 @@ def _lines(shape: Shape) -> FloatArray:
         start, end = np.moveaxis(shape.hull.vertices_m[shape.hull.edges], 1, 0)
         return _directions(end - start) @ turn.T
     return turn[:, 2:].T
-
-
-def heights_m(shape: Shape, directions: FloatArray) -> FloatArray:
-    """How far the shape reaches along unit vectors (n, 3), metres, (n,)."""
-    nodes = directions @ shape.nodes_body().T
-    if isinstance(shape, Turned):
-        axis = shape.pose_body_shape.rotation[:, 2]
-        across = np.linalg.norm(directions - np.outer(directions @ axis, axis), axis=1)
-        nodes = nodes + np.outer(across, [radius for _, radius in shape.rims])
-    reach: FloatArray = nodes.max(axis=1) + (shape.radius_m if isinstance(shape, Rounded) else 0.0)
-    return reach
 
 
 def _farthest(shape: Shape, direction: FloatArray) -> FloatArray:

@@ -54,6 +54,11 @@ class Shape:
         """Return the distance of the shape's farthest point from a point (3,) of its body's frame, metres."""
         raise NotImplementedError
 
+    def heights_m(self, directions_body: FloatArray) -> FloatArray:
+        """Return how far the shape reaches along unit vectors (n, 3) of its body's frame, (n,), metres."""
+        heights: FloatArray = (directions_body @ self.nodes_body().T).max(axis=1)
+        return heights
+
     def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
         """Return how thick the shape is from side to side, metres, each with the path of the number that says so."""
         raise NotImplementedError
@@ -81,6 +86,9 @@ class Rounded(Shape):
     def farthest_m(self, point_body: FloatArray) -> float:
         return float(np.linalg.norm(self.nodes_body() - point_body, axis=1).max()) + self.radius_m
 
+    def heights_m(self, directions_body: FloatArray) -> FloatArray:
+        return super().heights_m(directions_body) + self.radius_m
+
     def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
         return [(("radius",), 2.0 * self.radius_m)]
 
@@ -100,6 +108,13 @@ class Turned(Shape):
     def farthest_m(self, point_body: FloatArray) -> float:
         x, y, z = self.pose_body_shape.inverse_transform(point_body).tolist()
         return max(float(np.hypot(np.hypot(x, y) + radius, z - height)) for height, radius in self.rims)
+
+    def heights_m(self, directions_body: FloatArray) -> FloatArray:
+        axis = self.pose_body_shape.rotation[:, 2]
+        across = np.linalg.norm(directions_body - np.outer(directions_body @ axis, axis), axis=1)
+        rises = np.outer(across, [radius for _, radius in self.rims])
+        heights: FloatArray = (directions_body @ self.nodes_body().T + rises).max(axis=1)
+        return heights
 
     def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
         heights, radii = zip(*self.rims, strict=True)
