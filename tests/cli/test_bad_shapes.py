@@ -23,7 +23,7 @@ loads:
 """
 PIN = "cylinder: {radius: 5, length: 20}"
 FLOOR = "box: {size: [90, 90, 10]}"
-SHAPES = "box, sphere, capsule, cylinder, cone, convex, disc"
+SHAPES = "box, sphere, capsule, cylinder, cone, convex, disc, hole"
 KNOWN = f"known shapes: {SHAPES}; known keys beside them: position, euler_zyx_deg, name, friction"
 
 # What is broken, the object's shape, the cage's shape, and the whole line that must come out.
@@ -79,7 +79,7 @@ BROKEN = [
      f"4:8: object.shapes[0].torus: is no known shape; remove it; {KNOWN}"),
     ("key of the shape beside it", "radius: 3", FLOOR,
      "4:8: object.shapes[0].radius: is no known shape; it belongs within sphere or capsule or cylinder or"
-     f" convex or disc; {KNOWN}"),
+     f" convex or disc or others; {KNOWN}"),
     ("no kind", "name: pin, position: [0, 0, 0]", FLOOR,
      f"4:7: object.shapes[0]: does not say which shape it is; add one of: {SHAPES}"),
     ("two kinds", "sphere: {radius: 3}, disc: {radius: 3}", FLOOR,
@@ -106,7 +106,7 @@ BROKEN = [
     ("one name in the cage", PIN, FLOOR + ", name: a}\n    - {sphere: {radius: 1}, name: a",
      "9:35: cage.shapes[1].name: 'a' is already the name of shapes[0]; rename one"),
     ("disc without mass", "disc: {radius: 3}", FLOOR,
-     "2:1: object: has no volume, as discs have none; give its center_of_gravity, mass and inertia, or add a"
+     "2:1: object: has no volume, as discs and holes have none; give its center_of_gravity, mass and inertia, or add a"
      " part with a volume"),
     ("foil", PIN, "box: {size: [90, 90, 1e-7]}",
      "8:29: cage.shapes[0].box.size[2]: is 1e-07 mm, too thin to tell its two faces apart (at least"
@@ -114,6 +114,38 @@ BROKEN = [
     ("short pin", "cylinder: {radius: 5, length: 1e-7}", FLOOR,
      "4:38: object.shapes[0].cylinder.length: is 1e-07 mm, too thin to tell its two faces apart (at least"
      " 1.27671e-06 mm, ten times the touch tolerance); thicken the cylinder or lower tolerances.touch"),
+    ("hole without depth", "hole: {radius: 3}", FLOOR,
+     "4:14: object.shapes[0].hole.depth: is missing; add it, for example depth: 10"),
+    ("negative depth", "hole: {radius: 3, depth: -5}", FLOOR,
+     "4:33: object.shapes[0].hole.depth: is -5; give a number above 0"),
+    ("chamfer of 90 deg", "hole: {radius: 3, depth: 5, chamfer: {width: 1, angle_deg: 90}}", FLOOR,
+     "4:67: object.shapes[0].hole.chamfer.angle_deg: is 90; give a number below 90"),
+    ("chamfer without width", "hole: {radius: 3, depth: 5, chamfer: {angle_deg: 45}}", FLOOR,
+     "4:45: object.shapes[0].hole.chamfer.width: is missing; add it, for example width: 0.5"),
+    ("chamfer as deep as the hole", PIN, "hole: {radius: 3, depth: 5, chamfer: {width: 5, angle_deg: 45}}",
+     "8:45: cage.shapes[0].hole.chamfer: reaches the bottom; make it narrower or flatter, or the hole deeper"),
+    ("hole in nothing", PIN, "hole: {radius: 3, depth: 5, in: []}",
+     "8:40: cage.shapes[0].hole.in: is empty; give at least one"),
+    ("hole in what is unknown", PIN, FLOOR + ", name: a}\n    - {hole: {radius: 3, depth: 5, in: [b]}",
+     "9:41: cage.shapes[1].hole.in[0]: is 'b', no box or shape of this body; name one of its own: a"),
+    ("hole in itself", PIN, "name: a, hole: {radius: 3, depth: 5, in: [a]}",
+     "8:50: cage.shapes[0].hole.in[0]: is 'a', no box or shape of this body; name one of its own, which has"
+     " none: leave in out"),
+    ("hole in the other body", PIN, "hole: {radius: 3, depth: 5, in: [cylinder1]}",
+     "8:41: cage.shapes[0].hole.in[0]: is 'cylinder1', no box or shape of this body; name one of its own,"
+     " which has none: leave in out"),
+    ("hole off the face", PIN, FLOOR + "}\n    - {hole: {radius: 3, depth: 5, in: [box1]}, position: [43, 0, 5]",
+     "9:14: cage.shapes[1].hole: is cut out of box1, but its mouth is not all on a face there; move it there"
+     " (its axis z points out of the part), or make it smaller"),
+    ("hole within the part", PIN, FLOOR + "}\n    - {hole: {radius: 3, depth: 2, in: [box1]}, position: [0, 0, 1]",
+     "9:14: cage.shapes[1].hole: has its mouth inside box1; move it to the face (its axis z points out of the"
+     " part)"),
+    ("hole above the part", PIN, FLOOR + "}\n    - {hole: {radius: 3, depth: 2, in: [box1]}, position: [0, 0, 9]",
+     "9:14: cage.shapes[1].hole: is cut out of box1, but its mouth is not all on a face there; move it there"
+     " (its axis z points out of the part), or make it smaller"),
+    ("nothing but a hole", "hole: {radius: 3, depth: 5}", FLOOR,
+     "2:1: object: has no volume, as discs and holes have none; give its center_of_gravity, mass and inertia,"
+     " or add a part with a volume"),
 ]  # fmt: skip
 
 # The same for whole bodies: what to replace, by what, and the line.

@@ -126,3 +126,17 @@ def test_a_damaged_record_of_shapes_is_refused(spoil: Callable[[dict[str, Any]],
     spoil(record)
     with pytest.raises(ValueError, match="validation error"):
         from_record(Scene, record)
+
+
+def test_holes_are_read_set_and_saved() -> None:
+    hole = "hole: {radius: 2, depth: 5, in: [block], chamfer: {width: 0.5, angle_deg: 30}}"
+    text = SCENE.replace("  pose: {position: [0, 1, 0]}", f"    - {{{hole}, position: [100, 0, 4.5], friction: 0.3}}")
+    scene = parse_scene(text, set_values=["cage.shapes[4].hole.depth=6"])
+    (found,) = scene.cage.holes
+    assert (found.name, found.in_, scene.friction_of["hole1"]) == ("hole1", ("block",), 0.3)
+    chamfer_m = 0.5 * INCH * math.sqrt(3.0)
+    expected = [(-6 * INCH, 2 * INCH), (-chamfer_m, 2 * INCH), (0, 2.5 * INCH)]
+    assert_allclose(found.rims, expected, atol=1e-15)
+    record = json.loads(json.dumps(record_of(scene)))
+    assert record["cage_holes"][0]["in_"] == ["block"]
+    assert record_of(from_record(Scene, record)) == record

@@ -111,7 +111,7 @@ def test_overlap_without_the_extra_names_it_and_the_other_way_out(monkeypatch):
 
 def test_a_body_without_volume_needs_its_mass_properties():
     for given in ({}, {"center_of_gravity_m": (0, 0, 0)}, {"mass_kg": 1.0, "inertia_kg_m2": np.eye(3)}):
-        with pytest.raises(SceneError, match=r"^has no volume, as discs have none; give its center_of_gravity, mass"):
+        with pytest.raises(SceneError, match=r"^has no volume, as discs and holes have none; give its center_of"):
             Object(shapes=[Disc(1.0)], **given)
     Object(shapes=[Disc(1.0)], center_of_gravity_m=(0, 0, 0), mass_kg=1.0, inertia_kg_m2=np.eye(3))
 

@@ -15,7 +15,9 @@ from cagepose.files.schema_shapes import CoefficientModel, ShapeModel
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
+from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.load import Force, Load, Moment, Spring
+from cagepose.model.naming import names_of
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Adjustable, Scene
@@ -118,8 +120,15 @@ class _Builder:
         if model.convex is not None:
             vertices = to_metres(model.convex.vertices, self.unit)
             return Convex(vertices, length(model.convex.radius or 0.0), pose, model.name)
-        assert model.disc is not None, "the schema lets no shape pass that has no kind"
-        return Disc(length(model.disc.radius), pose, model.name)
+        if model.disc is not None:
+            return Disc(length(model.disc.radius), pose, model.name)
+        assert model.hole is not None, "the schema lets no shape pass that has no kind"
+        chamfer = None
+        if model.hole.chamfer is not None:
+            chamfer = Chamfer(length(model.hole.chamfer.width), math.radians(model.hole.chamfer.angle_deg))
+        return Hole(
+            length(model.hole.radius), length(model.hole.depth), chamfer, model.hole.in_ or (), pose, model.name
+        )
 
     def length(self, length: float) -> float:
         return float(to_metres(length, self.unit))
@@ -145,15 +154,15 @@ class _Builder:
     def friction_of(self, model: SceneModel, held: Object, cage: Cage) -> dict[str, float]:
         """Return the coefficients of all that have their own, by name; those of shapes stand beside them."""
         found = dict((model.friction and model.friction.of) or {})
-        names = {path[:2]: str(part.name) for path, part in zip(held.part_paths, held.parts, strict=True)}
-        of_object = [names["shapes", index] for index in range(len(model.object.shapes or []))]
-        of_cage = list(cage.element_names[len(cage.names) :])
-        shared = set(names.values()) & set(cage.element_names)
-        for body, shapes, shape_names in (
-            ("object", model.object.shapes, of_object),
-            ("cage", model.cage.shapes, of_cage),
+        in_object = dict(zip((path[:2] for path in held.part_paths), names_of((*held.parts, *held.holes)), strict=True))
+        in_cage = dict(zip((path[:2] for path in cage.shape_paths), cage.element_names[len(cage.names) :], strict=True))
+        shared = set(in_object.values()) & set(cage.element_names)
+        for body, shapes, names in (
+            ("object", model.object.shapes, in_object),
+            ("cage", model.cage.shapes, in_cage),
         ):
-            for index, (shape, name) in enumerate(zip(shapes or [], shape_names, strict=True)):
+            for index, shape in enumerate(shapes or []):
+                name = names["shapes", index]
                 if (coefficient := _coefficient(shape.friction)) is None:
                     continue
                 place = (body, "shapes", index, "friction")

@@ -128,11 +128,7 @@ def _choice(found: object, expected: str) -> str:
 
 def _unknown_key(found: str, known: list[str]) -> str:
     homes = _homes().get(found, [])
-    if homes:
-        others = ["others"] if len(homes) > _SHOWN_HOMES else []
-        meant = f"it belongs to {' or '.join([*homes[:_SHOWN_HOMES], *others])}; "
-    else:
-        meant = _close(found, known)
+    meant = f"it belongs to {_some_of(homes)}; " if homes else _close(found, known)
     return f"is no known key; {meant}known keys: {', '.join(known)}"
 
 
@@ -140,8 +136,12 @@ def _unknown_shape(found: str, known: list[str]) -> str:
     """For a key of a shape, most of which are the names of all shapes that there are."""
     others = [key for key in known if key not in KINDS]
     holders = [home.rpartition(".")[2] for home in _homes().get(found, []) if home.startswith("object.shapes[i].")]
-    meant = f"it belongs within {' or '.join(holders)}; " if holders else _close(found, known)
+    meant = f"it belongs within {_some_of(holders)}; " if holders else _close(found, known)
     return f"is no known shape; {meant}known shapes: {', '.join(KINDS)}; known keys beside them: {', '.join(others)}"
+
+
+def _some_of(places: list[str]) -> str:
+    return " or ".join([*places[:_SHOWN_HOMES], *(["others"] if len(places) > _SHOWN_HOMES else [])])
 
 
 def _close(found: str, known: list[str]) -> str:

@@ -86,6 +86,32 @@ class DiscModel(Mapping):
     radius: Positive = Field(description="Radius.", examples=[3])
 
 
+class ChamferModel(Mapping):
+    """The cone that widens the mouth of a hole."""
+
+    width: Positive = Field(description="How much wider the radius is at the mouth.", examples=[0.5])
+    angle_deg: Annotated[float, Field(gt=0.0, lt=90.0)] = Field(
+        description="Between the cone's wall and the hole's axis.", examples=[45]
+    )
+
+
+class HoleModel(Mapping):
+    """A round hole along z: its mouth at the shape's position, z pointing out of the part."""
+
+    radius: Positive = Field(description="Radius.", examples=[3])
+    depth: Positive = Field(description="From the mouth to the bottom.", examples=[10])
+    chamfer: ChamferModel | None = Field(
+        None, description="A cone at the mouth; left out: a sharp rim.", examples=[{"width": 0.5, "angle_deg": 45}]
+    )
+    in_: Annotated[list[Name], Field(min_length=1)] | None = Field(
+        None,
+        alias="in",
+        description="Names of the boxes and shapes of the same body that it is cut out of; left out: it stands alone,"
+        " solid all around.",
+        examples=[["plate"]],
+    )
+
+
 def _friction_form(value: object) -> str | None:
     """Which of the two ways to give friction this is."""
     if isinstance(value, bool):
@@ -97,7 +123,7 @@ Friction = Annotated[
     Annotated[NotNegative, Tag("number")] | Annotated[CoefficientModel, Tag("mapping")], Discriminator(_friction_form)
 ]
 
-KINDS = ("box", "sphere", "capsule", "cylinder", "cone", "convex", "disc")
+KINDS = ("box", "sphere", "capsule", "cylinder", "cone", "convex", "disc", "hole")
 """Keys that say what a shape is."""
 
 
@@ -123,6 +149,7 @@ class ShapeModel(Mapping):
         examples=[{"vertices": [[0, 0, 0], [10, 0, 0], [0, 10, 0], [0, 0, 10]]}],
     )
     disc: DiscModel | None = Field(None, description="A flat round disc.", examples=[{"radius": 3}])
+    hole: HoleModel | None = Field(None, description="A round hole.", examples=[{"radius": 3, "depth": 10}])
     position: Vector | None = Field(
         None, description="Where it is in its body's frame; left out: at the origin.", examples=[[0, 0, 0]]
     )

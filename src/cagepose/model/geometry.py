@@ -54,12 +54,13 @@ def scene_size(held: Object, cage: Cage) -> float:
 
     Each is measured as twice the greatest distance from the middle, so the size does not depend on any frame.
     """
-    return max(object_size(held), _body_size(cage.nodes_cage(), cage.shapes))
+    return max(object_size(held), _body_size(cage.nodes_cage(), (*cage.shapes, *cage.holes)))
 
 
 def object_size(held: Object) -> float:
     """The object's diameter, metres."""
-    return _body_size(np.concatenate([part.nodes_body() for part in held.parts]), held.shapes)
+    nodes = [part.nodes_body() for part in (*held.parts, *held.holes)]
+    return _body_size(np.concatenate(nodes), (*held.shapes, *held.holes))
 
 
 def _body_size(nodes: FloatArray, shapes: tuple[Shape, ...]) -> float:

@@ -10,6 +10,7 @@ outline by k (k + 1).
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -72,10 +73,18 @@ def shape_moments(shape: Shape) -> VolumeMoments:
 
 
 def _turned_moments(shape: Turned) -> VolumeMoments:
-    """Of a frustum: integrals of powers of a radius that changes linearly from a to b."""
     if len(shape.rims) == 1:
         return VolumeMoments(0.0, np.zeros(3), np.zeros((3, 3)))
-    (low, a), (high, b) = shape.rims
+    frusta = [_frustum_moments(*rims) for rims in pairwise(shape.rims)]
+    if len(frusta) == 1:
+        return frusta[0]
+    origin = frusta[0].centroid_m
+    return sum((sums_of(frustum, origin) for frustum in frusta), start=NOTHING).moments(origin)
+
+
+def _frustum_moments(bottom: tuple[float, float], top: tuple[float, float]) -> VolumeMoments:
+    """Integrals of powers of a radius that changes linearly from a to b."""
+    (low, a), (high, b) = bottom, top
     length = high - low
     area = (a * a + a * b + b * b) / 3.0  # the mean of the square of the radius
     middle = (a * a + 2.0 * a * b + 3.0 * b * b) / 12.0 / area  # as a fraction of the length

@@ -16,6 +16,7 @@ from cagepose.errors import MissingExtraError
 from cagepose.model.apart import are_apart
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray
+from cagepose.model.hole import Hole
 from cagepose.model.shape_moments import NOTHING, Sums, shape_moments, sums_of
 from cagepose.model.shapes import Shape
 from cagepose.model.surface import Mesh, shape_mesh
@@ -24,6 +25,8 @@ from cagepose.model.volume import VolumeMoments, union_moments
 SEGMENTS = 128
 """Chords of a circle in the coarser of two meshes. The overlap of balls, bars, cones and boxes then comes out to a few
 parts in 1e7, and in a second at most."""
+NEARLY_NOTHING = 1e-6
+"""What holes leave of a body that is less than this share of it is rounding."""
 
 
 def box_moments(boxes: Sequence[Box]) -> VolumeMoments:
@@ -35,34 +38,52 @@ def box_moments(boxes: Sequence[Box]) -> VolumeMoments:
     )
 
 
-def body_moments(parts: Sequence[Shape]) -> VolumeMoments | None:
-    """Return the moments of a union of shapes in their body's frame; None where they have no volume.
+def body_moments(parts: Sequence[Shape], holes: Sequence[Hole] = ()) -> VolumeMoments | None:
+    """Return the moments of a union of shapes, less holes in them, in their body's frame; None without any volume.
 
-    Exact but for rounding where no shape but boxes overlaps another; else what overlaps is known to about 1e-6 of
-    itself.
+    Exact but for rounding where no shape but boxes overlaps another, and each hole lies in one shape and clear of the
+    others and of other holes; else what overlaps, and what a hole takes away, is known to about 1e-6 of itself.
 
     Raises
     ------
     MissingExtraError
-        Shapes other than boxes overlap, and manifold3d is not installed.
+        The case is not exact, and manifold3d is not installed.
     """
     solid = [(part, shape_moments(part)) for part in parts if not isinstance(part, Box)]
     solid = [(part, moments) for part, moments in solid if moments.volume_m3 > 0.0]
     boxes = [part for part in parts if isinstance(part, Box)]
-    if not solid:
+    holes = [hole for hole in holes if hole.in_]
+    if not solid and not (boxes and holes):
         return box_moments(boxes) if boxes else None
-    groups = _groups([*boxes, *(part for part, _ in solid)])
-    if len(solid) == 1 and not boxes:
+    if len(solid) == 1 and not boxes and not holes:
         return solid[0][1]
-    origin = np.mean([moments.centroid_m for _, moments in solid], axis=0)
+    material = [*boxes, *(part for part, _ in solid)]
+    origin = np.mean([part.nodes_body().mean(axis=0) for part in material], axis=0)
     total = sums_of(box_moments(boxes), origin) if boxes else NOTHING
+    least = NEARLY_NOTHING * sum(shape_moments(part).volume_m3 for part in material)
     for _, moments in solid:
         total += sums_of(moments, origin)
-    for group in groups:
-        if any(not isinstance(part, Box) for part in group) and len(group) > 1:
-            coarse, fine = _counted_twice(group, origin, halved=False), _counted_twice(group, origin, halved=True)
+    clean = [hole for hole in holes if _is_clean(hole, material, holes)]
+    for hole in clean:
+        total += sums_of(shape_moments(hole), origin).times(-1.0)
+    others = [hole for hole in holes if hole not in clean]
+    for group in _groups(material):
+        cuts = [hole for hole in others if any(part.name in hole.in_ for part in group)]
+        if cuts or (len(group) > 1 and any(not isinstance(part, Box) for part in group)):
+            coarse, fine = (_too_much(group, cuts, origin, halved=halved) for halved in (False, True))
             total += fine.times(-4.0 / 3.0) + coarse.times(1.0 / 3.0)
-    return total.moments(origin)
+    return total.moments(origin) if total.volume > least else None
+
+
+def _is_clean(hole: Hole, parts: Sequence[Shape], holes: Sequence[Hole]) -> bool:
+    """Whether a hole takes all its volume away from one shape, which has it to itself there."""
+    beside = [part for part in parts if not are_apart(hole, part)]
+    return (
+        len(beside) == 1
+        and beside[0].name in hole.in_
+        and hole.is_within(beside[0])
+        and all(other is hole or are_apart(hole, other) for other in holes)
+    )
 
 
 def _groups(parts: Sequence[Shape]) -> list[list[Shape]]:
@@ -74,8 +95,10 @@ def _groups(parts: Sequence[Shape]) -> list[list[Shape]]:
     return [[part for part, of in zip(parts, group_of, strict=True) if of == group] for group in sorted({*group_of})]
 
 
-def _counted_twice(group: Sequence[Shape], origin: FloatArray, *, halved: bool) -> Sums:
-    """Return by how much the sum of shapes, and of the union of those that are boxes, exceeds the union of all."""
+def _too_much(group: Sequence[Shape], holes: Sequence[Hole], origin: FloatArray, *, halved: bool) -> Sums:
+    """Return by how much the sum of shapes, and of the union of those that are boxes, exceeds the union of all, less
+    holes in them.
+    """
     try:
         import manifold3d  # 20 ms and an extra, for bodies whose round parts overlap alone
     except ImportError as error:
@@ -97,12 +120,17 @@ def _counted_twice(group: Sequence[Shape], origin: FloatArray, *, halved: bool) 
 
     unit_m = 2.0 ** float(np.frexp(max(shape.farthest_m(origin) for shape in group))[1])
     union = manifold3d.OpType.Add
-    boxes = [solid(shape) for shape in group if isinstance(shape, Box)]
-    others = [solid(shape) for shape in group if not isinstance(shape, Box)]
-    together = sums(manifold3d.Manifold.batch_boolean([*boxes, *others], union))
+    solids = [solid(shape) for shape in group]
+    cut = []
+    for shape, body in zip(group, solids, strict=True):
+        plugs = [solid(hole) for hole in holes if shape.name in hole.in_]
+        cut.append(manifold3d.Manifold.batch_boolean([body, *plugs], manifold3d.OpType.Subtract) if plugs else body)
+    together = sums(manifold3d.Manifold.batch_boolean(cut, union))
+    boxes = [body for shape, body in zip(group, solids, strict=True) if isinstance(shape, Box)]
     total = sums(manifold3d.Manifold.batch_boolean(boxes, union)) if boxes else NOTHING
-    for other in others:
-        total += sums(other)
+    for shape, body in zip(group, solids, strict=True):
+        if not isinstance(shape, Box):
+            total += sums(body)
     return total + together.times(-1.0)
 
 
