@@ -192,7 +192,7 @@ _set_field = object.__setattr__
 
 
 def _check_friction_of(friction_of: dict[str, float], held: Object, cage: Cage, problems: ProblemList) -> None:
-    elements, parts = set(cage.element_names), set(names_of(held.parts))
+    elements, parts = set(cage.element_names), set(names_of((*held.parts, *held.holes)))
     for name, coefficient in friction_of.items():
         at = ("friction", "of", name)
         if name in elements and name in parts:
@@ -206,9 +206,11 @@ def _check_friction_of(friction_of: dict[str, float], held: Object, cage: Cage, 
 def _check_thickness(held: Object, cage: Cage, touch_m: float, problems: ProblemList) -> None:
     least_m = 10.0 * touch_m  # so that a point on one face is clear of the opposite one, and of probes from it
     shapes: list[tuple[tuple[Key, ...], Shape]] = [
-        (("object", *path), part) for path, part in zip(held.part_paths, held.parts, strict=True)
+        (("object", *path), part) for path, part in zip(held.part_paths, (*held.parts, *held.holes), strict=True)
     ]
-    shapes += [(("cage", "shapes", index, shape.kind), shape) for index, shape in enumerate(cage.shapes)]
+    shapes += [
+        (("cage", *path), shape) for path, shape in zip(cage.shape_paths, (*cage.shapes, *cage.holes), strict=True)
+    ]
     for path, shape in shapes:
         for key, thickness in shape.thickness():
             if thickness < least_m:
@@ -249,7 +251,7 @@ def _check_points_apart(cage: Cage, touch_m: float, problems: ProblemList) -> No
 
 def _check_distance(held: Object, cage: Cage, size_m: float, problems: ProblemList) -> None:
     """A start far from the cage leaves too few digits for the contact at the end of the first travel."""
-    middle = held.pose_world_object.transform(held.parts[0].pose_body_shape.position_m)
+    middle = held.pose_world_object.transform((*held.parts, *held.holes)[0].pose_body_shape.position_m)
     nodes_world = cage.pose_world_cage.transform(cage.nodes_cage())
     distance = float(np.linalg.norm(middle - nodes_world.mean(axis=0)))
     if distance > FARTHEST_START * size_m:
