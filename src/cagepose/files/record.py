@@ -34,6 +34,7 @@ PARTS_OF_A_SCENE = (Object, Cage, Tolerances)
 """Their fields stand among those of the scene."""
 KEYS = {
     "through_world": "through_m",
+    "place_world": "place_m",
     "names": "point_names",
     "points_cage": "points_m",
     "pose_world_cage": "cage_pose",

@@ -56,21 +56,25 @@ def shape_mesh(shape: Shape, segments: int, *, halved: bool = False) -> Mesh:
     ValueError
         Fewer segments.
     """
+    mesh = mesh_in_own_frame(shape, segments, halved=halved)
+    return Mesh(shape.pose_body_shape.transform(mesh.vertices_m), mesh.triangles)
+
+
+def mesh_in_own_frame(shape: Shape, segments: int, *, halved: bool = False) -> Mesh:
+    """As `shape_mesh`, in the shape's own frame: shapes of the same kind and size have the same one."""
     if segments < LEAST_SEGMENTS:
         raise ValueError(f"segments is {segments}; give at least {LEAST_SEGMENTS}")
     finer = 2 if halved else 1
     if isinstance(shape, Box):
-        mesh = _hull_mesh(hull_of(BOX_SIGNS * shape.size_m / 2.0))
-    elif isinstance(shape, Turned):
-        mesh = _turned_mesh([*shape.rims], segments * finer)
-    elif isinstance(shape, Convex) and shape.hull.dimension > 1:
+        return _hull_mesh(hull_of(BOX_SIGNS * shape.size_m / 2.0))
+    if isinstance(shape, Turned):
+        return _turned_mesh([*shape.rims], segments * finer)
+    if isinstance(shape, Convex) and shape.hull.dimension > 1:
         is_sharp = shape.radius_m == 0.0
-        mesh = _hull_mesh(shape.hull) if is_sharp else _RoundedMesh(shape.hull, shape.radius_m, segments, finer).mesh()
-    elif isinstance(shape, Rounded):
-        mesh = _capsule_mesh(shape.core(), shape.radius_m, segments, finer)
-    else:
-        raise TypeError(f"{type(shape).__name__} has no surface")
-    return Mesh(shape.pose_body_shape.transform(mesh.vertices_m), mesh.triangles)
+        return _hull_mesh(shape.hull) if is_sharp else _RoundedMesh(shape.hull, shape.radius_m, segments, finer).mesh()
+    if isinstance(shape, Rounded):
+        return _capsule_mesh(shape.core(), shape.radius_m, segments, finer)
+    raise TypeError(f"{type(shape).__name__} has no surface")
 
 
 def _hull_mesh(hull: Hull) -> Mesh:
