@@ -39,9 +39,7 @@ class Body:
 
     def at(self, pose: Pose) -> Body:
         rotation = pose.rotation
-        return Body(
-            pose.transform(self.corners), self.edges, self.triangles, self.normals @ rotation.T, self.radius
-        )
+        return Body(pose.transform(self.corners), self.edges, self.triangles, self.normals @ rotation.T, self.radius)
 
 
 def body_of(part: Box | Sphere | Capsule | Convex | np.ndarray) -> Body:

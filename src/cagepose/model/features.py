@@ -26,7 +26,7 @@ def shapes_of(parts: Iterable[Box | Shape | FloatArray]) -> Shapes:
         elif isinstance(part, Rounded):
             made.add(hull_of(part.core()), part.pose_body_shape, part.radius_m)
         else:
-            raise NotImplementedError(part.kind)
+            raise TypeError(f"no features are known of a {part.kind}")
     return made.shapes()
 
 

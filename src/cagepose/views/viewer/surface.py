@@ -60,9 +60,7 @@ def nearest_on_object(held: Object, pose: Pose, cage: Cage, elements: Sequence[i
     return found
 
 
-def _write_nearest_part(
-    cores: list[Core], other: Core, first: int, row: int, gap: float, found: Nearest
-) -> None:
+def _write_nearest_part(cores: list[Core], other: Core, first: int, row: int, gap: float, found: Nearest) -> None:
     """Write the nearest of the object's parts from the one with index ``first``, where it is nearer than ``gap``."""
     for least_gap, part in sorted((core.least_gap(other), part) for part, core in enumerate(cores[first:], first)):
         if least_gap >= gap:
