@@ -291,6 +291,10 @@ def _check_points_outside(
     for point_index in np.nonzero(depths > touch_m)[0].tolist():
         box = int(boxes[point_index])
         if box < len(held.boxes):
+            point_object = held.pose_world_object.inverse_transform(geometry.points_world[point_index])
+            holes = [hole for hole in held.holes if held.boxes[box].name in hole.in_]
+            if any(hole.holds(point_object[None])[0] for hole in holes):
+                continue
             path = key_path(("object", *held.part_paths[box][:2]))
             where = f"starts {millimetres(depths[point_index])} inside {path} ({held.boxes[box].name})"
         else:
