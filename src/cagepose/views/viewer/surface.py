@@ -45,7 +45,8 @@ def nearest_on_object(held: Object, pose: Pose, cage: Cage, elements: Sequence[i
     """
     points = cage.points_world()
     chosen = np.arange(len(cage.element_names)) if elements is None else np.array(elements, dtype=np.int64)
-    found = Nearest(*np.zeros((3, len(chosen), 3)), np.zeros(len(chosen), dtype=np.int64))
+    feet, places, normals = np.zeros((3, len(chosen), 3))
+    found = Nearest(feet, places, normals, np.zeros(len(chosen), dtype=np.int64))
     is_point = chosen < len(points)
     gaps = np.full(len(chosen), np.inf)
     if held.boxes:
@@ -60,9 +61,7 @@ def nearest_on_object(held: Object, pose: Pose, cage: Cage, elements: Sequence[i
     return found
 
 
-def _write_nearest_part(
-    cores: list[Core], other: Core, first: int, row: int, gap: float, found: Nearest
-) -> None:
+def _write_nearest_part(cores: list[Core], other: Core, first: int, row: int, gap: float, found: Nearest) -> None:
     """Write the nearest of the object's parts from the one with index ``first``, where it is nearer than ``gap``."""
     for least_gap, part in sorted((core.least_gap(other), part) for part, core in enumerate(cores[first:], first)):
         if least_gap >= gap:
