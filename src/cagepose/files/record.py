@@ -39,6 +39,7 @@ KEYS = {
     "points_cage": "points_m",
     "pose_world_cage": "cage_pose",
     "Cage.shapes": "cage_shapes",
+    "Cage.holes": "cage_holes",
 }
 """Of the attributes (of one class alone) whose key is another than their name without its frame."""
 INFINITE: dict[str, str | None] = {"distance_m": None}

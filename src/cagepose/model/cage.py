@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from cagepose.errors import Key
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, ProblemList, check_kinds, duplicates, finite_array
+from cagepose.model.hole import Hole, check_holes
 from cagepose.model.naming import check_names, named, names_of
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import AnyShape, Shape
@@ -30,14 +31,20 @@ class Cage:
         One name for each point; left out: "C1", "C2", ...
     shapes
         Boxes and other shapes in the cage's own frame, every one with a name.
+    holes
+        What is cut out of them, and what stands alone; every one with a name.
     pose_world_cage
         Moves all points and shapes at once: the misaligned mechanism.
+    shape_paths
+        For each of the shapes, then of the holes, where its numbers were given: ``("shapes", 2, "cylinder")``.
     """
 
     points_cage: Annotated[FloatArray, (-1, 3)]
     names: tuple[str, ...]
     pose_world_cage: Pose
     shapes: tuple[Box | AnyShape, ...]
+    holes: tuple[Hole, ...]
+    shape_paths: tuple[tuple[Key, ...], ...]
 
     def __init__(
         self,
@@ -45,6 +52,7 @@ class Cage:
         names: Sequence[str] | None = None,
         pose: Pose | None = None,
         shapes: Iterable[Shape] = (),
+        holes: Iterable[Hole] = (),
     ) -> None:
         """
         Raises
@@ -60,27 +68,39 @@ class Cage:
         default_names = tuple(f"C{index + 1}" for index in range(len(array)))
         given = default_names if names is None else tuple(str(name) for name in names)
         problems = ProblemList()
-        all_shapes = named(check_kinds(shapes, Shape, "shapes", problems))
+        placed: list[tuple[tuple[Key, ...], Any]] = [
+            (("shapes", index, shape.kind), shape)
+            for index, shape in enumerate(check_kinds(shapes, Shape, "shapes", problems))
+        ]
+        placed += [(("holes", index), hole) for index, hole in enumerate(check_kinds(holes, Hole, "holes", problems))]
         problems.raise_if_any()
-        if not has_points and not all_shapes:
+        placed.sort(key=lambda shape: isinstance(shape[1], Hole))
+        paths = [path for path, _ in placed]
+        everything = named(shape for _, shape in placed)
+        solids = tuple(shape for shape in everything if not isinstance(shape, Hole))
+        holes = tuple(shape for shape in everything if isinstance(shape, Hole))
+        if not has_points and not everything:
             problems.add((), "has neither points nor shapes; give at least one of them")
         if len(given) != len(array):
             problems.add(("names",), f"holds {len(given)} names for {len(array)} points; give one for each")
         for name, indices in duplicates(given).items():
             problems.add(("points", name), f"is the name of {len(indices)} points; rename all but one")
         places: list[tuple[Key, ...]] = [("points", name) for name in dict.fromkeys(given)]
-        places += [("shapes", index) for index in range(len(all_shapes))]
-        check_names([*dict.fromkeys(given), *names_of(all_shapes)], places, problems)
+        places += [path[:2] for path in paths]
+        check_names([*dict.fromkeys(given), *names_of(everything)], places, problems)
+        check_holes(holes, paths[len(solids) :], solids, problems)
         problems.raise_if_any()
         object.__setattr__(self, "points_cage", array)
         object.__setattr__(self, "names", given)
         object.__setattr__(self, "pose_world_cage", pose or Pose())
-        object.__setattr__(self, "shapes", all_shapes)
+        object.__setattr__(self, "shapes", solids)
+        object.__setattr__(self, "holes", holes)
+        object.__setattr__(self, "shape_paths", tuple(paths))
 
     @cached_property
     def element_names(self) -> tuple[str, ...]:
-        """The names of all points, then of all shapes."""
-        return (*self.names, *names_of(self.shapes))
+        """The names of all points, then of all shapes, then of all holes."""
+        return (*self.names, *names_of(self.shapes), *names_of(self.holes))
 
     def points_world(self) -> FloatArray:
         """The points in the world, (n, 3), metres."""
@@ -88,4 +108,4 @@ class Cage:
 
     def nodes_cage(self) -> FloatArray:
         """The points and those that tell where the shapes lie, in the cage's own frame, (n, 3), metres."""
-        return np.concatenate([self.points_cage, *(shape.nodes_body() for shape in self.shapes)])
+        return np.concatenate([self.points_cage, *(shape.nodes_body() for shape in (*self.shapes, *self.holes))])

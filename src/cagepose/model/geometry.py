@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -72,7 +73,7 @@ def scene_size(held: Object, cage: Cage) -> float:
 
     Each is measured as twice the greatest distance from the middle, so the size does not depend on any frame.
     """
-    return max(object_size(held), _body_size(cage.nodes_cage(), cage.shapes))
+    return max(object_size(held), _body_size(cage.nodes_cage(), (*cage.shapes, *cage.holes)))
 
 
 def sizes_with_points(held: Object, cage: Cage, points_cage: FloatArray) -> FloatArray:
@@ -87,13 +88,22 @@ def sizes_with_points(held: Object, cage: Cage, points_cage: FloatArray) -> Floa
 
 def object_size(held: Object) -> float:
     """The object's diameter, metres."""
-    return _body_size(np.concatenate([part.nodes_body() for part in held.parts]), held.shapes)
+    nodes = [part.nodes_body() for part in (*held.parts, *held.holes)]
+    return _body_size(np.concatenate(nodes), (*held.shapes, *held.holes))
 
 
 def _body_size(nodes: FloatArray, shapes: tuple[Shape, ...]) -> float:
     """The diameter of all nodes of a body and of its shapes, about the middle of the nodes."""
     middle = nodes.mean(axis=0)
     return max(float(cage_sizes(nodes)), *(2.0 * shape.farthest_m(middle) for shape in shapes), 0.0)
+
+
+def body_limits(shapes: Sequence[Shape], points: FloatArray | None = None) -> FloatArray:
+    """The lowest and highest coordinates of shapes and points (n, 3) in their body's frame, (2, 3), metres."""
+    ends = np.array([(-shape.heights_m(-np.eye(3)), shape.heights_m(np.eye(3))) for shape in shapes]).reshape(-1, 2, 3)
+    lows, highs = np.moveaxis(ends, 1, 0)
+    given = np.zeros((0, 3)) if points is None else points
+    return np.array([np.concatenate([lows, given]).min(axis=0), np.concatenate([highs, given]).max(axis=0)])
 
 
 def cage_sizes(points: FloatArray) -> FloatArray:

@@ -120,9 +120,7 @@ def cage_middle(scene: Scene) -> FloatArray:
     return found
 
 
-def cage_middles(
-    cage: Cage, points_cage_m: FloatArray, positions_m: FloatArray, quaternions: FloatArray
-) -> FloatArray:
+def cage_middles(cage: Cage, points_cage_m: FloatArray, positions_m: FloatArray, quaternions: FloatArray) -> FloatArray:
     """Return the middles of cages in the world, (n, 3), metres, from which kernels see all positions.
 
     Points are (n, n_points, 3), poses (n, 3) and (n, 4), each also one row for all; the shapes are those of ``cage``.

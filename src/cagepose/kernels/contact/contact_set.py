@@ -328,7 +328,7 @@ def append_meeting(
             contact.directions[j, k] = directions[j][k]
         write_scaled_wrench(directions[j], cross(arm, directions[j]), frame, contact.columns[j])
     found = curvatures(
-        placement.held,
+        placement.body.world,
         met.feature,
         geometry.cage,
         met.cage_feature,

@@ -170,7 +170,7 @@ def first_contact(
 ) -> Hit:
     """Return the first contact along a twist, but for what touches already: of points and boxes, or of shapes."""
     hit = first_point(setting, placement, contacts, position, quaternion, twist)
-    if len(placement.held.parts) == 0:
+    if len(setting.geometry.held.parts) == 0:
         return hit
     motion = motion_of(position, twist.velocity, twist.spin)
     end = min(hit.amount, twist.end)

@@ -98,6 +98,20 @@ def face_and_vertex(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
 
 
 @kernel
+def outward_side(shapes: Shapes, i: int, normal: Vector) -> float:
+    """Return how much farther beyond its outward normals an edge has the opposite of a direction; zero: an edge without
+    faces has all directions.
+
+    Cores may be a little into each other, the sharp ones and those of a radius below the touch tolerance, so which way
+    is out is not told by where they are.
+    """
+    feature = shapes.features[i]
+    if feature.first_fence == feature.last_fence:
+        return 0.0
+    return farthest_beyond(shapes, i, scaled(normal, -1.0)) - farthest_beyond(shapes, i, normal)
+
+
+@kernel
 def edge_and_edge(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
     """Two edges that cross."""
     u, w = vector_from(a.features[i].direction), vector_from(b.features[j].direction)
@@ -110,10 +124,8 @@ def edge_and_edge(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
     normal = scaled(crossed, 1.0 / sine)
     distance = dot(start, normal)
     radius, others = a.features[i].radius, b.features[j].radius
-    if radius + others > 0.0:
-        turned = distance < 0.0
-    else:  # they may be a little into each other: which way is out?
-        turned = farthest_beyond(a, i, scaled(normal, -1.0)) < farthest_beyond(a, i, normal)
+    out = outward_side(a, i, normal) - outward_side(b, j, normal)
+    turned = out < 0.0 if abs(out) > PARALLEL else distance < 0.0
     if turned:
         normal, distance = scaled(normal, -1.0), -distance
     place = plus(plus(vector_from(a.features[i].point), scaled(u, s)), scaled(normal, radius))
