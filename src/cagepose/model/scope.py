@@ -7,6 +7,11 @@ from cagepose.model.scene import Scene
 from cagepose.model.shapes import Shape
 
 
+def has_other_shapes(scene: Scene) -> bool:
+    """Whether a scene has more than boxes in the object and points in the cage."""
+    return bool(scene.object.shapes or scene.cage.shapes)
+
+
 def other_shapes(scene: Scene, needs: str) -> list[Problem]:
     """Return a problem for each shape of a scene that is neither a box of the object nor a point of the cage.
 

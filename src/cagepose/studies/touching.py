@@ -45,7 +45,8 @@ class TouchFinder:
         """Return what touches, within the scene's touch tolerance, with the object at a pose."""
         place_object(self._geometry, *pose_world_object.as_tuples(), self._placement)
         meetings = self._placement.meetings
-        rows: Any = meetings.rows[: max(int(meetings.used[0]), 0)]
+        rows: Any = meetings.rows
+        rows = rows[: max(int(meetings.used[0]), 0)]
         rows = rows[~rows["is_hidden"]]
         # The object's own point; the cage's is within the touch tolerance of it.
         return PlacesOfContact(

@@ -172,7 +172,7 @@ class PictureMaker:
     def _named_place(self, index: int, marks: FloatArray) -> FloatArray:
         """Return where an element of the cage has its name: a shape that touches where it does, else in its middle."""
         if index < len(self.points):
-            return self.points[index]
+            return np.asarray(self.points[index])
         if len(marks):
             return np.asarray(marks[0])
         return self._middle(index - len(self.points))
@@ -253,9 +253,9 @@ class PictureMaker:
         for shape in scene.object.shapes:
             faces = self._solid(shape, pose @ shape.pose_body_shape, BLUE)
             drawn.append((float(faces[0][..., 2].mean()), (*faces, SKY, SEE_THROUGH)))
-        for index, (shape, placed) in enumerate(zip(scene.cage.shapes, self.body_poses, strict=True)):
+        for index, body in enumerate(scene.cage.shapes):
             depth = float(self._pixels(self._middle(index))[2])
-            drawn.append((depth, (*self._solid(shape, placed, BROWN), SAND, BODY_OPACITY)))
+            drawn.append((depth, (*self._solid(body, self.body_poses[index], BROWN), SAND, BODY_OPACITY)))
         for _, (corners, lit, color, opacity) in sorted(drawn, key=lambda faces: faces[0]):
             if lit is None:
                 self.raster.face(corners, color, opacity)

@@ -73,8 +73,8 @@ class Raster:
             plane[pixels] = mixed[plane[pixels]]
 
     def triangles(self, corners: FloatArray, lit: FloatArray, color: Color, opacity: float) -> None:
-        """Fill triangles, corners (m, 3, 3), none before another, that can be seen through like a `face`. ``lit``, (m, 3),
-        is how bright each corner is.
+        """Fill triangles, corners (m, 3, 3), none before another, that can be seen through like a `face`. ``lit``,
+        (m, 3), is how bright each corner is.
         """
         first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         areas = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]

@@ -45,7 +45,8 @@ def nearest_on_object(held: Object, pose: Pose, cage: Cage, elements: Sequence[i
     """
     points = cage.points_world()
     chosen = np.arange(len(cage.element_names)) if elements is None else np.array(elements, dtype=np.int64)
-    found = Nearest(*np.zeros((3, len(chosen), 3)), np.zeros(len(chosen), dtype=np.int64))
+    feet, places, normals = np.zeros((3, len(chosen), 3))
+    found = Nearest(feet, places, normals, np.zeros(len(chosen), dtype=np.int64))
     is_point = chosen < len(points)
     gaps = np.full(len(chosen), np.inf)
     if held.boxes:
