@@ -256,14 +256,15 @@ def touches_after(
     j: int,
     motion: Motion,
     amount: float,
+    level: float,
     slack: float,
     slack_m: float,
     moved: Shapes,
 ) -> bool:
-    """Whether two features reach where they meet after an amount, and come nearer."""
+    """Whether two features reach where they meet after an amount, not on their far sides, and come nearer."""
     place_moved(a, i, motion, amount, moved)
     met = meeting(moved, i, b, j)
-    if not both_reach(moved, i, b, j, met, slack, slack_m):
+    if met.gap < -level - slack_m or not both_reach(moved, i, b, j, met, slack, slack_m):
         return False
     return dot(met.normal, velocity_at(motion, met.place)) > 0.0
 
@@ -310,7 +311,7 @@ def first_touch(
             level = 0.0
             continue
         is_at_root = was_apart and now.value < 0.0  # by rounding
-        if is_at_root and touches_after(a, i, b, j, motion, amount, slack, slack_m, moved):
+        if is_at_root and touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
             return amount
         if is_sharp and level == 0.0 and now.value < 0.0:  # lines that have crossed, but not where both edges are
             side, now = -side, Ahead(-now.value, -now.slope, now.low, now.high, False)
@@ -324,7 +325,7 @@ def first_touch(
             return math.inf
         if step > LEAST_STEP * end:
             amount += step
-        elif touches_after(a, i, b, j, motion, amount, slack, slack_m, moved):
+        elif touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
             return amount
         else:
             amount += BEHIND * end
