@@ -35,7 +35,7 @@ from cagepose.kernels.quasistatic.run import (
     run_quasistatic_cases,
 )
 from cagepose.kernels.quasistatic.workspace import empty_quasistatic_workspace
-from cagepose.kernels.shapes.features import no_shapes
+from cagepose.kernels.shapes.features import NO_SHAPES
 from cagepose.kernels.stability.proof import empty_proof_workspace
 from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
 from cagepose.kernels.stepwise.run import (
@@ -55,7 +55,7 @@ UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     """Yield each entry and its arguments; only their types count."""
     vectors, quaternions, numbers = np.zeros((1, 3)), np.zeros((1, 4)), np.zeros(1)
-    shapes = no_shapes()
+    shapes = NO_SHAPES
     geometry = Geometry(vectors, vectors, np.zeros((1, 3, 3)), 1, vectors, shapes, shapes, 0.0)
     tolerances = kernel_tolerances(1.0, 1e-9)
 

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from cagepose.files.scene_file import load_scene as load_scene
     from cagepose.model.box import Box as Box
     from cagepose.model.cage import Cage as Cage
+    from cagepose.model.hole import Chamfer as Chamfer
+    from cagepose.model.hole import Hole as Hole
     from cagepose.model.load import Force as Force
     from cagepose.model.load import Load as Load
     from cagepose.model.load import Moment as Moment
@@ -90,6 +92,7 @@ _HOMES = {
     ),
     "cagepose.model.box": ("Box",),
     "cagepose.model.cage": ("Cage",),
+    "cagepose.model.hole": ("Chamfer", "Hole"),
     "cagepose.model.load": ("Force", "Load", "Moment", "Spring"),
     "cagepose.model.parts": ("Object",),
     "cagepose.model.pose": ("Pose",),
@@ -123,6 +126,7 @@ __all__ = [
     "Certificate",
     "CertificateCheck",
     "CertificateError",
+    "Chamfer",
     "ChosenFaces",
     "Comparison",
     "Cone",
@@ -136,6 +140,7 @@ __all__ = [
     "Force",
     "Frame",
     "FreeMotion",
+    "Hole",
     "KernelsError",
     "Load",
     "Margin",

@@ -35,12 +35,12 @@ EDITS = [
     ("key in the wrong place", "name: sample", "name: sample\nmass: 2", "2:1: mass: is no known key; it belongs to"
      f" object; known keys: {KEYS}"),
     ("key of several places", "name: sample", "name: sample\nposition: 2", "2:1: position: is no known key; it belongs"
-     f" to object.boxes[i] or object.pose or cage.pose; known keys: {KEYS}"),
+     f" to object.boxes[i] or object.shapes[i] or object.pose or cage.shapes[i] or cage.pose; known keys: {KEYS}"),
     ("missing name", "name: sample\n", "", "1:1: name: is missing; add it, for example name: bracket"),
     ("missing size", SIZE + "\n      ", "",
      "4:7: object.boxes[0].size: is missing; add it, for example size: [10, 20, 30]"),
-    ("missing cage points", POINTS, "  pose: {}\n", "7:1: cage.points: is missing; add it,"
-     " for example points: [[4, 4, 0], [-4, 4, 0], [0, -4, 0]]"),
+    ("missing cage points", POINTS, "  pose: {}\n",
+     "7:1: cage: has neither points nor shapes; give at least one of them"),
     ("two values for a vector", SIZE, "size: [10, 10]", "4:13: object.boxes[0].size: has 2 values; give 3"),
     ("four values for a vector", "position: [0, 0, 0]", "position: [0, 0, 0, 1]",
      "5:17: object.boxes[0].position: has 4 values; give 3"),

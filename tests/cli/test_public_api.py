@@ -48,7 +48,7 @@ def test_all_names_every_public_class_and_function_once() -> None:
             "OtherOnset",
         ),
         *("certificate", "check_certificate", "load_certificates"),
-        *("Capsule", "Cone", "Convex", "Cylinder", "Disc", "Shape", "Sphere"),
+        *("Chamfer", "Hole", "Capsule", "Cone", "Convex", "Cylinder", "Disc", "Shape", "Sphere"),
         *("__version__", "compare", "load_run", "load_scene", "margin", "play", "run", "run_many", "save_run"),
         "with_critical_friction",
     }

@@ -8,17 +8,18 @@ import math
 import numpy as np
 import pytest
 
-from cagepose import Run, run, with_critical_friction
+from cagepose import Box, Cage, Load, Object, Pose, Run, Scene, run, with_critical_friction
 from cagepose.files.document import run_document
 from cagepose.files.scene_file import parse_scene
 from cagepose.files.units import LENGTH_UNITS, LengthUnit, from_metres, to_metres
 from cagepose.model.methods import METHODS
+from cagepose.model.shapes import Capsule, Sphere
 
 TOP = ["version", "scene", "units", "method", "verdict", "warnings", "pose", "phases", "timing_s"]
 POSE = ["position", "euler_zyx_deg", "quat_wxyz", "center_of_gravity"]
 PHASE = ["name", "verdict", "force_unit", "pose", "events", "contacts", "proof"]
 EVENT = ["rule", "motion", "direction", "axis", "through", "distance", "angle_deg", "hit", "contacts", "pose"]
-CONTACT = ["point", "box", "normal", "gap", "force_normal", "force_tangential"]
+CONTACT = ["point", "box", "at", "normal", "gap", "force_normal", "force_tangential"]
 PROOF = [
     *("verdict", "uniqueness", "reason", "residual", "gap_work", "largest_force", "needs_friction", "stability"),
     *("undetermined", "shared", "motion", "critical_friction"),
@@ -101,6 +102,29 @@ def test_where_the_load_is_balanced_every_contact_has_its_force(sample_text: str
     assert proof["residual"] < 1e-12
     assert (proof["needs_friction"], proof["stability"], proof["motion"]) == (False, "marginal", None)
     assert (proof["undetermined"], proof["shared"]) == (["x", "y", "yaw"], ["C1", "C2", "C3", "C4"])
+
+
+def test_a_contact_says_where_it_is_also_where_round_shapes_touch() -> None:
+    """A ball of 10 mm radius rolls over a floor at z = 2 mm against an upright pin of 5 mm radius at x = 30 mm."""
+    weight = Load("weight", gravity=(0.3, 0, -1))
+    ball = Object(
+        shapes=[Sphere(0.01)], center_of_gravity_m=(0, 0, 0), mass_kg=1.0, inertia_kg_m2=np.eye(3) * 4e-5,
+        pose=Pose((0, 0, 0.02)),
+    )  # fmt: skip
+    upright = Capsule(0.005, 0.04, Pose((0.03, 0, 0.02)))
+    cage = Cage(shapes=[Box((0.2, 0.2, 0.02), Pose((0, 0, -0.008)), "floor"), upright])
+    (phase,) = run_document(run(Scene(ball, cage, [weight])))["phases"]
+    places = {contact["point"]: contact["at"] for contact in phase["contacts"]}
+    assert places == {"floor": pytest.approx([15, 0, 2]), "capsule1": pytest.approx([25, 0, 12])}
+
+
+def test_the_place_of_a_point_is_its_own(sample_text: str) -> None:
+    scene = parse_scene(sample_text, set_values=FLOOR)
+    (phase,) = run_document(run(scene))["phases"]
+    points = dict(zip(scene.cage.names, (scene.cage.points_world() * 1000.0).tolist(), strict=True))
+    assert phase["contacts"]
+    for contact in phase["contacts"]:
+        assert contact["at"] == pytest.approx(points[contact["point"]], abs=1e-12)
 
 
 def test_a_force_with_friction_has_its_part_along_the_face(sample_text: str) -> None:

@@ -91,11 +91,9 @@ def test_a_run_that_an_earlier_version_saved_is_read_without_loss(path: Path) ->
     record = record_of(load_run(path))
     for phase in record["phases"]:
         assert [phase["proof"].pop(key) for key in ("gap_work", "largest_force")] == [None, None]  # they are newer
-    assert [record["scene"].pop(key) for key in ("friction_of", "shapes", "cage_shapes")] == [
-        {},
-        [],
-        [],
-    ]  # so are these
+        assert [contact.pop("place_m") for contact in phase["contacts"]] == [None] * len(phase["contacts"])
+    for key, empty in (("friction_of", {}), ("shapes", []), ("holes", []), ("cage_shapes", []), ("cage_holes", [])):
+        assert record["scene"].pop(key) == empty  # so are these
     for load in record["scene"]["loads"]:
         assert [load.pop(key) for key in ("forces", "moments", "springs")] == [[], [], []]
         assert load["force"] is None or load["force"].pop("follows") is False

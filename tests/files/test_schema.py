@@ -9,6 +9,7 @@ import pytest
 from pydantic import ValidationError
 
 from cagepose.files.schema import SceneModel, scene_json_schema
+from cagepose.files.schema_shapes import KINDS
 from cagepose.files.yaml_source import parse_yaml
 from cagepose.model.methods import METHODS
 
@@ -40,6 +41,8 @@ def test_every_example_is_valid(sample_text: str) -> None:
     for path, examples in _examples(schema, schema, ()):
         for example in examples:
             data: Any = parse_yaml(sample_text, "x").data
+            if path[1:2] == ("shapes",) and len(path) > 3 and path[3] not in KINDS:
+                _put(data, (*path[:3], "sphere"), {"radius": 1})
             _put(data, path, example)
             # Neighbours of an example may be missing; the example itself must be right.
             assert {details["type"] for details in _errors(data)} <= {"missing"}, path

@@ -34,7 +34,7 @@ STILL = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 
 def rows_of(boxes, points, pose=STILL, touch=TOUCH):
     held = Object(boxes)
-    geometry = scene_geometry(held, Cage(points), object_seams(held, touch).bridges)
+    geometry = scene_geometry(held, Cage(points), object_seams(held, touch).bridges, touch)
     placement, contacts, body = empty_placement(geometry), empty_contact_set(12 * len(points)), empty_record(Body)
     body.axes_object[:], body.radii[:] = np.eye(3), 1.0
     place_object(geometry, *pose, placement)
@@ -119,7 +119,7 @@ class TestUnions:
     def test_a_point_in_the_seam_lies_inside_the_object(self):
         held = Object(self.pair)
         points = Cage([(0.0, 0.0, 0.0), (5.0, 0.0, 0.0)])
-        geometry = scene_geometry(held, points, object_seams(held, TOUCH).bridges)
+        geometry = scene_geometry(held, points, object_seams(held, TOUCH).bridges, TOUCH)
         depths, boxes = deepest_boxes(geometry, *STILL)
         assert depths[0] == pytest.approx(1.0)
         assert boxes[0] == geometry.n_own_boxes

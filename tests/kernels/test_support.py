@@ -25,7 +25,7 @@ SQUARE = [(1.0, 1.0, 0.0), (1.0, -1.0, 0.0), (-1.0, -1.0, 0.0), (-1.0, 1.0, 0.0)
 def stability(points, load_point, *, direction=DOWN, pose=None, contacts=None):
     """Test a plate 6 x 6 x 1 whose bottom lies on the plane z = 0, loaded at ``load_point``."""
     frame = pose or Pose()
-    geometry = scene_geometry(Object([Box((6, 6, 1))]), Cage(points, pose=frame), [])
+    geometry = scene_geometry(Object([Box((6, 6, 1))]), Cage(points, pose=frame), [], 0.0)
     placement = empty_placement(geometry)
     place_object(geometry, *(frame @ Pose((0, 0, 0.5))).as_tuples(), placement)
     load = PointLoad(tuple((frame.rotation @ direction).tolist()), tuple(frame.transform(load_point).tolist()))

@@ -113,8 +113,8 @@ def test_it_is_read_only():
 )
 def test_the_union_is_cut_up_at_most_once_and_only_if_needed(monkeypatch, given, at_construction, at_the_end):
     calls = []
-    original = cagepose.model.parts.union_moments
-    monkeypatch.setattr(cagepose.model.parts, "union_moments", lambda *args: calls.append(1) or original(*args))
+    original = cagepose.model.parts.body_moments
+    monkeypatch.setattr(cagepose.model.parts, "body_moments", lambda *args: calls.append(1) or original(*args))
     held = Object([Box([1, 2, 3])], **given)
     assert len(calls) == at_construction
     assert held.gyration_m2 is held.gyration_m2

@@ -99,9 +99,9 @@ def test_normals_and_second_derivatives_are_those_of_the_gap(say):
         axes = Pose((0, 0, 0), rng.normal(size=4)).rotation
         y = rng.normal(size=6)
         spin = axes.T @ (y[3:] / radii)
-        travel, turn, middle = vector(y[:3]), vector(spin), vector(center)
+        travel, turn, middle, out = vector(y[:3]), vector(spin), vector(center), vector(met.normal)
 
-        def after(step, one=one, other=other, out=vector(met.normal), travel=travel, turn=turn, middle=middle):
+        def after(step, one=one, other=other, out=out, travel=travel, turn=turn, middle=middle):
             return gap_of(one, other, out, travel * step, turn * step, middle)
 
         ahead, now, behind = after(STEP), after(Decimal(0)), after(-STEP)

@@ -34,7 +34,7 @@ def random_offset(rng: np.random.Generator) -> np.ndarray:
     """Any direction, or along an axis, a diagonal, ..."""
     if rng.random() < 0.6:
         return rng.normal(size=3)
-    return rng.choice([-1.0, 0.0, 1.0], 3) + (0.0, 1e-9, 0.0)
+    return rng.choice([-1.0, 0.0, 1.0], 3) + np.array((0.0, 1e-9, 0.0))
 
 
 def overlap(one: Body, other: Body) -> bool:

@@ -14,34 +14,34 @@ if TYPE_CHECKING:
 
 def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int:
     """Print what the scene holds, or every problem found."""
-    import numpy as np
-
     from cagepose.files.scene_file import read_scene_file
     from cagepose.files.units import from_metres
+    from cagepose.model.geometry import body_limits
     from cagepose.runs.methods import chosen_method
 
     scene_file = read_scene_file(scene, set_values)
     found, unit = scene_file.scene, scene_file.length_unit
     size = float(from_metres(found.size_m, unit))
     touch = float(from_metres(found.touch_m, unit))
+    held, cage = found.object, found.cage
     sys.stdout.write(
-        f"{found.name}: {_count(len(found.object.boxes), 'box', 'boxes')},"
-        f" {_count(len(found.cage.names), 'cage point')},"
-        f" {_count(len(found.loads), 'load')} ({', '.join(load.name for load in found.loads)}),"
+        f"{found.name}: {_counts((len(held.boxes), 'box', 'boxes'), (len(held.shapes), 'shape', 'shapes'))},"
+        f" {_counts((len(cage.names), 'cage point', 'cage points'), (len(cage.shapes), 'cage shape', 'cage shapes'))},"
+        f" {_counts((len(found.loads), 'load', 'loads'))} ({', '.join(load.name for load in found.loads)}),"
         f" method {chosen_method(found).name}\n"
-        f"object {_extent(np.concatenate([box.corners_object() for box in found.object.boxes]), unit)}\n"
-        f"cage {_extent(found.cage.points_cage, unit)}\n"
+        f"object {_extent(body_limits(held.parts), unit)}\n"
+        f"cage {_extent(body_limits(cage.shapes, cage.points_cage), unit)}\n"
         f"size {size:.6g} {unit}, touch tolerance {touch:.3g} {unit}; no problems found\n"
     )
     return 0
 
 
-def _extent(points_m: FloatArray, unit: LengthUnit) -> str:
-    """``10 x 20 x 5 mm: x -5 to 5, ...`` in the frame of the points: a mistaken unit is seen at once."""
+def _extent(limits_m: FloatArray, unit: LengthUnit) -> str:
+    """``10 x 20 x 5 mm: x -5 to 5, ...`` in the body's frame: a mistaken unit is seen at once."""
     from cagepose.files.units import from_metres
     from cagepose.files.words import short
 
-    low, high = (from_metres(ends, unit).tolist() for ends in (points_m.min(axis=0), points_m.max(axis=0)))
+    low, high = from_metres(limits_m, unit).tolist()
     noise = 1e-12 * max(abs(value) for value in (*low, *high))
     sides = [
         f"{axis} {short(one, 6, noise)} to {short(other, 6, noise)}"
@@ -51,5 +51,6 @@ def _extent(points_m: FloatArray, unit: LengthUnit) -> str:
     return f"{edges} {unit}: {', '.join(sides)}"
 
 
-def _count(number: int, one: str, many: str | None = None) -> str:
-    return f"{number} {one if number == 1 else many or one + 's'}"
+def _counts(*numbers: tuple[int, str, str]) -> str:
+    """``1 box, 2 shapes``: of what there is none of, nothing is said."""
+    return ", ".join(f"{number} {one if number == 1 else many}" for number, one, many in numbers if number)

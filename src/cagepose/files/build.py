@@ -11,13 +11,17 @@ import numpy as np
 from cagepose.errors import Key, Problem, SceneError
 from cagepose.files.points_file import PointsTable
 from cagepose.files.schema import BoxModel, ForceModel, LoadModel, MomentModel, PoseModel, SceneModel, SpringModel
+from cagepose.files.schema_shapes import CoefficientModel, ShapeModel
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
+from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.load import Force, Load, Moment, Spring
+from cagepose.model.naming import names_of
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Adjustable, Scene
+from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Disc, Shape, Sphere
 from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT, Tolerances
 
 Noun = TypeVar("Noun")
@@ -37,6 +41,7 @@ def build_scene(model: SceneModel, table: PointsTable | None) -> Scene:
     cage = builder.make(("cage",), builder.cage, model, table)
     loads = [builder.make(("loads", index), builder.load, load, index) for index, load in enumerate(model.loads)]
     tolerances = builder.make(("tolerances",), builder.tolerances, model)
+    friction_of = builder.friction_of(model, held, cage) if held is not None and cage is not None else {}
     if builder.problems or held is None or cage is None or tolerances is None:
         raise SceneError(builder.problems)
     return Scene(
@@ -44,8 +49,8 @@ def build_scene(model: SceneModel, table: PointsTable | None) -> Scene:
         cage,
         [load for load in loads if load is not None],
         name=model.name,
-        friction_coefficient=_friction(model),
-        friction_of=None if model.friction is None else model.friction.of,
+        friction_coefficient=_coefficient(model.friction),
+        friction_of=friction_of,
         method=model.method,
         metric=model.metric,
         tolerances=tolerances,
@@ -71,14 +76,18 @@ class _Builder:
             self.problems.extend(error.under(*prefix).problems)
             return None
 
-    def object(self, model: SceneModel) -> Object:
+    def object(self, model: SceneModel) -> Object | None:
         part = model.object
-        boxes = [self.make(("object", "boxes", index), self.box, box) for index, box in enumerate(part.boxes)]
+        boxes = [self.make(("object", "boxes", index), self.box, box) for index, box in enumerate(part.boxes or [])]
+        shapes = self.shapes("object", part.shapes or [])
         pose = self.make(("object", "pose"), self.pose, part.pose)
+        if None in boxes or None in shapes:
+            return None
         metres_per_unit = float(to_metres(1.0, self.unit))
         return Object(
             [box for box in boxes if box is not None],
             None if part.center_of_gravity is None else to_metres(part.center_of_gravity, self.unit),
+            shapes=[shape for shape in shapes if shape is not None],
             pose=pose,
             mass_kg=part.mass,
             inertia_kg_m2=None if part.inertia is None else np.array(part.inertia) * metres_per_unit**2,
@@ -88,15 +97,83 @@ class _Builder:
         pose = Pose(to_metres(model.position, self.unit), euler_zyx=_radians(model.euler_zyx_deg))
         return Box(to_metres(model.size, self.unit), pose, model.name)
 
+    def shapes(self, body: str, models: list[ShapeModel]) -> list[Shape | None]:
+        return [
+            self.make((body, "shapes", index, *model.kinds_given()), self.shape, model)
+            for index, model in enumerate(models)
+        ]
+
+    def shape(self, model: ShapeModel) -> Shape:
+        pose = Pose(to_metres(model.position or [0.0, 0.0, 0.0], self.unit), euler_zyx=_radians(model.euler_zyx_deg))
+        length = self.length
+        if model.box is not None:
+            return Box(to_metres(model.box.size, self.unit), pose, model.name)
+        if model.sphere is not None:
+            return Sphere(length(model.sphere.radius), pose, model.name)
+        if model.capsule is not None:
+            return Capsule(length(model.capsule.radius), length(model.capsule.length), pose, model.name)
+        if model.cylinder is not None:
+            return Cylinder(length(model.cylinder.radius), length(model.cylinder.length), pose, model.name)
+        if model.cone is not None:
+            radii = length(model.cone.radius_bottom), length(model.cone.radius_top)
+            return Cone(*radii, length(model.cone.length), pose, model.name)
+        if model.convex is not None:
+            vertices = to_metres(model.convex.vertices, self.unit)
+            return Convex(vertices, length(model.convex.radius or 0.0), pose, model.name)
+        if model.disc is not None:
+            return Disc(length(model.disc.radius), pose, model.name)
+        assert model.hole is not None, "the schema lets no shape pass that has no kind"
+        chamfer = None
+        if model.hole.chamfer is not None:
+            chamfer = Chamfer(length(model.hole.chamfer.width), math.radians(model.hole.chamfer.angle_deg))
+        return Hole(
+            length(model.hole.radius), length(model.hole.depth), chamfer, model.hole.in_ or (), pose, model.name
+        )
+
+    def length(self, length: float) -> float:
+        return float(to_metres(length, self.unit))
+
     def pose(self, model: PoseModel | None) -> Pose:
         if model is None:
             return Pose()
         position = to_metres(model.position or [0.0, 0.0, 0.0], self.unit)
         return Pose(position, model.quat_wxyz, euler_zyx=_radians(model.euler_zyx_deg))
 
-    def cage(self, model: SceneModel, table: PointsTable | None) -> Cage:
+    def cage(self, model: SceneModel, table: PointsTable | None) -> Cage | None:
         points, names = point_rows(model, table)
-        return Cage(to_metres(points, self.unit), names, self.pose(model.cage.pose))
+        shapes = self.shapes("cage", model.cage.shapes or [])
+        if None in shapes:
+            return None
+        return Cage(
+            to_metres(points, self.unit),
+            names,
+            self.pose(model.cage.pose),
+            [shape for shape in shapes if shape is not None],
+        )
+
+    def friction_of(self, model: SceneModel, held: Object, cage: Cage) -> dict[str, float]:
+        """Return the coefficients of all that have their own, by name; those of shapes stand beside them."""
+        found = dict((model.friction and model.friction.of) or {})
+        in_object = dict(zip((path[:2] for path in held.part_paths), names_of((*held.parts, *held.holes)), strict=True))
+        in_cage = dict(zip((path[:2] for path in cage.shape_paths), cage.element_names[len(cage.names) :], strict=True))
+        shared = set(in_object.values()) & set(cage.element_names)
+        for body, shapes, names in (
+            ("object", model.object.shapes, in_object),
+            ("cage", model.cage.shapes, in_cage),
+        ):
+            for index, shape in enumerate(shapes or []):
+                name = names["shapes", index]
+                if (coefficient := _coefficient(shape.friction)) is None:
+                    continue
+                place = (body, "shapes", index, "friction")
+                if name in shared:
+                    found_twice = f"is that of {name!r}, a name in the cage and in the object; rename one of the two"
+                    self.problems.append(Problem(place, found_twice))
+                elif name in found:
+                    self.problems.append(Problem(place, f"stands in friction.of.{name}, too; keep one of the two"))
+                else:
+                    found[name] = coefficient
+        return found
 
     def load(self, model: LoadModel, index: int) -> Load | None:
         springs = [
@@ -145,9 +222,9 @@ def _radians(angles_deg: list[float] | None) -> list[float] | None:
     return None if angles_deg is None else [math.radians(angle) for angle in angles_deg]
 
 
-def _friction(model: SceneModel) -> float | None:
-    if model.friction is None:
-        return None
-    if model.friction.angle_deg is not None:
-        return math.tan(math.radians(model.friction.angle_deg))
-    return model.friction.coefficient
+def _coefficient(friction: CoefficientModel | float | None) -> float | None:
+    if not isinstance(friction, CoefficientModel):
+        return friction
+    if friction.angle_deg is not None:
+        return math.tan(math.radians(friction.angle_deg))
+    return friction.coefficient

@@ -124,6 +124,7 @@ class _Writer:
         return {
             "point": contact.point,
             "box": contact.box,
+            "at": None if contact.place_world is None else self._lengths(contact.place_world),
             "normal": _numbers(contact.normal_world),
             "gap": self._length(contact.gap_m),
             "force_normal": contact.force_normal_n,

@@ -14,6 +14,7 @@ from pydantic_core import ErrorDetails
 from cagepose.errors import Key, Problem
 from cagepose.files.key_path import Path, value_at
 from cagepose.files.schema import scene_json_schema
+from cagepose.files.schema_shapes import KINDS
 
 _WANTED = {
     "float_type": "a number",
@@ -21,8 +22,12 @@ _WANTED = {
     "list_type": "a list in brackets",
     "dict_type": "keys with values",
     "model_type": "keys with values",
-    "union_tag_not_found": "a list of [x, y, z], a NAME: [x, y, z] for each point, or file: points.csv",
 }
+_FORMS = {
+    "points": "a list of [x, y, z], a NAME: [x, y, z] for each point, or file: points.csv",
+    "friction": "a coefficient, or coefficient: or angle_deg: with a number",
+}
+"""Of the keys that may be given in several forms."""
 _LIMITS = {
     "greater_than": ("gt", "above {}"),
     "greater_than_equal": ("ge", "from {} upwards"),
@@ -30,6 +35,7 @@ _LIMITS = {
     "less_than_equal": ("le", "up to {}"),
 }
 _SHOWN_LENGTH = 40
+_SHOWN_HOMES = 5
 
 
 class Finding(NamedTuple):
@@ -70,9 +76,11 @@ def shown(value: object) -> str:
 
 
 def _file_path(location: tuple[Key, ...]) -> Path:
-    """Pydantic's location without what it adds: the form of the points, and a mark for keys."""
+    """Pydantic's location without what it adds: the form of points and friction, and a mark for keys."""
     if location[:2] == ("cage", "points"):
         location = location[:2] + location[3:]
+    if _is_shape(location[:3]) and location[3:4] == ("friction",):
+        location = location[:4] + location[5:]
     return location[:-1] if location[-1:] == ("[key]",) else location
 
 
@@ -83,7 +91,10 @@ def _message(details: ErrorDetails, path: Path, data: object) -> str:
     if kind == "missing":
         return f"is missing; add it{_example(path, data)}"
     if kind == "extra_forbidden":
-        return _unknown_key(str(path[-1]), _known_keys(path[:-1], data))
+        known = _known_keys(path[:-1], data)
+        return _unknown_shape(str(path[-1]), known) if _is_shape(path[:-1]) else _unknown_key(str(path[-1]), known)
+    if kind == "union_tag_not_found":
+        return f"is {shown(found)}; give {_FORMS[str(path[-1])]}"
     if kind in _WANTED:
         return f"is {shown(found)}; give {_WANTED[kind]}"
     if kind in _LIMITS:
@@ -116,13 +127,31 @@ def _choice(found: object, expected: str) -> str:
 
 
 def _unknown_key(found: str, known: list[str]) -> str:
-    close = difflib.get_close_matches(found.lower(), known, n=1)
     homes = _homes().get(found, [])
-    if homes:
-        meant = f"it belongs to {' or '.join(homes)}; "
-    else:
-        meant = f"did you mean {close[0]}? " if close else "remove it; "
+    meant = f"it belongs to {_some_of(homes)}; " if homes else _close(found, known)
     return f"is no known key; {meant}known keys: {', '.join(known)}"
+
+
+def _unknown_shape(found: str, known: list[str]) -> str:
+    """For a key of a shape, most of which are the names of all shapes that there are."""
+    others = [key for key in known if key not in KINDS]
+    holders = [home.rpartition(".")[2] for home in _homes().get(found, []) if home.startswith("object.shapes[i].")]
+    meant = f"it belongs within {_some_of(holders)}; " if holders else _close(found, known)
+    return f"is no known shape; {meant}known shapes: {', '.join(KINDS)}; known keys beside them: {', '.join(others)}"
+
+
+def _some_of(places: list[str]) -> str:
+    return " or ".join([*places[:_SHOWN_HOMES], *(["others"] if len(places) > _SHOWN_HOMES else [])])
+
+
+def _close(found: str, known: list[str]) -> str:
+    close = difflib.get_close_matches(found.lower(), known, n=1)
+    return f"did you mean {close[0]}? " if close else "remove it; "
+
+
+def _is_shape(path: Path) -> bool:
+    """Whether a path leads to one of the shapes of the object or of the cage."""
+    return len(path) == 3 and path[0] in ("object", "cage") and path[1] == "shapes"
 
 
 @cache

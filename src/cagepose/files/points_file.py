@@ -9,7 +9,7 @@ from pathlib import Path
 
 from cagepose.errors import FileProblem, SceneFileError
 from cagepose.files.read import read_text
-from cagepose.files.schema import LARGEST
+from cagepose.files.schema_base import LARGEST
 
 POINTS_KEY = ("cage", "points", "file")
 """Where a scene names its points file."""

@@ -34,10 +34,12 @@ PARTS_OF_A_SCENE = (Object, Cage, Tolerances)
 """Their fields stand among those of the scene."""
 KEYS = {
     "through_world": "through_m",
+    "place_world": "place_m",
     "names": "point_names",
     "points_cage": "points_m",
     "pose_world_cage": "cage_pose",
     "Cage.shapes": "cage_shapes",
+    "Cage.holes": "cage_holes",
 }
 """Of the attributes (of one class alone) whose key is another than their name without its frame."""
 INFINITE: dict[str, str | None] = {"distance_m": None}

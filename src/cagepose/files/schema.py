@@ -10,62 +10,45 @@ from typing import Annotated, Any
 
 from pydantic import (
     AfterValidator,
-    BaseModel,
     ConfigDict,
     Discriminator,
     Field,
-    StringConstraints,
     Tag,
     WithJsonSchema,
     model_validator,
 )
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
-from pydantic_core import PydanticCustomError
 
+from cagepose.files.schema_base import (
+    Direction,
+    Mapping,
+    Name,
+    NotNegative,
+    Number,
+    Positive,
+    Quaternion,
+    Size,
+    Vector,
+    wrong,
+)
+from cagepose.files.schema_shapes import CoefficientModel, Shapes, either
 from cagepose.files.units import LengthUnit
 from cagepose.model.methods import DEFAULT_METHOD, DEFAULT_METRIC, METHODS, NO_SLIP_ANGLE_DEFAULT_RAD, Metric
 from cagepose.model.tolerances import TOUCH_DEFAULT, TOUCH_GREATEST, TOUCH_LEAST
-
-LARGEST = 1e12
-"""Greatest number in a scene file. The fifth power of a length (a moment of inertia) must stay a finite double."""
-SMALLEST = 1e-12
-"""Least size, mass and magnitude, for the same reason."""
 
 _BOX = {"size": [10, 20, 30], "position": [0, 0, 0]}
 _POINTS = [[4, 4, 0], [-4, 4, 0], [0, -4, 0]]
 
 
-def _wrong(message: str) -> PydanticCustomError:
-    return PydanticCustomError("cagepose", "{message}", {"message": message})
-
-
-def _not_zero(values: list[float]) -> list[float]:
-    if not any(values):
-        raise _wrong("is all zeros, which points nowhere; give at least one number other than 0")
-    return values
-
-
-def _not_tiny(value: float) -> float:
-    if value < SMALLEST:
-        raise _wrong(f"is {value:g}; give a number of at least {SMALLEST:g}, or another unit")
-    return value
-
-
-def _printable(text: str) -> str:
-    if not text.isprintable() or not text.strip():
-        raise _wrong(f"is {text!r}; give a name of visible characters")
-    return text
-
-
 def _known_method(name: str) -> str:
     if name not in METHODS:
-        raise _wrong(f"is {name!r}; use one of: {', '.join(METHODS)}")
+        raise wrong(f"is {name!r}; use one of: {', '.join(METHODS)}")
     return name
 
 
 def _ordered(limits: list[float]) -> list[float]:
     if limits[0] >= limits[1]:
-        raise _wrong(f"runs from {limits[0]!r} to {limits[1]!r}; give the lower number first")
+        raise wrong(f"runs from {limits[0]!r} to {limits[1]!r}; give the lower number first")
     return limits
 
 
@@ -78,22 +61,10 @@ def _points_form(value: object) -> str | None:
     return None
 
 
-Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
-Positive = Annotated[float, Field(gt=0.0, le=LARGEST), AfterValidator(_not_tiny)]
-Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
-Direction = Annotated[Vector, AfterValidator(_not_zero)]
-Size = Annotated[list[Positive], Field(min_length=3, max_length=3)]
-Quaternion = Annotated[list[Number], Field(min_length=4, max_length=4), AfterValidator(_not_zero)]
-Name = Annotated[str, StringConstraints(min_length=1, max_length=100), AfterValidator(_printable)]
 Method = Annotated[str, AfterValidator(_known_method), WithJsonSchema({"type": "string", "enum": list(METHODS)})]
 
 
-class _Mapping(BaseModel):
-    # Models are built when they are first asked for: those that are parts of another only there, and not twice.
-    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True, defer_build=True)
-
-
-class UnitsModel(_Mapping):
+class UnitsModel(Mapping):
     """Units of the file. Angles are always degrees, masses kilograms, forces newtons; moments and stiffnesses have the
     file's unit of length.
     """
@@ -101,7 +72,7 @@ class UnitsModel(_Mapping):
     length: LengthUnit = Field("mm", description="Unit of every length in this file.")
 
 
-class PoseModel(_Mapping):
+class PoseModel(Mapping):
     """Where something is and how it is turned. What is left out is zero."""
 
     position: Vector | None = Field(None, description="Origin [x, y, z].", examples=[[2, 4, 10]])
@@ -117,11 +88,11 @@ class PoseModel(_Mapping):
     @model_validator(mode="after")
     def _one_orientation(self) -> PoseModel:
         if self.euler_zyx_deg is not None and self.quat_wxyz is not None:
-            raise _wrong("has both euler_zyx_deg and quat_wxyz; keep one of them")
+            raise wrong("has both euler_zyx_deg and quat_wxyz; keep one of them")
         return self
 
 
-class BoxModel(_Mapping):
+class BoxModel(Mapping):
     """One rectangular block of the object."""
 
     size: Size = Field(description="Full edge lengths [x, y, z].", examples=[[10, 20, 30]])
@@ -132,10 +103,19 @@ class BoxModel(_Mapping):
     name: Name | None = Field(None, description="Shown with contacts; left out: box1, box2, ...", examples=["flange"])
 
 
-class ObjectModel(_Mapping):
-    """The part that is held: a union of boxes that move as one."""
+class ObjectModel(Mapping):
+    """The part that is held: a union of boxes and other shapes that move as one."""
 
-    boxes: list[BoxModel] = Field(min_length=1, description="The part's blocks.", examples=[[_BOX]])
+    model_config = ConfigDict(json_schema_extra=either("boxes", "shapes"))
+
+    boxes: Annotated[list[BoxModel], Field(min_length=1)] | None = Field(
+        None, description="The part's blocks.", examples=[[_BOX]]
+    )
+    shapes: Shapes | None = Field(
+        None,
+        description="The part's shapes, in its frame; boxes among them are like those of boxes.",
+        examples=[[{"cylinder": {"radius": 5, "length": 20}, "position": [0, 0, 0]}]],
+    )
     center_of_gravity: Vector | None = Field(
         None, description="In the object's frame; left out: the centroid of the union's volume.", examples=[[0, 0, 0]]
     )
@@ -153,7 +133,7 @@ class ObjectModel(_Mapping):
     pose: PoseModel | None = Field(None, description="Where the object starts: its origin in the world.")
 
 
-class PointsFileModel(_Mapping):
+class PointsFileModel(Mapping):
     """Points in a file of their own."""
 
     file: str = Field(
@@ -171,17 +151,25 @@ Points = Annotated[
 ]
 
 
-class CageModel(_Mapping):
-    """What holds it: points that do not move."""
+class CageModel(Mapping):
+    """What holds it: points and shapes that do not move."""
 
-    points: Points = Field(
+    model_config = ConfigDict(json_schema_extra=either("points", "shapes"))
+
+    points: Points | None = Field(
+        None,
         description="A list of [x, y, z], or NAME: [x, y, z] for each, or file: points.csv.",
         examples=[_POINTS],
     )
-    pose: PoseModel | None = Field(None, description="Moves all points at once: a misaligned cage.")
+    shapes: Shapes | None = Field(
+        None,
+        description="Shapes in the cage's frame.",
+        examples=[[{"cylinder": {"radius": 5, "length": 20}, "position": [0, 0, 0]}]],
+    )
+    pose: PoseModel | None = Field(None, description="Moves all points and shapes at once: a misaligned cage.")
 
 
-class ForceModel(_Mapping):
+class ForceModel(Mapping):
     """A push at one point of the object."""
 
     direction: Direction = Field(
@@ -199,7 +187,7 @@ class ForceModel(_Mapping):
     )
 
 
-class MomentModel(_Mapping):
+class MomentModel(Mapping):
     """A pure moment, the same about every point."""
 
     direction: Direction = Field(
@@ -212,14 +200,14 @@ class MomentModel(_Mapping):
     )
 
 
-class SpringModel(_Mapping):
+class SpringModel(Mapping):
     """A straight spring from a point of the object to a point of the world. Its tension along the line is the preload
     plus the stiffness times what it is longer than at the object's start pose.
     """
 
     at: Vector = Field(description="Where it holds the object, in the object's frame.", examples=[[0, 0, 0]])
     to: Vector = Field(description="Where it is held itself, in the world.", examples=[[0, 0, 50]])
-    stiffness: Annotated[float, Field(ge=0.0, le=LARGEST)] = Field(
+    stiffness: NotNegative = Field(
         description="Newtons for each unit of length of the file (N/mm with mm); 0: the tension is the preload.",
         examples=[0.5],
     )
@@ -230,7 +218,7 @@ class SpringModel(_Mapping):
     )
 
 
-class LoadModel(_Mapping):
+class LoadModel(Mapping):
     """One phase of the run: all that acts together. A phase without gravity has none."""
 
     name: Name = Field(description="Shown with the phase's events.", examples=["gravity"])
@@ -251,32 +239,18 @@ class LoadModel(_Mapping):
     )
 
 
-class FrictionModel(_Mapping):
-    """Friction of all contacts, or of single points and boxes."""
+class FrictionModel(CoefficientModel):
+    """Friction of all contacts, or of single points and shapes."""
 
-    coefficient: Annotated[float, Field(ge=0.0, le=LARGEST)] | None = Field(
-        None, description="Friction force over normal force.", examples=[0.1]
-    )
-    angle_deg: Annotated[float, Field(ge=0.0, lt=90.0)] | None = Field(
-        None, description="The same as an angle: its tangent is the coefficient.", examples=[5.7]
-    )
-    of: dict[Name, Annotated[float, Field(ge=0.0, le=LARGEST)]] | None = Field(
+    of: dict[Name, NotNegative] | None = Field(
         None,
-        description="NAME: coefficient, of single cage points and boxes (quasistatic). A contact has that of its point,"
-        " else that of its box, else that of all.",
+        description="NAME: coefficient, of single cage points, boxes and other shapes (quasistatic). A contact has that"
+        " of the cage's, else that of the object's, else that of all.",
         examples=[{"C1": 0}],
     )
 
-    @model_validator(mode="after")
-    def _one_of_two(self) -> FrictionModel:
-        if self.coefficient is not None and self.angle_deg is not None:
-            raise _wrong("has both of coefficient and angle_deg; give one of them")
-        if self.coefficient is None and self.angle_deg is None and self.of is None:
-            raise _wrong("has neither of coefficient and angle_deg; give one of them")
-        return self
 
-
-class TolerancesModel(_Mapping):
+class TolerancesModel(Mapping):
     """What counts as touching and as grazing. The defaults suit nearly every scene."""
 
     touch: Annotated[float, Field(ge=TOUCH_LEAST, le=TOUCH_GREATEST)] | None = Field(
@@ -289,7 +263,7 @@ class TolerancesModel(_Mapping):
     )
 
 
-class AdjustableModel(_Mapping):
+class AdjustableModel(Mapping):
     """A number of this file that sliders and studies may vary."""
 
     key: str = Field(min_length=1, description="Where the number stands.", examples=["cage.pose.euler_zyx_deg[1]"])
@@ -298,7 +272,7 @@ class AdjustableModel(_Mapping):
     )
 
 
-class SceneModel(_Mapping):
+class SceneModel(Mapping):
     """A part, the cage that holds it, and the loads that act on it one after the other."""
 
     model_config = ConfigDict(title="cagepose scene")

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from cagepose.errors import Key
 from cagepose.model.checks import FloatArray, ProblemList, finite_array
 from cagepose.model.pose import Pose
-from cagepose.model.shapes import Shape
+from cagepose.model.shapes import WITHIN, Shape
 from cagepose.model.volume import BOX_SIGNS
 
 
@@ -58,6 +58,11 @@ class Box(Shape):
 
     def farthest_m(self, point_body: FloatArray) -> float:
         return float(np.linalg.norm(self.corners_object() - point_body, axis=1).max())
+
+    def holds(self, points_body: FloatArray) -> NDArray[np.bool_]:
+        local = self.pose_body_shape.inverse_transform(points_body)
+        within: NDArray[np.bool_] = (np.abs(local) <= self.size_m / 2.0 + WITHIN * self.size_m.max()).all(axis=1)
+        return within
 
     def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
         return [(("size", axis), length) for axis, length in enumerate(self.size_m.tolist())]

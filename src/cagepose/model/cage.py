@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -12,7 +13,8 @@ from numpy.typing import ArrayLike
 from cagepose.errors import Key
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, ProblemList, check_kinds, duplicates, finite_array
-from cagepose.model.naming import check_names, named, names_of
+from cagepose.model.hole import Hole, check_holes
+from cagepose.model.naming import check_names, names_of, placed
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import AnyShape, Shape
 
@@ -29,14 +31,20 @@ class Cage:
         One name for each point; left out: "C1", "C2", ...
     shapes
         Boxes and other shapes in the cage's own frame, every one with a name.
+    holes
+        What is cut out of them, and what stands alone; every one with a name.
     pose_world_cage
         Moves all points and shapes at once: the misaligned mechanism.
+    shape_paths
+        For each of the shapes, then of the holes, where its numbers were given: ``("shapes", 2, "cylinder")``.
     """
 
     points_cage: Annotated[FloatArray, (-1, 3)]
     names: tuple[str, ...]
     pose_world_cage: Pose
     shapes: tuple[Box | AnyShape, ...]
+    holes: tuple[Hole, ...]
+    shape_paths: tuple[tuple[Key, ...], ...]
 
     def __init__(
         self,
@@ -44,13 +52,14 @@ class Cage:
         names: Sequence[str] | None = None,
         pose: Pose | None = None,
         shapes: Iterable[Shape] = (),
+        holes: Iterable[Hole] = (),
     ) -> None:
         """
         Raises
         ------
         SceneError
-            Neither points nor shapes, points that are not n x 3 finite numbers, a name used twice, or not one name for
-            each point.
+            Neither points nor shapes, points that are not n x 3 finite numbers, a name used twice, not one name for
+            each point, or a hole that is not in its shapes.
         """
         has_points = not (isinstance(points, Sequence | np.ndarray) and len(points) == 0)
         array = (
@@ -59,27 +68,36 @@ class Cage:
         default_names = tuple(f"C{index + 1}" for index in range(len(array)))
         given = default_names if names is None else tuple(str(name) for name in names)
         problems = ProblemList()
-        all_shapes = named(check_kinds(shapes, Shape, "shapes", problems))
+        listed = {
+            "shapes": check_kinds(shapes, Shape, "shapes", problems),
+            "holes": check_kinds(holes, Hole, "holes", problems),
+        }
         problems.raise_if_any()
-        if not has_points and not all_shapes:
+        paths, everything = placed(listed, lambda shape: isinstance(shape, Hole))
+        solids = tuple(shape for shape in everything if not isinstance(shape, Hole))
+        holes = tuple(shape for shape in everything if isinstance(shape, Hole))
+        if not has_points and not everything:
             problems.add((), "has neither points nor shapes; give at least one of them")
         if len(given) != len(array):
             problems.add(("names",), f"holds {len(given)} names for {len(array)} points; give one for each")
         for name, indices in duplicates(given).items():
             problems.add(("points", name), f"is the name of {len(indices)} points; rename all but one")
         places: list[tuple[Key, ...]] = [("points", name) for name in dict.fromkeys(given)]
-        places += [("shapes", index) for index in range(len(all_shapes))]
-        check_names([*dict.fromkeys(given), *names_of(all_shapes)], places, problems)
+        places += [path[:2] for path in paths]
+        check_names([*dict.fromkeys(given), *names_of(everything)], places, problems)
+        check_holes(holes, paths[len(solids) :], solids, problems)
         problems.raise_if_any()
         object.__setattr__(self, "points_cage", array)
         object.__setattr__(self, "names", given)
         object.__setattr__(self, "pose_world_cage", pose or Pose())
-        object.__setattr__(self, "shapes", all_shapes)
+        object.__setattr__(self, "shapes", solids)
+        object.__setattr__(self, "holes", holes)
+        object.__setattr__(self, "shape_paths", paths)
 
-    @property
+    @cached_property
     def element_names(self) -> tuple[str, ...]:
-        """The names of all points, then of all shapes."""
-        return (*self.names, *names_of(self.shapes))
+        """The names of all points, then of all shapes, then of all holes."""
+        return (*self.names, *names_of(self.shapes), *names_of(self.holes))
 
     def points_world(self) -> FloatArray:
         """The points in the world, (n, 3), metres."""
@@ -87,4 +105,4 @@ class Cage:
 
     def nodes_cage(self) -> FloatArray:
         """The points and those that tell where the shapes lie, in the cage's own frame, (n, 3), metres."""
-        return np.concatenate([self.points_cage, *(shape.nodes_body() for shape in self.shapes)])
+        return np.concatenate([self.points_cage, *(shape.nodes_body() for shape in (*self.shapes, *self.holes))])

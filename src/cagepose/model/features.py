@@ -26,12 +26,14 @@ def shapes_of(parts: Iterable[Box | Shape | FloatArray]) -> Shapes:
         elif isinstance(part, Rounded):
             made.add(hull_of(part.core()), part.pose_body_shape, part.radius_m)
         else:
-            raise NotImplementedError(part.kind)
+            raise TypeError(f"no features are known of a {part.kind}")
     return made.shapes()
 
 
 def shifted(shapes: Shapes, by: FloatArray) -> Shapes:
     """Return shapes moved by a travel, metres."""
+    if len(shapes.parts) == 0:
+        return shapes
     moved = copied(shapes)
     moved.features["point"] += by  # type: ignore[index]
     moved.parts["middle"] += by  # type: ignore[index]
@@ -67,13 +69,14 @@ class _Features:
         for index, pair in enumerate(hull.edges.tolist()):
             inward = [(-direction, 0.0) for sides in outward for side, direction in sides if side == tuple(pair)]
             self._feature(EDGE, starts[index], along[index], float(lengths[index]), radius_m, inward)
+        first_face = len(self.features)
         for face, normal, sides in zip(hull.faces, normals, outward, strict=True):
             middle = vertices[list(face)].mean(axis=0)
             bounds = [(direction, float(direction @ (vertices[side[0]] - middle))) for side, direction in sides]
             self._feature(FACE, middle, normal, 0.0, radius_m, bounds)
         middle = vertices.mean(axis=0)
         reach = float(np.linalg.norm(vertices - middle, axis=1).max()) + radius_m
-        self.parts.append((first, len(self.features), middle, reach, float(lengths.min(initial=np.inf))))
+        self.parts.append((first, first_face, len(self.features), middle, reach, float(lengths.min(initial=np.inf))))
 
     def _feature(
         self,

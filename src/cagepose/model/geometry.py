@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
 
 from cagepose.kernels.collision.geometry import Geometry
-from cagepose.kernels.shapes.features import Shapes, copied, no_shapes, place_shapes
+from cagepose.kernels.shapes.features import NO_SHAPES, Shapes, copied, place_shapes
 from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
 from cagepose.model.features import shapes_of
@@ -33,12 +34,14 @@ def _seams_of(boxes: bytes, touch_m: float) -> Seams:
 
 
 def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox], touch_m: float) -> Geometry:
-    """Return the boxes in the object's frame, its own first and then the bridges, and the cage points in the world; with
-    shapes, all parts of both as features.
+    """Return the boxes in the object's frame, its own first and then the bridges, and the cage points in the world;
+    with shapes, all parts of both as features.
     """
     in_cage = cage_shapes(held, cage)
-    in_world = copied(in_cage)
-    place_shapes(in_cage, *cage.pose_world_cage.as_tuples(), in_world)
+    in_world = in_cage
+    if len(in_cage.parts) > 0:
+        in_world = copied(in_cage)
+        place_shapes(in_cage, *cage.pose_world_cage.as_tuples(), in_world)
     placed = _placed(held) + bridges
     return Geometry(
         half_sizes=np.array([box.half_size for box in placed]).reshape(-1, 3),
@@ -46,7 +49,7 @@ def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox], touch_m: 
         box_rotations=np.array([box.rotation for box in placed]).reshape(-1, 3, 3),
         n_own_boxes=len(held.boxes),
         points_world=np.ascontiguousarray(cage.points_world()),
-        held=shapes_of(held.parts) if held.shapes or cage.shapes else no_shapes(),
+        held=shapes_of(held.parts) if held.shapes or cage.shapes else NO_SHAPES,
         cage=in_world,
         touch_m=touch_m,
     )
@@ -56,7 +59,7 @@ def cage_shapes(held: Object, cage: Cage) -> Shapes:
     """Return all parts of the cage as features, its points first, in its frame; none where there are boxes and points
     alone.
     """
-    return shapes_of([*cage.points_cage, *cage.shapes]) if held.shapes or cage.shapes else no_shapes()
+    return shapes_of([*cage.points_cage, *cage.shapes]) if held.shapes or cage.shapes else NO_SHAPES
 
 
 def _placed(held: Object) -> list[PlacedBox]:
@@ -70,18 +73,37 @@ def scene_size(held: Object, cage: Cage) -> float:
 
     Each is measured as twice the greatest distance from the middle, so the size does not depend on any frame.
     """
-    return max(object_size(held), _body_size(cage.nodes_cage(), cage.shapes))
+    return max(object_size(held), _body_size(cage.nodes_cage(), (*cage.shapes, *cage.holes)))
+
+
+def sizes_with_points(held: Object, cage: Cage, points_cage: FloatArray) -> FloatArray:
+    """The sizes of scenes whose cage has other points, (n, n_points, 3), metres; (n,)."""
+    if not cage.shapes:
+        sizes: FloatArray = np.maximum(object_size(held), cage_sizes(points_cage))
+        return sizes
+    nodes = np.concatenate([shape.nodes_body() for shape in cage.shapes])
+    of_cage = [_body_size(np.concatenate([points, nodes]), cage.shapes) for points in points_cage]
+    return np.maximum(object_size(held), np.array(of_cage))
 
 
 def object_size(held: Object) -> float:
     """The object's diameter, metres."""
-    return _body_size(np.concatenate([part.nodes_body() for part in held.parts]), held.shapes)
+    nodes = [part.nodes_body() for part in (*held.parts, *held.holes)]
+    return _body_size(np.concatenate(nodes), (*held.shapes, *held.holes))
 
 
 def _body_size(nodes: FloatArray, shapes: tuple[Shape, ...]) -> float:
     """The diameter of all nodes of a body and of its shapes, about the middle of the nodes."""
     middle = nodes.mean(axis=0)
     return max(float(cage_sizes(nodes)), *(2.0 * shape.farthest_m(middle) for shape in shapes), 0.0)
+
+
+def body_limits(shapes: Sequence[Shape], points: FloatArray | None = None) -> FloatArray:
+    """The lowest and highest coordinates of shapes and points (n, 3) in their body's frame, (2, 3), metres."""
+    ends = np.array([(-shape.heights_m(-np.eye(3)), shape.heights_m(np.eye(3))) for shape in shapes]).reshape(-1, 2, 3)
+    lows, highs = np.moveaxis(ends, 1, 0)
+    given = np.zeros((0, 3)) if points is None else points
+    return np.array([np.concatenate([lows, given]).min(axis=0), np.concatenate([highs, given]).max(axis=0)])
 
 
 def cage_sizes(points: FloatArray) -> FloatArray:

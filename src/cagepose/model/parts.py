@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,10 +13,12 @@ from numpy.typing import ArrayLike
 from cagepose.errors import Key, Problem, SceneError
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, finite_array
-from cagepose.model.naming import check_names, named, names_of
+from cagepose.model.hole import Hole, check_holes
+from cagepose.model.naming import check_names, names_of, placed
 from cagepose.model.pose import Pose
-from cagepose.model.shapes import AnyShape, Shape
-from cagepose.model.volume import VolumeMoments, union_moments
+from cagepose.model.shapes import AnyShape, Disc, Shape
+from cagepose.model.union import body_moments
+from cagepose.model.volume import VolumeMoments
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -29,6 +31,8 @@ class Object:
         The boxes, every one with a name, those that were given among the shapes last.
     shapes
         The other shapes, every one with a name.
+    holes
+        What is cut out of them, and what stands alone; every one with a name.
     center_of_gravity_m
         In the object's frame, (3,), metres. Left out: the centroid of the union's volume.
     mass_kg
@@ -39,11 +43,12 @@ class Object:
     pose_world_object
         Where the run starts.
     part_paths
-        For each of `parts`, where its numbers were given: ``("boxes", 0)``, ``("shapes", 2, "cylinder")``.
+        For each of `parts`, then of `holes`, where its numbers were given: ``("boxes", 0)``, ``("shapes", 2, "cone")``.
     """
 
     boxes: tuple[Box, ...]
     shapes: tuple[AnyShape, ...]
+    holes: tuple[Hole, ...]
     center_of_gravity_m: FloatArray
     mass_kg: float | None
     inertia_kg_m2: Annotated[FloatArray, (3, 3)] | None
@@ -56,6 +61,7 @@ class Object:
         center_of_gravity_m: ArrayLike | None = None,
         *,
         shapes: Iterable[Shape] = (),
+        holes: Iterable[Hole] = (),
         pose: Pose | None = None,
         mass_kg: float | None = None,
         inertia_kg_m2: ArrayLike | None = None,
@@ -64,21 +70,24 @@ class Object:
         Raises
         ------
         SceneError
-            Arguments of other classes, neither boxes nor shapes, a name used twice, a mass that is not above zero, an
-            inertia that no body has or without a mass.
+            Arguments of other classes, neither boxes nor shapes, a hole that is not in its parts, a name used twice, a
+            mass that is not above zero, an inertia that no body has or without a mass.
         """
         problems = ProblemList()
-        given_boxes = check_kinds(boxes, Box, "boxes", problems)
-        given_shapes = check_kinds(shapes, Shape, "shapes", problems)
+        given = {
+            "boxes": check_kinds(boxes, Box, "boxes", problems),
+            "shapes": check_kinds(shapes, Shape, "shapes", problems),
+            "holes": check_kinds(holes, Hole, "holes", problems),
+        }
         check_kind(pose or Pose(), Pose, ("pose",), problems)
         problems.raise_if_any()
-        placed: list[tuple[tuple[Key, ...], Any]] = [(("boxes", index), box) for index, box in enumerate(given_boxes)]
-        placed += [(("shapes", index, shape.kind), shape) for index, shape in enumerate(given_shapes)]
-        placed.sort(key=lambda part: not isinstance(part[1], Box))
-        parts = named(part for _, part in placed)
-        if not parts:
+        paths, everything = placed(given, lambda part: 2 if isinstance(part, Hole) else not isinstance(part, Box))
+        parts = tuple(part for part in everything if not isinstance(part, Hole))
+        if not everything:
             problems.add((), "has neither boxes nor shapes; give at least one of them")
-        check_names(names_of(parts), [path[:2] for path, _ in placed], problems)
+        check_names(names_of(everything), [path[:2] for path in paths], problems)
+        holes = tuple(hole for hole in everything if isinstance(hole, Hole))
+        check_holes(holes, paths[len(parts) :], parts, problems)
         if mass_kg is not None and not (np.isfinite(mass_kg) and mass_kg > 0.0):
             problems.add(("mass",), f"is {mass_kg!r}; a mass must be a finite number above zero")
         inertia = None
@@ -91,25 +100,28 @@ class Object:
         problems.raise_if_any()
         object.__setattr__(self, "boxes", tuple(part for part in parts if isinstance(part, Box)))
         object.__setattr__(self, "shapes", tuple(part for part in parts if not isinstance(part, Box)))
-        object.__setattr__(self, "part_paths", tuple(path for path, _ in placed))
+        object.__setattr__(self, "holes", holes)
+        object.__setattr__(self, "part_paths", paths)
         if center_of_gravity_m is None:
             center = self._union_moments.centroid_m
         else:
             center = finite_array(center_of_gravity_m, (3,), "center_of_gravity")
         object.__setattr__(self, "center_of_gravity_m", center)
+        if inertia is None and all(isinstance(part, Disc) for part in parts):
+            _ = self._union_moments  # says what is missing
         object.__setattr__(self, "mass_kg", None if mass_kg is None else float(mass_kg))
         object.__setattr__(self, "inertia_kg_m2", inertia)
         object.__setattr__(self, "pose_world_object", pose or Pose())
 
-    @property
+    @cached_property
     def parts(self) -> tuple[Box | AnyShape, ...]:
-        """All boxes, then all other shapes."""
+        """All boxes, then all other shapes; no holes."""
         return (*self.boxes, *self.shapes)
 
     @property
     def reach_m(self) -> float:
         """The distance of the object's farthest point from its centre of gravity, metres."""
-        return max(part.farthest_m(self.center_of_gravity_m) for part in self.parts)
+        return max(part.farthest_m(self.center_of_gravity_m) for part in (*self.parts, *self.holes))
 
     @cached_property
     def gyration_m2(self) -> FloatArray:
@@ -132,13 +144,11 @@ class Object:
     @cached_property
     def _union_moments(self) -> VolumeMoments:
         """Taken once, and only where needed: 40 boxes that are turned in all ways take 0.6 s."""
-        if self.shapes:
-            raise SceneError([Problem((), "has shapes other than boxes; give center_of_gravity, mass and inertia")])
-        return union_moments(
-            np.array([box.size_m for box in self.boxes]) / 2.0,
-            np.array([box.pose_object_box.position_m for box in self.boxes]),
-            np.array([box.pose_object_box.rotation for box in self.boxes]),
-        )
+        moments = body_moments(self.parts, self.holes)
+        if moments is None:
+            remedy = "give its center_of_gravity, mass and inertia, or add a part with a volume"
+            raise SceneError([Problem((), f"has no volume, as discs and holes have none; {remedy}")])
+        return moments
 
 
 def _checked_inertia(value: ArrayLike) -> FloatArray:

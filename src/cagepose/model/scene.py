@@ -10,7 +10,8 @@ import numpy as np
 
 from cagepose.errors import Key, key_path
 from cagepose.kernels.collision.contacts import deepest_boxes
-from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.collision.geometry import Geometry, empty_placement, place_object
+from cagepose.model.box import Box
 from cagepose.model.cage import Cage
 from cagepose.model.checks import ProblemList, check_kind, check_kinds, duplicates
 from cagepose.model.geometry import object_seams, scene_geometry, scene_size
@@ -18,7 +19,7 @@ from cagepose.model.load import Load
 from cagepose.model.methods import Metric
 from cagepose.model.naming import names_of
 from cagepose.model.parts import Object
-from cagepose.model.shapes import Shape
+from cagepose.model.shapes import Rounded, Shape
 from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
 
 FARTHEST_START = 1e4
@@ -130,10 +131,13 @@ class Scene:
         touch_m = tolerances.touch * size_m
         _check_thickness(object, cage, touch_m, problems)
         _check_points_apart(cage, touch_m, problems)
+        _check_can_run(object, cage, problems)
+        problems.raise_if_any()
         seams = object_seams(object, touch_m)
         geometry = scene_geometry(object, cage, seams.bridges, touch_m)
         _check_distance(object, cage, size_m, problems)
         _check_points_outside(object, cage, geometry, touch_m, size_m, problems)
+        _check_shapes_apart(object, cage, geometry, problems)
         _check_loads(object, loads, touch_m, problems)
         problems.raise_if_any()
         named = object.boxes
@@ -191,7 +195,7 @@ _set_field = object.__setattr__
 
 
 def _check_friction_of(friction_of: dict[str, float], held: Object, cage: Cage, problems: ProblemList) -> None:
-    elements, parts = set(cage.element_names), set(names_of(held.parts))
+    elements, parts = set(cage.element_names), set(names_of((*held.parts, *held.holes)))
     for name, coefficient in friction_of.items():
         at = ("friction", "of", name)
         if name in elements and name in parts:
@@ -202,12 +206,31 @@ def _check_friction_of(friction_of: dict[str, float], held: Object, cage: Cage, 
             problems.add(at, f"is {coefficient!r}; give a finite coefficient, zero or above")
 
 
+def _check_can_run(held: Object, cage: Cage, problems: ProblemList) -> None:
+    """Tell of each shape that no kernel knows yet."""
+    places: list[tuple[tuple[Key, ...], Shape]] = [
+        (("object", *path), part) for path, part in zip(held.part_paths, (*held.parts, *held.holes), strict=True)
+    ]
+    places += [
+        (("cage", *path), shape) for path, shape in zip(cage.shape_paths, (*cage.shapes, *cage.holes), strict=True)
+    ]
+    for path, shape in places:
+        if not isinstance(shape, Box | Rounded):
+            problems.add(
+                path[:2],
+                f"is a {shape.kind}, and a scene runs with spheres, capsules, boxes and convex shapes alone, so far;"
+                " use a capsule, or a convex shape with enough vertices",
+            )
+
+
 def _check_thickness(held: Object, cage: Cage, touch_m: float, problems: ProblemList) -> None:
     least_m = 10.0 * touch_m  # so that a point on one face is clear of the opposite one, and of probes from it
     shapes: list[tuple[tuple[Key, ...], Shape]] = [
-        (("object", *path), part) for path, part in zip(held.part_paths, held.parts, strict=True)
+        (("object", *path), part) for path, part in zip(held.part_paths, (*held.parts, *held.holes), strict=True)
     ]
-    shapes += [(("cage", "shapes", index, shape.kind), shape) for index, shape in enumerate(cage.shapes)]
+    shapes += [
+        (("cage", *path), shape) for path, shape in zip(cage.shape_paths, (*cage.shapes, *cage.holes), strict=True)
+    ]
     for path, shape in shapes:
         for key, thickness in shape.thickness():
             if thickness < least_m:
@@ -248,7 +271,7 @@ def _check_points_apart(cage: Cage, touch_m: float, problems: ProblemList) -> No
 
 def _check_distance(held: Object, cage: Cage, size_m: float, problems: ProblemList) -> None:
     """A start far from the cage leaves too few digits for the contact at the end of the first travel."""
-    middle = held.pose_world_object.transform(held.parts[0].pose_body_shape.position_m)
+    middle = held.pose_world_object.transform((*held.parts, *held.holes)[0].pose_body_shape.position_m)
     nodes_world = cage.pose_world_cage.transform(cage.nodes_cage())
     distance = float(np.linalg.norm(middle - nodes_world.mean(axis=0)))
     if distance > FARTHEST_START * size_m:
@@ -268,6 +291,10 @@ def _check_points_outside(
     for point_index in np.nonzero(depths > touch_m)[0].tolist():
         box = int(boxes[point_index])
         if box < len(held.boxes):
+            point_object = held.pose_world_object.inverse_transform(geometry.points_world[point_index])
+            holes = [hole for hole in held.holes if held.boxes[box].name in hole.in_]
+            if any(hole.holds(point_object[None])[0] for hole in holes):
+                continue
             path = key_path(("object", *held.part_paths[box][:2]))
             where = f"starts {millimetres(depths[point_index])} inside {path} ({held.boxes[box].name})"
         else:
@@ -276,6 +303,23 @@ def _check_points_outside(
         if depths[point_index] <= TOUCH_GREATEST * size_m:
             remedy = "move the point out, move the object's start pose, or raise tolerances.touch"
         problems.add(("cage", "points", cage.names[point_index]), f"{where}; {remedy}")
+
+
+def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: ProblemList) -> None:
+    """Tell of each part of the object that starts in a part of the cage; of boxes and points is told above."""
+    if len(geometry.held.parts) == 0:
+        return
+    placement = empty_placement(geometry)
+    place_object(geometry, *held.pose_world_object.as_tuples(), placement)
+    gaps, n_points = placement.meetings.gaps, len(cage.names)
+    for one, other in np.argwhere(gaps < -geometry.touch_m).tolist():
+        part = key_path(("object", *held.part_paths[one][:2]))
+        path = ("cage", "points", cage.names[other]) if other < n_points else ("cage", "shapes", other - n_points)
+        problems.add(
+            path,
+            f"starts {millimetres(-gaps[one, other])} inside {part} ({held.parts[one].name}); move it out or move the"
+            " object's start pose",
+        )
 
 
 def _check_loads(held: Object, loads: tuple[Load, ...], touch_m: float, problems: ProblemList) -> None:

@@ -13,12 +13,15 @@ from functools import cached_property
 from typing import Annotated, ClassVar, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from cagepose.errors import Key
 from cagepose.model.checks import FloatArray, ProblemList, check_kind, finite_array
 from cagepose.model.hull import Hull, hull_of
 from cagepose.model.pose import Pose
+
+WITHIN = 1e-9
+"""A point this far out, as a fraction of the shape's size, is still in it."""
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -54,6 +57,17 @@ class Shape:
         """Return the distance of the shape's farthest point from a point (3,) of its body's frame, metres."""
         raise NotImplementedError
 
+    def heights_m(self, directions_body: FloatArray) -> FloatArray:
+        """Return how far the shape reaches along unit vectors (n, 3) of its body's frame, (n,), metres."""
+        heights: FloatArray = (directions_body @ self.nodes_body().T).max(axis=1)
+        return heights
+
+    def holds(self, points_body: FloatArray) -> NDArray[np.bool_]:
+        """Return which of some points (n, 3) of the body's frame lie in the shape, (n,); of the rounding of a hull,
+        only what lies above its faces counts.
+        """
+        raise NotImplementedError
+
     def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
         """Return how thick the shape is from side to side, metres, each with the path of the number that says so."""
         raise NotImplementedError
@@ -81,6 +95,18 @@ class Rounded(Shape):
     def farthest_m(self, point_body: FloatArray) -> float:
         return float(np.linalg.norm(self.nodes_body() - point_body, axis=1).max()) + self.radius_m
 
+    def heights_m(self, directions_body: FloatArray) -> FloatArray:
+        return super().heights_m(directions_body) + self.radius_m
+
+    def holds(self, points_body: FloatArray) -> NDArray[np.bool_]:
+        core = self.core()
+        points = self.pose_body_shape.inverse_transform(points_body) - core[0]
+        span = core[-1] - core[0]
+        share = np.clip(points @ span / max(float(span @ span), np.finfo(float).tiny), 0.0, 1.0)
+        distances = np.linalg.norm(points - share[:, None] * span, axis=1)
+        within: NDArray[np.bool_] = distances <= self.radius_m * (1.0 + WITHIN)
+        return within
+
     def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
         return [(("radius",), 2.0 * self.radius_m)]
 
@@ -100,6 +126,21 @@ class Turned(Shape):
     def farthest_m(self, point_body: FloatArray) -> float:
         x, y, z = self.pose_body_shape.inverse_transform(point_body).tolist()
         return max(float(np.hypot(np.hypot(x, y) + radius, z - height)) for height, radius in self.rims)
+
+    def heights_m(self, directions_body: FloatArray) -> FloatArray:
+        axis = self.pose_body_shape.rotation[:, 2]
+        across = np.linalg.norm(directions_body - np.outer(directions_body @ axis, axis), axis=1)
+        rises = np.outer(across, [radius for _, radius in self.rims])
+        heights: FloatArray = (directions_body @ self.nodes_body().T + rises).max(axis=1)
+        return heights
+
+    def holds(self, points_body: FloatArray) -> NDArray[np.bool_]:
+        x, y, z = self.pose_body_shape.inverse_transform(points_body).T
+        heights, radii = np.array(self.rims).T
+        slack = WITHIN * (heights[-1] - heights[0] + radii.max())
+        is_beside = np.hypot(x, y) <= np.interp(z, heights, radii) + slack
+        within: NDArray[np.bool_] = is_beside & (z >= heights[0] - slack) & (z <= heights[-1] + slack)
+        return within
 
     def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
         heights, radii = zip(*self.rims, strict=True)
@@ -127,7 +168,7 @@ class Sphere(Rounded):
             A radius that is not a finite number above zero.
         """
         problems = ProblemList()
-        _set_lengths(self, problems, radius=radius_m)
+        set_lengths(self, problems, radius=radius_m)
         self._place(pose_body_shape, name, problems)
 
     def core(self) -> FloatArray:
@@ -159,7 +200,7 @@ class Capsule(Rounded):
             A radius or a length that is not a finite number above zero.
         """
         problems = ProblemList()
-        _set_lengths(self, problems, radius=radius_m, length=length_m)
+        set_lengths(self, problems, radius=radius_m, length=length_m)
         self._place(pose_body_shape, name, problems)
 
     def core(self) -> FloatArray:
@@ -198,7 +239,7 @@ class Convex(Rounded):
         """
         problems = ProblemList()
         vertices = finite_array(vertices_m, (-1, 3), "vertices")
-        _set_lengths(self, problems, may_be_zero=("radius",), radius=radius_m)
+        set_lengths(self, problems, may_be_zero=("radius",), radius=radius_m)
         _set_field(self, "vertices_m", vertices)
         if not problems.problems and self.radius_m == 0.0 and self.hull.dimension < 3:
             where = ("lie at one place", "lie on one line", "lie in one plane")[self.hull.dimension]
@@ -213,6 +254,22 @@ class Convex(Rounded):
 
     def core(self) -> FloatArray:
         return self.hull.vertices_m
+
+    def holds(self, points_body: FloatArray) -> NDArray[np.bool_]:
+        hull = self.hull
+        if hull.dimension < 2:
+            return super().holds(points_body)
+        points = self.pose_body_shape.inverse_transform(points_body)
+        slack = WITHIN * float(np.ptp(hull.vertices_m, axis=0).max())
+        on_faces = hull.vertices_m[[loop[0] for loop in hull.faces]]
+        heights = hull.normals @ points.T - np.einsum("ij,ij->i", hull.normals, on_faces)[:, None]
+        within: NDArray[np.bool_] = heights.max(axis=0) <= slack
+        for loop, normal, height in zip(hull.faces, hull.normals, heights, strict=True):
+            corners = hull.vertices_m[list(loop)]
+            inwards = np.cross(normal, np.roll(corners, -1, axis=0) - corners)
+            sides = np.einsum("ijk,jk->ij", points[:, None] - corners, inwards) / np.linalg.norm(inwards, axis=1)
+            within |= (sides.min(axis=1) >= -slack) & (height >= -slack) & (height <= self.radius_m + slack)
+        return within
 
     def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
         if self.hull.dimension < 3:
@@ -245,7 +302,7 @@ class Cylinder(Turned):
             A radius or a length that is not a finite number above zero.
         """
         problems = ProblemList()
-        _set_lengths(self, problems, radius=radius_m, length=length_m)
+        set_lengths(self, problems, radius=radius_m, length=length_m)
         self._place(pose_body_shape, name, problems)
 
     @property
@@ -287,7 +344,7 @@ class Cone(Turned):
             A radius below zero, both zero, or a length that is not a finite number above zero.
         """
         problems = ProblemList()
-        _set_lengths(
+        set_lengths(
             self,
             problems,
             may_be_zero=("radius_bottom", "radius_top"),
@@ -331,7 +388,7 @@ class Disc(Turned):
             A radius that is not a finite number above zero.
         """
         problems = ProblemList()
-        _set_lengths(self, problems, radius=radius_m)
+        set_lengths(self, problems, radius=radius_m)
         self._place(pose_body_shape, name, problems)
 
     @property
@@ -345,7 +402,7 @@ AnyShape = Sphere | Capsule | Convex | Cylinder | Cone | Disc
 _set_field = object.__setattr__
 
 
-def _set_lengths(shape: Shape, problems: ProblemList, *, may_be_zero: Sequence[str] = (), **lengths_m: float) -> None:
+def set_lengths(shape: Shape, problems: ProblemList, *, may_be_zero: Sequence[str] = (), **lengths_m: float) -> None:
     """Check lengths and set each as the field of its key with its unit."""
     for key, length in lengths_m.items():
         is_number = np.isscalar(length) and np.isreal(length) and not isinstance(length, (bool, str))

@@ -39,7 +39,7 @@ class Mesh:
     triangles: NDArray[np.int64]
 
 
-def shape_mesh(shape: Shape, segments: int) -> Mesh:
+def shape_mesh(shape: Shape, segments: int, *, halved: bool = False) -> Mesh:
     """Return the surface of a shape in its body's frame.
 
     Parameters
@@ -48,25 +48,33 @@ def shape_mesh(shape: Shape, segments: int) -> Mesh:
         A box or another shape. A disc, which has no thickness, has two sides at one place.
     segments
         Into how many chords a full circle is divided, at least 3.
+    halved
+        Whether to divide every chord in two: the same mesh with a quarter of its error.
 
     Raises
     ------
     ValueError
         Fewer segments.
     """
+    mesh = mesh_in_own_frame(shape, segments, halved=halved)
+    return Mesh(shape.pose_body_shape.transform(mesh.vertices_m), mesh.triangles)
+
+
+def mesh_in_own_frame(shape: Shape, segments: int, *, halved: bool = False) -> Mesh:
+    """As `shape_mesh`, in the shape's own frame: shapes of the same kind and size have the same one."""
     if segments < LEAST_SEGMENTS:
         raise ValueError(f"segments is {segments}; give at least {LEAST_SEGMENTS}")
+    finer = 2 if halved else 1
     if isinstance(shape, Box):
-        mesh = _hull_mesh(hull_of(BOX_SIGNS * shape.size_m / 2.0))
-    elif isinstance(shape, Turned):
-        mesh = _turned_mesh([*shape.rims], segments)
-    elif isinstance(shape, Convex) and shape.hull.dimension > 1:
-        mesh = _hull_mesh(shape.hull) if shape.radius_m == 0.0 else _rounded_mesh(shape.hull, shape.radius_m, segments)
-    elif isinstance(shape, Rounded):
-        mesh = _capsule_mesh(shape.core(), shape.radius_m, segments)
-    else:
-        raise TypeError(f"{type(shape).__name__} has no surface")
-    return Mesh(shape.pose_body_shape.transform(mesh.vertices_m), mesh.triangles)
+        return _hull_mesh(hull_of(BOX_SIGNS * shape.size_m / 2.0))
+    if isinstance(shape, Turned):
+        return _turned_mesh([*shape.rims], segments * finer)
+    if isinstance(shape, Convex) and shape.hull.dimension > 1:
+        is_sharp = shape.radius_m == 0.0
+        return _hull_mesh(shape.hull) if is_sharp else _RoundedMesh(shape.hull, shape.radius_m, segments, finer).mesh()
+    if isinstance(shape, Rounded):
+        return _capsule_mesh(shape.core(), shape.radius_m, segments, finer)
+    raise TypeError(f"{type(shape).__name__} has no surface")
 
 
 def _hull_mesh(hull: Hull) -> Mesh:
@@ -100,15 +108,15 @@ def _with_three_corners(triangles: list[tuple[int, int, int]]) -> NDArray[np.int
     return np.array([triangle for triangle in triangles if len(set(triangle)) == 3], dtype=np.int64)
 
 
-def _capsule_mesh(core: FloatArray, radius: float, segments: int) -> Mesh:
+def _capsule_mesh(core: FloatArray, radius: float, segments: int, finer: int) -> Mesh:
     """A sphere about one point, or a capsule between two."""
     half = float(np.linalg.norm(core[-1] - core[0])) / 2.0
-    n = math.ceil(segments / 4)
+    n = math.ceil(segments / 4) * finer
     lower = [(-half - radius * math.cos(k * math.pi / 2 / n), radius * math.sin(k * math.pi / 2 / n)) for k in range(n)]
     lower[0] = (-half - radius, 0.0)
     middle = [(-half, radius), (half, radius)] if half > 0.0 else [(0.0, radius)]
     upper = [(-height, ring) for height, ring in reversed(lower)]
-    mesh = _turned_mesh([*lower, *middle, *upper], segments)
+    mesh = _turned_mesh([*lower, *middle, *upper], segments * finer)
     axis = core[-1] - core[0] if half > 0.0 else np.array((0.0, 0.0, 1.0))
     return Mesh(mesh.vertices_m @ _frame_of(axis).T + core.mean(axis=0), mesh.triangles)
 
@@ -122,16 +130,11 @@ def _frame_of(axis: FloatArray) -> FloatArray:
     return np.stack([np.cross(across, along), across, along], axis=1)
 
 
-def _rounded_mesh(hull: Hull, radius: float, segments: int) -> Mesh:
-    """A volume or a polygon, blown up."""
-    return _RoundedMesh(hull, radius, 2.0 * math.pi / segments).mesh()
-
-
 class _RoundedMesh:
-    """Collects the mesh of a rounded hull; directions of the sphere about each corner are shared by its neighbours."""
+    """Collects the mesh of a volume or a polygon that is blown up; its pieces share the points about each corner."""
 
-    def __init__(self, hull: Hull, radius: float, step_rad: float) -> None:
-        self.hull, self.radius, self.step_rad = hull, radius, step_rad
+    def __init__(self, hull: Hull, radius: float, segments: int, finer: int) -> None:
+        self.hull, self.radius, self.segments, self.finer = hull, radius, segments, finer
         self.points: list[FloatArray] = []
         self.triangles: list[tuple[int, int, int]] = []
         self.face_of = {
@@ -162,6 +165,10 @@ class _RoundedMesh:
             self._cap(corner, lines_at)
         return Mesh(np.array(self.points), np.array(self.triangles, dtype=np.int64))
 
+    def _steps(self, angle_rad: float) -> int:
+        """Into how many chords to divide an arc."""
+        return max(1, math.ceil(angle_rad * self.segments / (2.0 * math.pi))) * self.finer
+
     def _point(self, corner: int, direction: FloatArray) -> int:
         self.points.append(self.hull.vertices_m[corner] + self.radius * direction)
         return len(self.points) - 1
@@ -172,7 +179,7 @@ class _RoundedMesh:
         along = unit_rows((self.hull.vertices_m[end] - self.hull.vertices_m[start])[None])[0]
         outwards = np.cross(along, normal)
         angle = math.atan2(float(other @ outwards), float(other @ normal))
-        n = max(1, math.ceil(angle / self.step_rad))
+        n = self._steps(angle)
         return [math.cos(k * angle / n) * normal + math.sin(k * angle / n) * outwards for k in range(1, n)]
 
     def _cap(self, corner: int, arcs: dict[int, list[int]]) -> None:
@@ -187,7 +194,7 @@ class _RoundedMesh:
         directions = (np.array([self.points[point] for point in outline]) - center) / self.radius
         middle = unit_rows(directions.mean(axis=0)[None])[0]
         widest = math.acos(max(-1.0, min(1.0, float((directions @ middle).min()))))
-        n = max(1, math.ceil(widest / self.step_rad))
+        n = self._steps(widest)
         ring = outline
         for k in range(1, n):
             between = unit_rows((1.0 - k / n) * directions + k / n * middle)

@@ -120,16 +120,16 @@ def cage_middle(scene: Scene) -> FloatArray:
     return found
 
 
-def cage_middles(
-    cage: Cage, points_cage_m: FloatArray, positions_m: FloatArray, quaternions: FloatArray
-) -> FloatArray:
+def cage_middles(cage: Cage, points_cage_m: FloatArray, positions_m: FloatArray, quaternions: FloatArray) -> FloatArray:
     """Return the middles of cages in the world, (n, 3), metres, from which kernels see all positions.
 
     Points are (n, n_points, 3), poses (n, 3) and (n, 4), each also one row for all; the shapes are those of ``cage``.
     Number by number, as below.
     """
-    shapes = np.array([shape.nodes_body().mean(axis=0) for shape in cage.shapes]).reshape(1, -1, 3)
-    places = np.concatenate([points_cage_m, np.broadcast_to(shapes, (len(points_cage_m), *shapes.shape[1:]))], axis=1)
+    places = points_cage_m
+    if cage.shapes:
+        shapes = np.array([[shape.nodes_body().mean(axis=0) for shape in cage.shapes]])
+        places = np.concatenate([places, np.repeat(shapes, len(places), axis=0)], axis=1)
     middles = places.cumsum(axis=1)[:, -1] / places.shape[1]
     found: FloatArray = positions_m + np.stack(_turned(quaternions, *middles.T), axis=1)
     return found

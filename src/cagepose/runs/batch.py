@@ -15,7 +15,7 @@ from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.cases import Cases
 from cagepose.kernels.outcome.endings import empty_endings
 from cagepose.model.checks import FloatArray, unit_rows
-from cagepose.model.geometry import cage_sizes, object_size
+from cagepose.model.geometry import sizes_with_points
 from cagepose.model.pose import Pose, quaternions_of
 from cagepose.model.scene import FARTHEST_START, Scene
 from cagepose.runs.actions import actions_of, cage_middles, tensions_at_zero
@@ -84,9 +84,10 @@ def _varied(scene: Scene, friction: float, columns: dict[str, FloatArray]) -> Ca
         _owned(columns.get("cage_position_m", base.cage_positions)),
         _quaternions(columns.get("cage_euler_zyx"), scene.cage.pose_world_cage),
         points,
+        base.shapes_cage,
         _owned(columns.get("object_position_m", base.object_positions)),
         _quaternions(columns.get("object_euler_zyx"), scene.object.pose_world_object),
-        np.maximum(object_size(scene.object), cage_sizes(points)) if "points_cage_m" in columns else base.sizes_m,
+        sizes_with_points(scene.object, scene.cage, points) if "points_cage_m" in columns else base.sizes_m,
         _owned(columns.get("friction_coefficient", base.frictions)),
         base.point_frictions,
         base.box_frictions,

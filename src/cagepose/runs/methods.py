@@ -16,6 +16,7 @@ from cagepose.kernels.stepwise import run as stepwise_kernels
 from cagepose.model.load import Load
 from cagepose.model.methods import DEFAULT_FRICTION, DEFAULT_METHOD, METHODS
 from cagepose.model.scene import Scene
+from cagepose.model.scope import other_shapes
 from cagepose.runs.actions import is_one_force
 from cagepose.runs.quasistatic import quasistatic_rules, quasistatic_warnings
 from cagepose.runs.run import PhaseRun
@@ -107,7 +108,7 @@ def chosen_method(scene: Scene, method: str | None = None) -> Method:
     Raises
     ------
     SceneError
-        An unknown method, or one that does not run what acts in the scene, or its friction.
+        An unknown method, or one that does not run what acts in the scene, its friction or its shapes.
     """
     name = method or scene.method or DEFAULT_METHOD
     if name not in REGISTRY:
@@ -126,6 +127,7 @@ def chosen_method(scene: Scene, method: str | None = None) -> Method:
         if scene.friction_of:
             message = f"the {name} method has one friction for all; use {DEFAULT_METHOD}"
             problems.append(Problem(("friction", "of"), message))
+        problems += other_shapes(scene, f"the {name} method runs boxes held by points alone; use {DEFAULT_METHOD}")
         if problems:
             raise SceneError(problems)
     return chosen

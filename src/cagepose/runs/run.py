@@ -76,12 +76,12 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Contact:
-    """One cage point on one face at the end of a phase.
+    """One place where the object and the cage touch at the end of a phase.
 
     Attributes
     ----------
     point, box
-        Names.
+        Names of the cage's point or shape, and of the object's box or shape.
     normal_world
         Outward unit normal of the face, (3,): from the object towards the point. The contact pushes the object along
         -n.
@@ -92,6 +92,9 @@ class Contact:
     force_normal_n, force_tangential_n
         Force on the object: its part along -n, and the rest, (3,), in the world. Newtons if mass and magnitude are
         given as far as they count, else per unit load. None where no forces balance the load.
+    place_world
+        Where they touch, (3,), metres: the cage's point, or a point of the surface of the cage's shape. None in a run
+        that was saved before contacts had it.
     """
 
     point: str
@@ -101,6 +104,7 @@ class Contact:
     near_edge: bool
     force_normal_n: float | None = None
     force_tangential_n: FloatArray | None = None
+    place_world: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -74,7 +74,9 @@ _WORKSPACES = _Workspaces()
 
 def _workspace(scene: Scene, method: Method, step_limit: int) -> _Workspace:
     n_phases, n_points, n_elements = len(scene.loads), len(scene.cage.names), len(scene.cage.element_names)
-    size = (method.name, n_phases, n_points, len(scene.geometry.half_sizes), *_sizes(scene), step_limit)
+    size: tuple[object, ...] = (method.name, n_phases, n_points, len(scene.geometry.half_sizes), step_limit)
+    if len(scene.geometry.held.parts) > 0:
+        size = (*size, *_sizes(scene))
     kept = _WORKSPACES.by_size
     if size in kept:
         kept.move_to_end(size)

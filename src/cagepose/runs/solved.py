@@ -172,6 +172,7 @@ def _contacts(scene: Scene, outcome: Outcome) -> list[Contact]:
         contacts["near_edge"].tolist(),
         contacts["force_normal"].tolist(),
         contacts["force_tangential"],
+        contacts["place"],
         strict=True,
     )
     return [
@@ -184,8 +185,9 @@ def _contacts(scene: Scene, outcome: Outcome) -> list[Contact]:
             near_edge=near_edge,
             force_normal_n=force_normal,
             force_tangential_n=force_tangential,
+            place_world=place,
         )
-        for point, box, normal, gap, near_edge, force_normal, force_tangential in columns
+        for point, box, normal, gap, near_edge, force_normal, force_tangential, place in columns
     ]
 
 

@@ -20,6 +20,7 @@ from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.stability import relaxation, strong
 from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
 from cagepose.model.checks import FloatArray
+from cagepose.model.scope import check_boxes_and_points
 from cagepose.runs.cases import cases_of
 from cagepose.runs.judge import judged_workspace
 from cagepose.runs.methods import chosen_method
@@ -57,7 +58,10 @@ def certificate(run: Run, phase: int = -1) -> Certificate | None:
     ------
     IndexError
         The run has no such phase.
+    SceneError
+        The scene has other shapes than boxes and points.
     """
+    check_boxes_and_points(run.scene, "certificate")
     number = range(len(run.phases))[phase]
     ended = run.phases[number]
     if ended.proof.verdict == "moves":

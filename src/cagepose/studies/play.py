@@ -22,6 +22,7 @@ from cagepose.kernels.play.search import find_play, find_play_from
 from cagepose.model.checks import FloatArray, finite_array, unit_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import FARTHEST_START, Scene, millimetres
+from cagepose.model.scope import check_boxes_and_points
 from cagepose.studies.cage_verdict import CageVerdict, judge_cage
 from cagepose.studies.play_frame import FREEDOMS, PlayFrame, range_goals
 from cagepose.studies.play_limits import Clearance, limiting_clearances
@@ -153,8 +154,10 @@ def play(
     Raises
     ------
     SceneError
-        A point or direction that is not three finite numbers, a direction of length zero, or a point far away.
+        The scene has other shapes than boxes and points; or a point or direction is not three finite numbers, a
+        direction of length zero, or a point far away.
     """
+    check_boxes_and_points(scene, "play")
     points = [_point_near(scene, point) for point in at]
     along = [unit_vector(direction, "direction") for direction in (directions if len(directions) else np.eye(3))]
     shifts = [(point, direction) for point in points for direction in along]

@@ -21,6 +21,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.load import Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.model.scope import check_boxes_and_points
 from cagepose.runs.actions import acting_pushes, is_one_force
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.studies.play_frame import FREEDOMS, LENGTHS, PlayFrame, motion_after, range_goals
@@ -92,6 +93,7 @@ def play_rests(scene: Scene) -> tuple[PlayRest, ...]:
     The answer is where the load has done all the work that the cage allows. `cagepose.run` follows the way there, with
     friction, and proves the rest.
     """
+    check_boxes_and_points(scene, "play")
     frame = PlayFrame(scene)
     work = empty_play_workspace(frame.geometry)
     loads = [load for load in scene.loads if is_one_force(scene, load)]

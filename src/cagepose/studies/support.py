@@ -62,7 +62,13 @@ def load_view(run: Run, phase_index: int) -> LoadView:
     load_point = through @ axes
     names = {contact.point for contact in phase.contacts}
     touching = [index for index, name in enumerate(run.scene.cage.names) if name in names]
-    polygon = convex_hull(run.scene.cage.points_world()[touching] @ axes)
+    on_shapes = [
+        contact.place_world
+        for contact in phase.contacts
+        if contact.point not in run.scene.cage.names and contact.place_world is not None
+    ]
+    places = np.concatenate([run.scene.cage.points_world()[touching], np.reshape(on_shapes, (-1, 3))])
+    polygon = convex_hull(places @ axes)
     return LoadView(right, up, load_point, polygon, _margin(polygon, load_point))
 
 

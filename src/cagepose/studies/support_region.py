@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from cagepose.kernels.algebra.linear_program import INFEASIBLE, N_UNKNOWNS, OPTIMAL, UNBOUNDED, Program, solve_program
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.model.checks import FloatArray
+from cagepose.model.scope import has_other_shapes
 from cagepose.runs.run import Run
 from cagepose.studies.contact_problem import ContactProblem, contact_problem
 from cagepose.studies.support import ROUNDING, LoadView, convex_hull, polygon_within, without_doubles
@@ -50,7 +51,8 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
     """Return where the contacts at the end of a phase under gravity alone could balance the object's weight.
 
     They can where the region holds the centre of gravity, with each choice of faces at edges. (That they can does not
-    say that they must, see `Proof`.) None: there are too many choices, or a linear program had no sure answer.
+    say that they must, see `Proof`.) None: there are too many choices, a linear program had no sure answer, or the
+    scene has shapes, whose contacts are not found anew here.
 
     Parameters
     ----------
@@ -59,6 +61,8 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
     reach_m
         Farther from the centre of gravity nothing is shown.
     """
+    if has_other_shapes(run.scene):
+        return None
     problem = contact_problem(run, phase_index)
     choices = list(islice(product(*problem.groups), MOST_CHOICES + 1))
     if len(choices) > MOST_CHOICES:

@@ -15,19 +15,25 @@ from matplotlib.patches import Patch
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from cagepose.files.units import LengthUnit, from_metres
+from cagepose.model.box import Box
 from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
+from cagepose.model.scope import has_other_shapes
 from cagepose.runs.run import Event, Run
 from cagepose.studies.ending import ending
 from cagepose.studies.support import convex_hull, load_view
 from cagepose.studies.support_region import SupportRegion, support_region
 from cagepose.views.scene_drawing import POINT_LOOKS, SceneDrawing
+from cagepose.views.solids import cut_off, outer_points, vertices_of
 from cagepose.views.style import (
     BLACK,
     BLUE,
+    BROWN,
     GREEN,
     GREY,
     PAGE_WIDTH_IN,
     PURPLE,
+    SAND,
     SKY,
     Look,
     styled,
@@ -82,7 +88,7 @@ def event_figure(run: Run, length_unit: LengthUnit = "mm") -> Figure:
             notes[1] += f"; {n_left_out} events before the last are left out"
         figure.text(0.5, 1.0 - 0.08 / height, notes[0], ha="center", va="top", fontsize=11)
         figure.text(0.5, 1.0 - 0.32 / height, notes[1], ha="center", va="top", fontsize=8.5)
-        _draw_legend(figure)
+        _draw_legend(figure, run.scene)
     return figure
 
 
@@ -141,22 +147,34 @@ def _cut(name: str) -> str:
 
 def _draw_view(panel: Axes, run: Run, phase_index: int, length_unit: LengthUnit) -> None:
     phase, view = run.phases[phase_index], load_view(run, phase_index)
-    boxes = phase.pose.transform(np.concatenate([box.corners_object() for box in run.scene.object.boxes]))
-    for corners in view.project(boxes).reshape(-1, 8, 2):
-        outline = from_metres(convex_hull(corners), length_unit)
+    held, cage = run.scene.object, run.scene.cage
+    points, outer = cage.points_world(), phase.pose.transform(outer_points(held))
+    bodies = [cage.pose_world_cage.transform(vertices_of([shape])) for shape in cage.shapes]
+    shown_bodies = [cut_off(body, np.concatenate([points, outer]), held.reach_m) for body in bodies]
+    for body in bodies:
+        outline = from_metres(convex_hull(view.project(body)), length_unit)
+        panel.fill(*outline.T, facecolor=SAND, edgecolor=BROWN, alpha=0.3, linewidth=0.6)
+    for part in held.parts:
+        corners = part.corners_object() if isinstance(part, Box) else vertices_of([part])
+        outline = from_metres(convex_hull(view.project(phase.pose.transform(corners))), length_unit)
         panel.fill(*outline.T, facecolor=SKY, edgecolor=BLUE, alpha=0.22, linewidth=0.6)
-    points = run.scene.cage.points_world()
     region = support_region(run, phase_index, view, REACH * run.scene.size_m)
-    extent = from_metres(view.project(np.concatenate([points, boxes])), length_unit)
+    extent = from_metres(view.project(np.concatenate([points, outer, *shown_bodies])), length_unit)
     if region is not None:
         corners = from_metres(region.corners, length_unit)
         panel.fill(*corners.T, facecolor="none", edgecolor=GREEN, hatch="//", linewidth=1.6)
     touching = {contact.point for contact in phase.contacts}
-    for name, point in zip(run.scene.cage.names, extent[: len(points)], strict=True):
-        touches = name in touching
+    marks = [(name, point, name in touching) for name, point in zip(cage.names, extent[: len(points)], strict=True)]
+    for contact in phase.contacts:
+        if contact.point not in cage.names and contact.place_world is not None:
+            place = from_metres(view.project(contact.place_world[None])[0], length_unit)
+            marks.append((contact.point, place, True))
+    named = set[str]()
+    for name, point, touches in marks:
         panel.plot(*point, "o", zorder=2.0 + touches, **POINT_LOOKS["touching" if touches else "free"])
-        if touches:
+        if touches and name not in named:
             panel.annotate(name, point, xytext=(3.0, 3.0), textcoords="offset points", fontsize=7.0)
+            named.add(name)
     panel.plot(*from_metres(view.load_point, length_unit), marker="D", color=BLUE, markersize=5.0)
     title = f"end of {_cut(phase.name)}, seen along it:\n{_position(region, run.scene.size_m, length_unit)}"
     panel.set_title(title, fontsize=8.5, pad=8.0)
@@ -193,8 +211,11 @@ def _axis_name(axis_world: np.ndarray) -> str:
     return "across the load"
 
 
-def _draw_legend(figure: Figure) -> None:
+def _draw_legend(figure: Figure, scene: Scene) -> None:
     point: Look = {"marker": "o", "linestyle": "none"}
+    support = Patch(facecolor="none", edgecolor=GREEN, hatch="//", label="support region: a weight is balanced")
+    bodies = Patch(facecolor=SAND, edgecolor=BROWN, alpha=0.5, label="shape of the cage")
+    patches = ([bodies] if scene.cage.shapes else []) + ([] if has_other_shapes(scene) else [support])
     figure.legend(
         handles=[
             Line2D([], [], label="reached by this motion", **point, **POINT_LOOKS["reached"]),
@@ -204,7 +225,7 @@ def _draw_legend(figure: Figure) -> None:
             Line2D([], [], color=PURPLE, linestyle="-.", label="axis of turning, or travel"),
             Line2D([], [], color=BLACK, label="load"),
             Line2D([], [], color=GREY, linestyle=":", label="before the motion"),
-            Patch(facecolor="none", edgecolor=GREEN, hatch="//", label="support region: a weight is balanced"),
+            *patches,
         ],
         loc="lower center",
         ncols=4,

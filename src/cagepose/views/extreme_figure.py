@@ -10,11 +10,11 @@ from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from cagepose.files.units import LengthUnit, from_metres
-from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.studies.play import Play, PlayEnd
 from cagepose.views.scene_drawing import SceneDrawing
+from cagepose.views.solids import outer_points
 from cagepose.views.style import PAGE_WIDTH_IN, styled
 
 COLUMNS, PANEL_IN, FLAT_PANEL_IN, TITLE_IN = 3, 2.3, 1.75, 0.55
@@ -66,13 +66,9 @@ def _amount(end: PlayEnd, name: str, length_unit: LengthUnit) -> str:
     return f"{word}{math.degrees(end.reached):.4g} deg"
 
 
-def _corners(scene: Scene) -> FloatArray:
-    return np.concatenate([box.corners_object() for box in scene.object.boxes])
-
-
 def _times(scene: Scene, ends: list[PlayEnd]) -> float:
     """Return 1, 2, 5, 10, ...: how many times larger the motions are drawn."""
-    corners, start = _corners(scene), scene.object.pose_world_object
+    corners, start = outer_points(scene.object), scene.object.pose_world_object
     moves = [
         end.pose_world_object.transform(corners) - start.transform(corners) for end in ends if end.pose_world_object
     ]

@@ -16,9 +16,13 @@ from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.model.scope import has_other_shapes
 from cagepose.runs.run import Event, Motion
 from cagepose.studies.acts import acts_of, coil
-from cagepose.views.style import BLACK, BLUE, GREY, ORANGE, PURPLE, SKY, VERMILLION, Look
+from cagepose.studies.touching import TouchFinder
+from cagepose.views.solid_drawing import SolidDrawing
+from cagepose.views.solids import cut_off, outer_points, vertices_of
+from cagepose.views.style import BLACK, BLUE, BROWN, GREY, ORANGE, PURPLE, SAND, SKY, VERMILLION, Look
 
 SLIMMEST = 0.45
 """No edge of a picture is shorter than this fraction of its longest; a slimmer scene is stretched, and says so."""
@@ -32,6 +36,8 @@ POINT_LOOKS: Mapping[str, Look] = {
 """Cage points, by what they do at the end of an event; drawn in this order."""
 TOGETHER = 0.04
 """Points nearer than this fraction of the picture share one label."""
+BODY_OPACITY, SHAPE_OPACITY = 0.5, 0.35
+"""How far bodies of the cage, and shapes of the object, cover what is behind them."""
 MARGIN = 0.04
 SECOND_HEAD, LONGEST_SPRING, COIL = 0.8, 0.5, 0.012
 """Where a moment's arrow has its other head; in lengths of the picture, the greatest length of a spring that is drawn,
@@ -51,8 +57,12 @@ class SceneDrawing:
         self.scene = scene
         self.unit: LengthUnit = length_unit
         self.points = self._shown(scene.cage.points_world())
-        corners = [self._shown(pose.transform(self._corners_object())) for pose in poses]
-        everything = np.concatenate([self.points, *corners])
+        held, cage = scene.object, scene.cage
+        self.finder = TouchFinder(scene) if has_other_shapes(scene) else None
+        needed = np.concatenate([cage.points_world(), *(pose.transform(outer_points(held)) for pose in poses)])
+        bodies = [cage.pose_world_cage.transform(vertices_of([shape])) for shape in cage.shapes]
+        self.bodies = [self._shown(cut_off(body, needed, held.reach_m)) for body in bodies]
+        everything = np.concatenate([self._shown(needed), *self.bodies])
         self.low, self.high = everything.min(axis=0), everything.max(axis=0)
         self.extents = np.maximum(self.high - self.low, 1e-9 * (self.high - self.low).max())
         self.aspect = np.maximum(self.extents, SLIMMEST * self.extents.max())
@@ -70,26 +80,34 @@ class SceneDrawing:
     def draw(self, panel: Axes3D, phase_index: int, event: Event | None, before: Pose, title: str) -> None:
         """Draw the object after ``event`` (None: at ``before``), and the motion that took it there."""
         pose = before if event is None else event.pose_world_object
-        self._draw_object(panel, pose)
+        solids = self._set_view(panel)
+        self._draw_object(panel, solids, pose)
         if event is not None and event.motion is not None:
-            self._draw_outline(panel, before)
+            self._draw_outline(panel, solids, before)
             self._draw_motion(panel, event.motion, before)
-        self._draw_points(panel, () if event is None else event.contacts, () if event is None else event.hit)
+        contacts, hit = ((), ()) if event is None else (event.contacts, event.hit)
+        self._draw_points(panel, contacts, hit, self._marks(pose, contacts))
         self._draw_load(panel, phase_index, pose)
         self._frame(panel, title)
 
     def draw_pose(self, panel: Axes3D, pose: Pose, touching: tuple[str, ...], title: str) -> None:
         """Draw the object at ``pose``, dotted where it starts, and the points that touch."""
-        self._draw_object(panel, pose)
-        self._draw_outline(panel, self.scene.object.pose_world_object)
-        self._draw_points(panel, touching, ())
+        solids = self._set_view(panel)
+        self._draw_object(panel, solids, pose)
+        self._draw_outline(panel, solids, self.scene.object.pose_world_object)
+        self._draw_points(panel, touching, (), {})
         self._frame(panel, title)
 
-    def _frame(self, panel: Axes3D, title: str) -> None:
+    def _set_view(self, panel: Axes3D) -> SolidDrawing:
         panel.view_init(**VIEW_FROM)
         panel.set_box_aspect(tuple(self.aspect.tolist()), zoom=ZOOM_FLAT if self.is_flat else ZOOM)
         for axis, low, extent in zip("xyz", self.low.tolist(), self.extents.tolist(), strict=True):
             getattr(panel, f"set_{axis}lim")(low - MARGIN * extent, low + (1.0 + MARGIN) * extent)
+        room = 1e-6 * self.extents.max()
+        return SolidDrawing(panel, self.low - room, self.high + room, self.unit)
+
+    def _frame(self, panel: Axes3D, title: str) -> None:
+        for axis in "xyz":
             getattr(panel, f"set_{axis}label")(axis, fontsize=7.5, labelpad=-10.0)
             getattr(panel, f"{axis}axis").set_major_locator(MaxNLocator(4))
         panel.tick_params(labelsize=6.5, pad=-3.5)
@@ -100,23 +118,30 @@ class SceneDrawing:
     def _shown(self, points_m: FloatArray) -> FloatArray:
         return from_metres(points_m, self.unit)
 
-    def _corners_object(self) -> FloatArray:
-        """All boxes' corners, (8 n, 3)."""
-        return np.concatenate([box.corners_object() for box in self.scene.object.boxes])
+    def _boxes(self, pose: Pose) -> FloatArray:
+        """The corners of the object's boxes at a pose, (n, 8, 3)."""
+        corners = [box.corners_object() for box in self.scene.object.boxes]
+        return self._shown(pose.transform(np.concatenate([np.zeros((0, 3)), *corners]))).reshape(-1, 8, 3)
 
-    def _draw_object(self, panel: Axes3D, pose: Pose) -> None:
-        boxes = self._shown(pose.transform(self._corners_object())).reshape(-1, 8, 3)
-        faces = [corners[list(face)] for corners in boxes for face in _FACES]
-        panel.add_collection3d(
-            Poly3DCollection(faces, facecolors=SKY, edgecolors=BLUE, linewidths=0.5, alpha=0.22, zorder=1)
-        )
-        center = self._shown(pose.transform(self.scene.object.center_of_gravity_m))
+    def _draw_object(self, panel: Axes3D, solids: SolidDrawing, pose: Pose) -> None:
+        """Draw the object at a pose, and the bodies of the cage."""
+        held, cage = self.scene.object, self.scene.cage
+        solids.draw(((shape, cage.pose_world_cage) for shape in cage.shapes), SAND, BROWN, BODY_OPACITY)
+        faces = [corners[list(face)] for corners in self._boxes(pose) for face in _FACES]
+        if faces:
+            panel.add_collection3d(
+                Poly3DCollection(faces, facecolors=SKY, edgecolors=BLUE, linewidths=0.5, alpha=0.22, zorder=1)
+            )
+        solids.draw(((shape, pose) for shape in held.shapes), SKY, BLUE, SHAPE_OPACITY)
+        center = self._shown(pose.transform(held.center_of_gravity_m))
         panel.plot(*center[:, None], marker="D", color=BLUE, markersize=4.0, linestyle="none", zorder=5)
 
-    def _draw_outline(self, panel: Axes3D, pose: Pose) -> None:
-        boxes = self._shown(pose.transform(self._corners_object())).reshape(-1, 8, 3)
-        edges = [corners[list(edge)] for corners in boxes for edge in _EDGES]
-        panel.add_collection3d(Line3DCollection(edges, colors=GREY, linewidths=0.5, linestyles=":"))
+    def _draw_outline(self, panel: Axes3D, solids: SolidDrawing, pose: Pose) -> None:
+        edges = [corners[list(edge)] for corners in self._boxes(pose) for edge in _EDGES]
+        look: Look = {"colors": GREY, "linewidths": 0.5, "linestyles": ":"}
+        if edges:
+            panel.add_collection3d(Line3DCollection(edges, **look))
+        solids.draw_outline(((shape, pose) for shape in self.scene.object.shapes), look)
 
     def _draw_motion(self, panel: Axes3D, motion: Motion, before: Pose) -> None:
         """An axis of turning as a line through the picture, a travel as an arrow from where the CoG was."""
@@ -127,20 +152,34 @@ class SceneDrawing:
             start = self._shown(before.transform(self.scene.object.center_of_gravity_m))
             panel.add_artist(_Arrow(start, start + self._length(0.25, motion.direction_world), PURPLE))
 
-    def _draw_points(self, panel: Axes3D, contacts: tuple[str, ...], hit: tuple[str, ...]) -> None:
-        names = self.scene.cage.names
+    def _marks(self, pose: Pose, contacts: tuple[str, ...]) -> dict[str, FloatArray]:
+        """Return where shapes of the cage touch the object at a pose, (n, 3) each, by name."""
+        found = None if self.finder is None else self.finder.at(pose)
+        marks: dict[str, FloatArray] = {}
+        for index, name in enumerate(self.scene.cage.element_names):
+            if found is not None and index >= len(self.points) and name in contacts:
+                marks[name] = self._shown(found.places_world[found.elements == index])
+        return marks
+
+    def _draw_points(
+        self, panel: Axes3D, contacts: tuple[str, ...], hit: tuple[str, ...], marks: dict[str, FloatArray]
+    ) -> None:
+        """Draw the cage's points, and the places where its shapes touch, with their names."""
+        names = self.scene.cage.element_names
+        middles = [body.mean(axis=0) for body in self.bodies]
         labels: list[tuple[FloatArray, list[str], bool]] = []
         chosen: dict[str, list[FloatArray]] = {look: [] for look in POINT_LOOKS}
-        for name, point in zip(names, self.points, strict=True):
-            touches = name in contacts
-            chosen["reached" if name in hit else "touching" if touches else "free"].append(point)
+        for name, place in zip(names, [*self.points, *middles], strict=True):
+            touches, is_point = name in contacts, name in self.scene.cage.names
+            places = place[None] if is_point else marks.get(name, np.zeros((0, 3)))
+            chosen["reached" if name in hit else "touching" if touches else "free"].extend(places)
             if touches or len(names) <= MOST_NAMED_POINTS:
-                self._add_label(labels, point, name, touches)
+                self._add_label(labels, places[0] if len(places) else place, name, touches)
         for look, points in chosen.items():
             if points:
-                panel.plot(*np.array(points).T, marker="o", linestyle="none", zorder=7, **POINT_LOOKS[look])
+                panel.plot(*np.array(points).T, marker="o", linestyle="none", zorder=20, **POINT_LOOKS[look])
         for point, together, touches in labels:
-            panel.text(*point, f" {' '.join(together)}", fontsize=7.0, color=BLACK if touches else GREY, zorder=8)
+            panel.text(*point, f" {' '.join(together)}", fontsize=7.0, color=BLACK if touches else GREY, zorder=21)
 
     def _add_label(
         self, labels: list[tuple[FloatArray, list[str], bool]], point: FloatArray, name: str, touches: bool

@@ -26,7 +26,7 @@ def rail():
 def drawn_gaps(stage: Stage, pose: Pose, exaggeration: float) -> np.ndarray:
     """Distance of each cage point from the object on screen, as a fraction of the scene's size."""
     points = stage.points(exaggeration)
-    nearest = nearest_on_object(stage.shown.run.scene.object, stage.pose(pose, exaggeration), points)
+    nearest = nearest_on_object(stage.shown.run.scene.object, stage.pose(pose, exaggeration), Cage(points))
     gaps = ((points - nearest.feet_world) * nearest.normals_world).sum(axis=1)
     return gaps / stage.size_m
 

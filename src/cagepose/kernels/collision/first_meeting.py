@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, vector_from
 from cagepose.kernels.collision.geometry import Geometry, Placement
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.along_motion import ahead, can_touch, first_touch, safe_step
-from cagepose.kernels.shapes.features import EDGE, Shapes
+from cagepose.kernels.shapes.along_motion import ahead, can_touch, clear_step, first_touch, safe_step
+from cagepose.kernels.shapes.body import place_asked
+from cagepose.kernels.shapes.features import EDGE, VERTEX, Shapes
 from cagepose.kernels.shapes.meeting import both_reach, meeting
 from cagepose.kernels.shapes.meetings import balls_apart, slack_of
 from cagepose.kernels.shapes.motion import Motion, velocity_at
@@ -52,7 +54,7 @@ NO_HIT = Hit(math.inf, -1, -1, -1, -1, math.inf)
 
 
 @kernel
-def fastest(motion: Motion, middle: Vector, reach: float) -> float:
+def greatest_speed(motion: Motion, middle: Vector, reach: float) -> float:
     """Return a speed that no point of a ball around ``middle`` exceeds."""
     return norm(velocity_at(motion, middle)) + motion.rate * reach
 
@@ -72,33 +74,77 @@ def first_meeting(
 
     Features nearer than ``near_m`` may go ``near_depth_m`` deep. On a travel, parts that touch do not meet again.
     """
-    held, cage, touch_m = placement.held, geometry.cage, geometry.touch_m
+    held, cage, touch_m, earliest = placement.body.world, geometry.cage, geometry.touch_m, placement.earliest
     n_points = len(geometry.points_world)
-    hit = NO_HIT
-    least = end
     for one in range(len(held.parts)):
-        speed = fastest(motion, vector_from(held.parts[one].middle), held.parts[one].reach)
-        if speed == 0.0:
-            continue
+        speed = greatest_speed(motion, vector_from(held.parts[one].middle), held.parts[one].reach)
         for other in range(len(cage.parts)):
-            if one < geometry.n_own_boxes and other < n_points:
+            earliest[one, other] = math.inf
+            if speed == 0.0 or (one < geometry.n_own_boxes and other < n_points):
                 continue
             gap = max(placement.meetings.gaps[one, other], balls_apart(held, one, cage, other))
-            if gap > SAFE * speed * least or (motion.rate == 0.0 and gap <= touch_m):
+            if gap > SAFE * speed * end or (motion.rate == 0.0 and gap <= touch_m):
                 continue
-            until = least if motion.rate > 0.0 else min(least, until_past(held, one, cage, other, speed))
-            depth = min(near_depth_m, THIN * min(held.parts[one].reach, max(cage.parts[other].reach, touch_m)))
-            slack = slack_of(held, one, cage, other, touch_m)
-            exact = max(LEAST_SLACK, touch_m / (held.parts[one].reach + cage.parts[other].reach))
-            for i in range(held.parts[one].first, held.parts[one].last):
-                for j in range(cage.parts[other].first, cage.parts[other].last):
-                    found = first_of_features(
-                        held, i, cage, j, motion, until, near_m, depth, slack, exact, speed, touch_m, placement.moved
-                    )
-                    if found[0] < least:
-                        least = until = found[0]
-                        hit = Hit(least, other, one, i, j, found[1])
+            place_asked(geometry.held, one, placement.body)
+            until = end if motion.rate > 0.0 else min(end, until_past(held, one, cage, other, speed))
+            first = earliest_touch(held, one, cage, other, motion, until)
+            if first < until:
+                earliest[one, other] = max(first, gap / speed)
+    hit = NO_HIT
+    one, other = next_pair(earliest, end)
+    while one >= 0:
+        until = min(end, hit.amount)
+        speed = greatest_speed(motion, vector_from(held.parts[one].middle), held.parts[one].reach)
+        if motion.rate == 0.0:
+            until = min(until, until_past(held, one, cage, other, speed))
+        depth = min(near_depth_m, THIN * min(held.parts[one].reach, max(cage.parts[other].reach, touch_m)))
+        slack = slack_of(held, one, cage, other, touch_m)
+        exact = max(LEAST_SLACK, touch_m / (held.parts[one].reach + cage.parts[other].reach))
+        for i in range(held.parts[one].first, held.parts[one].last):
+            for j in range(cage.parts[other].first, cage.parts[other].last):
+                found = first_of_features(
+                    held, i, cage, j, motion, until, near_m, depth, slack, exact, speed, touch_m, placement.moved
+                )
+                if found[0] < until:
+                    until = found[0]
+                    hit = Hit(until, other, one, i, j, found[1])
+        earliest[one, other] = math.inf
+        one, other = next_pair(earliest, min(end, hit.amount))
     return hit
+
+
+@kernel
+def next_pair(earliest: FloatArray, end: float) -> tuple[int, int]:
+    """Return the pair of parts that can touch first, before ``end``; (-1, -1): there is none."""
+    found, least = (-1, -1), end
+    for one in range(earliest.shape[0]):
+        for other in range(earliest.shape[1]):
+            if earliest[one, other] < least:
+                found, least = (one, other), earliest[one, other]
+    return found
+
+
+@kernel
+def earliest_touch(held: Shapes, one: int, cage: Shapes, other: int, motion: Motion, until: float) -> float:
+    """Return an amount before which two parts do not touch: so long all of the one is beyond a face of the other."""
+    latest = 0.0
+    for i in range(held.parts[one].first_face, held.parts[one].last):
+        first = until
+        for j in range(cage.parts[other].first, cage.parts[other].last):
+            if first <= latest or cage.features[j].kind != VERTEX:
+                break
+            now = ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)
+            first = min(first, safe_step(now)) if now.value > 0.0 else 0.0
+        latest = max(latest, first)
+    for j in range(cage.parts[other].first_face, cage.parts[other].last):
+        first = until
+        for i in range(held.parts[one].first, held.parts[one].last):
+            if first <= latest or held.features[i].kind != VERTEX:
+                break
+            now = ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)
+            first = min(first, safe_step(now)) if now.value > 0.0 else 0.0
+        latest = max(latest, first)
+    return latest
 
 
 @kernel
@@ -127,16 +173,20 @@ def first_of_features(
         return math.inf, math.inf
     if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
         return math.inf, math.inf
+    if clear_step(held, i, cage, j, motion, 0.0, moved) >= until:
+        return math.inf, math.inf
     met = meeting(held, i, cage, j)
     touches = met.is_one and abs(met.gap) <= touch_m
     if touches and motion.rate == 0.0:
         return math.inf, math.inf
-    touches = touches and both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
-    if touches and dot(met.normal, velocity_at(motion, met.place)) >= -LEAVES * speed:
+    leaves = touches and both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
+    if leaves and dot(met.normal, velocity_at(motion, met.place)) >= -LEAVES * speed:
         return math.inf, math.inf
     level, side = 0.0, 0.0
-    if touches or (met.is_one and abs(met.gap) <= near_m):
-        level = near_depth_m
+    if met.is_one and abs(met.gap) <= max(near_m, touch_m):
+        level = near_depth_m if leaves or abs(met.gap) <= near_m else 0.0
+        if not leaves:
+            level = max(level, 2.0 * touch_m)  # they do not reach there now, but might
         if held.features[i].kind == EDGE and cage.features[j].kind == EDGE:
             crossed = cross(vector_from(held.features[i].direction), vector_from(cage.features[j].direction))
             side = -math.copysign(1.0, dot(met.normal, crossed))

@@ -15,7 +15,8 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Matrix, Vector, matrix, minus, plus, row, times, transposed_times
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import entry, kernel
-from cagepose.kernels.shapes.features import Shapes, copied, place_shapes
+from cagepose.kernels.shapes.body import PlacedBody, empty_body, place_body
+from cagepose.kernels.shapes.features import Shapes, copied
 from cagepose.kernels.shapes.meetings import Meetings, empty_meetings, find_meetings
 
 
@@ -70,12 +71,14 @@ class Placement(NamedTuple):
         metres.
     arms
         Memory for the squared distance of each point from the axis of a turn, (n_points,), square metres.
-    held
-        The object's shapes in the world.
+    body
+        The object's shapes.
     moved
         Memory for them at a pose that is tried.
     meetings
         Where they touch the cage's.
+    earliest
+        Memory for the amount of a motion before which two parts do not touch, (n_parts, n_cage_parts).
     """
 
     box_positions: FloatArray
@@ -85,9 +88,10 @@ class Placement(NamedTuple):
     gaps: FloatArray
     depths: FloatArray
     arms: FloatArray
-    held: Shapes
+    body: PlacedBody
     moved: Shapes
     meetings: Meetings
+    earliest: FloatArray
 
 
 def empty_placement(geometry: Geometry) -> Placement:
@@ -102,9 +106,10 @@ def empty_placement(geometry: Geometry) -> Placement:
         np.empty((n_boxes, n_points)),
         np.empty(n_points),
         np.empty(n_points),
-        copied(geometry.held),
+        empty_body(geometry.held),
         copied(geometry.held),
         empty_meetings(len(geometry.held.parts), len(geometry.cage.parts)),
+        np.empty((len(geometry.held.parts), len(geometry.cage.parts))),
     )
 
 
@@ -167,9 +172,15 @@ def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, p
                 gaps[point] = box_gap((x, y, z), half_size)
                 depths[point] = max(depths[point], -gaps[point])
     if len(geometry.held.parts) > 0:
-        place_shapes(geometry.held, position, quaternion, placement.held)
+        place_body(geometry.held, position, quaternion, placement.body)
         find_meetings(
-            placement.held, geometry.cage, geometry.n_own_boxes, n_points, geometry.touch_m, placement.meetings
+            geometry.held,
+            placement.body,
+            geometry.cage,
+            geometry.n_own_boxes,
+            n_points,
+            geometry.touch_m,
+            placement.meetings,
         )
 
 

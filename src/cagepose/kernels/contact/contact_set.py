@@ -1,4 +1,4 @@
-"""The contacts at one pose as the mechanics needs them: one row for each place where two parts touch, with its wrenches.
+"""The contacts at one pose as the mechanics needs them: a row for each place where two parts touch, with its wrenches.
 
 A point that touches several faces of one box lies on an edge: going in means that every one of them goes in (2.4), so
 one face that holds or leaves is enough. Such faces form a group, of which one is chosen at a time. Faces of different
@@ -328,7 +328,7 @@ def append_meeting(
             contact.directions[j, k] = directions[j][k]
         write_scaled_wrench(directions[j], cross(arm, directions[j]), frame, contact.columns[j])
     found = curvatures(
-        placement.held,
+        placement.body.world,
         met.feature,
         geometry.cage,
         met.cage_feature,

@@ -2,8 +2,8 @@
 
     S = D^-1/2 (Hess V - sum lambda_i Hess g_i + sum phi_i . Hess u_i) D^-1/2
 
-V is the potential of the load, g_i the gap of a sliding contact, u_i the way of the object's material at a sticking one:
-along the normal with what rolling adds, which moves the place of contact on both bodies.
+V is the potential of the load, g_i the gap of a sliding contact, u_i the way of the object's material at a sticking
+one: along the normal with what rolling adds, which moves the place of contact on both bodies.
 """
 
 from __future__ import annotations

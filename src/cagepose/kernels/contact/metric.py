@@ -19,7 +19,7 @@ from cagepose.kernels.algebra.vector import (
     transposed_times,
 )
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.motion import motion_of, moved_point
+from cagepose.kernels.shapes.motion import motion_of, moved_point, turned_by_amount
 
 WRENCH = 6
 """Numbers of a wrench or twist."""
@@ -87,7 +87,7 @@ def moved_along_twist(
 ) -> tuple[Vector, Quaternion]:
     """Move a pose by ``amount`` along a constant twist: an exact screw, equation (2.3), wherever its axis lies."""
     motion = motion_of(position, velocity, spin)
-    moved = moved_point(motion, position, amount)
+    moved = moved_point(motion, position, turned_by_amount(motion, amount))
     if motion.rate * amount == 0.0:
         return moved, quaternion
     return moved, quaternion_product(quaternion_about(motion.axis, motion.rate * amount), quaternion)

@@ -168,8 +168,8 @@ def start_of(case: int, part: Part, cases: Cases, cage: PlacedCage) -> Start:
 
 @kernel
 def is_valid(start: Start, farthest: float, points_vary: bool, placement: Placement) -> bool:
-    """Whether the object starts within ``farthest`` sizes of the cage, nothing of it is inside it, and no two points that
-    vary are one. The placement is that of the start afterwards.
+    """Whether the object starts within ``farthest`` sizes of the cage, nothing of it is inside it, and no two points
+    that vary are one. The placement is that of the start afterwards.
     """
     if norm(start.position) > farthest * start.size_m:
         return False

@@ -10,7 +10,19 @@ import numpy as np
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.tolerances import KernelTolerances
-from cagepose.kernels.algebra.vector import Vector, cross, dot, matrix_from, minus, norm, plus, row, scaled, times, vector_from
+from cagepose.kernels.algebra.vector import (
+    Vector,
+    cross,
+    dot,
+    matrix_from,
+    minus,
+    norm,
+    plus,
+    row,
+    scaled,
+    times,
+    vector_from,
+)
 from cagepose.kernels.collision.first_contact import allowed_depth, first_contact_screw, first_contact_travel
 from cagepose.kernels.collision.first_meeting import NO_HIT, Hit, first_meeting
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
@@ -158,7 +170,7 @@ def first_contact(
 ) -> Hit:
     """Return the first contact along a twist, but for what touches already: of points and boxes, or of shapes."""
     hit = first_point(setting, placement, contacts, position, quaternion, twist)
-    if len(placement.held.parts) == 0:
+    if len(setting.geometry.held.parts) == 0:
         return hit
     motion = motion_of(position, twist.velocity, twist.spin)
     end = min(hit.amount, twist.end)

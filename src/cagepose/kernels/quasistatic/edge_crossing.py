@@ -35,7 +35,7 @@ def still_meet(
     geometry: Geometry, placement: Placement, contact: ContactRow, motion: Motion, amount: float, touch_m: float
 ) -> bool:
     """Whether two features still reach where they meet, after an amount of a motion."""
-    held, moved = placement.held, placement.moved
+    held, moved = placement.body.world, placement.moved
     place_moved(held, contact.feature, motion, amount, moved)
     met = meeting(moved, contact.feature, geometry.cage, contact.cage_feature)
     slack = CLEAR * slack_of(held, contact.box, geometry.cage, contact.point, touch_m)
@@ -50,7 +50,7 @@ def end_of_meeting(
     inf: it does not.
     """
     if end == math.inf:
-        held, cage = placement.held.parts[contact.box], geometry.cage.parts[contact.point]
+        held, cage = placement.body.world.parts[contact.box], geometry.cage.parts[contact.point]
         end = 2.0 * (held.reach + cage.reach + touch_m) / norm(motion.velocity)
     if still_meet(geometry, placement, contact, motion, end, touch_m):
         return math.inf

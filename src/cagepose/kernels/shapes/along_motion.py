@@ -1,7 +1,7 @@
 """When two features touch first while the object moves at a constant twist.
 
 What is asked of two features is a smooth function F of the amount, above zero where they are apart: the distance of a
-vertex from the plane of a face, the squared distance of a vertex from another one or from a line, less that of touching,
+vertex from the plane of a face, the squared distance of a vertex from another one or from a line less that of touching,
 or, of two edges, the volume that they span. With F, its slope and bounds on its second derivative over the rest of the
 motion, steps are known that jump over no root; near one they become Newton's. Where F is zero it is asked whether both
 features reach there; if not, the search goes on behind.
@@ -16,14 +16,16 @@ from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plu
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes, write_feature, write_fence
 from cagepose.kernels.shapes.meeting import PARALLEL, both_reach, meeting
-from cagepose.kernels.shapes.motion import Motion, moved_point, turned, velocity_at
+from cagepose.kernels.shapes.motion import Motion, moved_point, turned, turned_by_amount, velocity_at
 
 EVALUATIONS = 400
-"""Of F, for one pair of features. A contact that grazes may need them all: then it counts where the search has come."""
+"""Of F, for one pair of features. A contact that grazes may need them all: then it counts where the search has come, if
+the features reach there."""
 LEAST_STEP = 1e-15
 """In amounts of the whole motion: a shorter step is no progress."""
-BEHIND = 1e-9
-"""In amounts of the whole motion: how far behind a root that is no contact the search goes on."""
+BEHIND, FARTHER = 1e-9, 8.0
+"""In amounts of the whole motion: how far behind a root that is no contact the search goes on, and how many times that
+if it is still at one."""
 NARROWER = 4.0
 """Bounds over the rest of the motion are too wide where only a small part of it is stepped over: they are asked again
 over so many times that part."""
@@ -50,14 +52,19 @@ def plane_ahead(motion: Motion, normal: Vector, height: float, way: Vector, leve
 
 
 @kernel
-def distance_ahead(motion: Motion, between: Vector, way: Vector, radius: float, level: float, span: float) -> Ahead:
-    """A point at ``between`` from another one or from a line, that moves with ``way``, over a length of the motion."""
+def distance_ahead(
+    motion: Motion, between: Vector, way: Vector, across: Vector, radius: float, level: float, span: float
+) -> Ahead:
+    """A point at ``between`` from another one or from a line, over a length of the motion; it moves with ``way``, and
+    across the line with ``across``.
+    """
     speed, far, least = norm(way), norm(between), allowed_radius(radius, level)
-    bend = 2.0 * (far + speed * span) * motion.rate * norm(cross(motion.axis, way))
+    turning = motion.rate * norm(cross(motion.axis, way))
+    bend, slowest = 2.0 * (far + speed * span) * turning, max(0.0, norm(across) - turning * span)
     return Ahead(
         dot(between, between) - least * least,
         2.0 * dot(between, way),
-        -bend,
+        2.0 * slowest * slowest - bend,
         2.0 * speed * speed + bend,
         far > radius + level,
     )
@@ -78,8 +85,8 @@ def across_line(between: Vector, along: Vector) -> Vector:
 def edges_ahead(
     motion: Motion, p: Vector, u: Vector, q: Vector, w: Vector, radius: float, level: float, side: float, span: float
 ) -> Ahead:
-    """An edge through p along u that moves, and one through q along w; with ``radius`` zero, ``side`` is the sign of the
-    volume with which they are apart.
+    """An edge through p along u that moves, and one through q along w; with ``radius`` zero, ``side`` is the sign of
+    the volume with which they are apart.
     """
     crossed = cross(u, w)
     square = dot(crossed, crossed)
@@ -101,10 +108,11 @@ def edges_ahead(
     rounded = allowed_radius(radius, level) ** 2
     cosine = dot(u, w)
     value = volume * volume - rounded * square
+    slowest = max(0.0, abs(slope) - bend * span)
     slope = 2.0 * (volume * slope + rounded * cosine * dot(turning, w))
     bend = 2.0 * far * bend + 4.0 * rounded * motion.rate * motion.rate
     fastest = speed * steepest + far * motion.rate
-    return Ahead(value, slope, -bend, 2.0 * fastest * fastest + bend, is_clear)
+    return Ahead(value, slope, 2.0 * slowest * slowest - bend, 2.0 * fastest * fastest + bend, is_clear)
 
 
 @kernel
@@ -116,7 +124,8 @@ def ahead(
     """
     one, other = a.features[i].kind, b.features[j].kind
     radius = a.features[i].radius + b.features[j].radius
-    p = moved_point(motion, vector_from(a.features[i].point), amount)
+    so_far = turned_by_amount(motion, amount)
+    p = moved_point(motion, vector_from(a.features[i].point), so_far)
     q = vector_from(b.features[j].point)
     if one == VERTEX and other == FACE:
         normal = vector_from(b.features[j].direction)
@@ -125,25 +134,47 @@ def ahead(
         between = minus(p, q)
         if other == EDGE:
             line = vector_from(b.features[j].direction)
-            between = across_line(between, line)
-        return distance_ahead(motion, between, velocity_at(motion, p), radius, level, span)
-    along = turned(motion, vector_from(a.features[i].direction), amount)
+            way = velocity_at(motion, p)
+            return distance_ahead(motion, across_line(between, line), way, across_line(way, line), radius, level, span)
+        way = velocity_at(motion, p)
+        return distance_ahead(motion, between, way, way, radius, level, span)
+    along = turned(motion, vector_from(a.features[i].direction), so_far)
     way = scaled(velocity_at(motion, q), -1.0)
     if one == FACE:
         return plane_ahead(motion, along, dot(along, minus(q, p)) - radius, way, level)
     if other == VERTEX:
-        return distance_ahead(motion, across_line(minus(q, p), along), way, radius, level, span)
+        return distance_ahead(
+            motion, across_line(minus(q, p), along), way, across_line(way, along), radius, level, span
+        )
     return edges_ahead(motion, p, along, q, vector_from(b.features[j].direction), radius, level, side, span)
 
 
 @kernel
 def safe_step(now: Ahead) -> float:
-    """Return how far F stays on its side of zero: to the first root of the parabola that bends there most; inf: none."""
+    """Return how far F stays on its side of zero: to the root of the parabola that bends there most; inf: none."""
     value, slope, bend = now.value, now.slope, now.low
     if value < 0.0:
         value, slope, bend = -value, -slope, -now.high
-    down = math.sqrt(slope * slope - 2.0 * bend * value) - slope
+    discriminant = slope * slope - 2.0 * bend * value
+    if discriminant < 0.0:
+        return math.inf
+    down = math.sqrt(discriminant) - slope
     return math.inf if down <= 0.0 else 2.0 * value / down
+
+
+@kernel
+def between_segments(p: Vector, u: Vector, length: float, q: Vector, w: Vector, other_length: float) -> float:
+    """Return how far apart two segments are that begin at p and q."""
+    between, cosine = minus(p, q), dot(u, w)
+    crossed = cross(u, w)
+    square = dot(crossed, crossed)  # 1 - cosine^2 would be rounding where they are nearly parallel
+    along, other_along = dot(between, u), dot(between, w)
+    s = 0.0
+    if square > 0.0:
+        s = min(max(dot(between, minus(scaled(w, cosine), u)) / square, 0.0), length)
+    t = min(max(other_along + s * cosine, 0.0), other_length)
+    s = min(max(t * cosine - along, 0.0), length)
+    return norm(minus(plus(between, scaled(u, s)), scaled(w, t)))
 
 
 @kernel
@@ -181,70 +212,47 @@ def distance_from(shapes: Shapes, i: int, point: Vector) -> float:
 
 
 @kernel
-def edge_end(shapes: Shapes, i: int) -> Vector:
-    """Return the other end of an edge."""
-    feature = shapes.features[i]
-    return plus(vector_from(feature.point), scaled(vector_from(feature.direction), feature.length))
-
-
-@kernel
-def edges_apart(a: Shapes, i: int, b: Shapes, j: int) -> float:
-    """Return how far apart the cores of two edges are; of parallel ones, or less."""
-    one, other = a.features[i], b.features[j]
-    p, q, u, w = (
-        vector_from(one.point),
-        vector_from(other.point),
-        vector_from(one.direction),
-        vector_from(other.direction),
-    )
-    least = min(
-        min(distance_from(b, j, p), distance_from(b, j, edge_end(a, i))),
-        min(distance_from(a, i, q), distance_from(a, i, edge_end(b, j))),
-    )
-    crossed, start = cross(u, w), minus(q, p)
-    square = dot(crossed, crossed)
-    if square < PARALLEL * PARALLEL:
-        return least - PARALLEL * min(one.length, other.length)
-    s, t = dot(cross(start, w), crossed) / square, dot(cross(start, u), crossed) / square
-    if 0.0 <= s <= one.length and 0.0 <= t <= other.length:
-        least = min(least, abs(dot(start, crossed)) / math.sqrt(square))
-    return least
-
-
-@kernel
 def clear_step(a: Shapes, i: int, b: Shapes, j: int, motion: Motion, amount: float, moved: Shapes) -> float:
     """Return how much farther the motion surely leads without a contact of two features, by how far apart they are.
 
     What F says of planes and lines where no feature is, needs no search then.
     """
     place_moved(a, i, motion, amount, moved)
-    one, other = a.features[i].kind, b.features[j].kind
-    if one == EDGE and other == EDGE:
-        away = edges_apart(moved, i, b, j)
-        speed = max(
-            norm(velocity_at(motion, vector_from(moved.features[i].point))),
-            norm(velocity_at(motion, edge_end(moved, i))),
-        )
-    elif one == VERTEX:
-        point = vector_from(moved.features[i].point)
+    one, other = moved.features[i], b.features[j]
+    if one.kind == EDGE and other.kind == EDGE:
+        p, u = vector_from(one.point), vector_from(one.direction)
+        away = between_segments(p, u, one.length, vector_from(other.point), vector_from(other.direction), other.length)
+        end = plus(p, scaled(u, one.length))
+        speed = max(norm(velocity_at(motion, p)), norm(velocity_at(motion, end)))
+    elif one.kind == VERTEX:
+        point = vector_from(one.point)
         away, speed = distance_from(b, j, point), norm(velocity_at(motion, point))
     else:
-        point = vector_from(b.features[j].point)
+        point = vector_from(other.point)
         away, speed = distance_from(moved, i, point), norm(velocity_at(motion, point))
-    away -= a.features[i].radius + b.features[j].radius
+    away -= one.radius + other.radius
     if away <= 0.0:
         return 0.0
     return away / speed if speed > 0.0 else math.inf
 
 
 @kernel
+def stay_parallel(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, span: float) -> bool:
+    """Whether two edges stay side by side over a length of the motion: then they meet at their ends alone."""
+    one, other = moved.features[i], b.features[j]
+    if one.kind != EDGE or other.kind != EDGE:
+        return False
+    return norm(cross(vector_from(one.direction), vector_from(other.direction))) + motion.rate * span < PARALLEL
+
+
+@kernel
 def place_moved(a: Shapes, i: int, motion: Motion, amount: float, moved: Shapes) -> None:
     """Write a feature as it is after an amount."""
-    feature = a.features[i]
-    point = moved_point(motion, vector_from(feature.point), amount)
-    write_feature(feature, point, turned(motion, vector_from(feature.direction), amount), moved.features[i])
+    feature, so_far = a.features[i], turned_by_amount(motion, amount)
+    point = moved_point(motion, vector_from(feature.point), so_far)
+    write_feature(feature, point, turned(motion, vector_from(feature.direction), so_far), moved.features[i])
     for f in range(feature.first_fence, feature.last_fence):
-        fence = turned(motion, vector_from(a.fences[f].direction), amount)
+        fence = turned(motion, vector_from(a.fences[f].direction), so_far)
         write_fence(fence, a.fences[f].bound, moved.fences[f])
 
 
@@ -303,7 +311,7 @@ def first_touch(
     is_sharp = are_sharp_edges(a, i, b, j)
     if is_sharp and side == 0.0:
         side = math.copysign(1.0, ahead(a, i, b, j, motion, 0.0, 0.0, 1.0, end).value)
-    amount, was_apart = 0.0, False
+    amount, was_apart, behind = 0.0, False, BEHIND * end
     for _ in range(EVALUATIONS):
         rest = end - amount
         now = ahead(a, i, b, j, motion, amount, level, side, rest)
@@ -321,14 +329,18 @@ def first_touch(
             narrow = ahead(a, i, b, j, motion, amount, level, side, NARROWER * step)
             step = max(step, min(safe_step(narrow), NARROWER * step))
             step = max(step, clear_step(a, i, b, j, motion, amount, moved))
+            if stay_parallel(moved, i, b, j, motion, rest):
+                return math.inf
         if step >= rest:
             return math.inf
         if step > LEAST_STEP * end:
             amount += step
+            behind = BEHIND * end
         elif touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
             return amount
         else:
-            amount += BEHIND * end
+            amount += behind
+            behind *= FARTHER
             if amount >= end:
                 return math.inf
-    return amount
+    return amount if touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved) else math.inf

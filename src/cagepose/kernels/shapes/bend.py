@@ -1,10 +1,10 @@
 """How the gap of two features bends: its second derivative, equations (2.9) and (2.10).
 
 With h_A and h_B the support functions of two convex bodies, their gap is the greatest over all unit normals n of
--h_A(n) - h_B(-n). So its second derivative follows from how the places of contact move when the normal turns: by C_A and
-C_B, the radii of curvature of the two, across the normal. A vertex has zero, a plane infinite ones, an edge one of each,
-and a radius adds itself. With v the velocity of the object's material at the contact, and m = n x w for its angular
-velocity w, in the pose (x + t, exp(w) R),
+-h_A(n) - h_B(-n). So its second derivative follows from how the places of contact move when the normal turns: by C_A
+and C_B, the radii of curvature of the two, across the normal. A vertex has zero, a plane infinite ones, an edge one of
+each, and a radius adds itself. With v the velocity of the object's material at the contact, and m = n x w for its
+angular velocity w, in the pose (x + t, exp(w) R),
 
     gap'' = -n . (w x (w x a)) + v K v + 2 v L m - m P m,
     K = 1/(C_A + C_B),  L = K C_A,  P = C_A K C_B,

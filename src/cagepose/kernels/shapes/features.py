@@ -63,8 +63,8 @@ class ShapePart:
 
     Attributes
     ----------
-    first, last
-        Its features, the last one not included.
+    first, first_face, last
+        Its features: vertices and edges, then faces, the last one not included.
     middle, reach
         A ball around it, metres.
     least_length
@@ -72,6 +72,7 @@ class ShapePart:
     """
 
     first: int
+    first_face: int
     last: int
     middle: Annotated[FloatArray, 3]
     reach: float
@@ -86,9 +87,8 @@ class Shapes(NamedTuple):
     fences: Rows[Fence]
 
 
-def no_shapes() -> Shapes:
-    """Return a body without parts (plain Python)."""
-    return Shapes(empty_rows(ShapePart, 0), empty_rows(Feature, 0), empty_rows(Fence, 0))
+NO_SHAPES = Shapes(empty_rows(ShapePart, 0), empty_rows(Feature, 0), empty_rows(Fence, 0))
+"""A body without parts."""
 
 
 def copied(shapes: Shapes) -> Shapes:
@@ -127,7 +127,8 @@ def write_fence(direction: Vector, bound: float, out: Fence) -> None:
 def place_part(shapes: Shapes, which: int, position: Vector, rotation: Matrix, placed: Shapes) -> None:
     """Write one part as it is in the world, without its features."""
     part, there = shapes.parts[which], placed.parts[which]
-    there.first, there.last, there.reach, there.least_length = part.first, part.last, part.reach, part.least_length
+    there.first, there.first_face, there.last = part.first, part.first_face, part.last
+    there.reach, there.least_length = part.reach, part.least_length
     middle = plus(position, times(rotation, vector_from(part.middle)))
     for k in range(3):
         there.middle[k] = middle[k]
@@ -139,5 +140,11 @@ def place_shapes(shapes: Shapes, position: Vector, quaternion: Quaternion, place
     rotation = matrix_from_quaternion(quaternion)
     for which in range(len(shapes.parts)):
         place_part(shapes, which, position, rotation, placed)
-    for i in range(len(shapes.features)):
+        place_features(shapes, which, position, rotation, placed)
+
+
+@kernel
+def place_features(shapes: Shapes, which: int, position: Vector, rotation: Matrix, placed: Shapes) -> None:
+    """Write the features of one part as they are in the world with their body at a pose."""
+    for i in range(shapes.parts[which].first, shapes.parts[which].last):
         place_feature(shapes, i, position, rotation, placed)

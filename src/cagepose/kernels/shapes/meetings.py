@@ -13,11 +13,12 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
-from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, row, scaled, transposed_times, vector_from
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.along_motion import can_touch
+from cagepose.kernels.shapes.body import PlacedBody, place_asked, rotation_of
 from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes
-from cagepose.kernels.shapes.meeting import both_reach, farthest_beyond, meeting
+from cagepose.kernels.shapes.meeting import Meeting, both_reach, farthest_beyond, meeting
 
 ROOM_FOR_PAIR, MOST_ROOM = 32, 4096
 """Meetings that there is memory for: of each pair of parts, and of all."""
@@ -147,11 +148,7 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, touch_m: float, found
             if found.used[0] == len(found.rows):
                 found.used[0] = first
                 return math.nan
-            row = found.rows[found.used[0]]
-            row.part, row.cage_part, row.feature, row.cage_feature = one, other, i, j
-            row.gap, row.is_hidden = met.gap, False
-            for k in range(3):
-                row.normal[k], row.place[k] = met.normal[k], met.place[k]
+            write_touching(one, other, i, j, met, found.rows[found.used[0]])
             found.used[0] += 1
     keep_nearest(found, first, 2.0 * min(separation, 0.0) - touch_m, touch_m)
     for at in range(first, found.used[0]):
@@ -163,17 +160,25 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, touch_m: float, found
 
 
 @kernel
+def write_touching(one: int, other: int, i: int, j: int, met: Meeting, out: Touching) -> None:
+    out.part, out.cage_part, out.feature, out.cage_feature = one, other, i, j
+    out.gap, out.is_hidden = met.gap, False
+    for k in range(3):
+        out.normal[k], out.place[k] = met.normal[k], met.place[k]
+
+
+@kernel
 def keep_nearest(found: Meetings, first: int, least_gap: float, touch_m: float) -> None:
-    """Keep, of the meetings of two parts, those that are not deeper than the parts are in each other (these are on their
-    far sides), and each normal at a place once.
+    """Keep, of the meetings of two parts, those that are not deeper than the parts are in each other (these are on
+    their far sides), and each normal at a place once.
     """
     kept = first
     for at in range(first, found.used[0]):
-        row, is_new = found.rows[at], found.rows[at].gap >= least_gap
+        is_new = found.rows[at].gap >= least_gap
         for before in range(first, kept):
             is_new = is_new and not is_same(found, at, before, touch_m)
         if is_new:
-            move_row(row, found.rows[kept])
+            move_touching(found.rows[at], found.rows[kept])
             kept += 1
     found.used[0] = kept
 
@@ -193,11 +198,11 @@ def is_same(found: Meetings, one: int, other: int, touch_m: float) -> bool:
 
 
 @kernel
-def move_row(row: Touching, to: Touching) -> None:
-    to.part, to.cage_part, to.feature, to.cage_feature = row.part, row.cage_part, row.feature, row.cage_feature
-    to.gap, to.is_hidden = row.gap, row.is_hidden
+def move_touching(one: Touching, to: Touching) -> None:
+    to.part, to.cage_part, to.feature, to.cage_feature = one.part, one.cage_part, one.feature, one.cage_feature
+    to.gap, to.is_hidden = one.gap, one.is_hidden
     for k in range(3):
-        to.normal[k], to.place[k] = row.normal[k], row.place[k]
+        to.normal[k], to.place[k] = one.normal[k], one.place[k]
 
 
 @kernel
@@ -230,23 +235,73 @@ def covers(shapes: Shapes, which: int, i: int, place: Vector, normal: Vector, to
             if beyond > -touch_m:
                 probe = minus(probe, scaled(fence, beyond + PROBE * touch_m))
     for another in range(len(shapes.parts)):
+        part = shapes.parts[another]
+        if norm(minus(probe, vector_from(part.middle))) > part.reach:
+            continue
         if another != which and depth_in_part(shapes, another, probe) > PROBE_MARGIN * touch_m:
             return True
     return False
 
 
 @kernel
-def find_meetings(held: Shapes, cage: Shapes, n_boxes: int, n_points: int, touch_m: float, found: Meetings) -> None:
-    """Find all meetings of two bodies, both placed in the world, but those of the object's first ``n_boxes`` parts with
-    the cage's first ``n_points``: of boxes and points `cagepose.kernels.collision` knows.
+def faces_from_ball(shapes: Shapes, which: int, middle: Vector, reach: float) -> float:
+    """Return how far a ball is beyond the faces of a part; -inf: it has none."""
+    farthest = -math.inf
+    for i in range(shapes.parts[which].first_face, shapes.parts[which].last):
+        face = shapes.features[i]
+        height = dot(vector_from(face.direction), minus(middle, vector_from(face.point))) - face.radius
+        farthest = max(farthest, height)
+    return farthest - reach
+
+
+@kernel
+def faces_from_vertices(a: Shapes, one: int, b: Shapes, other: int, enough_m: float) -> float:
+    """Return how far a part's vertices are beyond the faces of another one, or more than ``enough_m``; -inf: there are
+    no faces.
+    """
+    farthest = -math.inf
+    for i in range(a.parts[one].first_face, a.parts[one].last):
+        face, lowest = a.features[i], math.inf
+        for j in range(b.parts[other].first, b.parts[other].last):
+            vertex = b.features[j]
+            if vertex.kind != VERTEX:
+                break
+            height = dot(vector_from(face.direction), minus(vector_from(vertex.point), vector_from(face.point)))
+            lowest = min(lowest, height - face.radius - vertex.radius)
+        farthest = max(farthest, lowest)
+        if farthest > enough_m:
+            break
+    return farthest
+
+
+@kernel
+def find_meetings(
+    own: Shapes, body: PlacedBody, cage: Shapes, n_boxes: int, n_points: int, touch_m: float, found: Meetings
+) -> None:
+    """Find all meetings of two bodies, but those of the object's first ``n_boxes`` parts with the cage's first
+    ``n_points``: of boxes and points `cagepose.kernels.collision` knows.
+
+    Parts are asked the more closely the nearer they are.
     """
     found.used[0] = 0
-    for one in range(len(held.parts)):
-        for other in range(len(cage.parts)):
+    position, rotation, held = row(body.pose, 0), rotation_of(body), body.world
+    for other in range(len(cage.parts)):
+        middle, reach = vector_from(cage.parts[other].middle), cage.parts[other].reach
+        seen = transposed_times(rotation, minus(middle, position))
+        for one in range(len(own.parts)):
             found.gaps[one, other] = math.inf
             if one < n_boxes and other < n_points:
                 continue
             gap = balls_apart(held, one, cage, other)
+            if gap <= touch_m:
+                gap = max(gap, faces_from_ball(own, one, seen, reach))
+            if gap <= touch_m:
+                gap = max(gap, faces_from_ball(cage, other, vector_from(held.parts[one].middle), held.parts[one].reach))
+            if gap <= touch_m:
+                place_asked(own, one, body)
+                gap = max(gap, faces_from_vertices(held, one, cage, other, touch_m))
+            if gap <= touch_m:
+                gap = max(gap, faces_from_vertices(cage, other, held, one, touch_m))
             if gap <= touch_m:
                 gap = meet_parts(held, one, cage, other, touch_m, found)
                 if math.isnan(gap):
@@ -254,9 +309,21 @@ def find_meetings(held: Shapes, cage: Shapes, n_boxes: int, n_points: int, touch
                     return
             found.gaps[one, other] = gap
     for at in range(found.used[0]):
-        row = found.rows[at]
-        place, normal = vector_from(row.place), vector_from(row.normal)
-        there = plus(place, scaled(normal, row.gap))
-        row.is_hidden = covers(held, row.part, row.feature, place, normal, touch_m) or covers(
-            cage, row.cage_part, row.cage_feature, there, scaled(normal, -1.0), touch_m
+        touching = found.rows[at]
+        place, normal = vector_from(touching.place), vector_from(touching.normal)
+        there = plus(place, scaled(normal, touching.gap))
+        touching.is_hidden = is_in_another(own, held, body, touching, place, normal, touch_m) or covers(
+            cage, touching.cage_part, touching.cage_feature, there, scaled(normal, -1.0), touch_m
         )
+
+
+@kernel
+def is_in_another(
+    own: Shapes, held: Shapes, body: PlacedBody, touching: Touching, place: Vector, normal: Vector, touch_m: float
+) -> bool:
+    """Whether another part of the object covers a place of it: those that may are placed first."""
+    for another in range(len(own.parts)):
+        part = held.parts[another]
+        if norm(minus(place, vector_from(part.middle))) <= part.reach + SAME_PLACE * PROBE * touch_m:
+            place_asked(own, another, body)
+    return covers(held, touching.part, touching.feature, place, normal, touch_m)

@@ -85,9 +85,9 @@ class _Maker:
         self.scene = scene_file.scene
         self.unit = scene_file.length_unit
         self.size = float(from_metres(self.scene.size_m, self.unit))
-        points, held = self.scene.cage.points_world(), self.scene.object
-        feet = nearest_on_object(held, held.pose_world_object, points).feet_world
-        play_m = float(np.median(np.linalg.norm(points - feet, axis=1)))
+        held = self.scene.object
+        nearest = nearest_on_object(held, held.pose_world_object, self.scene.cage)
+        play_m = float(np.median(np.linalg.norm(nearest.places_world - nearest.feet_world, axis=1)))
         self.play = float(from_metres(max(play_m, LEAST_PLAY * self.scene.size_m), self.unit))
 
     def controls(self) -> list[Control]:

@@ -11,7 +11,7 @@ from cagepose.views.viewer.page_data import page_data
 from cagepose.views.viewer.playback import Playback
 from cagepose.views.viewer.what_if import WhatIf
 
-SCRIPTS = ("geometry", "stage", "painter", "camera", "labels", "drawing", "plot", "panel", "player")
+SCRIPTS = ("geometry", "stage", "solids", "painter", "camera", "labels", "drawing", "plot", "panel", "player")
 """In this order."""
 
 

@@ -8,15 +8,19 @@ from typing import Any
 from cagepose.files.units import from_metres
 from cagepose.files.words import LengthWords
 from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.run import AT_REST, FAILURES
 from cagepose.studies.acts import Act
 from cagepose.studies.comparison import ENDS, same_pose
+from cagepose.views.solids import WINDOW, Solid, solid_of
 from cagepose.views.viewer.playback import Playback, Row, Shot, Touches
 from cagepose.views.viewer.stage import EXAGGERATIONS, MOST_ADDED, Stage
 
 AMOUNT_DIGITS = 4
 """A list beside a picture is for reading; saved runs have all digits."""
+DRAWN_DIGITS = 7
+"""Behind the point, of what is drawn and not told."""
 
 
 def page_data(shown: Playback) -> dict[str, Any]:
@@ -63,9 +67,11 @@ class _Writer:
                 for box in held.boxes
             ],
             "center": _numbers(held.center_of_gravity_m / stage.size_m),
-            "names": list(run.scene.cage.names),
+            "reach": held.reach_m * WINDOW / stage.size_m,
+            "names": list(run.scene.cage.element_names),
             "points": [_numbers(point) for point in stage.place(self.shown.points_world)],
-            "feet": [_numbers(foot) for foot in stage.place(stage.feet_world)],
+            "gaps": [_numbers(gap / stage.size_m) for gap in stage.gaps_world],
+            **self._solids(),
             "greatestForce": self._greatest_force(),
             "forceUnit": self._force_unit(),
             "phases": [
@@ -76,6 +82,35 @@ class _Writer:
             "touches": [self._touch(touches) for touches in self.touches],
             "shots": [self._shot(shot) for shot in self.shown.shots],
             "notes": notes(self.shown),
+        }
+
+    def _solids(self) -> dict[str, Any]:
+        """The shapes of the object in its frame, and those of the cage in the world, by the indices of their meshes:
+        shapes of the same kind and size have the same one.
+        """
+        scene, meshes = self.run.scene, dict[Solid, int]()
+        bodies: dict[str, list[dict[str, Any]]] = {}
+        for key, shapes, pose in (
+            ("shapes", scene.object.shapes, Pose()),
+            ("bodies", scene.cage.shapes, scene.cage.pose_world_cage),
+        ):
+            bodies[key] = []
+            for shape in shapes:
+                placed = pose @ shape.pose_body_shape
+                position = placed.position_m / self.stage.size_m
+                bodies[key].append(
+                    {
+                        "mesh": meshes.setdefault(solid_of(shape), len(meshes)),
+                        "position": _numbers(position if key == "shapes" else self.stage.place(placed.position_m)),
+                        "quaternion": _numbers(placed.quaternion_wxyz),
+                    }
+                )
+        return {**bodies, "meshes": [self._mesh(solid) for solid in meshes]}
+
+    def _mesh(self, solid: Solid) -> dict[str, Any]:
+        return {
+            "vertices": _rounded(solid.mesh.vertices_m / self.stage.size_m),
+            "triangles": solid.mesh.triangles.tolist(),
         }
 
     def _shot(self, shot: Shot) -> dict[str, Any]:
@@ -95,8 +130,9 @@ class _Writer:
         return {
             "points": touches.points.tolist(),
             "boxes": list(touches.boxes),
-            "normals": (touches.normals_object + 0.0).tolist(),
+            "normals": _rounded(touches.normals_object),
             "forces": None if forces is None else (forces + 0.0).tolist(),
+            "places": _rounded(self.stage.place(touches.places_world)) if self.run.scene.cage.shapes else None,
         }
 
     def _row(self, row: Row) -> dict[str, Any]:
@@ -179,6 +215,12 @@ def _failing(shown: Playback) -> str:
 
 def _ends_alike(shown: Playback, one: Row, other: Row) -> bool:
     return one.event.contacts == other.event.contacts and same_pose(shown.run.scene, one.event, other.event)
+
+
+def _rounded(values: FloatArray) -> list[list[float]]:
+    """To what can be seen at the greatest exaggeration, in a third of the characters."""
+    rows: list[list[float]] = (values.round(DRAWN_DIGITS) + 0.0).tolist()
+    return rows
 
 
 def _numbers(values: FloatArray) -> list[float]:

@@ -10,10 +10,12 @@ from PIL import Image
 from cagepose.files.units import from_metres
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
+from cagepose.model.shapes import Shape
 from cagepose.studies.acts import Act, coil
+from cagepose.views.solids import outer_points, solid_of
 from cagepose.views.viewer.caption import LOUD_INK, QUIET_INK, Caption, Label
-from cagepose.views.viewer.playback import Shot
-from cagepose.views.viewer.raster import Color, Raster
+from cagepose.views.viewer.playback import Shot, Touches
+from cagepose.views.viewer.raster import DIM, Color, Raster
 from cagepose.views.viewer.stage import Stage
 
 SIZE = (900, 600)
@@ -28,11 +30,15 @@ BALL, FREE_BALL, ROD, LONGEST_ARROW, NORMAL = 0.01, 0.007, 0.0045, 0.22, 0.07
 SECOND_HEAD, LONGEST_SPRING, COIL = 0.8, 1.0, 0.012
 """Where a moment's arrow has its other head; in sizes of the scene, the greatest length of a spring that is drawn, and
 the radius of its coils."""
-SEE_THROUGH = 0.3
+SAND, BROWN = (0.72, 0.66, 0.55), (0.36, 0.3, 0.2)
+"""Of the cage's bodies and their outlines."""
+SEE_THROUGH, BODY_OPACITY = 0.3, 0.45
 FEW_NAMES = 14
 """Of more contacts than these, only those are named that press or were just reached."""
 LEAST_FORCE = 1e-9
 """In parts of the greatest one; what is less is rounding."""
+_Faces = tuple[FloatArray, FloatArray | None, Color, float]
+"""Corners, how bright these are, colour and opacity."""
 _EDGES = ((0, 1), (0, 2), (0, 4), (1, 3), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 6), (5, 7), (6, 7))
 _FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 
@@ -45,9 +51,14 @@ class PictureMaker:
         self.width, self.height = size
         self.shown = stage.shown
         self.exaggeration = exaggeration
-        boxes = self.shown.run.scene.object.boxes
-        self.corners_object = np.concatenate([box.corners_object() for box in boxes])
+        scene = self.shown.run.scene
+        self.corners_object = np.concatenate([np.zeros((0, 3)), *(box.corners_object() for box in scene.object.boxes)])
         self.points = stage.place(stage.points(exaggeration))
+        self.shifts = stage.shifts(exaggeration)
+        self.body_poses = [
+            Pose(shift) @ scene.cage.pose_world_cage @ shape.pose_body_shape
+            for shift, shape in zip(self.shifts[len(self.points) :], scene.cage.shapes, strict=True)
+        ]
         sin_a, cos_a, sin_e, cos_e = math.sin(AZIMUTH), math.cos(AZIMUTH), math.sin(ELEVATION), math.cos(ELEVATION)
         back = np.array([cos_a * cos_e, sin_a * cos_e, sin_e])
         right = np.array([-sin_a, cos_a, 0.0])
@@ -81,12 +92,15 @@ class PictureMaker:
     def _fit(self) -> None:
         """Choose scale and middle so that the ends of all events, the cage, the loads and the last forces fit."""
         ends = [self._shown(self.shown.shots[shot]) for shot in (0, *(row.last_shot for row in self.shown.rows))]
-        places = [self.stage.place(pose.transform(self.corners_object)) for pose in ends]
+        outer = outer_points(self.shown.run.scene.object)
+        places = [self.stage.place(pose.transform(outer)) for pose in ends]
         for act in (act for acts in self.shown.loads for act in acts):
             places.append(np.stack(self._ends(act, ends[-1])))
         last = self.shown.shots[-1].touches
         if last.forces_object is not None:
-            places.append(self.points[last.points] - self.arrow_per_force * last.forces_object @ ends[-1].rotation.T)
+            places.append(self._places(last) - self.arrow_per_force * last.forces_object @ ends[-1].rotation.T)
+        for body, shift in zip(self.stage.bodies_world, self.shifts[len(self.points) :], strict=True):
+            places.append(self.stage.place(body + shift))
         seen = np.concatenate([*places, self.points]) @ self.axes.T
         low, high = seen.min(axis=0), seen.max(axis=0)
         self.middle = (low + high) / 2.0
@@ -101,6 +115,10 @@ class PictureMaker:
         seen = (places @ self.axes.T - self.middle) * self.pixels * np.array([1.0, -1.0, 1.0])
         pixels: FloatArray = seen + np.array([self.width, self.height, 0.0]) * FINER / 2.0
         return pixels
+
+    def _places(self, touches: Touches) -> FloatArray:
+        """Return where things touch, (n, 3)."""
+        return self.stage.place(touches.places_world + self.shifts[touches.points])
 
     def _rod(self, start: FloatArray, end: FloatArray, radius: float, color: Color) -> None:
         first, last = self._pixels(np.stack([start, end]))
@@ -125,6 +143,8 @@ class PictureMaker:
     def _draw_standing(self) -> None:
         """Draw what all shots have: where the object started, and the cage; a point that touches covers itself."""
         self._draw_edges(self.stage.reference, GREY)
+        for shape in self.shown.run.scene.object.shapes:
+            self._solid(shape, self.stage.reference @ shape.pose_body_shape, GREY)
         for point in self.points:
             self._ball(point, FREE_BALL, DARK)
         self.raster.keep()
@@ -133,17 +153,29 @@ class PictureMaker:
         touching = set(shot.touches.points.tolist())
         row = self.shown.rows[shot.row] if shot.row >= 0 else None
         is_end = row is not None and self.shown.shots[row.last_shot] is shot
-        pressing = self._pressing(shot)
-        for index, name in enumerate(self.shown.run.scene.cage.names):
+        pressing, names = self._pressing(shot), self.shown.run.scene.cage.element_names
+        places = self._places(shot.touches)
+        for index, name in enumerate(names):
             if is_end and row is not None and name in row.event.hit:
                 color = VERMILLION
             else:
                 color = ORANGE if index in touching else DARK
+            is_point = index < len(self.points)
+            marks = places[shot.touches.points == index]
             if color != DARK:
-                self._ball(self.points[index], BALL, color)
+                for mark in self.points[index : index + 1] if is_point else marks:
+                    self._ball(mark, BALL, color)
             counts = color == VERMILLION or (color == ORANGE and (len(touching) <= FEW_NAMES or index in pressing))
-            if counts or len(self.points) <= FEW_NAMES:
-                self._name(self.points[index], name, is_loud=color != DARK)
+            if counts or len(names) <= FEW_NAMES:
+                self._name(self._named_place(index, marks), name, is_loud=color != DARK)
+
+    def _named_place(self, index: int, marks: FloatArray) -> FloatArray:
+        """Return where an element of the cage has its name: a shape that touches where it does, else in its middle."""
+        if index < len(self.points):
+            return np.asarray(self.points[index])
+        if len(marks):
+            return np.asarray(marks[0])
+        return self._middle(index - len(self.points))
 
     def _pressing(self, shot: Shot) -> set[int]:
         """Return the points that bear some of the load in a shot."""
@@ -153,7 +185,7 @@ class PictureMaker:
         return set(shot.touches.points[forces > LEAST_FORCE * self.shown.greatest_force].tolist())
 
     def _draw_touches(self, shot: Shot, pose: Pose) -> None:
-        places, forces = self.points[shot.touches.points], shot.touches.forces_object
+        places, forces = self._places(shot.touches), shot.touches.forces_object
         for place, normal in zip(places, shot.touches.normals_object @ pose.rotation.T, strict=True):
             self._rod(place, place + NORMAL * normal, 0.3 * ROD, (0.3, 0.3, 0.3))
         if forces is not None:
@@ -210,14 +242,43 @@ class PictureMaker:
         self.raster.lines(way[:-1], way[1:], BLUE)
 
     def _draw_object(self, pose: Pose) -> None:
+        """Draw the object's edges, and, seen through, its faces and the bodies of the cage, far ones first."""
         self._draw_edges(pose, BLUE)
         center = self.stage.place(pose.transform(self.stage.center_object_m))
         self._ball(center, BALL, BLUE)
-        faces = [corners[list(face)] for corners in self._corners(pose) for face in _FACES]
-        for face in sorted(faces, key=lambda corners: float(corners[:, 2].mean())):
-            self.raster.face(face, SKY, SEE_THROUGH)
+        scene = self.shown.run.scene
+        drawn: list[tuple[float, _Faces]] = []
+        for face in (corners[list(face)] for corners in self._corners(pose) for face in _FACES):
+            drawn.append((float(face[:, 2].mean()), (face, None, SKY, SEE_THROUGH)))
+        for shape in scene.object.shapes:
+            faces = self._solid(shape, pose @ shape.pose_body_shape, BLUE)
+            drawn.append((float(faces[0][..., 2].mean()), (*faces, SKY, SEE_THROUGH)))
+        for index, body in enumerate(scene.cage.shapes):
+            depth = float(self._pixels(self._middle(index))[2])
+            drawn.append((depth, (*self._solid(body, self.body_poses[index], BROWN), SAND, BODY_OPACITY)))
+        for _, (corners, lit, color, opacity) in sorted(drawn, key=lambda faces: faces[0]):
+            if lit is None:
+                self.raster.face(corners, color, opacity)
+            else:
+                self.raster.triangles(corners, lit, color, opacity)
+
+    def _middle(self, body: int) -> FloatArray:
+        """Return the middle of what is shown of a shape of the cage, (3,)."""
+        return self.stage.place(self.stage.bodies_world[body].mean(axis=0) + self.shifts[len(self.points) + body])
+
+    def _solid(self, shape: Shape, pose: Pose, ink: Color) -> tuple[FloatArray, FloatArray]:
+        """Draw the outline of a shape; return the triangles that face the viewer, and how bright their corners are."""
+        solid, back = solid_of(shape), pose.rotation.T @ self.axes[2]
+        is_front = solid.normals @ back > 0.0
+        vertices = self._pixels(self.stage.place(pose.transform(solid.mesh.vertices_m)))
+        outline = solid.outline(is_front)
+        self.raster.lines(vertices[outline[:, 0]], vertices[outline[:, 1]], ink)
+        lit = DIM + (1.0 - DIM) * np.abs(solid.corner_normals[is_front] @ back)
+        return vertices[solid.mesh.triangles[is_front]], lit
 
     def _draw_edges(self, pose: Pose, color: Color) -> None:
+        if len(self.corners_object) == 0:
+            return
         starts, ends = (self._corners(pose)[:, which].reshape(-1, 3) for which in np.array(_EDGES).T)
         self.raster.lines(starts, ends, color)
 

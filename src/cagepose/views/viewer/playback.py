@@ -12,9 +12,12 @@ from numpy.typing import NDArray
 
 from cagepose.files.units import LengthUnit
 from cagepose.model.checks import FloatArray
+from cagepose.model.naming import names_of
 from cagepose.model.pose import Pose
+from cagepose.model.scope import has_other_shapes
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
 from cagepose.studies.acts import Act, acts_of
+from cagepose.studies.touching import TouchFinder
 from cagepose.views.viewer.surface import nearest_on_object
 
 SHOTS_PER_MOTION = 24
@@ -25,30 +28,33 @@ ESCAPE = 0.6
 
 @dataclass(frozen=True, eq=False)
 class Touches:
-    """What touches, in the object's frame: so it stays as it is while the object moves.
+    """What touches. Normals and forces are in the object's frame: so they stay as they are while the object moves.
 
     Attributes
     ----------
     points
-        Indices of n cage points, (n,).
+        Indices of n of the cage's points and shapes, points first, (n,). A shape may touch in several places.
     boxes
-        Names of the boxes that they touch.
+        Names of the parts of the object that they touch.
     normals_object
-        Outward unit normals of the faces, (n, 3).
+        Outward unit normals of the object, (n, 3).
     forces_object
         Forces on the object, (n, 3), newtons or parts of the load; None: not known, as during a motion.
+    places_world
+        Where they touch, (n, 3), metres.
     """
 
     points: NDArray[np.int64]
     boxes: tuple[str, ...]
     normals_object: FloatArray
     forces_object: FloatArray | None
+    places_world: FloatArray
 
     def chosen(self, which: Sequence[bool]) -> Touches:
         """Return those of which ``which`` says so, without forces."""
         boxes = tuple(itertools.compress(self.boxes, which))
         mask = np.array(which, dtype=bool)
-        return Touches(self.points[mask], boxes, self.normals_object[mask], None)
+        return Touches(self.points[mask], boxes, self.normals_object[mask], None, self.places_world[mask])
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +70,7 @@ class Shot:
     pose_world_object
         Where the object is.
     touches
-        What touches it there; one and the same for all shots on the way of a motion.
+        What touches it there; of a cage of points one and the same for all shots on the way of a motion.
     """
 
     row: int
@@ -145,8 +151,8 @@ class _Camera:
         self.run = run
         self.shots_per_motion = shots_per_motion
         self.points_world = run.scene.cage.points_world()
-        self.names = run.scene.cage.names
-        self.index = {name: index for index, name in enumerate(self.names)}
+        self.index = {name: index for index, name in enumerate(run.scene.cage.element_names)}
+        self.finder = TouchFinder(run.scene) if has_other_shapes(run.scene) else None
         start = run.phases[0].start_pose
         self.shots: list[Shot] = [Shot(-1, 0, start, self._touches(start, ()))]
         self.rows: list[Row] = []
@@ -160,9 +166,10 @@ class _Camera:
             end = event.pose_world_object if escape is None else escape.pose_at(pose, 1.0)
             is_held = last and escape is None
             touches = self._touches(end, event.contacts)
-            kept = touches.chosen([name in before for name in event.contacts])
-            for way in self._way(pose, event, escape):
-                self.shots.append(Shot(row, phase_index, way, kept))
+            stays = tuple(name for name in event.contacts if name in before)
+            kept = touches if self.finder else touches.chosen([name in before for name in event.contacts])
+            for way in self._way(pose, event, escape):  # places on what is round move along
+                self.shots.append(Shot(row, phase_index, way, self._touches(way, stays) if self.finder else kept))
             self.shots.append(Shot(row, phase_index, end, self._held(end, phase.contacts) if is_held else touches))
             verdict = phase.verdict if last else None
             self.rows.append(Row(phase_index, event, verdict, first_shot, len(self.shots) - 1))
@@ -177,21 +184,38 @@ class _Camera:
         return [self.run.pose_on_the_way(start, event, fraction) for fraction in fractions]
 
     def _touches(self, pose: Pose, names: tuple[str, ...]) -> Touches:
-        points = self._indices(names)
-        held = self.run.scene.object
-        nearest = nearest_on_object(held, pose, self.points_world[points])
-        boxes = tuple(str(held.boxes[box].name) for box in nearest.boxes.tolist())
-        return Touches(points, boxes, nearest.normals_world @ pose.rotation, None)
+        """Return what touches of what has these names."""
+        elements, scene = self._indices(names), self.run.scene
+        part_names = names_of(scene.object.parts)
+        found = None if self.finder is None else self.finder.at(pose)
+        is_asked = np.isin([] if found is None else found.elements, elements)
+        left = np.setdiff1d(elements, found.elements) if found is not None else elements
+        nearest = nearest_on_object(scene.object, pose, scene.cage, left.tolist())
+        parts, places, normals = nearest.parts, nearest.places_world, nearest.normals_world
+        if found is not None:
+            left = np.concatenate([left, found.elements[is_asked]])
+            parts = np.concatenate([parts, found.parts[is_asked]])
+            places = np.concatenate([places, found.places_world[is_asked]])
+            normals = np.concatenate([normals, found.normals_world[is_asked]])
+        boxes = tuple(part_names[part] for part in parts.tolist())
+        return Touches(left, boxes, normals @ pose.rotation, None, places)
 
     def _held(self, pose: Pose, contacts: tuple[Contact, ...]) -> Touches:
         if not contacts:
             return self._touches(pose, ())
         forces = [_force(contact) for contact in contacts]
+        elements = self._indices(tuple(contact.point for contact in contacts))
         return Touches(
-            self._indices(tuple(contact.point for contact in contacts)),
+            elements,
             tuple(contact.box for contact in contacts),
             np.array([contact.normal_world for contact in contacts]) @ pose.rotation,
             None if any(force is None for force in forces) else np.array(forces) @ pose.rotation,
+            np.array(
+                [
+                    self.points_world[element] if contact.place_world is None else contact.place_world
+                    for element, contact in zip(elements.tolist(), contacts, strict=True)
+                ]
+            ),
         )
 
     def _indices(self, names: tuple[str, ...]) -> NDArray[np.int64]:

@@ -4,8 +4,9 @@ Drawing coordinates have the scene's size as their unit and the middle of the sc
 millimetres and one in metres look alike.
 
 Exaggeration by k shows the object k times as far from where it started, turned k times as much; a cage point is shown k
-times as far from the nearest place of the object at the start. To first order in the motion, the gaps on screen are
-then k times the true ones: what touches on screen touches.
+times as far from the nearest place of the object at the start, a shape of the cage as a whole. To first order in the
+motion, the gaps on screen are then k times the true ones: what touches on screen touches. (Of a shape this holds where
+it comes to touch along the way on which it was nearest.)
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
+from cagepose.views.solids import cut_off, outer_points, vertices_of
 from cagepose.views.viewer.playback import Playback
 from cagepose.views.viewer.surface import nearest_on_object
 
@@ -37,25 +39,33 @@ class Stage:
     middle_world
         The origin of drawing coordinates, (3,), metres.
     size_m
-        Their unit.
-    feet_world
-        The place of the object at the start that is nearest to each cage point, (n, 3), metres.
+        Their unit: the size of the scene, or of what is shown of it.
+    gaps_world
+        From the place of the object at the start that is nearest to each of the cage's points and shapes, to the place
+        there, (n, 3), metres.
+    bodies_world
+        Points whose hull is that of each shape of the cage, as far as they are shown: tuples of (n, 3), metres.
     radius
         A sphere about the origin that holds the cage and the object at the start and the end, in drawing units.
     """
 
     def __init__(self, shown: Playback) -> None:
-        scene = shown.run.scene
+        scene, held = shown.run.scene, shown.run.scene.object
         self.shown = shown
-        self.size_m = scene.size_m
-        self.center_object_m = scene.object.center_of_gravity_m
+        self.center_object_m = held.center_of_gravity_m
         self.reference = shown.shots[0].pose_world_object
-        self.feet_world = nearest_on_object(scene.object, self.reference, shown.points_world).feet_world
-        corners = np.concatenate([box.corners_object() for box in scene.object.boxes])
+        nearest = nearest_on_object(held, self.reference, scene.cage)
+        self.gaps_world: FloatArray = nearest.places_world - nearest.feet_world
         ends = (self.reference, shown.shots[-1].pose_world_object)
-        everything = np.concatenate([shown.points_world, *(pose.transform(corners) for pose in ends)])
+        everything = np.concatenate([shown.points_world, *(pose.transform(outer_points(held)) for pose in ends)])
+        bodies = [scene.cage.pose_world_cage.transform(vertices_of([shape])) for shape in scene.cage.shapes]
+        self.bodies_world = tuple(cut_off(body, everything, held.reach_m) for body in bodies)
+        everything = np.concatenate([everything, *self.bodies_world])
         self.middle_world: FloatArray = (everything.min(axis=0) + everything.max(axis=0)) / 2.0
-        self.radius = float(np.linalg.norm(everything - self.middle_world, axis=1).max()) / self.size_m
+        radius_m = float(np.linalg.norm(everything - self.middle_world, axis=1).max())
+        # Of a ball on a large table the scene's size is that of the table, of which little is shown.
+        self.size_m = min(scene.size_m, 2.0 * radius_m) if bodies else scene.size_m
+        self.radius = radius_m / self.size_m
 
     def place(self, point_world: FloatArray) -> FloatArray:
         """Return a point of the world, (3,) or (n, 3) in metres, in drawing coordinates."""
@@ -72,12 +82,16 @@ class Stage:
         turned = _from_turn_vector(exaggeration * turn) @ Pose(quaternion_wxyz=self.reference.quaternion_wxyz)
         return Pose(center - turned.transform(self.center_object_m), turned.quaternion_wxyz)
 
+    def shifts(self, exaggeration: float) -> FloatArray:
+        """Return how far each of the cage's points and shapes is moved from its place, (n, 3), metres."""
+        lengths = np.linalg.norm(self.gaps_world, axis=1, keepdims=True)
+        most = MOST_ADDED * self.size_m / np.maximum(lengths, np.finfo(np.float64).tiny)
+        moved: FloatArray = np.minimum(exaggeration - 1.0, most) * self.gaps_world
+        return moved
+
     def points(self, exaggeration: float) -> FloatArray:
         """Return where the cage points are shown, (n, 3), metres in the world."""
-        gaps = self.shown.points_world - self.feet_world
-        lengths = np.linalg.norm(gaps, axis=1, keepdims=True)
-        most = MOST_ADDED * self.size_m / np.maximum(lengths, np.finfo(np.float64).tiny)
-        moved: FloatArray = self.shown.points_world + np.minimum(exaggeration - 1.0, most) * gaps
+        moved: FloatArray = self.shown.points_world + self.shifts(exaggeration)[: len(self.shown.points_world)]
         return moved
 
     def normal(self, normal_world: FloatArray, true: Pose, shown: Pose) -> FloatArray:

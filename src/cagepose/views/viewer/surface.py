@@ -1,54 +1,105 @@
-"""Where on the object's surface a point of the world is nearest to."""
+"""Where the object's surface and the cage's points and shapes are nearest to each other."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from cagepose.model.box import Box
+from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
+from cagepose.views.viewer.nearest import Core, core_of, nearest_points
 
 
 class Nearest(NamedTuple):
-    """The place of the surface that is nearest to each of n points.
+    """The places of the object and of each of n elements of the cage that are nearest to each other.
 
     Attributes
     ----------
     feet_world
-        Those places, (n, 3), metres.
+        On the object, (n, 3), metres.
+    places_world
+        On the elements: points themselves, (n, 3), metres.
     normals_world
-        Outward unit normals of their faces, (n, 3).
-    boxes
-        Indices of their boxes, (n,).
+        Outward unit normals of the object at the feet, (n, 3).
+    parts
+        Indices of the object's parts, (n,).
     """
 
     feet_world: FloatArray
+    places_world: FloatArray
     normals_world: FloatArray
-    boxes: np.ndarray
+    parts: NDArray[np.int64]
 
 
-def nearest_on_object(held: Object, pose: Pose, points_world: FloatArray) -> Nearest:
-    """Return the nearest place on the object, at ``pose``, to each of ``points_world`` (n, 3), metres.
+def nearest_on_object(held: Object, pose: Pose, cage: Cage, elements: Sequence[int] | None = None) -> Nearest:
+    """Return what is nearest of the object, at ``pose``, to elements of the cage: its points and shapes, by index,
+    points first. Left out: all.
 
-    Of a point inside, the place is on the nearest face of the box in which it lies deepest.
+    Of a point inside boxes, the place is on the nearest face of the box in which it lies deepest.
     """
-    turns = np.array([box.pose_object_box.rotation for box in held.boxes])
-    middles = np.array([box.pose_object_box.position_m for box in held.boxes])
-    halves = np.array([box.size_m for box in held.boxes])[:, None, :] / 2.0
+    points = cage.points_world()
+    chosen = np.arange(len(cage.element_names)) if elements is None else np.array(elements, dtype=np.int64)
+    feet, places, normals = np.zeros((3, len(chosen), 3))
+    found = Nearest(feet, places, normals, np.zeros(len(chosen), dtype=np.int64))
+    is_point = chosen < len(points)
+    gaps = np.full(len(chosen), np.inf)
+    if held.boxes:
+        gaps[is_point] = _write_nearest_of_boxes(held.boxes, pose, points[chosen[is_point]], is_point, found)
+    cores = [core_of(part, pose) for part in held.parts]
+    for row, element in enumerate(chosen.tolist()):
+        if element < len(points):
+            other, first = core_of(points[element], cage.pose_world_cage), len(held.boxes)
+        else:
+            other, first = core_of(cage.shapes[element - len(points)], cage.pose_world_cage), 0
+        _write_nearest_part(cores, other, first, row, float(gaps[row]), found)
+    return found
+
+
+def _write_nearest_part(cores: list[Core], other: Core, first: int, row: int, gap: float, found: Nearest) -> None:
+    """Write the nearest of the object's parts from the one with index ``first``, where it is nearer than ``gap``."""
+    for least_gap, part in sorted((core.least_gap(other), part) for part, core in enumerate(cores[first:], first)):
+        if least_gap >= gap:
+            break
+        foot, place = nearest_points(cores[part], other)
+        between = place - foot
+        outward = foot - cores[part].middle
+        # Cores that touch have no distance with a direction; rounded bodies may be a little into each other.
+        distance = float(np.copysign(np.linalg.norm(between), between @ outward))
+        if distance < gap:
+            gap = distance
+            way = between if distance > 0.0 else -between if distance < 0.0 else outward
+            found.feet_world[row], found.places_world[row], found.parts[row] = foot, place, part
+            found.normals_world[row] = way / (np.linalg.norm(way) or 1.0)
+
+
+def _write_nearest_of_boxes(
+    boxes: tuple[Box, ...], pose: Pose, points_world: FloatArray, rows: NDArray[np.bool_], found: Nearest
+) -> FloatArray:
+    """Write the nearest places of the boxes to points (n, 3) into rows; return the gaps, (n,), metres."""
+    turns = np.array([box.pose_object_box.rotation for box in boxes])
+    middles = np.array([box.pose_object_box.position_m for box in boxes])
+    halves = np.array([box.size_m for box in boxes])[:, None, :] / 2.0
     points = (
         pose.inverse_transform(points_world) - middles[:, None, :]
     ) @ turns  # (n_boxes, n, 3), in each box's frame
     beyond = np.abs(points) - halves
     outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=2)
     gaps = np.where(outside > 0.0, outside, beyond.max(axis=2))
-    boxes, each = gaps.argmin(axis=0), np.arange(len(points_world))
-    axes = beyond[boxes, each].argmax(axis=1)
-    sides = np.where(points[boxes, each, axes] < 0.0, -1.0, 1.0)
-    feet, normals = np.clip(points, -halves, halves)[boxes, each], np.zeros((len(points_world), 3))
-    feet[each, axes] = sides * halves[boxes, 0, axes]
+    parts, each = gaps.argmin(axis=0), np.arange(len(points_world))
+    axes = beyond[parts, each].argmax(axis=1)
+    sides = np.where(points[parts, each, axes] < 0.0, -1.0, 1.0)
+    feet, normals = np.clip(points, -halves, halves)[parts, each], np.zeros((len(points_world), 3))
+    feet[each, axes] = sides * halves[parts, 0, axes]
     normals[each, axes] = sides
-    feet_object = np.einsum("nij,nj->ni", turns[boxes], feet) + middles[boxes]
-    normals_object = np.einsum("nij,nj->ni", turns[boxes], normals)
-    return Nearest(pose.transform(feet_object), normals_object @ pose.rotation.T, boxes)
+    feet_object = np.einsum("nij,nj->ni", turns[parts], feet) + middles[parts]
+    normals_object = np.einsum("nij,nj->ni", turns[parts], normals)
+    found.feet_world[rows], found.places_world[rows] = pose.transform(feet_object), points_world
+    found.normals_world[rows], found.parts[rows] = normals_object @ pose.rotation.T, parts
+    nearest: FloatArray = gaps[parts, each]
+    return nearest

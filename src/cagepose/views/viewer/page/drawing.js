@@ -3,7 +3,7 @@
 const COLORS = {
   box: [0.337, 0.706, 0.914, 0.3], edge: [0, 0.447, 0.698, 1], ghost: [0.6, 0.6, 0.6, 1], free: [0.45, 0.45, 0.45, 1],
   touching: [0.902, 0.624, 0, 1], reached: [0.835, 0.369, 0, 1], force: [0.835, 0.369, 0, 1], normal: [0.3, 0.3, 0.3, 1],
-  load: [0.05, 0.05, 0.05, 1], axis: [0.8, 0.475, 0.655, 1], trace: [0, 0.447, 0.698, 1], center: [0, 0.447, 0.698, 1],
+  body: [0.72, 0.66, 0.55, 0.45], bodyEdge: [0.36, 0.3, 0.2, 1], load: [0.05, 0.05, 0.05, 1], axis: [0.8, 0.475, 0.655, 1], trace: [0, 0.447, 0.698, 1], center: [0, 0.447, 0.698, 1],
 };
 const BALL = 0.01, ROD = 0.0045, LONGEST_ARROW = 0.22, NORMAL = 0.07;
 const SECOND_HEAD = 0.8; // of a moment's arrow, where its other head is
@@ -41,13 +41,20 @@ function coil(start, end) {
 
 class Drawing {
   constructor(stage, canvas, overlay, changed) {
-    this.stage = stage;
     this.canvas = canvas;
     this.overlay = overlay;
     this.painter = new Painter(canvas);
+    this.take(stage);
     this.exaggeration = stage.data.exaggeration;
     this.camera = new Camera(canvas, stage.data.radius, () => this.content(), changed);
     this.allNames = stage.data.names.length <= FEW_NAMES;
+  }
+
+  // Shows another run from now on.
+  take(stage) {
+    this.stage = stage;
+    this.solids = stage.data.meshes.map((mesh) => new Solid(mesh));
+    this.painter.takeSolids(this.solids);
   }
 
   draw(time) {
@@ -67,7 +74,7 @@ class Drawing {
     this.drawLoads(shot, pose, labels);
     this.drawMotion(shot, pose, k);
     this.drawTrace(time, k);
-    this.drawObject(pose);
+    this.drawObject(pose, k);
     this.write(labels, scale);
   }
 
@@ -77,7 +84,8 @@ class Drawing {
     this.camera.fit();
   }
 
-  // All that a view is fitted to: corners at the start and each event's end, cage points, loads, forces at the end.
+  // All that a view is fitted to: corners at the start and each event's end, cage points, loads, forces at the end, and
+  // what lies near them of the cage's bodies.
   content() {
     const { stage, exaggeration: k } = this;
     const ends = [0, ...stage.data.rows.map((row) => row.last)].map((shot) => stage.shownPose(stage.shots[shot].pose, k));
@@ -87,21 +95,55 @@ class Drawing {
       carried(composed(pose, { p: box.position, q: box.quaternion }), sign.map((value, axis) => value * box.size[axis])))));
     const tails = stage.data.phases.flatMap((phase) => phase.loads).flatMap((load) => loadEnds(load, end));
     const pressing = stage.shots.at(-1).touches.filter((touch) => touch.force).map((touch) =>
-      sub(stage.point(touch.point, k), times(LONGEST_ARROW / stage.data.greatestForce, rotated(end.q, touch.force))));
-    return [...corners, ...tails, ...pressing, ...stage.data.names.map((_, index) => stage.point(index, k))];
+      sub(stage.place(touch, k), times(LONGEST_ARROW / stage.data.greatestForce, rotated(end.q, touch.force))));
+    const rounded = ends.flatMap((pose) => this.placedSolids(pose).flatMap((solid) => this.vertices(solid)));
+    const needed = [...corners, ...rounded, ...tails, ...pressing, ...stage.data.points.map((_, index) => stage.point(index, k))];
+    const [low, high] = [Math.min, Math.max].map((pick) => [0, 1, 2].map((axis) => needed.reduce((best, place) => pick(best, place[axis]), needed[0][axis])));
+    this.cutOff = (place) => place.map((value, axis) => Math.max(low[axis] - stage.data.reach, Math.min(high[axis] + stage.data.reach, value)));
+    return [...needed, ...this.bodies(k).flatMap((body) => this.vertices(body).map(this.cutOff))];
+  }
+
+  // The shapes of the object at a pose, and those of the cage.
+  placedSolids(pose) {
+    return this.stage.data.shapes.map(({ mesh, position, quaternion }) => ({ mesh, pose: composed(pose, { p: position, q: quaternion }) }));
+  }
+
+  bodies(k) {
+    return this.stage.data.bodies.map(({ mesh }, index) => ({ mesh, pose: this.stage.bodyPose(index, k) }));
+  }
+
+  vertices({ mesh, pose }) {
+    return this.solids[mesh].vertices.map((vertex) => carried(pose, vertex));
+  }
+
+  // The middle of what is shown of a shape of the cage.
+  middle(body) {
+    const places = this.vertices(body).map(this.cutOff);
+    return times(1 / places.length, places.reduce(add));
   }
 
   boxes(pose, name, color) {
     for (const box of this.stage.data.boxes) this.painter.draw(name, placed(composed(pose, { p: box.position, q: box.quaternion }), box.size), color);
   }
 
-  drawObject(pose) {
+  // Edges and outlines, and, seen through, the object and the bodies of the cage, far ones first.
+  drawObject(pose, k) {
     const start = this.stage.shots[0].pose;
+    const [shapes, bodies] = [this.placedSolids(pose), this.bodies(k)];
     this.boxes(start, "edges", COLORS.ghost);
     this.boxes(pose, "edges", COLORS.edge);
+    for (const { mesh, pose: placed } of this.placedSolids(start)) this.painter.drawOutline(mesh, placed, COLORS.ghost);
+    for (const { mesh, pose: placed } of shapes) this.painter.drawOutline(mesh, placed, COLORS.edge);
+    for (const { mesh, pose: placed } of bodies) this.painter.drawOutline(mesh, placed, COLORS.bodyEdge);
     this.ball(carried(pose, this.stage.data.center), BALL, COLORS.center);
     this.painter.seeThrough();
-    this.boxes(pose, "box", COLORS.box);
+    const depth = (place) => dot(place, this.painter.toViewer);
+    const object = { depth: depth(carried(pose, this.stage.data.center)), draw: () => {
+      this.boxes(pose, "box", COLORS.box);
+      for (const { mesh, pose: placed } of shapes) this.painter.drawSolid(mesh, placed, COLORS.box);
+    } };
+    const others = bodies.map((body) => ({ depth: depth(this.middle(body)), draw: () => this.painter.drawSolid(body.mesh, body.pose, COLORS.body) }));
+    for (const { draw } of [object, ...others].sort((one, other) => one.depth - other.depth)) draw();
   }
 
   ball(place, radius, color) {
@@ -113,18 +155,21 @@ class Drawing {
     const row = this.stage.data.rows[shot.row];
     const isEnd = row && this.stage.shots[row.last] === shot;
     const pressing = new Set(shot.touches.filter((touch) => touch.force && norm(touch.force) > LEAST_FORCE * this.stage.data.greatestForce).map((touch) => touch.point));
+    const bodies = this.bodies(k);
     this.stage.data.names.forEach((name, index) => {
-      const place = this.stage.point(index, k);
       const look = isEnd && row.hit.includes(name) ? "reached" : touching.has(index) ? "touching" : "free";
-      this.ball(place, look === "free" ? 0.7 * BALL : BALL, COLORS[look]);
+      const isPoint = index < this.stage.data.points.length;
+      const marks = isPoint ? [this.stage.point(index, k)] : shot.touches.filter((touch) => touch.point === index).map((touch) => this.stage.place(touch, k));
+      for (const mark of marks) this.ball(mark, look === "free" ? 0.7 * BALL : BALL, COLORS[look]);
       const counts = look === "reached" || (look === "touching" && (touching.size <= FEW_NAMES || pressing.has(index)));
-      if (counts || this.allNames) labels.push([place, name, look === "free" ? "#777" : "#000"]);
+      if (!counts && !this.allNames) return;
+      labels.push([marks[0] ?? this.middle(bodies[index - this.stage.data.points.length]), name, look === "free" ? "#777" : "#000"]);
     });
   }
 
   drawTouches(shot, pose, k) {
     for (const touch of shot.touches) {
-      const place = this.stage.point(touch.point, k);
+      const place = this.stage.place(touch, k);
       const normal = rotated(pose.q, touch.normal);
       this.painter.draw("rod", along(place, normal, NORMAL, 0.3 * ROD), COLORS.normal);
       if (!touch.force) continue;

@@ -42,8 +42,15 @@ class Painter {
     return { buffer, count: vertices.length / 2 };
   }
 
+  // Takes the solids of a run; those of the one before are forgotten.
+  takeSolids(solids) {
+    for (const { buffer } of this.solids ?? []) this.gl.deleteBuffer(buffer);
+    this.solids = solids.map((solid) => ({ ...this.mesh(solid.corners), solid }));
+  }
+
   begin(view, toViewer) {
     const gl = this.gl;
+    this.toViewer = toViewer;
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.disable(gl.BLEND);
     gl.depthMask(true); // before the clearing, which leaves depths alone as long as they are masked
@@ -59,17 +66,35 @@ class Painter {
     this.gl.depthMask(false);
   }
 
-  draw(name, model, color) {
+  // The side of a solid that faces the viewer.
+  drawSolid(index, pose, color) {
+    this.gl.enable(this.gl.CULL_FACE);
+    this.drawMesh(this.solids[index], placed(pose, [1, 1, 1]), color, this.gl.TRIANGLES);
+    this.gl.disable(this.gl.CULL_FACE);
+  }
+
+  drawOutline(index, pose, color) {
     const gl = this.gl;
-    const mesh = this.meshes[name];
+    const lines = this.solids[index].solid.outline(rotated(conjugate(pose.q), this.toViewer));
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.lines);
+    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(lines.flat()), gl.DYNAMIC_DRAW);
+    this.drawMesh({ buffer: this.lines, count: lines.length / 2 }, placed(pose, [1, 1, 1]), color, gl.LINES);
+  }
+
+  draw(name, model, color) {
+    this.drawMesh(this.meshes[name], model, color, name === "edges" ? this.gl.LINES : this.gl.TRIANGLES);
+  }
+
+  drawMesh(mesh, model, color, kind) {
+    const gl = this.gl;
     // Normals turn with the inverse transpose: for columns at right angles, each divided by its squared length.
     const columns = [0, 4, 8].map((i) => model.slice(i, i + 3)).map((column) => times(1 / (dot(column, column) || 1), column));
     this.bind(mesh.buffer);
     gl.uniformMatrix4fv(this.at.model, false, model);
     gl.uniformMatrix3fv(this.at.turn, false, columns.flat());
     gl.uniform4fv(this.at.color, color);
-    gl.uniform1f(this.at.shading, name === "edges" ? 0 : 1);
-    gl.drawArrays(name === "edges" ? gl.LINES : gl.TRIANGLES, 0, mesh.count);
+    gl.uniform1f(this.at.shading, kind === gl.LINES ? 0 : 1);
+    gl.drawArrays(kind, 0, mesh.count);
   }
 
   polyline(points, color) {

@@ -76,7 +76,7 @@ function replaceRun(answer) {
   data = answer;
   stage = new Stage(data);
   end = stage.shots.length - 1;
-  if (drawing) drawing.stage = stage;
+  drawing?.take(stage);
   player.answers += 1;
   fill();
   pause();
@@ -197,7 +197,7 @@ window.addEventListener("resize", refresh);
 window.cagepose = {
   state: () => ({ ...player, row: stage.shot(player.time).row, written: drawing?.written,
     shownPose: stage.shownPose(stage.truePose(player.time), player.exaggeration),
-    points: data.names.map((_, index) => stage.point(index, player.exaggeration)) }),
+    points: data.points.map((_, index) => stage.point(index, player.exaggeration)) }),
   fitted: () => drawing?.content().map((place) => drawing.camera.project(place)), // apart: 12,000 places in a crowded scene
 };
 

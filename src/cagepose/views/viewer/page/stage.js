@@ -3,8 +3,8 @@
 class Stage {
   constructor(data) {
     this.data = data;
-    const touches = data.touches.map(({ points, boxes, normals, forces }) =>
-      points.map((point, i) => ({ point, box: boxes[i], normal: normals[i], force: forces && forces[i] })));
+    const touches = data.touches.map(({ points, boxes, normals, forces, places }) =>
+      points.map((point, i) => ({ point, box: boxes[i], normal: normals[i], force: forces && forces[i], place: places ? places[i] : data.points[point] })));
     this.shots = data.shots.map((s) => ({ row: s.row, phase: s.phase, pose: { p: s.position, q: s.quaternion }, touches: touches[s.touches] }));
   }
 
@@ -30,10 +30,26 @@ class Stage {
     return { p: sub(middle, rotated(q, center)), q };
   }
 
-  point(index, k) {
-    const gap = sub(this.data.points[index], this.data.feet[index]);
+  // How far a point or a shape of the cage is moved from its place, so that its gap to the object shows k times.
+  shift(element, k) {
+    const gap = this.data.gaps[element];
     const most = norm(gap) === 0 ? 0 : this.data.mostAdded / norm(gap);
-    return add(this.data.points[index], times(Math.min(k - 1, most), gap));
+    return times(Math.min(k - 1, most), gap);
+  }
+
+  point(index, k) {
+    return add(this.data.points[index], this.shift(index, k));
+  }
+
+  // Where a touch is shown.
+  place(touch, k) {
+    return add(touch.place, this.shift(touch.point, k));
+  }
+
+  // The poses at which the shapes of the cage are shown.
+  bodyPose(index, k) {
+    const { position, quaternion } = this.data.bodies[index];
+    return { p: add(position, this.shift(this.data.points.length + index, k)), q: quaternion };
   }
 
   // The line a motion turns about, carried by the object as it is shown when the motion begins.

@@ -1,0 +1,52 @@
+"""What all models of a scene file share: strict mappings, and the numbers and names in them."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
+from pydantic_core import PydanticCustomError
+
+LARGEST = 1e12
+"""Greatest number in a scene file. The fifth power of a length (a moment of inertia) must stay a finite double."""
+SMALLEST = 1e-12
+"""Least size, mass and magnitude, for the same reason."""
+
+
+def wrong(message: str) -> PydanticCustomError:
+    return PydanticCustomError("cagepose", "{message}", {"message": message})
+
+
+def _not_zero(values: list[float]) -> list[float]:
+    if not any(values):
+        raise wrong("is all zeros, which points nowhere; give at least one number other than 0")
+    return values
+
+
+def _not_tiny(value: float) -> float:
+    if value < SMALLEST:
+        raise wrong(f"is {value:g}; give a number of at least {SMALLEST:g}, or another unit")
+    return value
+
+
+def _printable(text: str) -> str:
+    if not text.isprintable() or not text.strip():
+        raise wrong(f"is {text!r}; give a name of visible characters")
+    return text
+
+
+Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+Positive = Annotated[float, Field(gt=0.0, le=LARGEST), AfterValidator(_not_tiny)]
+NotNegative = Annotated[float, Field(ge=0.0, le=LARGEST)]
+Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Direction = Annotated[Vector, AfterValidator(_not_zero)]
+Size = Annotated[list[Positive], Field(min_length=3, max_length=3)]
+Quaternion = Annotated[list[Number], Field(min_length=4, max_length=4), AfterValidator(_not_zero)]
+Name = Annotated[str, StringConstraints(min_length=1, max_length=100), AfterValidator(_printable)]
+
+
+class Mapping(BaseModel):
+    """Keys with values: no key more, no text for a number."""
+
+    # Models are built when they are first asked for: those that are parts of another only there, and not twice.
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True, defer_build=True)

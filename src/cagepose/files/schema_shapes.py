@@ -1,0 +1,186 @@
+"""Shapes in a scene file: one key that says what it is and holds its numbers, and beside it where it is."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
+
+from cagepose.files.schema_base import Mapping, Name, NotNegative, Positive, Size, Vector, wrong
+
+
+def either(*keys: str) -> dict[str, Any]:
+    """Return what a JSON Schema says of a mapping that needs at least one of some keys."""
+    return {"anyOf": [{"required": [key]} for key in keys]}
+
+
+class CoefficientModel(Mapping):
+    """Coulomb friction."""
+
+    coefficient: NotNegative | None = Field(None, description="Friction force over normal force.", examples=[0.1])
+    angle_deg: Annotated[float, Field(ge=0.0, lt=90.0)] | None = Field(
+        None, description="The same as an angle: its tangent is the coefficient.", examples=[5.7]
+    )
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> CoefficientModel:
+        if self.coefficient is not None and self.angle_deg is not None:
+            raise wrong("has both of coefficient and angle_deg; give one of them")
+        if self.coefficient is None and self.angle_deg is None and getattr(self, "of", None) is None:
+            raise wrong("has neither of coefficient and angle_deg; give one of them")
+        return self
+
+
+class BoxSizeModel(Mapping):
+    """A rectangular block, its middle at the shape's position."""
+
+    size: Size = Field(description="Full edge lengths [x, y, z].", examples=[[10, 20, 30]])
+
+
+class SphereModel(Mapping):
+    """A ball."""
+
+    radius: Positive = Field(description="Radius.", examples=[3])
+
+
+class CapsuleModel(Mapping):
+    """A round bar with round ends along z, its middle at the shape's position."""
+
+    radius: Positive = Field(description="Radius.", examples=[3])
+    length: Positive = Field(description="Between the centres of the two round ends.", examples=[20])
+
+
+class CylinderModel(Mapping):
+    """A round bar with flat ends along z, its middle at the shape's position."""
+
+    radius: Positive = Field(description="Radius.", examples=[3])
+    length: Positive = Field(description="From end to end.", examples=[20])
+
+
+class ConeModel(Mapping):
+    """A frustum of a cone with flat ends along z, its middle at the shape's position."""
+
+    radius_bottom: NotNegative = Field(description="Radius at its lower end; 0: a tip.", examples=[5])
+    radius_top: NotNegative = Field(description="Radius at its upper end; 0: a tip.", examples=[3])
+    length: Positive = Field(description="From end to end.", examples=[20])
+
+
+class ConvexModel(Mapping):
+    """The convex hull of some points, with rounded edges if it has a radius."""
+
+    vertices: Annotated[list[Vector], Field(min_length=1)] = Field(
+        description="The points, from the shape's position.",
+        examples=[[[0, 0, 0], [10, 0, 0], [0, 10, 0], [0, 0, 10]]],
+    )
+    radius: NotNegative | None = Field(
+        None,
+        description="By how much the hull is blown up; left out: sharp edges. With one, a single vertex makes a ball,"
+        " two a round bar, those of a polygon a plate with round edges.",
+        examples=[1],
+    )
+
+
+class DiscModel(Mapping):
+    """A flat round disc without thickness, across z."""
+
+    radius: Positive = Field(description="Radius.", examples=[3])
+
+
+class ChamferModel(Mapping):
+    """The cone that widens the mouth of a hole."""
+
+    width: Positive = Field(description="How much wider the radius is at the mouth.", examples=[0.5])
+    angle_deg: Annotated[float, Field(gt=0.0, lt=90.0)] = Field(
+        description="Between the cone's wall and the hole's axis.", examples=[45]
+    )
+
+
+class HoleModel(Mapping):
+    """A round hole along z: its mouth at the shape's position, z pointing out of the part."""
+
+    radius: Positive = Field(description="Radius.", examples=[3])
+    depth: Positive = Field(description="From the mouth to the bottom.", examples=[10])
+    chamfer: ChamferModel | None = Field(
+        None, description="A cone at the mouth; left out: a sharp rim.", examples=[{"width": 0.5, "angle_deg": 45}]
+    )
+    in_: Annotated[list[Name], Field(min_length=1)] | None = Field(
+        None,
+        alias="in",
+        description="Names of the boxes and shapes of the same body that it is cut out of; left out: it stands alone,"
+        " solid all around.",
+        examples=[["plate"]],
+    )
+
+
+def _friction_form(value: object) -> str | None:
+    """Which of the two ways to give friction this is."""
+    if isinstance(value, bool):
+        return None
+    return "number" if isinstance(value, (int, float)) else "mapping" if isinstance(value, dict) else None
+
+
+Friction = Annotated[
+    Annotated[NotNegative, Tag("number")] | Annotated[CoefficientModel, Tag("mapping")], Discriminator(_friction_form)
+]
+
+KINDS = ("box", "sphere", "capsule", "cylinder", "cone", "convex", "disc", "hole")
+"""Keys that say what a shape is."""
+
+
+class ShapeModel(Mapping):
+    """One shape."""
+
+    model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": [kind]} for kind in KINDS]})
+
+    box: BoxSizeModel | None = Field(None, description="A rectangular block.", examples=[{"size": [10, 20, 30]}])
+    sphere: SphereModel | None = Field(None, description="A ball.", examples=[{"radius": 3}])
+    capsule: CapsuleModel | None = Field(
+        None, description="A round bar with round ends.", examples=[{"radius": 3, "length": 20}]
+    )
+    cylinder: CylinderModel | None = Field(
+        None, description="A round bar with flat ends.", examples=[{"radius": 3, "length": 20}]
+    )
+    cone: ConeModel | None = Field(
+        None, description="A frustum of a cone.", examples=[{"radius_bottom": 5, "radius_top": 3, "length": 20}]
+    )
+    convex: ConvexModel | None = Field(
+        None,
+        description="The convex hull of some points.",
+        examples=[{"vertices": [[0, 0, 0], [10, 0, 0], [0, 10, 0], [0, 0, 10]]}],
+    )
+    disc: DiscModel | None = Field(None, description="A flat round disc.", examples=[{"radius": 3}])
+    hole: HoleModel | None = Field(None, description="A round hole.", examples=[{"radius": 3, "depth": 10}])
+    position: Vector | None = Field(
+        None, description="Where it is in its body's frame; left out: at the origin.", examples=[[0, 0, 0]]
+    )
+    euler_zyx_deg: Vector | None = Field(
+        None, description="How it is turned: yaw, pitch, roll in degrees.", examples=[[0, 90, 0]]
+    )
+    name: Name | None = Field(
+        None, description="Shown with contacts; left out: sphere1, sphere2, ...", examples=["pin"]
+    )
+    friction: Friction | None = Field(
+        None,
+        description="Its own friction (quasistatic): a coefficient, or coefficient or angle_deg as for the scene; left"
+        " out: that of all.",
+        examples=[0.2],
+    )
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> ShapeModel:
+        given = self.kinds_given()
+        empty = [kind for kind in KINDS if kind in self.model_fields_set and kind not in given]
+        if empty:
+            raise wrong(f"has an empty {empty[0]}; give its numbers, or remove the key")
+        if not given:
+            raise wrong(f"does not say which shape it is; add one of: {', '.join(KINDS)}")
+        if len(given) > 1:
+            raise wrong(f"is {' and '.join(given)} at once; make each a shape of its own")
+        return self
+
+    def kinds_given(self) -> list[str]:
+        """Return the keys that say what this shape is; of a checked one, there is one."""
+        return [kind for kind in KINDS if getattr(self, kind) is not None]
+
+
+Shapes = Annotated[list[ShapeModel], Field(min_length=1)]

@@ -1,0 +1,94 @@
+"""Whether two shapes, all of them convex, share no volume: shown by a plane between them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cagepose.model.box import Box
+from cagepose.model.checks import FloatArray, unit_rows
+from cagepose.model.shapes import Convex, Rounded, Shape, Turned
+
+WITHIN = 1e-12
+"""Shapes that overlap by no more than this share of their reach only touch: rounding."""
+PARALLEL = 1e-9
+"""Directions with a sine below this give no third one across both."""
+
+
+def are_apart(one: Shape, other: Shape) -> bool:
+    """Return whether a plane between the two was found: normal to a face, an axis or two edges, or to the line between
+    their nearest points. Where none was, they may still be apart by a hair.
+    """
+    middle, other_middle = one.nodes_body().mean(axis=0), other.nodes_body().mean(axis=0)
+    offset = other_middle - middle
+    reach = one.farthest_m(middle) + other.farthest_m(other_middle)
+    if float(np.linalg.norm(offset)) >= reach:
+        return True
+    lines, other_lines = _lines(one), _lines(other)
+    both = np.concatenate([lines, other_lines])
+    candidates = [
+        offset[None],
+        _across_faces(one),
+        _across_faces(other),
+        np.cross(lines[:, None], other_lines[None]).reshape(-1, 3),
+        np.cross(np.cross(both, offset), both),
+    ]
+    directions = np.concatenate([_directions(vectors) for vectors in candidates])
+    directions = np.concatenate([directions, -directions])
+    gaps = -one.heights_m(directions) - other.heights_m(-directions)
+    return float(gaps.max(initial=-reach)) >= -WITHIN * reach or _gilbert(one, other, offset, WITHIN * reach)
+
+
+def _directions(vectors: FloatArray) -> FloatArray:
+    """Return vectors (n, 3) scaled to length one, without those that are short beside the others or beside one."""
+    lengths = np.linalg.norm(vectors, axis=1)
+    long_enough = lengths > PARALLEL * lengths.max(initial=0.0)
+    return unit_rows(vectors[long_enough]) if long_enough.any() else np.zeros((0, 3))
+
+
+def _gilbert(one: Shape, other: Shape, offset: FloatArray, tolerance: float) -> bool:
+    """Approach the point of the difference of the two that is nearest to the origin (Gilbert's algorithm)."""
+    nearest = -offset
+    for _ in range(100):
+        length = float(np.linalg.norm(nearest))
+        if length <= tolerance:
+            return False
+        direction = nearest / length
+        support = _farthest(one, -direction) - _farthest(other, direction)
+        if float(support @ direction) >= -tolerance:
+            return True
+        step = support - nearest
+        nearest = nearest + min(1.0, max(0.0, -float(nearest @ step) / float(step @ step))) * step
+    return False
+
+
+def _across_faces(shape: Shape) -> FloatArray:
+    """Directions across the shape's flat faces, (n, 3)."""
+    turn = shape.pose_body_shape.rotation
+    if isinstance(shape, Box):
+        return turn.T
+    if isinstance(shape, Turned):
+        return turn[:, 2:].T
+    return shape.hull.normals @ turn.T if isinstance(shape, Convex) else np.zeros((0, 3))
+
+
+def _lines(shape: Shape) -> FloatArray:
+    """Directions of the shape's straight edges, or of its axis, (n, 3)."""
+    turn = shape.pose_body_shape.rotation
+    if isinstance(shape, Box):
+        return turn.T
+    if isinstance(shape, Convex):
+        start, end = np.moveaxis(shape.hull.vertices_m[shape.hull.edges], 1, 0)
+        return _directions(end - start) @ turn.T
+    return turn[:, 2:].T
+
+
+def _farthest(shape: Shape, direction: FloatArray) -> FloatArray:
+    """Return the shape's farthest point along a unit vector."""
+    nodes = shape.nodes_body()
+    if isinstance(shape, Turned):
+        axis = shape.pose_body_shape.rotation[:, 2]
+        across = direction - (direction @ axis) * axis
+        length = float(np.linalg.norm(across))
+        nodes = nodes + np.outer([radius for _, radius in shape.rims], across / length if length > 0.0 else across)
+    point: FloatArray = nodes[int(np.argmax(nodes @ direction))]
+    return point + shape.radius_m * direction if isinstance(shape, Rounded) else point

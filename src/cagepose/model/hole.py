@@ -1,0 +1,144 @@
+"""A round hole in a part: `Hole`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from cagepose.errors import Key
+from cagepose.model.checks import FloatArray, ProblemList, check_kind
+from cagepose.model.pose import Pose
+from cagepose.model.shapes import Shape, Turned, set_lengths
+
+AROUND = 64
+"""Corners of the polygon around a rim that stands for it where a hole is looked for within a part."""
+ON_FACE = 1e-6
+"""A mouth this close to a face, as a fraction of the hole's reach, is on it."""
+
+
+@dataclass(frozen=True)
+class Chamfer:
+    """The cone that widens the mouth of a hole.
+
+    Attributes
+    ----------
+    width_m
+        How much wider the radius is at the mouth, metres.
+    angle_rad
+        Between the cone's wall and the hole's axis, radians.
+    """
+
+    width_m: float
+    angle_rad: float
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Hole(Turned):
+    """A round hole with a flat bottom: along z, its mouth at z = 0, its bottom at z = -depth.
+
+    Attributes
+    ----------
+    radius_m, depth_m
+        Metres.
+    chamfer
+        None: the rim of the mouth is sharp.
+    in_
+        Names of the boxes and shapes of its own body that it is cut out of; its mouth is on their face. None: it stands
+        alone, solid all around from z = -depth to 0, flat on top and open below; what is around it has no weight.
+    """
+
+    kind: ClassVar[str] = "hole"
+    radius_m: float
+    depth_m: float
+    chamfer: Chamfer | None
+    in_: tuple[str, ...]
+
+    def __init__(
+        self,
+        radius_m: float,
+        depth_m: float,
+        chamfer: Chamfer | None = None,
+        in_: Sequence[str] = (),
+        pose_body_shape: Pose | None = None,
+        name: str | None = None,
+    ) -> None:
+        """
+        Raises
+        ------
+        SceneError
+            A radius or a depth that is not a finite number above zero, or a chamfer that is none or deeper than the
+            hole.
+        """
+        problems = ProblemList()
+        set_lengths(self, problems, radius=radius_m, depth=depth_m)
+        if chamfer is not None:
+            check_kind(chamfer, Chamfer, ("chamfer",), problems)
+            problems.raise_if_any()
+            if not (math.isfinite(chamfer.width_m) and chamfer.width_m > 0.0):
+                found = f"is {chamfer.width_m!r}; give a finite number of metres, above zero"
+                problems.add(("chamfer", "width"), found)
+            elif not 0.0 < chamfer.angle_rad < math.pi / 2.0:
+                found = f"is {math.degrees(chamfer.angle_rad):g} deg; give an angle above 0 and below 90 deg"
+                problems.add(("chamfer", "angle_deg"), found)
+            elif not problems.problems and chamfer.width_m / math.tan(chamfer.angle_rad) >= self.depth_m:
+                problems.add(("chamfer",), "reaches the bottom; make it narrower or flatter, or the hole deeper")
+        object.__setattr__(self, "chamfer", chamfer)
+        object.__setattr__(self, "in_", (in_,) if isinstance(in_, str) else tuple(in_))
+        self._place(pose_body_shape, name, problems)
+
+    @property
+    def rims(self) -> tuple[tuple[float, float], ...]:
+        """Height and radius of the bottom, of the chamfer's lower end, and of the mouth."""
+        bottom, mouth = (-self.depth_m, self.radius_m), (0.0, self.radius_m)
+        if self.chamfer is None:
+            return bottom, mouth
+        height = self.chamfer.width_m / math.tan(self.chamfer.angle_rad)
+        return bottom, (-height, self.radius_m), (0.0, self.radius_m + self.chamfer.width_m)
+
+    def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
+        found: list[tuple[tuple[Key, ...], float]] = [(("radius",), 2.0 * self.radius_m), (("depth",), self.depth_m)]
+        return found if self.chamfer is None else [*found, (("chamfer", "width"), self.chamfer.width_m)]
+
+    def is_within(self, part: Shape) -> bool:
+        """Return whether all that the hole takes away lies in one part; close to its surface the answer may be no."""
+        rims = [self._ring(height, radius / math.cos(math.pi / AROUND)) for height, radius in self.rims]
+        return bool(part.holds(np.concatenate(rims)).all())
+
+    def check_mouth(self, parts: Sequence[Shape], path: tuple[Key, ...], problems: ProblemList) -> None:
+        """Note where the mouth is not on a face of the parts that the hole is cut out of."""
+        _, radius = self.rims[-1]
+        mouth = np.concatenate([self._ring(0.0, radius), self._ring(0.0, 0.0)])
+        step = ON_FACE * math.hypot(radius, self.depth_m) * self.pose_body_shape.rotation[:, 2]
+        below = np.any([part.holds(mouth - step) for part in parts], axis=0)
+        above = np.any([part.holds(mouth + step) for part in parts], axis=0)
+        if not below.all():
+            found = f"is cut out of {', '.join(self.in_)}, but its mouth is not all on a face there"
+            problems.add(path, f"{found}; move it there (its axis z points out of the part), or make it smaller")
+        elif above.any():
+            found = f"has its mouth inside {', '.join(self.in_)}"
+            problems.add(path, f"{found}; move it to the face (its axis z points out of the part)")
+
+    def _ring(self, height: float, radius: float) -> FloatArray:
+        angles = 2.0 * math.pi * np.arange(AROUND) / AROUND
+        ring = np.stack([radius * np.cos(angles), radius * np.sin(angles), np.full(AROUND, height)], axis=1)
+        return self.pose_body_shape.transform(ring)
+
+
+def check_holes(
+    holes: Sequence[Hole], paths: Sequence[tuple[Key, ...]], parts: Sequence[Shape], problems: ProblemList
+) -> None:
+    """Note what the holes of a body are cut out of that is no part of it, and mouths that are not on its faces."""
+    named = {str(part.name): part for part in parts}
+    for hole, path in zip(holes, paths, strict=True):
+        unknown = [index for index, name in enumerate(hole.in_) if name not in named]
+        for index in unknown:
+            there = f"its own: {', '.join(named)}" if named else "its own, which has none: leave in out"
+            problems.add(
+                (*path, "in", index), f"is {hole.in_[index]!r}, no box or shape of this body; name one of {there}"
+            )
+        if hole.in_ and not unknown:
+            hole.check_mouth([named[name] for name in hole.in_], path, problems)

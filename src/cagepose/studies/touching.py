@@ -1,0 +1,54 @@
+"""Where the object touches the cage at any pose: `TouchFinder`, for pictures of what goes on in a run."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.kernels.collision.geometry import Placement, empty_placement, place_object
+from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
+
+
+class PlacesOfContact(NamedTuple):
+    """Where n pairs of parts touch, those of boxes with points left out.
+
+    Attributes
+    ----------
+    elements
+        Indices of the cage's points and shapes, points first, (n,).
+    parts
+        Indices of the object's parts, (n,).
+    places_world
+        Metres, (n, 3).
+    normals_world
+        Outward unit normals of the object, (n, 3).
+    """
+
+    elements: NDArray[np.int64]
+    parts: NDArray[np.int64]
+    places_world: FloatArray
+    normals_world: FloatArray
+
+
+class TouchFinder:
+    """Finds contacts of one scene, at pose after pose, in the same memory."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._geometry = scene.geometry
+        self._placement: Placement = empty_placement(scene.geometry)
+
+    def at(self, pose_world_object: Pose) -> PlacesOfContact:
+        """Return what touches, within the scene's touch tolerance, with the object at a pose."""
+        place_object(self._geometry, *pose_world_object.as_tuples(), self._placement)
+        meetings = self._placement.meetings
+        rows: Any = meetings.rows
+        rows = rows[: max(int(meetings.used[0]), 0)]
+        rows = rows[~rows["is_hidden"]]
+        # The object's own point; the cage's is within the touch tolerance of it.
+        return PlacesOfContact(
+            np.array(rows["cage_part"]), np.array(rows["part"]), np.array(rows["place"]), np.array(rows["normal"])
+        )

@@ -1,0 +1,122 @@
+"""The nearest points of two convex parts, by the method of Gilbert, Johnson and Keerthi.
+
+The difference of two convex bodies is one, too, and their distance is how far it is from the origin. A simplex of its
+points is led there: each next point is the farthest one against the simplex's nearest. Bodies with a radius are their
+cores, and the radius is taken off at the end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+
+from cagepose.model.box import Box
+from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
+from cagepose.model.shapes import Rounded, Shape, Turned
+
+MOST_STEPS = 60
+CLOSE = 1e-12
+"""Steps end where the next one would bring the distance nearer to its least by this fraction of it."""
+
+
+class Core(NamedTuple):
+    """A convex part in the world.
+
+    Attributes
+    ----------
+    farthest
+        Returns the core's farthest point in a direction, (3,) both, metres.
+    radius_m
+        By which the core is blown up, metres.
+    middle, reach_m
+        A ball around the part, radius and all, (3,) and metres.
+    """
+
+    farthest: Callable[[FloatArray], FloatArray]
+    radius_m: float
+    middle: FloatArray
+    reach_m: float
+
+    def least_gap(self, other: Core) -> float:
+        """Return how far apart two parts are at least, metres, by the balls around them."""
+        return float(np.linalg.norm(self.middle - other.middle)) - self.reach_m - other.reach_m
+
+
+def core_of(part: Box | Shape | FloatArray, pose_world_body: Pose) -> Core:
+    """Return a part of a body at a pose as `nearest_points` takes it; a single point (3,) of the world is one, too."""
+    if isinstance(part, np.ndarray):
+        return Core(lambda _: part, 0.0, part, 0.0)
+    middle = part.nodes_body().mean(axis=0)
+    ball = pose_world_body.transform(middle), part.farthest_m(middle)
+    if isinstance(part, Turned):
+        return Core(_farthest_of_turned(part, pose_world_body @ part.pose_body_shape), 0.0, *ball)
+    nodes = pose_world_body.transform(part.nodes_body())
+    radius_m = part.radius_m if isinstance(part, Rounded) else 0.0
+    return Core(lambda way: nodes[int(np.argmax(nodes @ way))], radius_m, *ball)
+
+
+def _farthest_of_turned(part: Turned, pose: Pose) -> Callable[[FloatArray], FloatArray]:
+    def farthest(way: FloatArray) -> FloatArray:
+        x, y, z = (way @ pose.rotation).tolist()
+        across = float(np.hypot(x, y))
+        height, radius = max(part.rims, key=lambda rim: z * rim[0] + across * rim[1])
+        outward = radius / across if across > 0.0 else 0.0
+        return pose.transform(np.array([outward * x, outward * y, height]))
+
+    return farthest
+
+
+def nearest_points(one: Core, other: Core) -> tuple[FloatArray, FloatArray]:
+    """Return the points of two bodies, (3,) each, metres, that are nearest to each other; of bodies whose cores meet,
+    twice about the same one.
+    """
+    pairs = [(one.farthest(np.ones(3)), other.farthest(-np.ones(3)))]
+    shares = np.ones(1)
+    for _ in range(MOST_STEPS):
+        between = _mixed(pairs, shares)
+        square = float(between @ between)
+        pair = one.farthest(-between), other.farthest(between)
+        if square == 0.0 or square - float(between @ (pair[0] - pair[1])) <= CLOSE * square:
+            break
+        chosen, found = _nearest_subset([*pairs, pair])
+        nearer = _mixed(chosen, found)
+        if float(nearer @ nearer) >= square:
+            break
+        pairs, shares = chosen, found
+    place, foot = (np.asarray(shares @ np.array(points)) for points in zip(*pairs, strict=True))
+    apart = float(np.linalg.norm(place - foot))
+    if apart == 0.0:
+        return place, foot
+    way = (foot - place) / apart
+    return place + one.radius_m * way, foot - other.radius_m * way
+
+
+_Pair = tuple[FloatArray, FloatArray]
+
+
+def _mixed(pairs: list[_Pair], shares: FloatArray) -> FloatArray:
+    mixed: FloatArray = shares @ np.array([place - foot for place, foot in pairs])
+    return mixed
+
+
+def _nearest_subset(pairs: list[_Pair]) -> tuple[list[_Pair], FloatArray]:
+    """Return the points of a simplex, the last one among them, that bear its point nearest to the origin, and their
+    shares in it.
+    """
+    points = np.array([place - foot for place, foot in pairs])
+    last, best = len(pairs) - 1, (np.inf, [len(pairs) - 1], np.ones(1))
+    for size in range(min(len(pairs), 4)):
+        for others in combinations(range(last), size):
+            chosen = [*others, last]
+            ways = points[list(others)] - points[last]
+            shares = np.linalg.lstsq(ways.T, -points[last], rcond=None)[0] if others else np.zeros(0)
+            all_shares = np.append(shares, 1.0 - shares.sum())
+            if all_shares.min() < 0.0:
+                continue
+            nearest = all_shares @ points[chosen]
+            best = min(best, (float(nearest @ nearest), chosen, all_shares), key=lambda found: found[0])
+    return [pairs[index] for index in best[1]], best[2]

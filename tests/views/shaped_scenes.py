@@ -1,0 +1,54 @@
+"""Scenes with shapes, which tests of views share."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cagepose import Box, Cage, Load, Object, Pose, Scene
+from cagepose.model.shapes import AnyShape, Capsule, Convex, Sphere
+
+WEIGHT = Load("weight", gravity=(0, 0, -1))
+ALONG_X = Pose(euler_zyx=(0, np.pi / 2, 0))
+TABLE = Box((0.4, 0.4, 0.02), Pose((0, 0, -0.01)), "table")
+
+
+def held(*shapes: Box | AnyShape, start: Pose) -> Object:
+    """An object of one kilogram, its centre of gravity at its origin."""
+    return Object(
+        shapes=shapes, center_of_gravity_m=(0, 0, 0), mass_kg=1.0, inertia_kg_m2=np.diag((1e-5, 2e-5, 3e-5)), pose=start
+    )
+
+
+def ball_on_table(height_m: float = 0.05) -> Scene:
+    """A ball of 10 mm over a table of 400 mm; no points, no boxes in the object."""
+    return Scene(held(Sphere(0.01), start=Pose((0, 0, height_m))), Cage(shapes=[TABLE]), [WEIGHT], name="ball")
+
+
+def ball_on_points() -> Scene:
+    """A ball over three points: no shapes in the cage."""
+    points = [(0.01, 0, 0), (-0.005, 0.009, 0), (-0.005, -0.009, 0)]
+    return Scene(held(Sphere(0.02), start=Pose((0, 0.003, 0.05))), Cage(points), [WEIGHT], name="points")
+
+
+def bar_between_bars() -> Scene:
+    """A round bar falls on one of two that lie side by side, slides down it and comes to lie on both."""
+    bars = [Capsule(0.01, 0.2, Pose((0, y, 0), euler_zyx=(0, np.pi / 2, 0)), name) for y, name in SIDES]
+    bar = held(Capsule(0.01, 0.05, ALONG_X), start=Pose((0, 0.003, 0.06)))
+    return Scene(bar, Cage(shapes=bars), [WEIGHT], name="bars")
+
+
+SIDES = ((0.013, "left"), (-0.013, "right"))
+
+
+def block_on_balls() -> Scene:
+    """A box and three equal balls; no points."""
+    places = ((0.01, 0, 0), (-0.01, 0.008, 0), (-0.01, -0.008, 0))
+    balls = [Sphere(0.005, Pose(place)) for place in places]
+    start = Pose((0, 0, 0.06), euler_zyx=np.radians((10.0, 25.0, 18.0)))
+    return Scene(held(Box((0.04, 0.03, 0.02)), start=start), Cage(shapes=balls), [WEIGHT], name="block")
+
+
+def prism() -> Convex:
+    """A wedge, 30 mm long, whose ends are right triangles."""
+    ends = [(x, y, z) for x in (-0.015, 0.015) for y, z in ((0, 0), (0.02, 0), (0, 0.01))]
+    return Convex(ends)
