@@ -6,10 +6,9 @@ from pathlib import Path
 
 from cagepose import load_scene
 from cagepose.model.methods import METHODS
-from cagepose.model.scope import has_other_shapes
 
 SCENES = sorted((Path(__file__).resolve().parent.parent / "scenes").glob("*.yaml"))
-OF_BOXES_AND_POINTS = [path for path in SCENES if not has_other_shapes(load_scene(path))]
+OF_BOXES_AND_POINTS = [path for path in SCENES if not load_scene(path).has_other_shapes]
 CASES = [
     (path, method) for path in SCENES for method in METHODS if path in OF_BOXES_AND_POINTS or method == "quasistatic"
 ]

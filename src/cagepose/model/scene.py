@@ -71,6 +71,8 @@ class Scene:
         plane would pass between them.
     size_m
         The greater of the object's and the cage's diameter (of a sphere about their middle), metres.
+    has_other_shapes
+        Whether the object has more than boxes, or the cage more than points.
     """
 
     object: Object
@@ -86,6 +88,7 @@ class Scene:
     geometry: Geometry
     open_seams: tuple[tuple[str, str], ...]
     size_m: float
+    has_other_shapes: bool
 
     def __init__(
         self,
@@ -152,6 +155,7 @@ class Scene:
             ("geometry", geometry),
             ("open_seams", tuple((str(named[one].name), str(named[other].name)) for one, other in seams.open_pairs)),
             ("size_m", size_m),
+            ("has_other_shapes", bool(object.shapes or object.holes or cage.shapes or cage.holes)),
         ):
             _set_field(self, field, value)
 

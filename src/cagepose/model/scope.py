@@ -8,12 +8,6 @@ from cagepose.model.scene import Scene
 from cagepose.model.shapes import Shape
 
 
-def has_other_shapes(scene: Scene) -> bool:
-    """Whether a scene has more than boxes in the object and points in the cage."""
-    held, cage = scene.object, scene.cage
-    return bool(held.shapes or held.holes or cage.shapes or cage.holes)
-
-
 def unknown_shapes(scene: Scene) -> list[Problem]:
     """Return a problem for each shape that no method runs yet."""
     remedy = "which no method runs yet; a capsule or a convex shape may stand for it"
