@@ -16,6 +16,15 @@ HEXAGON = [(np.cos(k * np.pi / 3), np.sin(k * np.pi / 3), 0.3) for k in range(6)
 PRISM = [*HEXAGON, *((x, y, z + 1.0) for x, y, z in HEXAGON)]
 AREA = 1.5 * np.sqrt(3.0)
 
+
+def plate_volume(triangle, radius):
+    """Of a triangle blown up by a radius (Steiner)."""
+    sides = np.roll(triangle, -1, axis=0) - triangle
+    area = np.linalg.norm(np.cross(sides[0], sides[1])) / 2.0
+    around = np.linalg.norm(sides, axis=1).sum() * np.pi / 2.0
+    return 2.0 * area * radius + around * radius**2 + 4.0 / 3.0 * np.pi * radius**3
+
+
 SHAPES = [
     (Box((1, 2, 3), POSE), 6.0),
     (Sphere(2.0, POSE), 32.0 / 3.0 * np.pi),
@@ -28,6 +37,7 @@ SHAPES = [
     # Steiner: volume + surface r + edges' length times angle r^2 / 2 + ball
     (Convex(PRISM, 0.5, POSE), AREA + (2 * AREA + 6) * 0.5 + (12 * np.pi / 2 + 6 * np.pi / 3) * 0.125 + np.pi / 6),
     (Convex(HEXAGON, 0.5, POSE), AREA + 6 * np.pi * 0.125 + np.pi / 6),
+    *((Convex(triangle, 0.5), plate_volume(triangle, 0.5)) for triangle in RNG.normal(size=(5, 3, 3))),  # none upright
     (Convex([(0, 0, 0), (0, 0, -2.0)], 1.0, POSE), (4.0 / 3.0 + 2.0) * np.pi),
     (Convex([(1, 2, 3), (2, 0, 5)], 1.0, POSE), (4.0 / 3.0 + 3.0) * np.pi),
     (Convex([(1, 2, 3)], 2.0, POSE), 32.0 / 3.0 * np.pi),

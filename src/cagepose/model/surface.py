@@ -178,7 +178,7 @@ class _RoundedMesh:
         normal, other = self.hull.normals[face], self.hull.normals[beside]
         along = unit_rows((self.hull.vertices_m[end] - self.hull.vertices_m[start])[None])[0]
         outwards = np.cross(along, normal)
-        angle = math.atan2(float(other @ outwards), float(other @ normal))
+        angle = abs(math.atan2(float(other @ outwards), float(other @ normal)))  # of the two sides of a polygon: +-pi
         n = self._steps(angle)
         return [math.cos(k * angle / n) * normal + math.sin(k * angle / n) * outwards for k in range(1, n)]
 

@@ -51,13 +51,16 @@ def nearest_on_object(held: Object, pose: Pose, cage: Cage, elements: Sequence[i
     gaps = np.full(len(chosen), np.inf)
     if held.boxes:
         gaps[is_point] = _write_nearest_of_boxes(held.boxes, pose, points[chosen[is_point]], is_point, found)
-    cores = [core_of(part, pose) for part in held.parts]
-    for row, element in enumerate(chosen.tolist()):
-        if element < len(points):
-            other, first = core_of(points[element], cage.pose_world_cage), len(held.boxes)
+    rows = np.arange(len(chosen)) if held.shapes else np.nonzero(~is_point)[0]
+    cores = [core_of(part, pose) for part in held.parts] if len(rows) else []
+    for row in rows.tolist():
+        element, gap = int(chosen[row]), float(gaps[row])
+        if is_point[row]:
+            point = core_of(points[element], cage.pose_world_cage)
+            _write_nearest_part(cores, point, len(held.boxes), row, gap, found)
         else:
-            other, first = core_of(cage.shapes[element - len(points)], cage.pose_world_cage), 0
-        _write_nearest_part(cores, other, first, row, float(gaps[row]), found)
+            shape = core_of(cage.shapes[element - len(points)], cage.pose_world_cage)
+            _write_nearest_part(cores, shape, 0, row, gap, found)
     return found
 
 

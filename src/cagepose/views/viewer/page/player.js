@@ -197,7 +197,9 @@ window.addEventListener("resize", refresh);
 window.cagepose = {
   state: () => ({ ...player, row: stage.shot(player.time).row, written: drawing?.written,
     shownPose: stage.shownPose(stage.truePose(player.time), player.exaggeration),
-    points: data.points.map((_, index) => stage.point(index, player.exaggeration)) }),
+    points: data.points.map((_, index) => stage.point(index, player.exaggeration)),
+    touches: stage.shot(player.time).touches.map((touch) => stage.place(touch, player.exaggeration)),
+    bodies: data.bodies.map((_, index) => stage.bodyPose(index, player.exaggeration).p), perUnit: drawing?.camera.perUnit() }),
   fitted: () => drawing?.content().map((place) => drawing.camera.project(place)), // apart: 12,000 places in a crowded scene
 };
 

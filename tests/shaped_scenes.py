@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from cagepose import Box, Cage, Load, Object, Pose, Scene
-from cagepose.model.shapes import AnyShape, Capsule, Convex, Sphere
+from cagepose.model.shapes import AnyShape, Capsule, Sphere
 
 WEIGHT = Load("weight", gravity=(0, 0, -1))
 ALONG_X = Pose(euler_zyx=(0, np.pi / 2, 0))
+SIDES = ((0.013, "left"), (-0.013, "right"))
 TABLE = Box((0.4, 0.4, 0.02), Pose((0, 0, -0.01)), "table")
 
 
@@ -37,18 +38,9 @@ def bar_between_bars() -> Scene:
     return Scene(bar, Cage(shapes=bars), [WEIGHT], name="bars")
 
 
-SIDES = ((0.013, "left"), (-0.013, "right"))
-
-
 def block_on_balls() -> Scene:
     """A box and three equal balls; no points."""
     places = ((0.01, 0, 0), (-0.01, 0.008, 0), (-0.01, -0.008, 0))
     balls = [Sphere(0.005, Pose(place)) for place in places]
     start = Pose((0, 0, 0.06), euler_zyx=np.radians((10.0, 25.0, 18.0)))
     return Scene(held(Box((0.04, 0.03, 0.02)), start=start), Cage(shapes=balls), [WEIGHT], name="block")
-
-
-def prism() -> Convex:
-    """A wedge, 30 mm long, whose ends are right triangles."""
-    ends = [(x, y, z) for x in (-0.015, 0.015) for y, z in ((0, 0), (0.02, 0), (0, 0.01))]
-    return Convex(ends)

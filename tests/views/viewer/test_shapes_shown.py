@@ -1,0 +1,159 @@
+"""Shapes on pictures and pages: where they are, where they touch, how much data they are."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+from collections.abc import Callable
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from cagepose import Box, Cage, Object, Pose, Scene, run
+from cagepose.model.shapes import Capsule, Sphere
+from cagepose.views.viewer.page import page
+from cagepose.views.viewer.page_data import page_data
+from cagepose.views.viewer.picture import FINER, SIZE, PictureMaker
+from cagepose.views.viewer.playback import Playback, playback
+from cagepose.views.viewer.stage import EXAGGERATIONS, Stage
+from driving import set_range, state, wait_until
+from shaped_scenes import WEIGHT, ball_on_points, ball_on_table, bar_between_bars, block_on_balls
+
+SCENES = [ball_on_table, ball_on_points, bar_between_bars, block_on_balls]
+
+
+def shown_on(picture: Image.Image, place: np.ndarray) -> np.ndarray:
+    return np.asarray(picture, dtype=float)[int(place[1]), int(place[0])]
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_everything_that_touches_is_in_the_picture_and_marked(scene: Callable[[], Scene]) -> None:
+    film = playback(run(scene()))
+    maker, last = PictureMaker(Stage(film), 1), film.shots[-1]
+    picture, start = maker.picture(last), maker.picture(film.shots[0])
+    assert len(last.touches.points) >= 1
+    for place in maker._pixels(maker._places(last.touches))[:, :2] / 2.0:
+        assert ((place > 0.0) & (place < SIZE)).all()
+        x, y = place.astype(int)
+        warmth = [
+            (around[..., 0] - around[..., 2]).max()
+            for around in (np.asarray(of, dtype=float)[y - 3 : y + 4, x - 3 : x + 4] for of in (picture, start))
+        ]
+        assert warmth[0] > warmth[1] + 15.0  # a table is a little warm itself
+
+
+def test_contacts_are_where_the_run_says_and_move_along_on_what_is_round() -> None:
+    """While the bar slides down the other one, it touches that at 10 mm from both axes, and midway between them."""
+    film = playback(run(bar_between_bars()), shots_per_motion=8)
+    last = film.shots[-1].touches
+    assert last.places_world == pytest.approx(np.array([contact.place_world for contact in film.run.contacts]))
+    slide = film.rows[1]
+    on_the_way = film.shots[slide.first_shot : slide.last_shot]
+    assert len(on_the_way) == 7
+    axis = film.run.scene.cage.shapes[0].pose_body_shape.position_m
+    for shot in on_the_way:
+        assert shot.touches.points.tolist() == [0, 0]
+        between = shot.touches.places_world[:, 1:] - axis[1:]
+        assert np.linalg.norm(between, axis=1) == pytest.approx(0.01, abs=1e-6)  # poses between two of a path
+        middle = (shot.pose_world_object.position_m[1:] + axis[1:]) / 2.0
+        assert shot.touches.places_world[:, 1:] == pytest.approx(np.array([middle] * 2), abs=1e-6)
+    heights = [shot.touches.places_world[0, 2] for shot in on_the_way]
+    assert all(later < sooner - 1e-5 for sooner, later in pairwise(heights))
+
+
+def test_what_touches_on_screen_touches_however_much_a_small_gap_is_exaggerated() -> None:
+    """A ball 0.05 mm over a table falls on it; at x 100 it falls 5 mm, on a table that is shown as much lower."""
+    film = playback(run(ball_on_table(0.01005)))
+    stage = Stage(film)
+    for times in (1, 10, 100):
+        shift = stage.shifts(float(times))[0]
+        center = stage.pose(film.shots[-1].pose_world_object, float(times)).position_m
+        assert shift == pytest.approx([0, 0, -(times - 1) * 5e-5], abs=1e-12)
+        assert center[2] - 0.01 == pytest.approx(shift[2], abs=1e-9)
+        places = stage.place(film.shots[-1].touches.places_world + shift)
+        assert places[0] == pytest.approx(stage.place(center - [0, 0, 0.01]), abs=1e-6)
+
+
+def test_marks_follow_what_is_seen_where_the_scene_is_much_larger() -> None:
+    """The table is twenty times as large as the ball: marks and arrows are those of a scene as large as the picture."""
+    stage = Stage(playback(run(ball_on_table())))
+    assert stage.size_m < 0.3 * stage.shown.run.scene.size_m
+    assert Stage(playback(run(ball_on_points()))).size_m == ball_on_points().size_m
+
+
+def test_a_mesh_is_told_once_however_many_shapes_have_it() -> None:
+    """Twelve equal rollers and two balls: two meshes; the page stays within twice that of a scene of points."""
+    rollers = [
+        Capsule(0.002, 0.01, Pose((0.01 * i, y, -0.012), euler_zyx=(0, 0, np.pi / 2)), f"roller {i} {y}")
+        for i in range(-3, 3)
+        for y in (-0.02, 0.02)
+    ]
+    bed = Object(
+        [Box((0.08, 0.06, 0.02))],
+        shapes=[Sphere(0.003, Pose((x, 0, 0.01)), f"knob {x}") for x in (-0.02, 0.02)],
+        center_of_gravity_m=(0, 0, 0), mass_kg=1.0, inertia_kg_m2=np.diag((1e-4, 2e-4, 2e-4)),
+    )  # fmt: skip
+    film = playback(run(Scene(bed, Cage(shapes=rollers), [WEIGHT])))
+    data = page_data(film)
+    assert len(data["meshes"]) == 2
+    assert [body["mesh"] for body in data["shapes"]] == [0, 0]
+    assert [body["mesh"] for body in data["bodies"]] == [1] * 12
+    assert len(json.dumps(data["meshes"], separators=(",", ":"))) < 65_000
+    assert len(page(film)) < 200_000
+
+
+@pytest.fixture
+def opened(watched, tmp_path) -> Callable:
+    def open_page(film: Playback):
+        file = tmp_path / "run.html"
+        file.write_text(page(film), encoding="utf-8")
+        watched.page.context.set_offline(True)
+        watched.page.goto(file.as_uri())
+        wait_until(watched.page, "cagepose.state().drawn > 0")
+        return watched.page
+
+    return open_page
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_page_shows_shapes_and_contacts_where_pictures_do(opened, scene: Callable[[], Scene]) -> None:
+    film = playback(run(scene()))
+    page = opened(film)
+    assert page.locator("#verdict").inner_text() == "rests"
+    stage = Stage(film)
+    for times in (1, 20):
+        set_range(page, "exaggeration", EXAGGERATIONS.index(times))
+        wait_until(page, f"cagepose.state().drawnExaggeration === {times}")
+        shown = state(page)
+        shifts = stage.shifts(float(times))[film.shots[-1].touches.points]
+        expected = stage.place(film.shots[-1].touches.places_world + shifts)
+        assert np.array(shown["touches"]) == pytest.approx(expected, abs=1e-6)
+        maker = PictureMaker(stage, times)
+        assert np.array(shown["bodies"]).reshape(-1, 3) == pytest.approx(
+            stage.place(np.array([pose.position_m for pose in maker.body_poses]).reshape(-1, 3)), abs=1e-9
+        )
+    names = {name["text"] for name in state(page)["written"]}
+    assert {contact.point for contact in film.run.contacts} <= names
+    lines = page.locator("#forces tr:has(td)").all_inner_texts()
+    assert any(f"{contact.point} on {contact.box}" in line for line in lines for contact in film.run.contacts)
+
+
+@pytest.mark.parametrize("scene", [ball_on_points, block_on_balls])
+def test_the_page_draws_an_object_as_large_as_the_picture_does(opened, scene: Callable[[], Scene]) -> None:
+    film = playback(run(scene()))
+    page = opened(film)
+    url, pixels = page.evaluate("[scene.toDataURL(), cagepose.state().perUnit]")
+    on_page = Image.open(io.BytesIO(base64.b64decode(url.split(",")[1])))
+    maker = PictureMaker(Stage(film), 1)
+    in_picture = blue_area(maker.picture(film.shots[-1])) / (maker.pixels / FINER) ** 2
+    assert blue_area(on_page) / pixels**2 == pytest.approx(in_picture, rel=0.1)
+    assert in_picture > 0.01
+
+
+def blue_area(image: Image.Image) -> int:
+    """How many pixels are clearly more blue than red."""
+    red, _, blue = np.moveaxis(np.asarray(image.convert("RGB"), dtype=float), 2, 0)
+    return int((blue - red > 20.0).sum())
