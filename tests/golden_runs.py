@@ -12,12 +12,10 @@ from typing import Any
 from cagepose import Run, run
 from cagepose.files.document import run_document
 from cagepose.files.scene_file import read_scene_file
-from cagepose.model.methods import METHODS
+from our_scenes import CASES
 
 ROOT = Path(__file__).resolve().parent.parent
 GOLDEN = ROOT / "tests" / "golden"
-SCENES = sorted((ROOT / "scenes").glob("*.yaml"))
-CASES = [(scene_path, method) for scene_path in SCENES for method in METHODS]
 
 
 def golden_path(scene_path: Path, method: str) -> Path:

@@ -35,7 +35,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     from cagepose.kernels.contact.contact_set import empty_contact_set
     from cagepose.kernels.contact.coulomb import coulomb_onset
     from cagepose.kernels.contact.coulomb_newton import NewtonWorkspace
-    from cagepose.kernels.shapes.features import no_shapes
+    from cagepose.kernels.shapes.features import NO_SHAPES
     from cagepose.kernels.shapes.motion import Motion
     from cagepose.kernels.stability.relaxation import N_COLUMNS
     from cagepose.kernels.stability.strong import ModeTree, other_onset
@@ -46,7 +46,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield coulomb_onset, (contacts, 0.0, load, cone, load, newton)
     yield other_onset, (contacts, 0.0, load, tree, newton, empty_system(N_COLUMNS))
     vectors, origin = np.zeros((1, 3)), (0.0, 0.0, 0.0)
-    geometry = Geometry(vectors, vectors, np.zeros((1, 3, 3)), 1, vectors, no_shapes(), no_shapes(), 0.0)
+    geometry = Geometry(vectors, vectors, np.zeros((1, 3, 3)), 1, vectors, NO_SHAPES, NO_SHAPES, 0.0)
     yield first_meeting, (geometry, empty_placement(geometry), Motion(origin, origin, 0.0, origin), 0.0, 0.0, 0.0)
 
 

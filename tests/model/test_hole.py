@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cagepose import Box, Cage, Chamfer, Convex, Cylinder, Hole, Object, Pose, SceneError, Sphere
+from cagepose import Box, Cage, Chamfer, Convex, Cylinder, Hole, Load, Object, Pose, Scene, SceneError, Sphere
 from cagepose.model.shape_moments import shape_moments, sums_of
 from cagepose.model.surface import shape_mesh
 from cagepose.model.union import body_moments, mesh_sums
@@ -131,3 +131,10 @@ def test_holes_are_no_parts_but_count_for_size_and_names():
     cage = Cage([(0, 0, 9)], shapes=[Hole(5.0, 1.0), Sphere(1.0)])
     assert cage.element_names == ("C1", "sphere1", "hole1")
     assert np.isclose(held.center_of_gravity_m[2], -PI * 2 * 1.0 / (64 - 2 * PI + 4 / 3 * PI))
+
+
+def test_a_cage_point_may_start_in_a_hole_but_not_beside_it():
+    held = Object([Box((4, 4, 4), name="a")], shapes=[hole(1, 2, Pose((0, 0, 2)), "a")], pose=Pose((0, 0, 5)))
+    make = lambda x: Scene(held, Cage([(x, 0, 6), (9, 9, 0), (-9, 0, 0)]), [Load("g", gravity=(0, 0, -1))])  # noqa: E731
+    make(0.9)
+    assert found(lambda: make(1.1))[0].startswith("cage.points.C1: starts 900 mm inside object.boxes[0] (a)")

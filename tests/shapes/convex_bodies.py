@@ -8,7 +8,7 @@ edges, without asking which of them can count.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 from scipy.spatial import ConvexHull
@@ -62,15 +62,16 @@ def _body(corners: np.ndarray, radius: float) -> Body:
     if extents[2] < 1e-9 * extents[0]:
         flat = ConvexHull((corners - middle) @ axes[:2].T)
         loop = flat.vertices
-        triangles = np.array([(loop[0], one, other) for one, other in zip(loop[1:-1], loop[2:], strict=True)])
+        triangles = np.array([(loop[0], one, other) for one, other in pairwise(loop[1:])])
         return Body(corners, flat.simplices, triangles, axes[2:], radius)
     hull = ConvexHull(corners)
-    edges = {tuple(sorted(pair)) for triangle in hull.simplices for pair in combinations(triangle.tolist(), 2)}
+    sides = (pair for triangle in hull.simplices.tolist() for pair in combinations(sorted(triangle), 2))
+    edges = set(sides)
     return Body(corners, np.array(sorted(edges)), hull.simplices, hull.equations[:, :3], radius)
 
 
 def nearest(one: Body, other: Body) -> tuple[float, np.ndarray]:
-    """Return the least distance of the cores' surfaces, and the way from a nearest point of the first to the other's."""
+    """Return the least distance of the cores, and the way from a nearest point of the first to the other's."""
     ways = [
         _corner_to_corner(one, other),
         _corners_to_edges(one, other),
@@ -155,7 +156,7 @@ def _edges_to_edges(one: Body, other: Body) -> np.ndarray:
 
 
 def random_part(rng: np.random.Generator, pose: Pose | None = None) -> Box | Sphere | Capsule | Convex:
-    """A part of about unit size: a ball, a round bar, a box, a plate or hull with sharp or round edges; some slender."""
+    """A part of about unit size: a ball, a round bar, a box, a plate or a hull, with sharp or round edges."""
     kind = rng.choice(["sphere", "capsule", "box", "box", "hull", "hull", "prism", "plate"])
     radius = float(10.0 ** rng.uniform(-2.5, -0.3))
     if kind == "sphere":

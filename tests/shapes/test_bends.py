@@ -38,8 +38,8 @@ def turned(spin, point):
     return point + along + np.cross(spin, along) / 2
 
 
-def gap_of(one, other, travel, spin, center):
-    """The gap of two features after a travel and a turn of the first about a centre."""
+def gap_of(one, other, outward, travel, spin, center):
+    """The gap of two features after a travel and a turn of the first about a centre; out is along ``outward``."""
     p = center + turned(spin, vector(one.point) - center) + travel
     u, q, w = turned(spin, vector(one.direction)), vector(other.point), vector(other.direction)
     radii = Decimal(float(one.radius)) + Decimal(float(other.radius))
@@ -50,7 +50,7 @@ def gap_of(one, other, travel, spin, center):
         return u @ (q - p) - radii
     if kinds == (EDGE, EDGE):
         crossed = np.cross(u, w)
-        return abs((p - q) @ crossed) / length(crossed) - radii
+        return abs(crossed @ outward) / (crossed @ outward) * ((q - p) @ crossed) / length(crossed) - radii
     between = p - q
     if kinds[0] == EDGE:
         between = between - u * (between @ u) / (u @ u)
@@ -99,10 +99,10 @@ def test_normals_and_second_derivatives_are_those_of_the_gap(say):
         axes = Pose((0, 0, 0), rng.normal(size=4)).rotation
         y = rng.normal(size=6)
         spin = axes.T @ (y[3:] / radii)
-        travel, turn, middle = vector(y[:3]), vector(spin), vector(center)
+        travel, turn, middle, out = vector(y[:3]), vector(spin), vector(center), vector(met.normal)
 
-        def after(step, one=one, other=other, travel=travel, turn=turn, middle=middle):
-            return gap_of(one, other, travel * step, turn * step, middle)
+        def after(step, one=one, other=other, out=out, travel=travel, turn=turn, middle=middle):
+            return gap_of(one, other, out, travel * step, turn * step, middle)
 
         ahead, now, behind = after(STEP), after(Decimal(0)), after(-STEP)
         slope, curve = float((ahead - behind) / (2 * STEP)), float((ahead - 2 * now + behind) / STEP**2)

@@ -37,9 +37,9 @@ from cagepose import (
 from cagepose.files.record import record_of
 from cagepose.model.methods import METHODS
 from cagepose.studies.certificate_check import CertificateCheck
+from our_scenes import OF_BOXES_AND_POINTS
 
 ROOT = Path(__file__).parents[2]
-SCENES = sorted((ROOT / "scenes").glob("*.yaml"))
 
 
 def certified(a_run: Run, phase: int = -1) -> tuple[Certificate, CertificateCheck]:
@@ -49,7 +49,7 @@ def certified(a_run: Run, phase: int = -1) -> tuple[Certificate, CertificateChec
 
 
 @pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("path", SCENES, ids=[path.stem for path in SCENES])
+@pytest.mark.parametrize("path", OF_BOXES_AND_POINTS, ids=[path.stem for path in OF_BOXES_AND_POINTS])
 def test_each_rest_of_our_scenes_has_a_certificate_that_is_right(path: Path, method: str) -> None:
     a_run = run(load_scene(path), method)
     for number, phase in enumerate(a_run.phases):

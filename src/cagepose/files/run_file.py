@@ -17,7 +17,6 @@ from cagepose.files.read import looks_like_run
 from cagepose.files.record import from_record, record_of
 from cagepose.files.units import LENGTH_UNITS, LengthUnit
 from cagepose.files.write import check_can_write, json_text, write_whole
-from cagepose.model.scope import has_other_shapes
 from cagepose.runs.run import Run
 from cagepose.studies.certificate import Certificate
 from cagepose.studies.certify import certificate
@@ -39,7 +38,7 @@ def save_run(run: Run, path: str | os.PathLike[str], length_unit: LengthUnit = "
     check_can_save(path)
     content = {**run_document(run, length_unit), "exact": record_of(run)}
     n_phases = len(run.phases)
-    certificates = [None if has_other_shapes(run.scene) else certificate(run, phase) for phase in range(n_phases)]
+    certificates = [None if run.scene.has_other_shapes else certificate(run, phase) for phase in range(n_phases)]
     records = [None if found is None else record_of(found) for found in certificates]
     write_whole(path, json_text(content, certificates=records).encode())
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,7 @@ from cagepose.errors import Key
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, ProblemList, check_kinds, duplicates, finite_array
 from cagepose.model.hole import Hole, check_holes
-from cagepose.model.naming import check_names, named, names_of
+from cagepose.model.naming import check_names, names_of, placed
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import AnyShape, Shape
 
@@ -58,8 +58,8 @@ class Cage:
         Raises
         ------
         SceneError
-            Neither points nor shapes, points that are not n x 3 finite numbers, a name used twice, or not one name for
-            each point.
+            Neither points nor shapes, points that are not n x 3 finite numbers, a name used twice, not one name for
+            each point, or a hole that is not in its shapes.
         """
         has_points = not (isinstance(points, Sequence | np.ndarray) and len(points) == 0)
         array = (
@@ -68,15 +68,12 @@ class Cage:
         default_names = tuple(f"C{index + 1}" for index in range(len(array)))
         given = default_names if names is None else tuple(str(name) for name in names)
         problems = ProblemList()
-        placed: list[tuple[tuple[Key, ...], Any]] = [
-            (("shapes", index, shape.kind), shape)
-            for index, shape in enumerate(check_kinds(shapes, Shape, "shapes", problems))
-        ]
-        placed += [(("holes", index), hole) for index, hole in enumerate(check_kinds(holes, Hole, "holes", problems))]
+        listed = {
+            "shapes": check_kinds(shapes, Shape, "shapes", problems),
+            "holes": check_kinds(holes, Hole, "holes", problems),
+        }
         problems.raise_if_any()
-        placed.sort(key=lambda shape: isinstance(shape[1], Hole))
-        paths = [path for path, _ in placed]
-        everything = named(shape for _, shape in placed)
+        paths, everything = placed(listed, lambda shape: isinstance(shape, Hole))
         solids = tuple(shape for shape in everything if not isinstance(shape, Hole))
         holes = tuple(shape for shape in everything if isinstance(shape, Hole))
         if not has_points and not everything:
@@ -95,7 +92,7 @@ class Cage:
         object.__setattr__(self, "pose_world_cage", pose or Pose())
         object.__setattr__(self, "shapes", solids)
         object.__setattr__(self, "holes", holes)
-        object.__setattr__(self, "shape_paths", tuple(paths))
+        object.__setattr__(self, "shape_paths", paths)
 
     @cached_property
     def element_names(self) -> tuple[str, ...]:

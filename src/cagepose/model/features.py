@@ -15,6 +15,11 @@ from cagepose.model.pose import Pose
 from cagepose.model.shapes import Rounded, Shape
 
 
+def has_features(part: Shape) -> bool:
+    """Whether a shape is one that kernels know."""
+    return isinstance(part, Box | Rounded)
+
+
 def shapes_of(parts: Iterable[Box | Shape | FloatArray]) -> Shapes:
     """Return the features of parts in the frame of their body; a single point (3,) is a part, too."""
     made = _Features()

@@ -3,14 +3,30 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from typing import TypeVar
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, TypeVar
 
 from cagepose.errors import Key, key_path
 from cagepose.model.checks import ProblemList, duplicates
 from cagepose.model.shapes import Shape
 
 AnyShape = TypeVar("AnyShape", bound=Shape)
+
+
+def placed(
+    given: Mapping[str, Sequence[Any]], rank: Callable[[Shape], int]
+) -> tuple[tuple[tuple[Key, ...], ...], tuple[Any, ...]]:
+    """Return the paths of the numbers of shapes, and the shapes themselves with names, those of the lowest rank first.
+
+    ``given`` has the lists that they stand in, by their keys; a list of any shapes has the kind of each in its paths.
+    """
+    found: list[tuple[tuple[Key, ...], Any]] = [
+        ((key, index, shape.kind) if key == "shapes" else (key, index), shape)
+        for key, shapes in given.items()
+        for index, shape in enumerate(shapes)
+    ]
+    found.sort(key=lambda path_and_shape: rank(path_and_shape[1]))
+    return tuple(path for path, _ in found), named(shape for _, shape in found)
 
 
 def named(shapes: Iterable[AnyShape]) -> tuple[AnyShape, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,7 @@ from cagepose.errors import Key, Problem, SceneError
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, finite_array
 from cagepose.model.hole import Hole, check_holes
-from cagepose.model.naming import check_names, named, names_of
+from cagepose.model.naming import check_names, names_of, placed
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import AnyShape, Disc, Shape
 from cagepose.model.union import body_moments
@@ -74,17 +74,14 @@ class Object:
             mass that is not above zero, an inertia that no body has or without a mass.
         """
         problems = ProblemList()
-        given_boxes = check_kinds(boxes, Box, "boxes", problems)
-        given_shapes = check_kinds(shapes, Shape, "shapes", problems)
-        given_holes = check_kinds(holes, Hole, "holes", problems)
+        given = {
+            "boxes": check_kinds(boxes, Box, "boxes", problems),
+            "shapes": check_kinds(shapes, Shape, "shapes", problems),
+            "holes": check_kinds(holes, Hole, "holes", problems),
+        }
         check_kind(pose or Pose(), Pose, ("pose",), problems)
         problems.raise_if_any()
-        placed: list[tuple[tuple[Key, ...], Any]] = [(("boxes", index), box) for index, box in enumerate(given_boxes)]
-        placed += [(("shapes", index, shape.kind), shape) for index, shape in enumerate(given_shapes)]
-        placed += [(("holes", index), hole) for index, hole in enumerate(given_holes)]
-        placed.sort(key=lambda part: 2 if isinstance(part[1], Hole) else not isinstance(part[1], Box))
-        paths = [path for path, _ in placed]
-        everything = named(part for _, part in placed)
+        paths, everything = placed(given, lambda part: 2 if isinstance(part, Hole) else not isinstance(part, Box))
         parts = tuple(part for part in everything if not isinstance(part, Hole))
         if not everything:
             problems.add((), "has neither boxes nor shapes; give at least one of them")
@@ -104,7 +101,7 @@ class Object:
         object.__setattr__(self, "boxes", tuple(part for part in parts if isinstance(part, Box)))
         object.__setattr__(self, "shapes", tuple(part for part in parts if not isinstance(part, Box)))
         object.__setattr__(self, "holes", holes)
-        object.__setattr__(self, "part_paths", tuple(paths))
+        object.__setattr__(self, "part_paths", paths)
         if center_of_gravity_m is None:
             center = self._union_moments.centroid_m
         else:

@@ -11,7 +11,6 @@ import numpy as np
 from cagepose.errors import Key, key_path
 from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.kernels.collision.geometry import Geometry, empty_placement, place_object
-from cagepose.model.box import Box
 from cagepose.model.cage import Cage
 from cagepose.model.checks import ProblemList, check_kind, check_kinds, duplicates
 from cagepose.model.geometry import object_seams, scene_geometry, scene_size
@@ -19,7 +18,7 @@ from cagepose.model.load import Load
 from cagepose.model.methods import Metric
 from cagepose.model.naming import names_of
 from cagepose.model.parts import Object
-from cagepose.model.shapes import Rounded, Shape
+from cagepose.model.shapes import Shape
 from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
 
 FARTHEST_START = 1e4
@@ -72,6 +71,8 @@ class Scene:
         plane would pass between them.
     size_m
         The greater of the object's and the cage's diameter (of a sphere about their middle), metres.
+    has_other_shapes
+        Whether the object has more than boxes, or the cage more than points.
     """
 
     object: Object
@@ -87,6 +88,7 @@ class Scene:
     geometry: Geometry
     open_seams: tuple[tuple[str, str], ...]
     size_m: float
+    has_other_shapes: bool
 
     def __init__(
         self,
@@ -131,8 +133,6 @@ class Scene:
         touch_m = tolerances.touch * size_m
         _check_thickness(object, cage, touch_m, problems)
         _check_points_apart(cage, touch_m, problems)
-        _check_can_run(object, cage, problems)
-        problems.raise_if_any()
         seams = object_seams(object, touch_m)
         geometry = scene_geometry(object, cage, seams.bridges, touch_m)
         _check_distance(object, cage, size_m, problems)
@@ -155,6 +155,7 @@ class Scene:
             ("geometry", geometry),
             ("open_seams", tuple((str(named[one].name), str(named[other].name)) for one, other in seams.open_pairs)),
             ("size_m", size_m),
+            ("has_other_shapes", bool(object.shapes or object.holes or cage.shapes or cage.holes)),
         ):
             _set_field(self, field, value)
 
@@ -204,23 +205,6 @@ def _check_friction_of(friction_of: dict[str, float], held: Object, cage: Cage, 
             problems.add(at, "is neither in the cage nor in the object; give the name of a point, a box or a shape")
         if not (np.isfinite(coefficient) and coefficient >= 0.0):
             problems.add(at, f"is {coefficient!r}; give a finite coefficient, zero or above")
-
-
-def _check_can_run(held: Object, cage: Cage, problems: ProblemList) -> None:
-    """Tell of each shape that no kernel knows yet."""
-    places: list[tuple[tuple[Key, ...], Shape]] = [
-        (("object", *path), part) for path, part in zip(held.part_paths, (*held.parts, *held.holes), strict=True)
-    ]
-    places += [
-        (("cage", *path), shape) for path, shape in zip(cage.shape_paths, (*cage.shapes, *cage.holes), strict=True)
-    ]
-    for path, shape in places:
-        if not isinstance(shape, Box | Rounded):
-            problems.add(
-                path[:2],
-                f"is a {shape.kind}, and a scene runs with spheres, capsules, boxes and convex shapes alone, so far;"
-                " use a capsule, or a convex shape with enough vertices",
-            )
 
 
 def _check_thickness(held: Object, cage: Cage, touch_m: float, problems: ProblemList) -> None:
@@ -291,6 +275,10 @@ def _check_points_outside(
     for point_index in np.nonzero(depths > touch_m)[0].tolist():
         box = int(boxes[point_index])
         if box < len(held.boxes):
+            point_object = held.pose_world_object.inverse_transform(geometry.points_world[point_index])
+            holes = [hole for hole in held.holes if held.boxes[box].name in hole.in_]
+            if any(hole.holds(point_object[None])[0] for hole in holes):
+                continue
             path = key_path(("object", *held.part_paths[box][:2]))
             where = f"starts {millimetres(depths[point_index])} inside {path} ({held.boxes[box].name})"
         else:

@@ -1,15 +1,21 @@
-"""What knows boxes and points alone says so, by name, of a scene with other shapes."""
+"""What knows some shapes alone says so, by name, of a scene with others."""
 
 from __future__ import annotations
 
 from cagepose.errors import Key, Problem, SceneError
+from cagepose.model.features import has_features
 from cagepose.model.scene import Scene
 from cagepose.model.shapes import Shape
 
 
-def has_other_shapes(scene: Scene) -> bool:
-    """Whether a scene has more than boxes in the object and points in the cage."""
-    return bool(scene.object.shapes or scene.cage.shapes)
+def unknown_shapes(scene: Scene) -> list[Problem]:
+    """Return a problem for each shape that no method runs yet."""
+    remedy = "which no method runs yet; a capsule or a convex shape may stand for it"
+    return [
+        Problem(path, f"is a {shape.kind} ({shape.name}), {remedy}")
+        for path, shape in _placed(scene)
+        if not has_features(shape)
+    ]
 
 
 def other_shapes(scene: Scene, needs: str) -> list[Problem]:
@@ -18,12 +24,7 @@ def other_shapes(scene: Scene, needs: str) -> list[Problem]:
     ``needs`` ends the message, such as "play knows boxes and points alone".
     """
     n_boxes = len(scene.object.boxes)
-    found: list[tuple[tuple[Key, ...], Shape]] = [
-        (("object", *scene.object.part_paths[n_boxes + index][:2]), shape)
-        for index, shape in enumerate(scene.object.shapes)
-    ]
-    found += [(("cage", "shapes", index), shape) for index, shape in enumerate(scene.cage.shapes)]
-    return [Problem(path, f"is a {shape.kind} ({shape.name}), and {needs}") for path, shape in found]
+    return [Problem(path, f"is a {shape.kind} ({shape.name}), and {needs}") for path, shape in _placed(scene)[n_boxes:]]
 
 
 def check_boxes_and_points(scene: Scene, what: str) -> None:
@@ -33,6 +34,15 @@ def check_boxes_and_points(scene: Scene, what: str) -> None:
     SceneError
         The scene has other shapes.
     """
-    problems = other_shapes(scene, f"{what} knows boxes held by points alone, so far; run works with all shapes")
+    problems = other_shapes(scene, f"{what} knows boxes held by points alone, so far; run works with more shapes")
     if problems:
         raise SceneError(problems)
+
+
+def _placed(scene: Scene) -> list[tuple[tuple[Key, ...], Shape]]:
+    """Return all shapes of a scene, the boxes of the object first, and where each of them was given."""
+    held, cage = scene.object, scene.cage
+    of_object = zip(held.part_paths, (*held.parts, *held.holes), strict=True)
+    of_cage = zip(cage.shape_paths, (*cage.shapes, *cage.holes), strict=True)
+    found: list[tuple[tuple[Key, ...], Shape]] = [(("object", *path[:2]), shape) for path, shape in of_object]
+    return found + [(("cage", *path[:2]), shape) for path, shape in of_cage]

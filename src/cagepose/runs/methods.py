@@ -16,7 +16,7 @@ from cagepose.kernels.stepwise import run as stepwise_kernels
 from cagepose.model.load import Load
 from cagepose.model.methods import DEFAULT_FRICTION, DEFAULT_METHOD, METHODS
 from cagepose.model.scene import Scene
-from cagepose.model.scope import other_shapes
+from cagepose.model.scope import other_shapes, unknown_shapes
 from cagepose.runs.actions import is_one_force
 from cagepose.runs.quasistatic import quasistatic_rules, quasistatic_warnings
 from cagepose.runs.run import PhaseRun
@@ -114,6 +114,13 @@ def chosen_method(scene: Scene, method: str | None = None) -> Method:
     if name not in REGISTRY:
         raise SceneError([Problem(("method",), f"is {name!r}; known methods: {', '.join(METHODS)}")])
     chosen = REGISTRY[name]
+    if scene.has_other_shapes:
+        unknown = unknown_shapes(scene)
+        if not unknown and chosen.takes_one_of_each:
+            needs = f"the {name} method runs boxes held by points alone; use {DEFAULT_METHOD}"
+            unknown = other_shapes(scene, needs)
+        if unknown:
+            raise SceneError(unknown)
     if chosen.takes_one_of_each:
         problems = [
             Problem(
@@ -127,7 +134,6 @@ def chosen_method(scene: Scene, method: str | None = None) -> Method:
         if scene.friction_of:
             message = f"the {name} method has one friction for all; use {DEFAULT_METHOD}"
             problems.append(Problem(("friction", "of"), message))
-        problems += other_shapes(scene, f"the {name} method runs boxes held by points alone; use {DEFAULT_METHOD}")
         if problems:
             raise SceneError(problems)
     return chosen

@@ -73,9 +73,9 @@ _WORKSPACES = _Workspaces()
 
 
 def _workspace(scene: Scene, method: Method, step_limit: int) -> _Workspace:
-    n_phases, n_points, n_elements = len(scene.loads), len(scene.cage.names), len(scene.cage.element_names)
+    n_phases, n_points = len(scene.loads), len(scene.cage.names)
     size: tuple[object, ...] = (method.name, n_phases, n_points, len(scene.geometry.half_sizes), step_limit)
-    if len(scene.geometry.held.parts) > 0:
+    if scene.has_other_shapes:
         size = (*size, *_sizes(scene))
     kept = _WORKSPACES.by_size
     if size in kept:
@@ -84,7 +84,7 @@ def _workspace(scene: Scene, method: Method, step_limit: int) -> _Workspace:
     if len(kept) == WORKSPACES_KEPT:
         kept.popitem(last=False)
     n_ordered, n_contacts = 0 if method.joins_steps else n_points, most_contacts(scene.geometry)
-    outcome = empty_outcome(n_phases, step_limit, n_elements, n_contacts, n_ordered)
+    outcome = empty_outcome(n_phases, step_limit, len(scene.cage.element_names), n_contacts, n_ordered)
     kept[size] = _Workspace(Slots(method.workspace(scene.geometry, step_limit)), Slots(outcome), outcome)
     return kept[size]
 

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from cagepose.kernels.algebra.linear_program import INFEASIBLE, N_UNKNOWNS, OPTIMAL, UNBOUNDED, Program, solve_program
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.model.checks import FloatArray
-from cagepose.model.scope import has_other_shapes
 from cagepose.runs.run import Run
 from cagepose.studies.contact_problem import ContactProblem, contact_problem
 from cagepose.studies.support import ROUNDING, LoadView, convex_hull, polygon_within, without_doubles
@@ -61,7 +60,7 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
     reach_m
         Farther from the centre of gravity nothing is shown.
     """
-    if has_other_shapes(run.scene):
+    if run.scene.has_other_shapes:
         return None
     problem = contact_problem(run, phase_index)
     choices = list(islice(product(*problem.groups), MOST_CHOICES + 1))

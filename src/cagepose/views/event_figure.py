@@ -18,7 +18,6 @@ from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.box import Box
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.model.scope import has_other_shapes
 from cagepose.runs.run import Event, Run
 from cagepose.studies.ending import ending
 from cagepose.studies.support import convex_hull, load_view
@@ -215,7 +214,7 @@ def _draw_legend(figure: Figure, scene: Scene) -> None:
     point: Look = {"marker": "o", "linestyle": "none"}
     support = Patch(facecolor="none", edgecolor=GREEN, hatch="//", label="support region: a weight is balanced")
     bodies = Patch(facecolor=SAND, edgecolor=BROWN, alpha=0.5, label="shape of the cage")
-    patches = ([bodies] if scene.cage.shapes else []) + ([] if has_other_shapes(scene) else [support])
+    patches = ([bodies] if scene.cage.shapes else []) + ([] if scene.has_other_shapes else [support])
     figure.legend(
         handles=[
             Line2D([], [], label="reached by this motion", **point, **POINT_LOOKS["reached"]),

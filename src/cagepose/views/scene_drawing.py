@@ -16,7 +16,6 @@ from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.model.scope import has_other_shapes
 from cagepose.runs.run import Event, Motion
 from cagepose.studies.acts import acts_of, coil
 from cagepose.studies.touching import TouchFinder
@@ -58,7 +57,7 @@ class SceneDrawing:
         self.unit: LengthUnit = length_unit
         self.points = self._shown(scene.cage.points_world())
         held, cage = scene.object, scene.cage
-        self.finder = TouchFinder(scene) if has_other_shapes(scene) else None
+        self.finder = TouchFinder(scene) if scene.has_other_shapes else None
         needed = np.concatenate([cage.points_world(), *(pose.transform(outer_points(held)) for pose in poses)])
         bodies = [cage.pose_world_cage.transform(vertices_of([shape])) for shape in cage.shapes]
         self.bodies = [self._shown(cut_off(body, needed, held.reach_m)) for body in bodies]

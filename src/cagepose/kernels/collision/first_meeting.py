@@ -21,6 +21,12 @@ THIN = 0.1
 """Of the reach of a part: nothing may go deeper into it, or it could come out on the other side."""
 
 
+LEAVES = 1e-6
+"""Of the fastest speed of a part: features that touch and move apart faster leave each other, and may meet again."""
+LEAST_SLACK = 1e-12
+"""Sine, of rounding."""
+
+
 class Hit(NamedTuple):
     """What is reached, and after which amount of a motion.
 
@@ -93,10 +99,11 @@ def first_meeting(
             until = min(until, until_past(held, one, cage, other, speed))
         depth = min(near_depth_m, THIN * min(held.parts[one].reach, max(cage.parts[other].reach, touch_m)))
         slack = slack_of(held, one, cage, other, touch_m)
+        exact = max(LEAST_SLACK, touch_m / (held.parts[one].reach + cage.parts[other].reach))
         for i in range(held.parts[one].first, held.parts[one].last):
             for j in range(cage.parts[other].first, cage.parts[other].last):
                 found = first_of_features(
-                    held, i, cage, j, motion, until, near_m, depth, slack, touch_m, placement.moved
+                    held, i, cage, j, motion, until, near_m, depth, slack, exact, speed, touch_m, placement.moved
                 )
                 if found[0] < until:
                     until = found[0]
@@ -151,10 +158,17 @@ def first_of_features(
     near_m: float,
     near_depth_m: float,
     slack: float,
+    exact: float,
+    speed: float,
     touch_m: float,
     moved: Shapes,
 ) -> tuple[float, float]:
-    """Return when two features that do not touch reach each other, inf if they do not, and how far apart they are."""
+    """Return when two features that do not touch, or leave each other, reach each other, inf if they do not, and how far
+    apart they are.
+
+    Whether they touch now is asked with ``slack``, as contacts are; where they meet first is asked with the sine ``exact``
+    that a touch tolerance makes across both parts, or slender parts would meet long before they do.
+    """
     if not can_touch(held, i, cage, j):
         return math.inf, math.inf
     if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
@@ -163,14 +177,18 @@ def first_of_features(
         return math.inf, math.inf
     met = meeting(held, i, cage, j)
     touches = met.is_one and abs(met.gap) <= touch_m
-    if touches and (motion.rate == 0.0 or both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)):
+    if touches and motion.rate == 0.0:
+        return math.inf, math.inf
+    leaves = touches and both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
+    if leaves and dot(met.normal, velocity_at(motion, met.place)) >= -LEAVES * speed:
         return math.inf, math.inf
     level, side = 0.0, 0.0
     if met.is_one and abs(met.gap) <= max(near_m, touch_m):
-        level = near_depth_m if abs(met.gap) <= near_m else 0.0
-        level = max(level, 2.0 * touch_m)  # they do not reach there now, but might
+        level = near_depth_m if leaves or abs(met.gap) <= near_m else 0.0
+        if not leaves:
+            level = max(level, 2.0 * touch_m)  # they do not reach there now, but might
         if held.features[i].kind == EDGE and cage.features[j].kind == EDGE:
             crossed = cross(vector_from(held.features[i].direction), vector_from(cage.features[j].direction))
             side = -math.copysign(1.0, dot(met.normal, crossed))
-    found = first_touch(held, i, cage, j, motion, until, level, side, slack, 2.0 * touch_m, moved)
+    found = first_touch(held, i, cage, j, motion, until, level, side, exact, touch_m, moved)
     return found, met.gap

@@ -166,11 +166,12 @@ def safe_step(now: Ahead) -> float:
 def between_segments(p: Vector, u: Vector, length: float, q: Vector, w: Vector, other_length: float) -> float:
     """Return how far apart two segments are that begin at p and q."""
     between, cosine = minus(p, q), dot(u, w)
-    square = 1.0 - cosine * cosine
+    crossed = cross(u, w)
+    square = dot(crossed, crossed)  # 1 - cosine^2 would be rounding where they are nearly parallel
     along, other_along = dot(between, u), dot(between, w)
     s = 0.0
     if square > 0.0:
-        s = min(max((cosine * other_along - along) / square, 0.0), length)
+        s = min(max(dot(between, minus(scaled(w, cosine), u)) / square, 0.0), length)
     t = min(max(other_along + s * cosine, 0.0), other_length)
     s = min(max(t * cosine - along, 0.0), length)
     return norm(minus(plus(between, scaled(u, s)), scaled(w, t)))
@@ -263,14 +264,15 @@ def touches_after(
     j: int,
     motion: Motion,
     amount: float,
+    level: float,
     slack: float,
     slack_m: float,
     moved: Shapes,
 ) -> bool:
-    """Whether two features reach where they meet after an amount, and come nearer."""
+    """Whether two features reach where they meet after an amount, not on their far sides, and come nearer."""
     place_moved(a, i, motion, amount, moved)
     met = meeting(moved, i, b, j)
-    if not both_reach(moved, i, b, j, met, slack, slack_m):
+    if met.gap < -level - slack_m or not both_reach(moved, i, b, j, met, slack, slack_m):
         return False
     return dot(met.normal, velocity_at(motion, met.place)) > 0.0
 
@@ -317,7 +319,7 @@ def first_touch(
             level = 0.0
             continue
         is_at_root = was_apart and now.value < 0.0  # by rounding
-        if is_at_root and touches_after(a, i, b, j, motion, amount, slack, slack_m, moved):
+        if is_at_root and touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
             return amount
         if is_sharp and level == 0.0 and now.value < 0.0:  # lines that have crossed, but not where both edges are
             side, now = -side, Ahead(-now.value, -now.slope, now.low, now.high, False)
@@ -334,11 +336,11 @@ def first_touch(
         if step > LEAST_STEP * end:
             amount += step
             behind = BEHIND * end
-        elif touches_after(a, i, b, j, motion, amount, slack, slack_m, moved):
+        elif touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
             return amount
         else:
             amount += behind
             behind *= FARTHER
             if amount >= end:
                 return math.inf
-    return amount if touches_after(a, i, b, j, motion, amount, slack, slack_m, moved) else math.inf
+    return amount if touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved) else math.inf

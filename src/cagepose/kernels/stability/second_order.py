@@ -20,7 +20,7 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.algebra.span import extend, write_complement, write_outside, write_reduced
 from cagepose.kernels.algebra.vector import Vector
-from cagepose.kernels.contact.contact_set import ContactRow, ContactSet, is_smooth
+from cagepose.kernels.contact.contact_set import ContactSet, is_smooth
 from cagepose.kernels.contact.curvature import write_curvature
 from cagepose.kernels.contact.load_curvature import has_circulation, write_circulation
 from cagepose.kernels.contact.loads import PhaseLoad
@@ -273,10 +273,11 @@ def list_one_sided(
 
 
 @kernel
-def is_same_face(one: ContactRow, other: ContactRow) -> bool:
-    """Whether two rows are flush faces of two boxes over one point."""
+def is_same_face(contacts: ContactSet, i: int, k: int) -> bool:
+    """Whether two rows are one, or flush faces of two boxes over one point."""
+    one, other = contacts.rows[i], contacts.rows[k]
     is_one_point = one.point == other.point and one.feature < 0 and other.feature < 0
-    return is_one_point and inner(one.directions[0], other.directions[0], 3) > 1.0 - IN_SPAN
+    return i == k or (is_one_point and inner(one.directions[0], other.directions[0], 3) > 1.0 - IN_SPAN)
 
 
 @kernel
@@ -293,7 +294,7 @@ def extend_by_equalities(contacts: ContactSet, statuses: Rows[ContactStatus], wi
     for place in range(span.used):
         span.labels[place] = -1
     for i in range(contacts.used[0]):
-        if statuses[i].is_equality and not (without >= 0 and is_same_face(rows[i], rows[without])):
+        if statuses[i].is_equality and not (without >= 0 and is_same_face(contacts, i, without)):
             span.labels[span.used] = i
             extend(span, rows[i].columns[0], IN_SPAN)
 
@@ -313,7 +314,7 @@ def find_shared(contacts: ContactSet, statuses: Rows[ContactStatus], work: Stabi
         adds = False
         for place in range(whole.used):
             k = whole.labels[place]
-            adds = adds or (k >= 0 and is_same_face(rows[k], rows[i]))
+            adds = adds or (k >= 0 and is_same_face(contacts, k, i))
         span = whole
         if adds:
             span = work.held

@@ -14,7 +14,6 @@ from cagepose.files.units import LengthUnit
 from cagepose.model.checks import FloatArray
 from cagepose.model.naming import names_of
 from cagepose.model.pose import Pose
-from cagepose.model.scope import has_other_shapes
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
 from cagepose.studies.acts import Act, acts_of
 from cagepose.studies.touching import TouchFinder
@@ -152,7 +151,7 @@ class _Camera:
         self.shots_per_motion = shots_per_motion
         self.points_world = run.scene.cage.points_world()
         self.index = {name: index for index, name in enumerate(run.scene.cage.element_names)}
-        self.finder = TouchFinder(run.scene) if has_other_shapes(run.scene) else None
+        self.finder = TouchFinder(run.scene) if run.scene.has_other_shapes else None
         start = run.phases[0].start_pose
         self.shots: list[Shot] = [Shot(-1, 0, start, self._touches(start, ()))]
         self.rows: list[Row] = []
