@@ -134,7 +134,7 @@ def test_a_ladder_of_round_ends_needs_its_friction() -> None:
 
 
 def mu_of_ladder(length: float, radius: float, lean: float) -> float:
-    """The floor carries N = W / (1 + mu^2), the wall P = mu N, both with friction; moments about where the foot touches:
+    """The floor carries N = W / (1 + mu^2), the wall P = mu N, both with friction; moments about the place of the foot:
     W L cos / 2 = P (L sin + r) + mu P (L cos + r).
     """
     along, up, weight = (
