@@ -80,6 +80,8 @@ def test_scenes_in_other_lengths_end_alike(cases):
     rng = np.random.default_rng(31)
     for _ in range(cases(15, 600)):
         problem = random_problem(rng)
+        if problem[2][0].pushes:  # where it pushes would have to be in other lengths, too
+            continue
         scene = scene_of(*problem)
         result = run(scene, method="quasistatic")
         for scale in (1e-3, 1e3):
