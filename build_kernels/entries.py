@@ -81,7 +81,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
         tolerances,
     )
     cage = empty_cage(geometry)
-    outcome, endings = empty_outcome(1, 1, 1, 1, 1), empty_endings(1, 1, 1)
+    outcome, endings = empty_outcome(geometry, 1, 1, 1), empty_endings(1, 1, 1)
     proof = empty_proof_workspace(geometry)
     yield judge_start, (0, part, cases, cage, proof, outcome)
     yield critical_friction, (0, part, cases, cage, proof)

@@ -11,9 +11,10 @@ from cagepose import Box, Pose
 from cagepose.kernels.collision.first_meeting import Hit, first_meeting
 from cagepose.kernels.shapes.motion import Motion
 from cagepose.model.features import shapes_of
-from cagepose.model.shapes import Capsule, Convex, Sphere
+from cagepose.model.shapes import Convex, Sphere
 from inner_kernels import as_machine_code
 from shapes.convex_bodies import CUBE, body_of, gap, placed_at, random_part, random_turn
+from shapes.shape_scenes import changed
 from shapes.test_distances import TOUCH, geometry_of, placed, random_offset
 
 TOLERANCE = 4.0
@@ -25,19 +26,6 @@ SHORTEST = 1e-6
 @pytest.fixture(scope="module")
 def first():
     return as_machine_code(first_meeting)
-
-
-def scaled(part, scale: float):
-    """The same part in other lengths."""
-    pose = part.pose_object_box if isinstance(part, Box) else part.pose_body_shape
-    pose = Pose(pose.position_m * scale, pose.quaternion_wxyz)
-    if isinstance(part, Box):
-        return Box(part.size_m * scale, pose)
-    if isinstance(part, Sphere):
-        return Sphere(part.radius_m * scale, pose)
-    if isinstance(part, Capsule):
-        return Capsule(part.radius_m * scale, part.length_m * scale, pose)
-    return Convex(part.vertices_m * scale, part.radius_m * scale, pose)
 
 
 def after(motion: Motion, pose: Pose, amount: float) -> Pose:
@@ -125,7 +113,7 @@ def test_random_motions(first, cases, say):
     n_cases, seen = cases(150, 10_000), {"met": 0, "not met": 0, "pressed": 0}
     for _ in range(n_cases):
         scale = float(rng.choice([1.0, 1.0, 1e-3, 1e3]))
-        part, cage_part = (scaled(random_part(rng), scale) for _ in range(2))
+        part, cage_part = (changed(random_part(rng), scale) for _ in range(2))
         body, other = body_of(part), body_of(cage_part)
         size = max(body.size, other.size)
         away = float(rng.choice([0.5, 0.2, 0.05, 1e-2, 1e-3, 1e-5, 1e-7, 0.0])) * size

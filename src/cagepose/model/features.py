@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
@@ -39,10 +40,10 @@ def shifted(shapes: Shapes, by: FloatArray) -> Shapes:
     """Return shapes moved by a travel, metres."""
     if len(shapes.parts) == 0:
         return shapes
-    moved = copied(shapes)
-    moved.features["point"] += by  # type: ignore[index]
-    moved.parts["middle"] += by  # type: ignore[index]
-    return moved
+    moved: Any = copied(shapes)
+    moved.features["point"] += by
+    moved.parts["middle"] += by
+    return Shapes(*moved)
 
 
 class _Features:
@@ -55,9 +56,9 @@ class _Features:
 
     def shapes(self) -> Shapes:
         return Shapes(
-            np.array(self.parts, dtype_of(ShapePart)),  # type: ignore[arg-type]
-            np.array(self.features, dtype_of(Feature)),  # type: ignore[arg-type]
-            np.array(self.fences, dtype_of(Fence)),  # type: ignore[arg-type]
+            np.array(self.parts, dtype_of(ShapePart)),
+            np.array(self.features, dtype_of(Feature)),
+            np.array(self.fences, dtype_of(Fence)),
         )
 
     def add(self, hull: Hull, pose: Pose, radius_m: float) -> None:

@@ -89,7 +89,8 @@ def sizes_with_points(held: Object, cage: Cage, points_cage: FloatArray) -> Floa
         return sizes
     nodes = np.concatenate([shape.nodes_body() for shape in cage.shapes])
     of_cage = [_body_size(np.concatenate([points, nodes]), cage.shapes) for points in points_cage]
-    return np.maximum(object_size(held), np.array(of_cage))
+    with_shapes: FloatArray = np.maximum(object_size(held), np.array(of_cage))
+    return with_shapes
 
 
 def object_size(held: Object) -> float:

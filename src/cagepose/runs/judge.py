@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from cagepose.kernels.collision.geometry import PlacedCage, empty_cage
-from cagepose.kernels.contact.contact_set import most_contacts
 from cagepose.kernels.outcome import at_pose
 from cagepose.kernels.outcome.records import Outcome, empty_outcome
 from cagepose.kernels.stability.proof import ProofWorkspace, empty_proof_workspace
@@ -37,7 +36,7 @@ def judged_workspace(scene: Scene, pose: Pose, phase: int, friction: float) -> t
         The scene has no such phase.
     """
     cage, at = _cage(scene, phase), empty_proof_workspace(scene.geometry)
-    outcome = empty_outcome(len(scene.loads), 1, len(scene.cage.element_names), most_contacts(scene.geometry), 0)
+    outcome = empty_outcome(scene.geometry, len(scene.loads), 1, 0)
     at_pose.judge_start(phase, part_of(scene), cases_of(scene, friction, pose), cage, at, outcome)
     return at, outcome
 

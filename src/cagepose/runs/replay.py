@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from cagepose.errors import CageposeError
-from cagepose.kernels.contact.contact_set import most_contacts
 from cagepose.kernels.outcome.records import empty_outcome
 from cagepose.runs.cases import cases_of, part_of
 from cagepose.runs.run import Event, Run
@@ -39,8 +38,7 @@ def replay_event(run: Run, phase: int, event: int, *, in_python: bool = False) -
     scene, outcome = run.scene, solution.outcome
     first_step, n_steps = solution.steps_of(phase, event)
     steps: Any = outcome.steps
-    method, n_contacts = solution.method, most_contacts(scene.geometry)
-    repeated = empty_outcome(1, n_steps, len(scene.cage.element_names), n_contacts, outcome.order.shape[1])
+    method, repeated = solution.method, empty_outcome(scene.geometry, 1, n_steps, outcome.order.shape[1])
     kernel = method.repeat.python if in_python else method.repeat
     kernel(
         phase,

@@ -7,7 +7,6 @@ import time
 from collections import OrderedDict
 from typing import Any, NamedTuple
 
-from cagepose.kernels.contact.contact_set import most_contacts
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.records import Outcome, empty_outcome
 from cagepose.model.scene import Scene
@@ -83,8 +82,7 @@ def _workspace(scene: Scene, method: Method, step_limit: int) -> _Workspace:
         return kept[size]
     if len(kept) == WORKSPACES_KEPT:
         kept.popitem(last=False)
-    n_ordered, n_contacts = 0 if method.joins_steps else n_points, most_contacts(scene.geometry)
-    outcome = empty_outcome(n_phases, step_limit, len(scene.cage.element_names), n_contacts, n_ordered)
+    outcome = empty_outcome(scene.geometry, n_phases, step_limit, 0 if method.joins_steps else n_points)
     kept[size] = _Workspace(Slots(method.workspace(scene.geometry, step_limit)), Slots(outcome), outcome)
     return kept[size]
 

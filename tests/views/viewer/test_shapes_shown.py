@@ -7,18 +7,21 @@ import io
 import json
 from collections.abc import Callable
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from cagepose import Box, Cage, Object, Pose, Scene, run
+from cagepose.files.scene_file import read_scene_text
 from cagepose.model.shapes import Capsule, Sphere
 from cagepose.views.viewer.page import page
 from cagepose.views.viewer.page_data import page_data
 from cagepose.views.viewer.picture import FINER, SIZE, PictureMaker
 from cagepose.views.viewer.playback import Playback, playback
 from cagepose.views.viewer.stage import EXAGGERATIONS, Stage
+from cagepose.views.viewer.what_if import WhatIf
 from driving import set_range, state, wait_until
 from shaped_scenes import WEIGHT, ball_on_points, ball_on_table, bar_between_bars, block_on_balls
 
@@ -103,6 +106,38 @@ def test_a_mesh_is_told_once_however_many_shapes_have_it() -> None:
     assert [body["mesh"] for body in data["bodies"]] == [1] * 12
     assert len(json.dumps(data["meshes"], separators=(",", ":"))) < 65_000
     assert len(page(film)) < 200_000
+
+
+PUCK = """\
+name: puck
+object:
+  shapes: [{sphere: {radius: 10}}]
+  center_of_gravity: [0, 0, 0]
+  mass: 1
+  inertia: [[40, 0, 0], [0, 40, 0], [0, 0, 40]]
+  pose: {position: [0, 0, 10.05]}
+cage:
+  shapes:
+    - {box: {size: [200, 200, 10]}, position: [0, 0, -5], name: floor}
+    - {capsule: {radius: 3, length: 20}, position: [15, 0, 10], name: pin}
+loads: [{name: weight, gravity: [0.2, 0, -1]}]
+"""
+
+
+def test_sliders_move_the_bodies_of_a_cage_and_reach_as_far_as_its_play(tmp_path: Path) -> None:
+    """The gaps are 0.05 and 2 mm, so the sliders reach twice 1.025 mm and more."""
+    file = tmp_path / "puck.yaml"
+    file.write_text(PUCK, encoding="utf-8")
+    what_if = WhatIf(read_scene_text(file))
+    along_x = next(control for control in what_if.controls if (control.group, control.label) == ("cage", "x"))
+    assert (along_x.low, along_x.high) == (-5.0, 5.0)
+    for shift in (0.0, 1.5):
+        answer = what_if.answer({"cage.pose.position": [shift, 0, 0]})
+        (resting,) = {tuple(shot["origin"]) for shot in answer["shots"][-1:]}
+        assert resting == pytest.approx((2.0 + shift, 0.0, 10.0), abs=1e-6)
+        floor, pin = (np.array(body["position"]) * answer["unitsPerDrawing"] for body in answer["bodies"])
+        assert pin - floor == pytest.approx([15.0, 0.0, 15.0])
+        assert answer["names"] == ["floor", "pin"]
 
 
 @pytest.fixture

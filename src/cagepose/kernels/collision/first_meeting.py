@@ -163,11 +163,11 @@ def first_of_features(
     touch_m: float,
     moved: Shapes,
 ) -> tuple[float, float]:
-    """Return when two features that do not touch, or leave each other, reach each other, inf if they do not, and how far
-    apart they are.
+    """Return when two features that do not touch, or leave each other, reach each other, inf if they do not, and how
+    far apart they are now.
 
-    Whether they touch now is asked with ``slack``, as contacts are; where they meet first is asked with the sine ``exact``
-    that a touch tolerance makes across both parts, or slender parts would meet long before they do.
+    Whether they touch now is asked with ``slack``, as contacts are. Where they meet first is asked with ``exact``, the
+    sine that a touch tolerance makes across both parts: slender parts would meet long before they do.
     """
     if not can_touch(held, i, cage, j):
         return math.inf, math.inf

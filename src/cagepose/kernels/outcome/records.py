@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
+from cagepose.kernels.collision.geometry import Geometry, most_elements
+from cagepose.kernels.contact.contact_set import most_contacts
 from cagepose.kernels.outcome.trace import StepRecord
 
 
@@ -138,16 +140,16 @@ class Outcome(NamedTuple):
     order: NDArray[np.int64]
 
 
-def empty_outcome(n_phases: int, n_steps: int, n_elements: int, n_contacts: int, n_ordered: int) -> Outcome:
+def empty_outcome(geometry: Geometry, n_phases: int, n_steps: int, n_ordered: int) -> Outcome:
     """Return an outcome for at most ``n_steps`` steps in a phase (plain Python); ``n_ordered``: points whose order of
-    touching the method keeps, all or none. ``n_contacts``: the most at one pose.
+    touching the method keeps, all or none.
     """
-    n_events = n_phases * n_steps
+    n_events, n_elements = n_phases * n_steps, most_elements(geometry)
     return Outcome(
         np.zeros(4, np.int64),
         empty_rows(PhaseRecord, n_phases),
         empty_rows(EventRecord, n_events),
-        empty_rows(ContactRecord, n_phases * n_contacts),
+        empty_rows(ContactRecord, n_phases * most_contacts(geometry)),
         np.zeros((n_events, n_elements), np.bool_),
         np.zeros((n_events, n_elements), np.bool_),
         np.zeros((n_events, 7)),

@@ -11,7 +11,8 @@ from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, ON_THE_WAY, e
 from cagepose.kernels.contact.loads import write_load
 from cagepose.kernels.contact.metric import frame_at
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.along_twist import Setting, Twist, stepped
+from cagepose.kernels.quasistatic.along_twist import Twist, stepped
+from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
 HALVES_TO_REST = 45

@@ -16,7 +16,7 @@ from cagepose.kernels.outcome.endings import INVALID, Endings, write_ending
 from cagepose.kernels.outcome.publish import NO_BALANCE, begin, end_phase, judge_end, publish_events
 from cagepose.kernels.outcome.records import Outcome
 from cagepose.kernels.outcome.trace import LIMIT, RESTS, STALLED, StepRecord
-from cagepose.kernels.quasistatic.along_twist import Setting
+from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.step import GOES_ON, State, next_step, stand_at, state_of
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 

@@ -30,17 +30,8 @@ from cagepose.kernels.contact.metric import Frame, frame_at, twist_of
 from cagepose.kernels.contact.onset import find_sticking, onset
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import ESCAPES, LET_GO, NONE, PLAIN, RESTS, SCREW, STALLED, TRAVEL, StepRecord
-from cagepose.kernels.quasistatic.along_twist import (
-    Setting,
-    Twist,
-    allow_depths,
-    constrain_contacts,
-    furthest_step,
-    longest_step,
-    nothing_ahead,
-    pushed_out,
-    straightened,
-)
+from cagepose.kernels.quasistatic.along_twist import Twist, furthest_step, longest_step, straightened
+from cagepose.kernels.quasistatic.flight import nothing_ahead
 from cagepose.kernels.quasistatic.implicit_step import (
     curvature_along,
     implicit_step,
@@ -48,7 +39,9 @@ from cagepose.kernels.quasistatic.implicit_step import (
     rho_against_circulation,
 )
 from cagepose.kernels.quasistatic.projection import ON_FACE, keep_stopped
+from cagepose.kernels.quasistatic.pushing_out import allow_depths, constrain_contacts, pushed_out
 from cagepose.kernels.quasistatic.rest_on_the_way import first_rest, is_held_on_the_way
+from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 from cagepose.kernels.stability.strong import OTHER_FOUND, other_onset
 

@@ -19,8 +19,8 @@ from cagepose.kernels.collision.geometry import (
 from cagepose.kernels.contact.contact_set import ContactSet, contact_set_for
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.outcome.trace import Trace, empty_trace
-from cagepose.kernels.quasistatic.along_twist import StepWorkspace, empty_step_workspace
 from cagepose.kernels.quasistatic.implicit_step import ImplicitStepWorkspace
+from cagepose.kernels.quasistatic.pushing_out import StepWorkspace, empty_step_workspace
 from cagepose.kernels.stability.proof import ProofWorkspace, empty_proof_workspace
 
 

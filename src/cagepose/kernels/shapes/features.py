@@ -93,7 +93,7 @@ NO_SHAPES = Shapes(empty_rows(ShapePart, 0), empty_rows(Feature, 0), empty_rows(
 
 def copied(shapes: Shapes) -> Shapes:
     """Return shapes with memory of their own (plain Python)."""
-    return Shapes(*[np.array(rows) for rows in shapes])  # type: ignore[arg-type]
+    return Shapes(*[np.array(rows) for rows in shapes])
 
 
 @kernel

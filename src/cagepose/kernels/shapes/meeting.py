@@ -17,6 +17,10 @@ from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes
 PARALLEL = 1e-7
 """Sine: edges that make a smaller angle lie side by side, and meet at their ends."""
 
+SHARP = 1e-6
+"""Of the length of edges: those of a smaller radius, if any, are told by their faces which way is out, as cores may be
+into each other by the touch tolerance; those of a greater one by where they are."""
+
 
 class Meeting(NamedTuple):
     """Two features, the first of the object.
@@ -101,9 +105,6 @@ def face_and_vertex(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
 def outward_side(shapes: Shapes, i: int, normal: Vector) -> float:
     """Return how much farther beyond its outward normals an edge has the opposite of a direction; zero: an edge without
     faces has all directions.
-
-    Cores may be a little into each other, the sharp ones and those of a radius below the touch tolerance, so which way
-    is out is not told by where they are.
     """
     feature = shapes.features[i]
     if feature.first_fence == feature.last_fence:
@@ -124,8 +125,12 @@ def edge_and_edge(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
     normal = scaled(crossed, 1.0 / sine)
     distance = dot(start, normal)
     radius, others = a.features[i].radius, b.features[j].radius
-    out = outward_side(a, i, normal) - outward_side(b, j, normal)
-    turned = out < 0.0 if abs(out) > PARALLEL else distance < 0.0
+    turned = distance < 0.0
+    if radius + others < SHARP * min(
+        a.features[i].length, b.features[j].length
+    ):  # they may be a little into each other
+        out = outward_side(a, i, normal) - outward_side(b, j, normal)
+        turned = out < 0.0 if abs(out) > PARALLEL else turned
     if turned:
         normal, distance = scaled(normal, -1.0), -distance
     place = plus(plus(vector_from(a.features[i].point), scaled(u, s)), scaled(normal, radius))

@@ -15,10 +15,10 @@ import numpy as np
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, row, scaled, transposed_times, vector_from
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.along_motion import can_touch
+from cagepose.kernels.shapes.along_motion import can_touch, distance_from
 from cagepose.kernels.shapes.body import PlacedBody, place_asked, rotation_of
 from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes
-from cagepose.kernels.shapes.meeting import Meeting, both_reach, farthest_beyond, meeting
+from cagepose.kernels.shapes.meeting import Meeting, both_reach, farthest_beyond, meeting, reaches
 
 ROOM_FOR_PAIR, MOST_ROOM = 32, 4096
 """Meetings that there is memory for: of each pair of parts, and of all."""
@@ -207,19 +207,19 @@ def move_touching(one: Touching, to: Touching) -> None:
 
 @kernel
 def depth_in_part(shapes: Shapes, which: int, point: Vector) -> float:
-    """Return how deep a point is in a part, metres; near rounded edges, too much."""
+    """Return how deep a point is in a part, metres; below zero: how far from it."""
     beyond, nearest = -math.inf, math.inf
     for i in range(shapes.parts[which].first, shapes.parts[which].last):
         feature = shapes.features[i]
-        seen = minus(point, vector_from(feature.point))
-        along = dot(vector_from(feature.direction), seen)
-        if feature.kind == FACE:
-            beyond = max(beyond, along - feature.radius)
-        elif feature.kind == VERTEX:
-            nearest = min(nearest, norm(seen) - feature.radius)
-        elif 0.0 <= along <= feature.length:
-            nearest = min(nearest, norm(minus(seen, scaled(vector_from(feature.direction), along))) - feature.radius)
-    return -beyond if beyond > -math.inf else -nearest
+        if feature.kind != FACE:
+            nearest = min(nearest, distance_from(shapes, i, point))
+            continue
+        height = dot(vector_from(feature.direction), minus(point, vector_from(feature.point)))
+        beyond = max(beyond, height)
+        if height > 0.0 and reaches(shapes, i, vector_from(feature.direction), point, 0.0, 0.0):
+            nearest = min(nearest, height)
+    radius = shapes.features[shapes.parts[which].first].radius
+    return radius - beyond if -math.inf < beyond <= 0.0 else radius - nearest
 
 
 @kernel

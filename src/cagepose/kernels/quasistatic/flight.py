@@ -1,0 +1,69 @@
+"""Whether an object that touches nothing gets away, equation (5.32)."""
+
+from __future__ import annotations
+
+import math
+
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, row, scaled, vector_from
+from cagepose.kernels.contact.loads import BENT, BOUND, STRAIGHT, drift_and_sway, flight
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.quasistatic.setting import Setting
+
+OUT_OF_REACH = 10.0
+"""In sizes of the scene from all cage points: an object that flies on there has escaped, wherever its load turns to."""
+
+
+@kernel
+def nothing_ahead(setting: Setting, position: Vector, quaternion: Quaternion, velocity: Vector, spin: Vector) -> bool:
+    """Whether an object that touches nothing, and begins to move with a velocity and a spin, has got away (5.32).
+
+    Where the way of its centre of gravity is known for ever, straight or winding, no cage point may be met on it. A way
+    that is not straight also leads away where it is out of reach and goes on. A spring with stiffness brings it back.
+    """
+    kind = flight(setting.load)
+    if kind == BOUND:
+        return False
+    if kind != STRAIGHT and is_out_of_reach(setting, position, velocity):
+        return True
+    if kind == BENT:
+        return False
+    drift, sway = drift_and_sway(setting.load, position, quaternion, spin)
+    size = norm(drift)
+    if size == 0.0:
+        return False
+    along = scaled(drift, 1.0 / size)
+    for point in range(len(setting.geometry.points_world)):
+        ahead = 0.0
+        distance = 0.0
+        for k in range(3):
+            ahead += (setting.geometry.points_world[point, k] - position[k]) * along[k]
+        for k in range(3):
+            away = setting.geometry.points_world[point, k] - position[k] - max(ahead, 0.0) * along[k]
+            distance += away * away
+        if math.sqrt(distance) <= setting.body.reach_m + sway:
+            return False
+    cage = setting.geometry.cage.parts
+    for which in range(len(setting.geometry.points_world), len(cage)):
+        arm = minus(vector_from(cage[which].middle), position)
+        away = norm(minus(arm, scaled(along, max(dot(arm, along), 0.0))))
+        if away <= setting.body.reach_m + sway + cage[which].reach:
+            return False
+    return True
+
+
+@kernel
+def is_out_of_reach(setting: Setting, position: Vector, velocity: Vector) -> bool:
+    """Whether the object is sizes of the scene away from all cage points, and goes away from their middle."""
+    if dot(position, velocity) <= 0.0:
+        return False
+    for point in range(len(setting.geometry.points_world)):
+        away = norm(minus(row(setting.geometry.points_world, point), position))
+        if away <= OUT_OF_REACH * setting.size_m + setting.body.reach_m:
+            return False
+    cage = setting.geometry.cage.parts
+    for which in range(len(setting.geometry.points_world), len(cage)):
+        away = norm(minus(vector_from(cage[which].middle), position)) - cage[which].reach
+        if away <= OUT_OF_REACH * setting.size_m + setting.body.reach_m:
+            return False
+    return True

@@ -1,0 +1,185 @@
+"""After a step: contacts that carry are put on their faces, and what came into the object on the way is pushed out."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.tolerances import KernelTolerances
+from cagepose.kernels.algebra.vector import Vector
+from cagepose.kernels.collision.first_contact import allowed_depth
+from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
+from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.quasistatic.projection import (
+    GAP,
+    Constraints,
+    add_constraint,
+    constrain_features,
+    empty_constraints,
+    projected,
+)
+from cagepose.kernels.quasistatic.setting import Setting
+from cagepose.kernels.shapes.meetings import most_meetings
+
+POINTS_PUSHED = 8
+"""Points and shapes that may be pushed out of the object after a step."""
+NONE_DEEP, UNKNOWN_DEEP = -1, -2
+"""Instead of a meeting that is too deep."""
+
+
+class StepWorkspace(NamedTuple):
+    """Workspace for one step: contacts to keep, and the depth allowed to each point, (n_points,), and to each pair of
+    shapes, (n_parts, n_cage_parts), metres.
+    """
+
+    constraints: Constraints
+    allowed: FloatArray
+    allowed_shapes: FloatArray
+
+
+def empty_step_workspace(geometry: Geometry) -> StepWorkspace:
+    """Return a workspace for one step (plain Python)."""
+    n_points, pairs = len(geometry.points_world), (len(geometry.held.parts), len(geometry.cage.parts))
+    n_constraints = 3 * (n_points + most_meetings(*pairs)) + POINTS_PUSHED
+    return StepWorkspace(empty_constraints(n_constraints), np.zeros(n_points), np.zeros(pairs))
+
+
+@kernel
+def shallowest_face(geometry: Geometry, placement: Placement, point: int, box: int) -> tuple[int, float]:
+    """Return (axis, side) of the face of ``box`` that the point is nearest to from inside, or farthest beyond."""
+    best_axis, best_gap = 0, -math.inf
+    for axis in range(3):
+        gap = abs(placement.points_box[box, axis, point]) - geometry.half_sizes[box, axis]
+        if gap > best_gap:
+            best_axis, best_gap = axis, gap
+    return best_axis, math.copysign(1.0, placement.points_box[box, best_axis, point])
+
+
+@kernel
+def constrain_to_face(geometry: Geometry, placement: Placement, point: int, box: int, constraints: Constraints) -> bool:
+    """Constrain a point to the face of a box that it has reached."""
+    axis, side = shallowest_face(geometry, placement, point, box)
+    return add_constraint(constraints, point, box, axis, side, geometry.half_sizes[box, axis])
+
+
+@kernel
+def constrain_contacts(
+    geometry: Geometry, placement: Placement, contacts: ContactSet, closed_m: float, constraints: Constraints
+) -> None:
+    """Constrain the contacts that stay on their faces, and where they stick also in the face.
+
+    Gaps above ``closed_m`` are kept: to close them could take work, or bring another point in.
+    """
+    constraints.scratch[0].used = 0
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        if stays_on_face(contacts, i) and contact.feature >= 0:
+            kept = contact.gap if contact.gap > closed_m else 0.0
+            constrain_features(constraints, contact.feature, contact.cage_feature, GAP, kept)
+        elif stays_on_face(contacts, i):
+            at = geometry.half_sizes[contact.box, contact.axis]
+            if contact.gap > closed_m:
+                at += contact.gap
+            add_constraint(constraints, contact.point, contact.box, contact.axis, contact.side, at)
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        if contacts.states[i].forces[0] > 0.0 and contacts.states[i].is_sticking:
+            for turn in range(1, 3):
+                if contact.feature >= 0:
+                    constrain_features(constraints, contact.feature, contact.cage_feature, turn, 0.0)
+                    continue
+                axis = (contact.axis + turn) % 3
+                at = placement.points_box[contact.box, axis, contact.point]
+                add_constraint(constraints, contact.point, contact.box, axis, 1.0, at)
+
+
+@kernel
+def deepest_offender(placement: Placement, allowed: FloatArray) -> int:
+    """Return the point that is farthest deeper than it may; -1: none."""
+    worst_point, worst = -1, 0.0
+    for point in range(len(allowed)):
+        excess = placement.depths[point] - allowed[point]
+        if excess > worst:
+            worst_point, worst = point, excess
+    return worst_point
+
+
+@kernel
+def box_around(geometry: Geometry, placement: Placement, point: int) -> int:
+    """Return the box that the point lies deepest in."""
+    best_box, best_gap = 0, math.inf
+    for box in range(len(geometry.half_sizes)):
+        gap = placement.gaps[box, point]
+        if gap < best_gap:
+            best_box, best_gap = box, gap
+    return best_box
+
+
+@kernel
+def pushed_out(
+    setting: Setting, placement: Placement, position: Vector, quaternion: Quaternion, work: StepWorkspace
+) -> tuple[bool, Vector, Quaternion]:
+    """Make all constraints hold, and push points out of the object that this has brought in; placement is filled."""
+    geometry = setting.geometry
+    holds = True
+    for _ in range(POINTS_PUSHED):
+        if work.constraints.scratch[0].used > 0:
+            holds, position, quaternion = projected(
+                geometry, setting.body, position, quaternion, work.constraints, setting.size_m, placement.moved
+            )
+        place_object(geometry, position, quaternion, placement)
+        point, meeting = deepest_offender(placement, work.allowed), deepest_meeting(placement, work)
+        if not holds or (point < 0 and meeting == NONE_DEEP):
+            break
+        if point >= 0:
+            box = box_around(geometry, placement, point)
+            if not constrain_to_face(geometry, placement, point, box, work.constraints):
+                return False, position, quaternion
+        elif meeting == UNKNOWN_DEEP or not constrain_meeting(placement, meeting, work.constraints):
+            return False, position, quaternion
+    is_out = deepest_offender(placement, work.allowed) < 0 and deepest_meeting(placement, work) == NONE_DEEP
+    return holds and is_out, position, quaternion
+
+
+@kernel
+def deepest_meeting(placement: Placement, work: StepWorkspace) -> int:
+    """Return the meeting of shapes that is farthest deeper than it may; UNKNOWN_DEEP: parts are, but at no known place;
+    NONE_DEEP: none is.
+    """
+    meetings, found, worst = placement.meetings, NONE_DEEP, 0.0
+    if meetings.used[0] < 0:
+        return UNKNOWN_DEEP
+    for one in range(meetings.gaps.shape[0]):
+        for other in range(meetings.gaps.shape[1]):
+            if -meetings.gaps[one, other] - work.allowed_shapes[one, other] > worst:
+                found, worst = UNKNOWN_DEEP, -meetings.gaps[one, other] - work.allowed_shapes[one, other]
+    worst = 0.0
+    for at in range(meetings.used[0]):
+        row = meetings.rows[at]
+        excess = -row.gap - work.allowed_shapes[row.part, row.cage_part]
+        if excess > worst and not row.is_hidden:
+            found, worst = at, excess
+    return found
+
+
+@kernel
+def constrain_meeting(placement: Placement, at: int, constraints: Constraints) -> bool:
+    """Constrain the gap of a meeting that is too deep to zero."""
+    row = placement.meetings.rows[at]
+    return constrain_features(constraints, row.feature, row.cage_feature, GAP, 0.0)
+
+
+@kernel
+def allow_depths(placement: Placement, tolerances: KernelTolerances, work: StepWorkspace) -> None:
+    """Write how deep each point and each pair of shapes may be after the step: no deeper than it is."""
+    for point in range(len(work.allowed)):
+        work.allowed[point] = allowed_depth(placement.depths[point], tolerances)
+    gaps = placement.meetings.gaps
+    for one in range(gaps.shape[0]):
+        for other in range(gaps.shape[1]):
+            work.allowed_shapes[one, other] = allowed_depth(-gaps[one, other], tolerances)
