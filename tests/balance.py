@@ -26,12 +26,11 @@ def imbalance(scene: Scene, phase: PhaseRun) -> float:
         pull = (spring.preload_n + spring.stiffness_n_per_m * longer) / np.linalg.norm(way)
         acts.append((pull * way, here))
     size_of_load = sum(np.linalg.norm(force) for force, _ in acts) + np.linalg.norm(couples) / scene.size_m
-    points = dict(zip(scene.cage.names, scene.cage.points_world(), strict=True))
     for contact in phase.contacts:
         assert contact.force_normal_n is not None
         assert contact.force_tangential_n is not None
         force = contact.force_tangential_n - contact.force_normal_n * contact.normal_world
-        acts.append((force, points[contact.point]))
+        acts.append((force, contact.place_world))
     net = sum(force for force, _ in acts)
     moment = couples + sum(np.cross(at - center, force) for force, at in acts)
     return float(max(np.linalg.norm(net), np.linalg.norm(moment) / scene.size_m) / size_of_load)

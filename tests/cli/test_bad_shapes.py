@@ -199,14 +199,25 @@ def test_a_point_within_a_box_among_the_shapes_is_told_where_the_box_stands(
 
 
 def test_check_says_what_a_scene_of_shapes_holds(command: Callable[..., Any], in_folder: Path) -> None:
-    cone = "cone: {radius_bottom: 5, radius_top: 0, length: 4}"
-    held = f"{PIN}, position: [1, 2, 3], euler_zyx_deg: [0, 90, 0]}}\n    - {{{cone}"
-    (in_folder / "scene.yaml").write_text(SCENE.format(held, FLOOR), encoding="utf-8")
+    bar = "capsule: {radius: 5, length: 10}, position: [1, 2, 10], euler_zyx_deg: [0, 90, 0]"
+    held = f"{bar}}}\n    - {{sphere: {{radius: 7}}, position: [0, 0, 13]"
+    (in_folder / "scene.yaml").write_text(SCENE.format(held, FLOOR))
     answer = command("check", "scene.yaml")
     assert (answer.code, answer.err) == (0, "")
     assert answer.out.splitlines() == [
         "round: 2 shapes, 1 cage shape, 1 load (gravity), method quasistatic",
-        "object 20 x 12 x 10 mm: x -9 to 11, y -5 to 7, z -2 to 8",
+        "object 20 x 14 x 15 mm: x -9 to 11, y -7 to 7, z 5 to 20",
         "cage 90 x 90 x 10 mm: x -45 to 45, y -45 to 45, z -5 to 5",
         "size 127.671 mm, touch tolerance 1.28e-07 mm; no problems found",
     ]
+
+
+def test_what_no_method_runs_yet_is_told_by_name(command: Callable[..., Any], in_folder: Path) -> None:
+    pin = "cylinder: {radius: 5, length: 10}, position: [0, 0, 20]"
+    (in_folder / "scene.yaml").write_text(SCENE.format(pin, FLOOR))
+    for asked in ("check", "run"):
+        answer = command(asked, "scene.yaml")
+        assert answer.code == 2
+        assert (
+            "is a cylinder (cylinder1), which no method runs yet; a capsule or a convex shape may stand" in answer.err
+        )

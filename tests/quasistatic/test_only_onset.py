@@ -18,6 +18,7 @@ from caged_scenes import pushed_block
 from cagepose import run
 from cagepose.kernels.algebra.least_squares import empty_system
 from cagepose.kernels.algebra.record import empty_record
+from cagepose.kernels.collision.geometry import empty_cage
 from cagepose.kernels.contact.contact_set import ContactSet, empty_contact_set
 from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS, NewtonWorkspace
 from cagepose.kernels.outcome.cases import start_of
@@ -322,7 +323,7 @@ def held_blocks(random: np.random.Generator, friction: float) -> Iterator[Held]:
         if phase.proof.verdict == "moves" or not phase.proof.needs_friction:
             continue
         part, at = part_of(scene), empty_proof_workspace(scene.geometry)
-        case = start_of(0, part, cases_of(scene, friction, phase.pose), scene.cage.points_world())
+        case = start_of(0, part, cases_of(scene, friction, phase.pose), empty_cage(scene.geometry))
         stand_at(
             case.geometry,
             part.body,

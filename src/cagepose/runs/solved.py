@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from itertools import compress
 from typing import Any, TypeVar
 
@@ -209,7 +208,8 @@ def judged(scene: Scene, outcome: Outcome, ends: Sequence[Pose]) -> tuple[list[l
     for index, proof in enumerate(proofs):
         if proof.verdict == "moves":
             contacts[index] = [
-                replace(contact, force_normal_n=None, force_tangential_n=None) for contact in contacts[index]
+                _made(Contact, **{**vars(contact), "force_normal_n": None, "force_tangential_n": None})
+                for contact in contacts[index]
             ]
     return contacts, proofs
 

@@ -10,6 +10,7 @@ from itertools import islice, product
 import numpy as np
 
 from cagepose.kernels.contact.contact_set import SAME_NORMAL
+from cagepose.kernels.shapes.meetings import SAME_PLACE
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
 from cagepose.model.checks import FloatArray
 from cagepose.runs.actions import wrench_at
@@ -112,7 +113,7 @@ def margin(run: Run, phase: int = -1) -> Margin | None:
     ended = run.phases[number]
     if ended.verdict not in AT_REST or ended.proof.verdict == "moves" or not ended.contacts:
         return None
-    contacts, groups = _faces(ended.contacts)
+    contacts, groups = _faces(ended.contacts, SAME_PLACE * run.scene.touch_m)
     choices = list(islice(product(*groups), CHOICES_LIMIT + 1))
     if len(choices) > CHOICES_LIMIT:
         return None
@@ -144,34 +145,48 @@ def margin(run: Run, phase: int = -1) -> Margin | None:
     )
 
 
-def _faces(contacts: tuple[Contact, ...]) -> tuple[list[Contact], list[list[int]]]:
-    """Return the contacts that count, and groups of their numbers: those of one point on one box, of which one counts
+def _faces(contacts: tuple[Contact, ...], near_m: float) -> tuple[list[Contact], list[list[int]]]:
+    """Return the contacts that count, and groups of their numbers: those of two parts at one place, of which one counts
     at a time. Flush faces of another box that say nothing new are left out, as by `find_contacts`.
     """
-    by_group: dict[tuple[str, str], list[Contact]] = {}
+    at_places = list[list[Contact]]()
     for contact in contacts:
-        by_group.setdefault((contact.point, contact.box), []).append(contact)
+        for group in at_places:
+            if group[0].box == contact.box and _is_at_place(group[0], contact, near_m):
+                group.append(contact)
+                break
+        else:
+            at_places.append([contact])
     kept, groups = list[Contact](), list[list[int]]()
-    for group in by_group.values():
-        if all(_is_listed(contact, kept) for contact in group):
+    for group in at_places:
+        if all(_is_listed(contact, kept, near_m) for contact in group):
             continue
         groups.append(list(range(len(kept), len(kept) + len(group))))
         kept += group
     return kept, groups
 
 
-def _is_listed(contact: Contact, others: list[Contact]) -> bool:
+def _is_at_place(one: Contact, other: Contact, near_m: float) -> bool:
+    """Whether two contacts are of one part of the cage and at one place, as those of a point are."""
+    if one.point != other.point or one.place_world is None or other.place_world is None:
+        return one.point == other.point
+    return float(np.linalg.norm(one.place_world - other.place_world)) <= near_m
+
+
+def _is_listed(contact: Contact, others: list[Contact], near_m: float) -> bool:
     return any(
-        other.point == contact.point and float(np.linalg.norm(other.normal_world - contact.normal_world)) <= SAME_NORMAL
+        _is_at_place(other, contact, near_m)
+        and float(np.linalg.norm(other.normal_world - contact.normal_world)) <= SAME_NORMAL
         for other in others
     )
 
 
 def _cones(run: Run, phase: int, contacts: list[Contact]) -> ContactCones:
     center = run.phases[phase].pose.transform(run.scene.object.center_of_gravity_m)
-    places = dict(zip(run.scene.cage.names, run.scene.cage.points_world() - center, strict=True))
+    places = dict(zip(run.scene.cage.names, run.scene.cage.points_world(), strict=True))
     normals = np.array([-contact.normal_world for contact in contacts]).reshape(-1, 3)
-    arms = np.array([places[contact.point] for contact in contacts]).reshape(-1, 3)
+    at = [places.get(contact.point, contact.place_world) for contact in contacts]
+    arms = np.array(at).reshape(-1, 3) - center
     of_scene = chosen_method(run.scene, run.method).friction(run.scene)
     friction = [contact_friction(run.scene, of_scene, contact.point, contact.box) for contact in contacts]
     return contact_cones(normals, arms, np.array(friction))
