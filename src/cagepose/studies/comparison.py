@@ -13,6 +13,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.methods import DEFAULT_FRICTION, Metric
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.model.scope import check_boxes_and_points
 from cagepose.runs.run import AT_REST, Event, Motion, PhaseRun, Run, Verdict
 from cagepose.runs.solve import run
 
@@ -105,8 +106,9 @@ def compare(scene: Scene, frictions: Sequence[float] | None = None) -> Compariso
     Raises
     ------
     SceneError
-        A coefficient below zero.
+        A coefficient below zero, or other shapes than boxes and points.
     """
+    check_boxes_and_points(scene, "compare")
     own = DEFAULT_FRICTION["stepwise"] if scene.friction_coefficient is None else scene.friction_coefficient
     variants = [Variant("stepwise", own, run(scene, "stepwise"))]
     for friction in dict.fromkeys((0.0, own) if frictions is None else frictions):

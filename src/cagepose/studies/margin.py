@@ -10,8 +10,8 @@ from itertools import islice, product
 import numpy as np
 
 from cagepose.kernels.contact.contact_set import SAME_NORMAL
-from cagepose.kernels.shapes.meetings import SAME_PLACE
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
+from cagepose.kernels.shapes.meetings import SAME_PLACE
 from cagepose.model.checks import FloatArray
 from cagepose.runs.actions import wrench_at
 from cagepose.runs.cases import contact_friction

@@ -32,14 +32,22 @@ def travel_to_edge(coordinate: float, rate: float, limit: float) -> float:
 
 @kernel
 def still_meet(
-    geometry: Geometry, placement: Placement, contact: ContactRow, motion: Motion, amount: float, touch_m: float
+    geometry: Geometry,
+    placement: Placement,
+    contact: ContactRow,
+    motion: Motion,
+    amount: float,
+    touch_m: float,
+    within_m: float,
 ) -> bool:
-    """Whether two features still reach where they meet, after an amount of a motion."""
-    held, moved = placement.body.world, placement.moved
+    """Whether two features still reach where they meet, after an amount of a motion, by so much within their ends."""
+    held, cage, moved = placement.body.world, geometry.cage, placement.moved
     place_moved(held, contact.feature, motion, amount, moved)
-    met = meeting(moved, contact.feature, geometry.cage, contact.cage_feature)
-    slack = CLEAR * slack_of(held, contact.box, geometry.cage, contact.point, touch_m)
-    return both_reach(moved, contact.feature, geometry.cage, contact.cage_feature, met, slack, 2.0 * CLEAR * touch_m)
+    met = meeting(moved, contact.feature, cage, contact.cage_feature)
+    least = min(held.parts[contact.box].least_length, cage.parts[contact.point].least_length)
+    slack = CLEAR * slack_of(held, contact.box, cage, contact.point, touch_m) - within_m / least
+    slack_m = 2.0 * CLEAR * touch_m - within_m
+    return both_reach(moved, contact.feature, cage, contact.cage_feature, met, slack, slack_m)
 
 
 @kernel
@@ -52,12 +60,12 @@ def end_of_meeting(
     if end == math.inf:
         held, cage = placement.body.world.parts[contact.box], geometry.cage.parts[contact.point]
         end = 2.0 * (held.reach + cage.reach + touch_m) / norm(motion.velocity)
-    if still_meet(geometry, placement, contact, motion, end, touch_m):
+    if still_meet(geometry, placement, contact, motion, end, touch_m, 0.0):
         return math.inf
     low, high = 0.0, end
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        if still_meet(geometry, placement, contact, motion, middle, touch_m):
+        if still_meet(geometry, placement, contact, motion, middle, touch_m, 0.0):
             low = middle
         else:
             high = middle
@@ -88,7 +96,13 @@ def first_edge_crossing(
             continue
         if contact.feature >= 0:
             motion = motion_of(center, velocity, spin)
-            first = min(first, end_of_meeting(geometry, placement, contact, motion, min(end, first), touch_m))
+            crossing = end_of_meeting(geometry, placement, contact, motion, min(end, first), touch_m)
+            if crossing < first:
+                reach = STRAYED * strayed(
+                    geometry, contacts, center, quaternion, velocity, spin, crossing, placement.moved
+                )
+                if still_meet(geometry, placement, contact, motion, 0.0, touch_m, reach):
+                    first = crossing
             continue
         box = contact.box
         half_size = row(geometry.half_sizes, box)

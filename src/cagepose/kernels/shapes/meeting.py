@@ -75,7 +75,7 @@ def reaches(shapes: Shapes, i: int, normal: Vector, core: Vector, slack: float, 
 
 @kernel
 def both_reach(a: Shapes, i: int, b: Shapes, j: int, met: Meeting, slack: float, slack_m: float) -> bool:
-    """Whether two features can touch where they meet."""
+    """Whether two features can touch where they meet, equation (2.11)."""
     if not met.is_one:
         return False
     one = minus(met.place, scaled(met.normal, a.features[i].radius))

@@ -149,8 +149,9 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, touch_m: float, found
                 found.used[0] = first
                 return math.nan
             write_touching(one, other, i, j, met, found.rows[found.used[0]])
-            found.used[0] += 1
-    keep_nearest(found, first, 2.0 * min(separation, 0.0) - touch_m, touch_m)
+            if not is_told(found, first, touch_m):
+                found.used[0] += 1
+    keep_nearest(found, first, 2.0 * min(separation, 0.0) - touch_m)
     for at in range(first, found.used[0]):
         nearest = min(nearest, found.rows[at].gap)
     overlap = -separation - a.features[a.parts[one].first].radius - b.features[b.parts[other].first].radius
@@ -168,16 +169,22 @@ def write_touching(one: int, other: int, i: int, j: int, met: Meeting, out: Touc
 
 
 @kernel
-def keep_nearest(found: Meetings, first: int, least_gap: float, touch_m: float) -> None:
-    """Keep, of the meetings of two parts, those that are not deeper than the parts are in each other (these are on
-    their far sides), and each normal at a place once.
+def is_told(found: Meetings, first: int, touch_m: float) -> bool:
+    """Whether the next meeting has the normal and the place of one from ``first`` on."""
+    for before in range(first, found.used[0]):
+        if is_same(found, found.used[0], before, touch_m):
+            return True
+    return False
+
+
+@kernel
+def keep_nearest(found: Meetings, first: int, least_gap: float) -> None:
+    """Keep, of the meetings of two parts, those that are not deeper than the parts are in each other: these are on
+    their far sides.
     """
     kept = first
     for at in range(first, found.used[0]):
-        is_new = found.rows[at].gap >= least_gap
-        for before in range(first, kept):
-            is_new = is_new and not is_same(found, at, before, touch_m)
-        if is_new:
+        if found.rows[at].gap >= least_gap:
             move_touching(found.rows[at], found.rows[kept])
             kept += 1
     found.used[0] = kept
