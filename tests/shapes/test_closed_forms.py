@@ -180,3 +180,49 @@ def test_a_box_as_a_hull_and_a_point_as_a_tiny_ball_give_the_same_answer() -> No
             @ Pose(quaternion_wxyz=new.pose.quaternion_wxyz).rotation
         )
         assert np.abs(turn - np.eye(3)).max() < 1e-9
+
+
+def test_a_block_with_a_ball_tips_to_rest_on_a_floor() -> None:
+    """A corner that comes down beside one that stands is reached, not what friction held on the way (it stalled)."""
+    random, floor = np.random.default_rng(0), Box((0.3, 0.3, 0.02), Pose((0.0, 0.0, -0.07)))
+    for _ in range(25):
+        block = Box((0.02, 0.03, 0.04), Pose(random.uniform(-0.01, 0.01, 3), random.normal(size=4)))
+        ball = Sphere(random.uniform(0.005, 0.02), Pose(random.uniform(-0.02, 0.02, 3)))
+        held = Object(
+            shapes=[block, ball],
+            center_of_gravity_m=(0.0, 0.0, 0.0),
+            mass_kg=1.0,
+            inertia_kg_m2=np.diag([1e-4, 1.3e-4, 1.7e-4]),
+        )
+        settled(held, Cage(shapes=[floor]), 0.5)
+
+
+def test_where_a_face_ends_in_a_round_edge_or_goes_on_nothing_is_claimed() -> None:
+    """A ball over the seam of two flush boxes: over a face it may rest anywhere, at an edge it would roll off."""
+    tables = [Box((0.1, 0.2, 0.02), Pose((x, 0.0, -0.01))) for x in (-0.05, 0.05)]
+    for at, stability in ((0.0, "not shown"), (0.001, "marginal")):
+        ball = Object(shapes=[Sphere(0.01)], pose=Pose((at, 0.0, 0.01)))
+        assert settled(ball, Cage(shapes=tables), 0.5).phases[0].proof.stability == stability
+
+
+@pytest.mark.parametrize("sideways", [-0.004, 0.004])
+@pytest.mark.parametrize(("height", "is_stable"), [(-0.0059, True), (0.0031, False), (0.0061, False)])
+def test_a_ball_rolls_along_a_groove_while_friction_carries(sideways: float, height: float, is_stable: bool) -> None:
+    """It turns about the line u of its two contacts: stable where its centre of gravity is below that, across u."""
+    radius, steep, flat = 0.02, math.radians(70.0), math.radians(30.0)
+    plates = []
+    for side, angle in ((-1.0, steep), (1.0, flat)):
+        turned = Pose(euler_zyx=(0.0, 0.0, side * angle))
+        plates.append(Box((0.4, 0.2, 0.01), turned @ Pose((0.0, side * 0.1, -0.005))))
+    normals = np.array([[math.sin(steep), math.cos(steep)], [-math.sin(flat), math.cos(flat)]])
+    centre = np.array([0.0, *np.linalg.solve(normals, [radius, radius])])
+    along = np.array([0.0, *(normals[0] - normals[1])])
+    along /= np.linalg.norm(along)
+    off = np.array([0.0, sideways, height])
+    assert ((off - (off @ along) * along)[2] < 0.0) == is_stable
+    ball = Object(
+        shapes=[Sphere(radius)], center_of_gravity_m=off, mass_kg=1.0, inertia_kg_m2=np.eye(3) * 1e-4, pose=Pose(centre)
+    )
+    scene = Scene(ball, Cage(shapes=plates), [Load("weight", gravity=DOWN)], friction_coefficient=2.0)
+    found = run(scene).phases[0].proof.stability
+    assert found in (("stable", "marginal") if is_stable else ("unstable", "marginal"))

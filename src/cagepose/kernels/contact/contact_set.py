@@ -19,7 +19,7 @@ from cagepose.kernels.collision.geometry import Geometry, Placement, box_point
 from cagepose.kernels.contact.friction import Friction, friction_share
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.bend import Bend, curvatures, write_bend
+from cagepose.kernels.shapes.bend import Bend, curvatures, write_bend, write_twin
 from cagepose.kernels.shapes.meeting import Meeting
 from cagepose.kernels.shapes.meetings import is_at_place, most_meetings
 
@@ -327,12 +327,10 @@ def append_meeting(
         for k in range(3):
             contact.directions[j, k] = directions[j][k]
         write_scaled_wrench(directions[j], cross(arm, directions[j]), frame, contact.columns[j])
-    found = curvatures(
-        placement.body.world,
-        met.feature,
-        geometry.cage,
-        met.cage_feature,
-        Meeting(True, met.gap, normal, vector_from(met.place)),
-    )
+    held, cage, meeting = placement.body.world, geometry.cage, Meeting(True, met.gap, normal, vector_from(met.place))
+    found = curvatures(held, met.feature, cage, met.cage_feature, meeting)
     write_bend(found, normal, arm, frame.axes, frame.radii, contacts.bends[place])
+    if met.twin >= 0:
+        found = curvatures(held, met.twin, cage, met.cage_twin, meeting)
+        write_twin(found, normal, arm, frame.axes, frame.radii, contacts.bends[place])
     contacts.used[0] += 1

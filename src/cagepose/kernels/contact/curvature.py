@@ -11,7 +11,7 @@ from __future__ import annotations
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.second_order import add_coupling, add_turned_arm
-from cagepose.kernels.algebra.vector import Vector, plus, scaled, vector_from
+from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, matrix_from, plus, scaled, times, vector_from
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.load_curvature import add_load_curvature
 from cagepose.kernels.contact.loads import PhaseLoad
@@ -27,14 +27,31 @@ def clear_matrix(out: FloatArray) -> None:
 
 
 @kernel
-def add_face_curvature(contacts: ContactSet, i: int, carried: float, frame: Frame, out: FloatArray) -> None:
+def add_face_curvature(
+    contacts: ContactSet, i: int, carried: float, frame: Frame, curved: bool, out: FloatArray
+) -> None:
     """Add what a contact that slides, and carries so much, adds to S: -carried Hess g."""
     contact = contacts.rows[i]
     normal, arm = vector_from(contact.directions[0]), vector_from(contact.arm)
     add_turned_arm(normal, arm, -carried, frame.axes, frame.radii, out)
     add_coupling(normal, -carried, frame.axes, frame.radii, out)
     if contact.feature >= 0:
-        add_matrix(contacts.bends[i].sliding, -carried, out)
+        bend = contacts.bends[i]
+        add_matrix(bend.twin_sliding if curved and bend.has_twin else bend.sliding, -carried, out)
+
+
+@kernel
+def add_rolling(force: Vector, normal: Vector, parallel: Matrix, frame: Frame, out: FloatArray) -> None:
+    """Add what rolling adds to a contact that sticks, the symmetric part of force . (w x P m), equation (5.35): the
+    place where it touches moves by P m, m = n x w.
+    """
+    for j in range(3):
+        one = scaled(frame.axes[j], 1.0 / frame.radii[j])
+        for k in range(3):
+            other = scaled(frame.axes[k], 1.0 / frame.radii[k])
+            value = dot(force, cross(one, times(parallel, cross(normal, other))))
+            out[3 + j, 3 + k] += 0.5 * value
+            out[3 + k, 3 + j] += 0.5 * value
 
 
 @kernel
@@ -51,19 +68,24 @@ def write_curvature(
     position: Vector,
     quaternion: Quaternion,
     frame: Frame,
+    curved: bool,
     out: FloatArray,
 ) -> None:
-    """Write S, (6, 6), for the forces of the contacts, and which of them stick."""
+    """Write S, (6, 6), for the forces of the contacts, and which of them stick; where features meet that bend by
+    different amounts, with those that bend least, or, ``curved``, most.
+    """
     clear_matrix(out)
     add_load_curvature(load, position, quaternion, frame, out)
     for i in range(contacts.used[0]):
         contact, state = contacts.rows[i], contacts.states[i]
         if state.forces[0] > 0.0 and not state.is_sticking:
-            add_face_curvature(contacts, i, state.forces[0], frame, out)
+            add_face_curvature(contacts, i, state.forces[0], frame, curved, out)
         elif state.forces[0] > 0.0:
             force = (0.0, 0.0, 0.0)
             for j in range(3):
                 force = plus(force, scaled(vector_from(contact.directions[j]), state.forces[j]))
             add_turned_arm(force, vector_from(contact.arm), 1.0, frame.axes, frame.radii, out)
             if contact.feature >= 0:
-                add_matrix(contacts.bends[i].rolling, state.forces[0], out)
+                bend = contacts.bends[i]
+                parallel = matrix_from(bend.twin_parallel if curved and bend.has_twin else bend.parallel)
+                add_rolling(force, vector_from(contact.directions[0]), parallel, frame, out)

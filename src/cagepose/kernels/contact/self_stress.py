@@ -118,7 +118,7 @@ def balance_by_locked(contacts: ContactSet, wrench: FloatArray, frame: Frame, wo
 def add_second_order(contacts: ContactSet, cone: ConeWorkspace, frame: Frame, out: FloatArray) -> None:
     """Add -sum sigma_i Hess g_i of the forces in ``cone``."""
     for k in range(cone.passive.used):
-        add_face_curvature(contacts, cone.contacts[cone.passive.labels[k]], cone.passive.x[k], frame, out)
+        add_face_curvature(contacts, cone.contacts[cone.passive.labels[k]], cone.passive.x[k], frame, False, out)
 
 
 @kernel

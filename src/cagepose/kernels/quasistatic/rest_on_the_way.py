@@ -6,7 +6,7 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.first_meeting import NO_HIT
 from cagepose.kernels.collision.geometry import place_object
-from cagepose.kernels.contact.contact_set import ContactSet, find_contacts
+from cagepose.kernels.contact.contact_set import ContactRow, ContactSet, find_contacts
 from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, ON_THE_WAY, equilibrium
 from cagepose.kernels.contact.loads import write_load
 from cagepose.kernels.contact.metric import frame_at
@@ -21,7 +21,7 @@ HALVES_TO_REST = 45
 
 @kernel
 def is_held_on_the_way(setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace) -> bool:
-    """Whether friction holds the object at a pose of a step, by the points that touched the same boxes before it.
+    """Whether friction holds the object at a pose of a step, by what touched before it.
 
     What the step reaches does not count: it touches at the end only, and what it holds is asked there.
     """
@@ -32,7 +32,7 @@ def is_held_on_the_way(setting: Setting, position: Vector, quaternion: Quaternio
         return False
     kept = 0
     for i in range(work.ahead.used[0]):
-        if touches_box(work.contacts, work.ahead.rows[i].point, work.ahead.rows[i].box):
+        if touched_before(work.contacts, work.ahead.rows[i]):
             move_contact(work.ahead, i, kept)
             kept += 1
     work.ahead.used[0] = kept
@@ -42,12 +42,13 @@ def is_held_on_the_way(setting: Setting, position: Vector, quaternion: Quaternio
 
 
 @kernel
-def touches_box(contacts: ContactSet, point: int, box: int) -> bool:
-    """Whether a point touches a box at the pose of the contacts."""
-    found = False
+def touched_before(contacts: ContactSet, one: ContactRow) -> bool:
+    """Whether the point and the box of a contact, or its features, touch at the pose of the contacts."""
     for i in range(contacts.used[0]):
-        found = found or (contacts.rows[i].point == point and contacts.rows[i].box == box)
-    return found
+        row = contacts.rows[i]
+        if (row.point, row.box, row.feature, row.cage_feature) == (one.point, one.box, one.feature, one.cage_feature):
+            return True
+    return False
 
 
 @kernel
@@ -66,10 +67,7 @@ def move_contact(contacts: ContactSet, source: int, target: int) -> None:
         for k in range(6):
             new.columns[j, k] = old.columns[j, k]
     if old.feature >= 0:
-        there, here = contacts.bends[target], contacts.bends[source]
-        for j in range(6):
-            for k in range(6):
-                there.sliding[j, k], there.rolling[j, k] = here.sliding[j, k], here.rolling[j, k]
+        contacts.bends[target] = contacts.bends[source]  # type: ignore[index]
 
 
 @kernel

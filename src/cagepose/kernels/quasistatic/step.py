@@ -136,7 +136,7 @@ def next_twist(
         longest_pull(load, position, quaternion, velocity, spin, turn_step_rad, size_m),
     )
     if end < math.inf:
-        write_curvature(contacts, load, position, quaternion, frame, scratch.stiff.curvature)
+        write_curvature(contacts, load, position, quaternion, frame, False, scratch.stiff.curvature)
         rho = max(keep_along_faces(contacts, scratch.solver.locked, scratch.stiff), 1.0 / end)
         if has_circulation(load):
             write_circulation(load, position, quaternion, frame, scratch.stiff.circulation)

@@ -151,7 +151,7 @@ def ahead(
 
 @kernel
 def safe_step(now: Ahead) -> float:
-    """Return how far F stays on its side of zero: to the root of the parabola that bends there most (2.12); inf: none."""
+    """Return how far F stays on its side of zero: to the root of the parabola that bends to it most (2.12)."""
     value, slope, bend = now.value, now.slope, now.low
     if value < 0.0:
         value, slope, bend = -value, -slope, -now.high

@@ -34,15 +34,21 @@ class Bend:
     ----------
     sliding
         Second derivative of their gap, (6, 6), metres.
-    rolling
-        How far the place where they touch moves along the normal as they roll, likewise.
     relative
         K, (3, 3): how the normal turns as they slide, radians for each metre.
+    parallel
+        P, (3, 3): how far the place where they touch moves as they roll, metres for each radian.
+    has_twin, twin_sliding, twin_parallel
+        Whether features that bend more meet at the same place with the same normal, as where a face ends in a round
+        edge; and theirs.
     """
 
     sliding: Annotated[FloatArray, 6, 6]
-    rolling: Annotated[FloatArray, 6, 6]
     relative: Annotated[FloatArray, 3, 3]
+    parallel: Annotated[FloatArray, 3, 3]
+    has_twin: bool
+    twin_sliding: Annotated[FloatArray, 6, 6]
+    twin_parallel: Annotated[FloatArray, 3, 3]
 
 
 class Curvatures(NamedTuple):
@@ -123,21 +129,45 @@ def curvatures(a: Shapes, i: int, b: Shapes, j: int, met: Meeting) -> Curvatures
 @kernel
 def write_bend(found: Curvatures, normal: Vector, arm: Vector, axes: Matrix, radii: Vector, out: Bend) -> None:
     """Write the bend of a pair of features that touch at an arm from the reference point, for travels along the axes of
-    the world and turns about the rows of ``axes`` in units of one over ``radii``.
+    the world and turns about the rows of ``axes`` in units of one over ``radii``. It has no twin.
     """
+    out.has_twin = False
+    write_sliding(found, normal, arm, axes, radii, out.sliding)
+    write_rows(found.relative, out.relative)
+    write_rows(found.parallel, out.parallel)
+
+
+@kernel
+def write_twin(found: Curvatures, normal: Vector, arm: Vector, axes: Matrix, radii: Vector, out: Bend) -> None:
+    """Write the bend of the features that bend more; see `write_bend`."""
+    out.has_twin = True
+    write_sliding(found, normal, arm, axes, radii, out.twin_sliding)
+    write_rows(found.parallel, out.twin_parallel)
+
+
+@kernel
+def write_rows(matrix: Matrix, out: FloatArray) -> None:
+    for j in range(3):
+        for k in range(3):
+            out[j, k] = matrix[j][k]
+
+
+@kernel
+def write_sliding(found: Curvatures, normal: Vector, arm: Vector, axes: Matrix, radii: Vector, out: FloatArray) -> None:
     share = added(found.share, across(normal, -1.0))
     for j in range(6):
         one, turned = ways(j, normal, arm, axes, radii)
         drawn, shared, kept = times(found.relative, one), times(share, turned), times(found.parallel, turned)
         for k in range(j + 1):
             other, other_turned = ways(k, normal, arm, axes, radii)
-            rolling = dot(other_turned, kept)
-            sliding = dot(other, drawn) + dot(other, shared) + dot(one, times(share, other_turned)) - rolling
-            out.sliding[j, k] = out.sliding[k, j] = sliding
-            out.rolling[j, k] = out.rolling[k, j] = rolling
-    for j in range(3):
-        for k in range(3):
-            out.relative[j, k] = found.relative[j][k]
+            value = dot(other, drawn) + dot(other, shared) + dot(one, times(share, other_turned))
+            out[j, k] = out[k, j] = value - dot(other_turned, kept)
+
+
+@kernel
+def bends_by(found: Curvatures) -> float:
+    """Return how much features bend away from each other: the sum of K's principal values, 1/m."""
+    return found.relative[0][0] + found.relative[1][1] + found.relative[2][2]
 
 
 @kernel

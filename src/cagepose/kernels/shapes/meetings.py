@@ -16,6 +16,7 @@ from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_ro
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, row, scaled, transposed_times, vector_from
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.along_motion import can_touch, distance_from
+from cagepose.kernels.shapes.bend import bends_by, curvatures
 from cagepose.kernels.shapes.body import PlacedBody, place_asked, rotation_of
 from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes
 from cagepose.kernels.shapes.meeting import Meeting, both_reach, farthest_beyond, meeting, reaches
@@ -37,6 +38,8 @@ class Touching:
     ----------
     part, cage_part, feature, cage_feature
         Indices.
+    twin, cage_twin
+        Features that meet at the same place with the same normal and bend more; -1: none do.
     gap, normal, place
         As in `Meeting`.
     is_hidden
@@ -47,6 +50,8 @@ class Touching:
     cage_part: int
     feature: int
     cage_feature: int
+    twin: int
+    cage_twin: int
     gap: float
     normal: Annotated[FloatArray, 3]
     place: Annotated[FloatArray, 3]
@@ -149,8 +154,11 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, touch_m: float, found
                 found.used[0] = first
                 return math.nan
             write_touching(one, other, i, j, met, found.rows[found.used[0]])
-            if not is_told(found, first, touch_m):
+            told = told_before(found, first, touch_m)
+            if told < 0:
                 found.used[0] += 1
+            else:
+                note_twin(a, b, found.rows[told], found.rows[found.used[0]])
     keep_nearest(found, first, 2.0 * min(separation, 0.0) - touch_m)
     for at in range(first, found.used[0]):
         nearest = min(nearest, found.rows[at].gap)
@@ -163,18 +171,43 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, touch_m: float, found
 @kernel
 def write_touching(one: int, other: int, i: int, j: int, met: Meeting, out: Touching) -> None:
     out.part, out.cage_part, out.feature, out.cage_feature = one, other, i, j
+    out.twin = out.cage_twin = -1
     out.gap, out.is_hidden = met.gap, False
     for k in range(3):
         out.normal[k], out.place[k] = met.normal[k], met.place[k]
 
 
 @kernel
-def is_told(found: Meetings, first: int, touch_m: float) -> bool:
-    """Whether the next meeting has the normal and the place of one from ``first`` on."""
+def told_before(found: Meetings, first: int, touch_m: float) -> int:
+    """Return which meeting from ``first`` on has the normal and the place of the next one; -1: none has."""
     for before in range(first, found.used[0]):
         if is_same(found, found.used[0], before, touch_m):
-            return True
-    return False
+            return before
+    return -1
+
+
+@kernel
+def bends_of(a: Shapes, b: Shapes, i: int, j: int, one: Touching) -> float:
+    met = Meeting(True, one.gap, vector_from(one.normal), vector_from(one.place))
+    return bends_by(curvatures(a, i, b, j, met))
+
+
+@kernel
+def note_twin(a: Shapes, b: Shapes, told: Touching, new: Touching) -> None:
+    """Keep, of features that meet at one place with one normal, those that bend least, and beside them those that bend
+    most.
+    """
+    least, bend = (
+        bends_of(a, b, told.feature, told.cage_feature, told),
+        bends_of(a, b, new.feature, new.cage_feature, new),
+    )
+    most = least if told.twin < 0 else bends_of(a, b, told.twin, told.cage_twin, told)
+    if bend > most:
+        told.twin, told.cage_twin = new.feature, new.cage_feature
+    elif bend < least:
+        if told.twin < 0:
+            told.twin, told.cage_twin = told.feature, told.cage_feature
+        told.feature, told.cage_feature = new.feature, new.cage_feature
 
 
 @kernel
@@ -207,6 +240,7 @@ def is_same(found: Meetings, one: int, other: int, touch_m: float) -> bool:
 @kernel
 def move_touching(one: Touching, to: Touching) -> None:
     to.part, to.cage_part, to.feature, to.cage_feature = one.part, one.cage_part, one.feature, one.cage_feature
+    to.twin, to.cage_twin = one.twin, one.cage_twin
     to.gap, to.is_hidden = one.gap, one.is_hidden
     for k in range(3):
         to.normal[k], to.place[k] = one.normal[k], one.place[k]

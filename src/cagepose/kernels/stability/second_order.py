@@ -347,6 +347,15 @@ def hold_some(contacts: ContactSet, n_one_sided: int, chosen: int, work: Stabili
 
 
 @kernel
+def has_twins(contacts: ContactSet) -> bool:
+    """Whether a contact that carries is where features meet that bend by different amounts."""
+    for i in range(contacts.used[0] if len(contacts.bends) > 0 else 0):
+        if contacts.rows[i].feature >= 0 and contacts.bends[i].has_twin and contacts.states[i].forces[0] > 0.0:
+            return True
+    return False
+
+
+@kernel
 def stability(
     contacts: ContactSet,
     statuses: Rows[ContactStatus],
@@ -364,6 +373,41 @@ def stability(
     """Return the code of stability of a rest with the forces in ``contacts``; free twists without curvature are added
     to ``work.ways``.
 
+    Where a contact is at the seam of features that bend by different amounts, one way off it may be stable and another
+    not: unless both say the same, nothing is shown.
+    """
+    n_ways = work.ways.used
+    code = stability_with(
+        contacts, statuses, friction, locked, load, position, quaternion, frame, terms, size_m, False, work, system
+    )
+    if has_twins(contacts):
+        n_flat = work.ways.used
+        curved = stability_with(
+            contacts, statuses, friction, locked, load, position, quaternion, frame, terms, size_m, True, work, system
+        )
+        work.ways.used = n_flat if curved == code else n_ways
+        return code if curved == code else STABILITY_NOT_SHOWN
+    return code
+
+
+@kernel
+def stability_with(
+    contacts: ContactSet,
+    statuses: Rows[ContactStatus],
+    friction: float,
+    locked: PassiveSet,
+    load: PhaseLoad,
+    position: Vector,
+    quaternion: Quaternion,
+    frame: Frame,
+    terms: float,
+    size_m: float,
+    curved: bool,
+    work: StabilityWorkspace,
+    system: System,
+) -> int:
+    """Return the code of stability with the features that bend least, or, ``curved``, most; see `stability`.
+
     On the cone of twists that close no contact, the least curvature is an eigenvalue over the span of one of its faces,
     and its eigenvector lies in that face. So all sets of contacts that may open are held in turn. Where the load turns
     round on what is held free, only positive curvature says something (5.29).
@@ -372,7 +416,7 @@ def stability(
     n_held, n_ways = work.held.used, work.ways.used
     n_one_sided = list_one_sided(contacts, statuses, work, system)
     code = MARGINAL if at_limit or n_one_sided < 0 else STABLE_REST
-    write_curvature(contacts, load, position, quaternion, frame, work.curvature)
+    write_curvature(contacts, load, position, quaternion, frame, curved, work.curvature)
     flat = FLAT * max(frobenius_norm(work.curvature), terms / size_m)
     for chosen in range(1 << max(n_one_sided, 0)):
         work.held.used = n_held
