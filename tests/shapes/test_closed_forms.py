@@ -226,3 +226,16 @@ def test_a_ball_rolls_along_a_groove_while_friction_carries(sideways: float, hei
     scene = Scene(ball, Cage(shapes=plates), [Load("weight", gravity=DOWN)], friction_coefficient=2.0)
     found = run(scene).phases[0].proof.stability
     assert found in (("stable", "marginal") if is_stable else ("unstable", "marginal"))
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.5])
+@pytest.mark.parametrize("n", [6, 12, 24])
+def test_a_prism_stands_on_its_equal(n: int, turned: float) -> None:
+    """With all its corners, or all crossings of its edges: there was no room for so many meetings, and it escaped."""
+    angles = np.arange(n) * 2.0 * math.pi / n
+    rim = np.array([0.02 * np.cos(angles), 0.02 * np.sin(angles)]).T
+    prism = Convex([(*place, z) for place in rim for z in (-0.01, 0.01)])
+    below = Pose(euler_zyx=(turned * 2.0 * math.pi / n, 0.0, 0.0)).transform(prism.vertices_m)
+    result = settled(Object(shapes=[prism], pose=Pose((0.0, 0.0, 0.05))), Cage(shapes=[Convex(below)]), 0.3)
+    assert result.pose.position_m[2] == pytest.approx(0.02, abs=1e-12)
+    assert len(result.contacts) == (n if turned == 0.0 else 2 * n)

@@ -54,9 +54,11 @@ def play_command(
         sys.stderr.write("\n".join(problems) + "\n")
         return 2
 
+    from cagepose.model.scope import check_boxes_and_points
     from cagepose.studies.play import play
     from cagepose.studies.play_rest import play_rests
 
+    check_boxes_and_points(scene_file.scene, "play")
     try:
         found = play(
             scene_file.scene,

@@ -7,24 +7,32 @@ from cagepose.model.features import has_features
 from cagepose.model.scene import Scene
 from cagepose.model.shapes import Shape
 
+STAND_INS = {
+    "cylinder": "a capsule, or a convex shape with many corners, may stand for it",
+    "cone": "a convex shape with many corners may stand for it",
+    "disc": "a convex shape with many corners may stand for it",
+    "hole": "walls (boxes) around it may stand for it",
+}
+"""What may stand for a shape that no method runs yet, until one does."""
+
 
 def unknown_shapes(scene: Scene) -> list[Problem]:
     """Return a problem for each shape that no method runs yet."""
-    remedy = "which no method runs yet; a capsule or a convex shape may stand for it"
     return [
-        Problem(path, f"is a {shape.kind} ({shape.name}), {remedy}")
+        Problem(path, f"is a {shape.kind} ({shape.name}), which no method runs yet; {STAND_INS[shape.kind]}")
         for path, shape in _placed(scene)
         if not has_features(shape)
     ]
 
 
 def other_shapes(scene: Scene, needs: str) -> list[Problem]:
-    """Return a problem for each shape of a scene that is neither a box of the object nor a point of the cage.
+    """Return a problem that names the first shape of a scene that is neither a box of the object nor a cage point.
 
     ``needs`` ends the message, such as "play knows boxes and points alone".
     """
-    n_boxes = len(scene.object.boxes)
-    return [Problem(path, f"is a {shape.kind} ({shape.name}), and {needs}") for path, shape in _placed(scene)[n_boxes:]]
+    others = _placed(scene)[len(scene.object.boxes) :]
+    more = f", like {len(others) - 1} more" if len(others) > 1 else ""
+    return [Problem(path, f"is a {shape.kind} ({shape.name}){more}, and {needs}") for path, shape in others[:1]]
 
 
 def check_boxes_and_points(scene: Scene, what: str) -> None:

@@ -13,7 +13,7 @@ from cagepose.kernels.shapes.along_motion import ahead, can_touch, clear_step, f
 from cagepose.kernels.shapes.body import place_asked
 from cagepose.kernels.shapes.features import EDGE, VERTEX, Shapes
 from cagepose.kernels.shapes.meeting import both_reach, meeting
-from cagepose.kernels.shapes.meetings import balls_apart, slack_of
+from cagepose.kernels.shapes.meetings import Meetings, balls_apart, slack_of
 from cagepose.kernels.shapes.motion import Motion, velocity_at
 
 SAFE = 1.0 + 1e-9
@@ -67,6 +67,15 @@ def until_past(held: Shapes, one: int, cage: Shapes, other: int, speed: float) -
 
 
 @kernel
+def touch(meetings: Meetings, one: int, other: int) -> bool:
+    """Whether two parts have a contact."""
+    found = False
+    for at in range(meetings.used[0]):
+        found = found or (meetings.rows[at].part == one and meetings.rows[at].cage_part == other)
+    return found
+
+
+@kernel
 def first_meeting(
     geometry: Geometry, placement: Placement, motion: Motion, end: float, near_m: float, near_depth_m: float
 ) -> Hit:
@@ -83,7 +92,7 @@ def first_meeting(
             if speed == 0.0 or (one < geometry.n_own_boxes and other < n_points):
                 continue
             gap = max(placement.meetings.gaps[one, other], balls_apart(held, one, cage, other))
-            if gap > SAFE * speed * end or (motion.rate == 0.0 and gap <= touch_m):
+            if gap > SAFE * speed * end or (motion.rate == 0.0 and touch(placement.meetings, one, other)):
                 continue
             place_asked(geometry.held, one, placement.body)
             until = end if motion.rate > 0.0 else min(end, until_past(held, one, cage, other, speed))
@@ -177,9 +186,9 @@ def first_of_features(
         return math.inf, math.inf
     met = meeting(held, i, cage, j)
     touches = met.is_one and abs(met.gap) <= touch_m
-    if touches and motion.rate == 0.0:
-        return math.inf, math.inf
     leaves = touches and both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
+    if leaves and motion.rate == 0.0:
+        return math.inf, math.inf
     if leaves and dot(met.normal, velocity_at(motion, met.place)) >= -LEAVES * speed:
         return math.inf, math.inf
     level, side = 0.0, 0.0

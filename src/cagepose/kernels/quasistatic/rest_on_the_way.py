@@ -77,11 +77,14 @@ def first_rest(
     quaternion: Quaternion,
     twist: Twist,
     amount: float,
+    end: tuple[Vector, Quaternion],
     work: QuasistaticWorkspace,
 ) -> tuple[Vector, Quaternion]:
-    """Return the first pose of a step that friction holds; at ``amount`` it does. The placement is that of the pose."""
+    """Return the first pose of a step that friction holds; at its end, after ``amount``, it does. The placement is that
+    of the pose.
+    """
     low, high = 0.0, amount
-    best = (position, quaternion)
+    best = end
     for _ in range(HALVES_TO_REST):
         middle = 0.5 * (low + high)
         place_object(setting.geometry, position, quaternion, work.placement)

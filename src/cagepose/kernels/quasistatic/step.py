@@ -298,7 +298,7 @@ def next_step(
         return ESCAPES, here, fits
     could_rest = setting.friction.greatest > 0.0 and rule != FREE and amount > 0.0
     if could_rest and is_held_on_the_way(setting, end, turned, work):
-        end, turned = first_rest(setting, position, quaternion, twist, amount, work)
+        end, turned = first_rest(setting, position, quaternion, twist, amount, (end, turned), work)
 
     # Go there.
     moved = norm(minus(end, position)) + setting.body.reach_m * turned_by(quaternion, turned)

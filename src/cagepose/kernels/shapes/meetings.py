@@ -21,7 +21,7 @@ from cagepose.kernels.shapes.body import PlacedBody, place_asked, rotation_of
 from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes
 from cagepose.kernels.shapes.meeting import Meeting, both_reach, farthest_beyond, meeting, reaches
 
-ROOM_FOR_PAIR, MOST_ROOM = 32, 4096
+ROOM_FOR_PAIR, MOST_ROOM = 128, 4096
 """Meetings that there is memory for: of each pair of parts, and of all."""
 SAME_NORMAL = 1e-9
 """Radians. Meetings at one place with normals nearer than this are one."""
@@ -131,8 +131,12 @@ def apart_along(a: Shapes, one: int, b: Shapes, other: int, normal: Vector) -> f
 
 
 @kernel
-def meet_parts(a: Shapes, one: int, b: Shapes, other: int, touch_m: float, found: Meetings) -> float:
-    """Append the meetings of two parts; return how far apart they are at least, below zero how deep in each other."""
+def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, touch_m: float, found: Meetings) -> float:
+    """Append the meetings of two parts; return how far apart they are at least, below zero how deep in each other; NaN:
+    there is no room.
+
+    They are known to be ``at_least_m`` apart, metres.
+    """
     slack, slack_m = slack_of(a, one, b, other, touch_m), 2.0 * touch_m
     first = found.used[0]
     separation, nearest = -math.inf, math.inf
@@ -150,6 +154,8 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, touch_m: float, found
             if met.gap > touch_m:
                 nearest = min(nearest, met.gap)
                 continue
+            if met.gap < on_far_side(max(separation, at_least_m), touch_m):
+                continue
             if found.used[0] == len(found.rows):
                 found.used[0] = first
                 return math.nan
@@ -159,13 +165,19 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, touch_m: float, found
                 found.used[0] += 1
             else:
                 note_twin(a, b, found.rows[told], found.rows[found.used[0]])
-    keep_nearest(found, first, 2.0 * min(separation, 0.0) - touch_m)
+    keep_nearest(found, first, on_far_side(max(separation, at_least_m), touch_m))
     for at in range(first, found.used[0]):
         nearest = min(nearest, found.rows[at].gap)
     overlap = -separation - a.features[a.parts[one].first].radius - b.features[b.parts[other].first].radius
     if nearest == math.inf or touch_m < overlap < math.inf:  # of cores: what reaches does so by the slack
-        return separation
+        return max(separation, at_least_m)
     return nearest
+
+
+@kernel
+def on_far_side(separation: float, touch_m: float) -> float:
+    """Return the gap below which features meet on the far sides of parts that are so far apart."""
+    return 2.0 * min(separation, 0.0) - touch_m
 
 
 @kernel
@@ -344,7 +356,7 @@ def find_meetings(
             if gap <= touch_m:
                 gap = max(gap, faces_from_vertices(cage, other, held, one, touch_m))
             if gap <= touch_m:
-                gap = meet_parts(held, one, cage, other, touch_m, found)
+                gap = meet_parts(held, one, cage, other, gap, touch_m, found)
                 if math.isnan(gap):
                     found.used[0] = -1
                     return
