@@ -168,6 +168,15 @@ def test_out_saves_the_run_and_the_table_is_still_printed(command: Command, samp
     assert json.loads(Path("run.json").read_text(encoding="utf-8"))["units"]["length"] == "in"
 
 
+def test_out_keeps_the_margins_that_were_asked_for(command: Command, sample: str) -> None:
+    assert command("run", sample, "--margin", "--out", "run.json").code in (0, 1)
+    printed = json.loads(command("run", sample, "--margin", "--json").out)
+    saved = json.loads(Path("run.json").read_text(encoding="utf-8"))
+    margins = [phase["proof"]["margin"] for phase in saved["phases"]]
+    assert margins == [phase["proof"]["margin"] for phase in printed["phases"]]
+    assert any(margins)
+
+
 @pytest.mark.parametrize(
     ("out", "reason"),
     [

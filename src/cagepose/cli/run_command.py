@@ -61,7 +61,7 @@ def run_command(
         from cagepose.files.run_file import save_run
 
         try:
-            save_run(result, out, scene_file.length_unit)
+            save_run(result, out, scene_file.length_unit, margins)
         except OSError as error:
             sys.stderr.write(_cannot_write(out, error))
             code = 2

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
@@ -20,12 +20,19 @@ from cagepose.files.write import check_can_write, json_text, write_whole
 from cagepose.runs.run import Run
 from cagepose.studies.certificate import Certificate
 from cagepose.studies.certify import certificate
+from cagepose.studies.margin import Margin
 
 Kind = TypeVar("Kind")
 
 
-def save_run(run: Run, path: str | os.PathLike[str], length_unit: LengthUnit = "mm") -> None:
-    """Write ``run`` to one file, whole or not at all; ``length_unit`` is for the part that people read.
+def save_run(
+    run: Run,
+    path: str | os.PathLike[str],
+    length_unit: LengthUnit = "mm",
+    margins: Sequence[Margin | None] | None = None,
+) -> None:
+    """Write ``run`` to one file, whole or not at all; ``length_unit`` is for the part that people read, where
+    ``margins``, one for each phase, stand too.
 
     The file also holds the certificate of each phase's end, see `load_certificates`; none of scenes with other shapes
     than boxes and points.
@@ -36,7 +43,7 @@ def save_run(run: Run, path: str | os.PathLike[str], length_unit: LengthUnit = "
         The file cannot be written.
     """
     check_can_save(path)
-    content = {**run_document(run, length_unit), "exact": record_of(run)}
+    content = {**run_document(run, length_unit, margins), "exact": record_of(run)}
     n_phases = len(run.phases)
     certificates = [None if run.scene.has_other_shapes else certificate(run, phase) for phase in range(n_phases)]
     records = [None if found is None else record_of(found) for found in certificates]
