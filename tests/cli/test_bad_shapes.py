@@ -212,6 +212,12 @@ def test_check_says_what_a_scene_of_shapes_holds(command: Callable[..., Any], in
     ]
 
 
+@pytest.mark.parametrize(("word", "meant"), [("roller", "capsule"), ("Ball", "sphere"), ("wall", "box")])
+def test_other_words_lead_to_ours(command: Callable[..., Any], in_folder: Path, word: str, meant: str) -> None:
+    (in_folder / "scene.yaml").write_text(SCENE.format(f"{word}: {{radius: 3}}", FLOOR))
+    assert f"{word}: is no known shape; did you mean {meant}? " in command("check", "scene.yaml").err
+
+
 def test_what_no_method_runs_yet_is_told_by_name(command: Callable[..., Any], in_folder: Path) -> None:
     pin = "cylinder: {radius: 5, length: 10}, position: [0, 0, 20]"
     (in_folder / "scene.yaml").write_text(SCENE.format(pin, FLOOR))

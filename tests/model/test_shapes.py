@@ -172,3 +172,13 @@ def test_thin_shapes_starts_far_away_and_friction_of_unknown_names_are_refused()
     ]
     with pytest.raises(SceneError, match=r"object.pose.position: starts 1e\+10 mm from the cage"):
         Scene(Object(shapes=[Sphere(1)], pose=Pose((0, 0, 1e7)), **GIVEN), Cage(shapes=[Sphere(1)]), [DOWN])
+
+
+def test_a_start_inside_a_shape_is_told_at_the_shape() -> None:
+    wall = Box((1.0, 1.0, 0.1), Pose((0.0, 0.0, 0.0)))
+    held = Object(shapes=[Sphere(0.2)], pose=Pose((0.0, 0.0, 0.1)))
+    with pytest.raises(SceneError) as caught:
+        Scene(held, Cage(shapes=[Sphere(0.1, Pose((3.0, 0.0, 0.0))), wall]), [Load("weight", gravity=(0.0, 0.0, -1.0))])
+    (problem,) = caught.value.problems
+    assert problem.path == ("cage", "shapes", 1)
+    assert problem.message.startswith("starts 150 mm inside object.shapes[0] (sphere1)")

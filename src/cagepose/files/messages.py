@@ -132,11 +132,32 @@ def _unknown_key(found: str, known: list[str]) -> str:
     return f"is no known key; {meant}known keys: {', '.join(known)}"
 
 
+OTHER_WORDS = {
+    "roller": "capsule",
+    "rod": "capsule",
+    "pin": "capsule",
+    "ball": "sphere",
+    "block": "box",
+    "wall": "box",
+    "cuboid": "box",
+    "hull": "convex",
+    "mesh": "convex",
+    "polyhedron": "convex",
+    "frustum": "cone",
+    "bore": "hole",
+    "rotation": "euler_zyx_deg",
+    "euler_deg": "euler_zyx_deg",
+}
+"""What people call shapes and the keys beside them, and what they are called here."""
+
+
 def _unknown_shape(found: str, known: list[str]) -> str:
     """For a key of a shape, most of which are the names of all shapes that there are."""
     others = [key for key in known if key not in KINDS]
     holders = [home.rpartition(".")[2] for home in _homes().get(found, []) if home.startswith("object.shapes[i].")]
     meant = f"it belongs within {_some_of(holders)}; " if holders else _close(found, known)
+    if found.lower() in OTHER_WORDS:
+        meant = f"did you mean {OTHER_WORDS[found.lower()]}? "
     return f"is no known shape; {meant}known shapes: {', '.join(KINDS)}; known keys beside them: {', '.join(others)}"
 
 

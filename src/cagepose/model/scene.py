@@ -298,11 +298,10 @@ def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: 
     gaps, n_points = placement.meetings.gaps, len(cage.names)
     for one, other in np.argwhere(gaps < -geometry.touch_m).tolist():
         part = key_path(("object", *held.part_paths[one][:2]))
-        path: tuple[Key, ...] = ("cage", "points", cage.names[other])
-        if other >= n_points:
-            path = ("cage", *cage.shape_paths[other - n_points][:2])
+        is_point = other < n_points
+        path: tuple[Key, ...] = ("points", cage.names[other]) if is_point else cage.shape_paths[other - n_points][:2]
         problems.add(
-            path,
+            ("cage", *path),
             f"starts {millimetres(-gaps[one, other])} inside {part} ({held.parts[one].name}); move it out or move the"
             " object's start pose",
         )
