@@ -238,6 +238,8 @@ def find_contacts(
                 for i in range(first, contacts.used[0]):
                     contacts.rows[i].group = -1
                     choose(contacts, i, False)
+    if len(geometry.held.parts) == 0:
+        return True
     return add_meetings(geometry, placement, friction, center, frame, touch_m, contacts)
 
 

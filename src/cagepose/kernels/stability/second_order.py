@@ -373,56 +373,29 @@ def stability(
     """Return the code of stability of a rest with the forces in ``contacts``; free twists without curvature are added
     to ``work.ways``.
 
-    Where a contact is at the seam of features that bend by different amounts, one way off it may be stable and another
-    not: unless both say the same, nothing is shown.
-    """
-    n_ways = work.ways.used
-    code = stability_with(
-        contacts, statuses, friction, locked, load, position, quaternion, frame, terms, size_m, False, work, system
-    )
-    if has_twins(contacts):
-        n_flat = work.ways.used
-        curved = stability_with(
-            contacts, statuses, friction, locked, load, position, quaternion, frame, terms, size_m, True, work, system
-        )
-        work.ways.used = n_flat if curved == code else n_ways
-        return code if curved == code else STABILITY_NOT_SHOWN
-    return code
-
-
-@kernel
-def stability_with(
-    contacts: ContactSet,
-    statuses: Rows[ContactStatus],
-    friction: float,
-    locked: PassiveSet,
-    load: PhaseLoad,
-    position: Vector,
-    quaternion: Quaternion,
-    frame: Frame,
-    terms: float,
-    size_m: float,
-    curved: bool,
-    work: StabilityWorkspace,
-    system: System,
-) -> int:
-    """Return the code of stability with the features that bend least, or, ``curved``, most; see `stability`.
-
     On the cone of twists that close no contact, the least curvature is an eigenvalue over the span of one of its faces,
     and its eigenvector lies in that face. So all sets of contacts that may open are held in turn. Where the load turns
-    round on what is held free, only positive curvature says something (5.29).
+    round on what is held free, only positive curvature says something (5.29). Where a contact is at the seam of
+    features that bend by different amounts, one way off it may be stable and another not: unless those that bend least
+    and those that bend most say the same, nothing is shown.
     """
     at_limit = find_held(contacts, statuses, friction, locked, work, system)
     n_held, n_ways = work.held.used, work.ways.used
     n_one_sided = list_one_sided(contacts, statuses, work, system)
-    code = MARGINAL if at_limit or n_one_sided < 0 else STABLE_REST
-    write_curvature(contacts, load, position, quaternion, frame, curved, work.curvature)
-    flat = FLAT * max(frobenius_norm(work.curvature), terms / size_m)
-    for chosen in range(1 << max(n_one_sided, 0)):
+    code, flat = STABLE_REST, 0.0
+    for curved in range(2 if has_twins(contacts) else 1):
+        told, work.ways.used = code, n_ways
+        code = MARGINAL if at_limit or n_one_sided < 0 else STABLE_REST
+        write_curvature(contacts, load, position, quaternion, frame, curved == 1, work.curvature)
+        flat = FLAT * max(frobenius_norm(work.curvature), terms / size_m)
+        for chosen in range(1 << max(n_one_sided, 0)):
+            work.held.used = n_held
+            if hold_some(contacts, n_one_sided, chosen, work):
+                code = max(code, least_curvature(contacts, n_one_sided, flat, work))
         work.held.used = n_held
-        if hold_some(contacts, n_one_sided, chosen, work):
-            code = max(code, least_curvature(contacts, n_one_sided, flat, work))
-    work.held.used = n_held
+        if curved == 1 and code != told:
+            work.ways.used = n_ways
+            return STABILITY_NOT_SHOWN
     if code != STABLE_REST and has_circulation(load):
         write_circulation(load, position, quaternion, frame, work.curvature)
         n_free = write_complement(work.held, work.free)
