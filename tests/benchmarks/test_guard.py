@@ -38,7 +38,7 @@ def note(frame, event, argument):
 sys.setprofile(note)
 run(scene, "stepwise")
 sys.setprofile(None)
-print(calls["place_object"], calls["turn_entry"], calls["below_face"], calls["steepest_contact"])
+print(calls["place_boxes"], calls["turn_entry"], calls["below_face"], calls["steepest_contact"])
 """
 
 

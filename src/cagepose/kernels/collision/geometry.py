@@ -136,27 +136,41 @@ def box_gap(point_box: Vector, half_size: Vector) -> float:
     return max(abs(point_box[0]) - half_size[0], abs(point_box[1]) - half_size[1], abs(point_box[2]) - half_size[2])
 
 
-@entry
-def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, placement: Placement) -> None:
-    """Fill ``placement`` for the object at the given pose."""
+@kernel
+def place_boxes(
+    half_sizes: FloatArray,
+    middles: FloatArray,
+    turns: FloatArray,
+    points_world: FloatArray,
+    position: Vector,
+    quaternion: Quaternion,
+    box_positions: FloatArray,
+    box_rotations: FloatArray,
+    points: FloatArray,
+    points_boxes: FloatArray,
+    gaps_boxes: FloatArray,
+    depths: FloatArray,
+) -> None:
+    """Place boxes at a pose of the object: the first four arguments are those of `Geometry`, the last six of
+    `Placement`. Passing either as a whole takes as long as placing a few points.
+    """
     heed_interrupt()
     rotation = matrix_from_quaternion(quaternion)
-    n_points = len(geometry.points_world)
-    points, depths = placement.points_object, placement.depths
+    n_points = len(points_world)
     for point in range(n_points):
         depths[point] = -np.inf
-        seen = transposed_times(rotation, minus(row(geometry.points_world, point), position))
+        seen = transposed_times(rotation, minus(row(points_world, point), position))
         points[0, point], points[1, point], points[2, point] = seen
-    for box in range(len(geometry.half_sizes)):
-        half_size, middle = row(geometry.half_sizes, box), row(geometry.box_positions, box)
-        axes = matrix(geometry.box_rotations, box)
+    for box in range(len(half_sizes)):
+        half_size, middle = row(half_sizes, box), row(middles, box)
+        axes = matrix(turns, box)
         world = plus(position, times(rotation, middle))
         for i in range(3):
-            placement.box_positions[box, i] = world[i]
+            box_positions[box, i] = world[i]
             turned = transposed_times(axes, rotation[i])
             for k in range(3):
-                placement.box_rotations[box, i, k] = turned[k]
-        points_box, gaps = placement.points_box[box], placement.gaps[box]
+                box_rotations[box, i, k] = turned[k]
+        points_box, gaps = points_boxes[box], gaps_boxes[box]
         is_aligned = axes[0][0] == 1.0 and axes[1][1] == 1.0 and axes[2][2] == 1.0
         if is_aligned:  # most boxes, at a third of the cost
             for point in range(n_points):
@@ -171,6 +185,25 @@ def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, p
                 points_box[0, point], points_box[1, point], points_box[2, point] = x, y, z
                 gaps[point] = box_gap((x, y, z), half_size)
                 depths[point] = max(depths[point], -gaps[point])
+
+
+@entry
+def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, placement: Placement) -> None:
+    """Fill ``placement`` for the object at the given pose."""
+    place_boxes(
+        geometry.half_sizes,
+        geometry.box_positions,
+        geometry.box_rotations,
+        geometry.points_world,
+        position,
+        quaternion,
+        placement.box_positions,
+        placement.box_rotations,
+        placement.points_object,
+        placement.points_box,
+        placement.gaps,
+        placement.depths,
+    )
     if len(geometry.held.parts) > 0:
         place_body(geometry.held, position, quaternion, placement.body)
         find_meetings(
@@ -178,7 +211,7 @@ def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, p
             placement.body,
             geometry.cage,
             geometry.n_own_boxes,
-            n_points,
+            len(geometry.points_world),
             geometry.touch_m,
             placement.meetings,
         )
