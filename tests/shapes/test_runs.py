@@ -51,7 +51,7 @@ def imbalance(scene: Scene, result: Run) -> float:
 
 def test_nothing_goes_deep_or_up_and_rests_are_balanced(cases, say):
     rng, verdicts = np.random.default_rng(30), dict.fromkeys(sorted(VERDICTS), 0)
-    n_scenes, deepest, highest, least_balanced = cases(40, 300), 0.0, 0.0, 0.0
+    n_scenes, deepest, highest, least_balanced = cases(40, 200), 0.0, 0.0, 0.0
     for number in range(n_scenes):
         scene = scene_of(*random_problem(rng))
         result = run(scene, method="quasistatic")
