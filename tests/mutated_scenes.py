@@ -7,9 +7,11 @@ from collections.abc import Callable
 from random import Random
 from typing import NamedTuple
 
-from our_scenes import OF_BOXES_AND_POINTS
+from our_scenes import OF_BOXES_AND_POINTS, SCENES
 
-TEXTS = [path.read_text(encoding="utf-8") for path in OF_BOXES_AND_POINTS]  # as many as before: seeds stay scenes
+TEXTS = [path.read_text(encoding="utf-8") for path in OF_BOXES_AND_POINTS]
+SHAPED = [path.read_text(encoding="utf-8") for path in SCENES if path not in OF_BOXES_AND_POINTS]
+"""Apart, so that seeds of the others keep their scenes."""
 LINES = sorted({line for text in TEXTS for line in text.splitlines()})
 COMMANDS = [
     *[("run",)] * 8,
@@ -65,10 +67,10 @@ class Mutant(NamedTuple):
     command: tuple[str, ...]
 
 
-def mutant(seed: int) -> Mutant:
+def mutant(seed: int, texts: list[str] = TEXTS) -> Mutant:
     """Return the spoiled scene of a seed."""
     dice = Random(seed)
-    text = dice.choice(TEXTS)
+    text = dice.choice(texts)
     for _ in range(dice.choice([1, 1, 2, 3, 4])):
         text = dice.choice(MISTAKES)(text, dice)
     return Mutant(text, dice.choice(COMMANDS))

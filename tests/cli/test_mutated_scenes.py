@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from cagepose.cli.app import BUG, INTERRUPTED, main
-from mutated_scenes import Mutant, mutant
+from mutated_scenes import SHAPED, TEXTS, Mutant, mutant
 
 LONGEST_S = 5.0
 """On one of two cores that others share; nearly all take some milliseconds."""
@@ -44,17 +44,26 @@ def ends(case: Mutant, path: Path) -> tuple[int, float, str]:
     return code, time.perf_counter() - began, err.getvalue()
 
 
+@pytest.mark.parametrize(
+    ("texts", "few", "many", "slow"), [(TEXTS, 150, 20_000, KNOWN_SLOW), (SHAPED, 60, 2000, set())]
+)
 def test_mutated_scenes_end_soon_and_by_name(
-    tmp_path: Path, cases: Callable[[int, int], int], say: Callable[[str], None]
+    texts: list[str],
+    few: int,
+    many: int,
+    slow: set[int],
+    tmp_path: Path,
+    cases: Callable[[int, int], int],
+    say: Callable[[str], None],
 ) -> None:
     codes, slowest, wrong = Counter[int](), (0.0, -1), list[str]()
-    n = cases(150, 20_000)
+    n = cases(few, many)
     for seed in range(n):
-        case = mutant(seed)
+        case = mutant(seed, texts)
         code, took_s, err = ends(case, tmp_path / "scene.yaml")
         codes[code] += 1
         slowest = max(slowest, (took_s, seed))
-        if seed in KNOWN_SLOW and code in (1, INTERRUPTED):
+        if seed in slow and code in (1, INTERRUPTED):
             continue
         if code not in (0, 1, 2) or took_s > LONGEST_S:
             wrong.append(f"mutant {seed} ({' '.join(case.command)}): exit code {code}, {took_s:.1f} s {err[-300:]}")

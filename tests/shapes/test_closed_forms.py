@@ -225,7 +225,7 @@ def test_a_ball_rolls_along_a_groove_while_friction_carries(sideways: float, hei
     )
     scene = Scene(ball, Cage(shapes=plates), [Load("weight", gravity=DOWN)], friction_coefficient=2.0)
     found = run(scene).phases[0].proof.stability
-    assert found in (("stable", "marginal") if is_stable else ("unstable", "marginal"))
+    assert found in (("stable", "marginal") if is_stable else ("unstable",))
 
 
 @pytest.mark.parametrize("turned", [0.0, 0.5])

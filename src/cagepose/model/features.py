@@ -13,7 +13,7 @@ from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.hull import Hull, hull_of
 from cagepose.model.pose import Pose
-from cagepose.model.shapes import Rounded, Shape
+from cagepose.model.shapes import Convex, Rounded, Shape
 
 
 def has_features(part: Shape) -> bool:
@@ -30,7 +30,8 @@ def shapes_of(parts: Iterable[Box | Shape | FloatArray]) -> Shapes:
         elif isinstance(part, Box):
             made.add(hull_of(part.corners_object()), Pose(), 0.0)
         elif isinstance(part, Rounded):
-            made.add(hull_of(part.core()), part.pose_body_shape, part.radius_m)
+            hull = part.hull if isinstance(part, Convex) else hull_of(part.core())
+            made.add(hull, part.pose_body_shape, part.radius_m)
         else:
             raise TypeError(f"no features are known of a {part.kind}")
     return made.shapes()

@@ -7,6 +7,7 @@ what a straight line makes that turns about the shape's z axis (cylinder, cone, 
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -25,7 +26,7 @@ WITHIN = 1e-9
 
 
 @dataclass(frozen=True, init=False, eq=False)
-class Shape:
+class Shape(ABC):
     """What all shapes have.
 
     Attributes
@@ -49,28 +50,28 @@ class Shape:
         _set_field(self, "pose_body_shape", pose or Pose())
         _set_field(self, "name", name)
 
+    @abstractmethod
     def nodes_body(self) -> FloatArray:
         """Points that tell where the shape lies, in its body's frame, (n, 3), metres: the core's, the rims' centres."""
-        raise NotImplementedError
 
+    @abstractmethod
     def farthest_m(self, point_body: FloatArray) -> float:
         """Return the distance of the shape's farthest point from a point (3,) of its body's frame, metres."""
-        raise NotImplementedError
 
     def heights_m(self, directions_body: FloatArray) -> FloatArray:
         """Return how far the shape reaches along unit vectors (n, 3) of its body's frame, (n,), metres."""
         heights: FloatArray = (directions_body @ self.nodes_body().T).max(axis=1)
         return heights
 
+    @abstractmethod
     def holds(self, points_body: FloatArray) -> NDArray[np.bool_]:
         """Return which of some points (n, 3) of the body's frame lie in the shape, (n,); of the rounding of a hull,
         only what lies above its faces counts.
         """
-        raise NotImplementedError
 
+    @abstractmethod
     def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
         """Return how thick the shape is from side to side, metres, each with the path of the number that says so."""
-        raise NotImplementedError
 
     def renamed(self, name: str) -> Self:
         """Return the same shape with another name."""
@@ -85,9 +86,9 @@ class Rounded(Shape):
 
     radius_m: float
 
+    @abstractmethod
     def core(self) -> FloatArray:
         """The points in the shape's own frame, (n, 3), metres."""
-        raise NotImplementedError
 
     def nodes_body(self) -> FloatArray:
         return self.pose_body_shape.transform(self.core())
@@ -116,9 +117,9 @@ class Turned(Shape):
     """What a straight line makes that turns about the shape's z axis, with flat ends."""
 
     @property
+    @abstractmethod
     def rims(self) -> tuple[tuple[float, float], ...]:
         """Height z and radius of each end, from below, metres; a radius of zero is a tip."""
-        raise NotImplementedError
 
     def nodes_body(self) -> FloatArray:
         return self.pose_body_shape.transform(np.array([(0.0, 0.0, height) for height, _ in self.rims]))

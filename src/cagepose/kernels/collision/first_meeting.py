@@ -19,8 +19,6 @@ from cagepose.kernels.shapes.motion import Motion, velocity_at
 SAFE = 1.0 + 1e-9
 THIN = 0.1
 """Of the reach of a part: nothing may go deeper into it, or it could come out on the other side."""
-
-
 LEAVES = 1e-6
 """Of the fastest speed of a part: features that touch and move apart faster leave each other, and may meet again."""
 LEAST_SLACK = 1e-12

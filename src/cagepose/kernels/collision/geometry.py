@@ -187,9 +187,9 @@ def place_boxes(
                 depths[point] = max(depths[point], -gaps[point])
 
 
-@entry
-def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, placement: Placement) -> None:
-    """Fill ``placement`` for the object at the given pose."""
+@kernel
+def place_points(geometry: Geometry, position: Vector, quaternion: Quaternion, placement: Placement) -> None:
+    """Fill what ``placement`` has of boxes and points for the object at the given pose; so short that it is inlined."""
     place_boxes(
         geometry.half_sizes,
         geometry.box_positions,
@@ -204,6 +204,12 @@ def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, p
         placement.gaps,
         placement.depths,
     )
+
+
+@entry
+def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, placement: Placement) -> None:
+    """Fill ``placement`` for the object at the given pose."""
+    place_points(geometry, position, quaternion, placement)
     if len(geometry.held.parts) > 0:
         place_body(geometry.held, position, quaternion, placement.body)
         find_meetings(

@@ -25,7 +25,7 @@ from cagepose.kernels.collision.geometry import (
     empty_cage,
     empty_placement,
     is_clear_of,
-    place_boxes,
+    place_points,
 )
 from cagepose.kernels.contact.loads import PhaseLoad, arm_of
 from cagepose.kernels.native.kernel import entry, kernel
@@ -200,20 +200,7 @@ def phase_run(
     placement, touching, trace = work.placement, work.touching, work.trace
     rules = rules_of(of_size, start.friction.scene, start.size_m)
     pushes = is_push(actions)
-    place_boxes(
-        geometry.half_sizes,
-        geometry.box_positions,
-        geometry.box_rotations,
-        geometry.points_world,
-        position,
-        quaternion,
-        placement.box_positions,
-        placement.box_rotations,
-        placement.points_object,
-        placement.points_box,
-        placement.gaps,
-        placement.depths,
-    )
+    place_points(geometry, position, quaternion, placement)
     load = load_at(actions, position, quaternion)
     find_touching(geometry, placement, load, tolerances, touching)
     for count in range(step_limit):
@@ -234,20 +221,7 @@ def phase_run(
         write_step(trace.rows[count], step, position, quaternion)
         # Find the contacts there, and which of them the motion has reached.
         load = load_at(actions, position, quaternion)
-        place_boxes(
-            geometry.half_sizes,
-            geometry.box_positions,
-            geometry.box_rotations,
-            geometry.points_world,
-            position,
-            quaternion,
-            placement.box_positions,
-            placement.box_rotations,
-            placement.points_object,
-            placement.points_box,
-            placement.gaps,
-            placement.depths,
-        )
+        place_points(geometry, position, quaternion, placement)
         find_touching(geometry, placement, load, tolerances, touching)
         for point in range(len(geometry.points_world)):
             is_hit = touching.is_touching[point]
