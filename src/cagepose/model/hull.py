@@ -48,6 +48,16 @@ class Hull:
     normals: FloatArray
 
     @property
+    def has_sides(self) -> bool:
+        """Whether each face has sides that lead along it: not so of points some of which are 1e9 times as far away."""
+        for face, normal in zip(self.faces, self.normals, strict=True):
+            corners = self.vertices_m[list(face)]
+            out = np.cross(np.roll(corners, -1, axis=0) - corners, normal)
+            if len(face) < 3 or not (np.abs(out).max(axis=1) > 0.0).all():
+                return False
+        return True
+
+    @property
     def dimension(self) -> int:
         """3 for a volume, 2 for a polygon, 1 for a segment, 0 for a point."""
         return 3 if len(self.faces) > 2 else len(self.faces) or len(self.edges)

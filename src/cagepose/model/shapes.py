@@ -246,6 +246,8 @@ class Convex(Rounded):
             where = ("lie at one place", "lie on one line", "lie in one plane")[self.hull.dimension]
             found = "are a single point, which has" if len(vertices) == 1 else f"{where}, so they have"
             problems.add(("vertices",), f"{found} no volume; add a vertex elsewhere, or give the shape a radius")
+        elif not problems.problems and not self.hull.has_sides:
+            problems.add(("vertices",), "lie too far from each other beside how near others are; check the farthest")
         self._place(pose_body_shape, name, problems)
 
     @cached_property
