@@ -9,9 +9,10 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, vector_from
 from cagepose.kernels.collision.geometry import Geometry, Placement
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.advancement import approach, are_curved, first_curved_touch, surely_clear
 from cagepose.kernels.shapes.along_motion import ahead, can_touch, clear_step, first_touch, safe_step
 from cagepose.kernels.shapes.body import place_asked
-from cagepose.kernels.shapes.features import EDGE, VERTEX, Shapes
+from cagepose.kernels.shapes.features import EDGE, Shapes, is_end
 from cagepose.kernels.shapes.meeting import both_reach, meeting
 from cagepose.kernels.shapes.meetings import Meetings, balls_apart, slack_of
 from cagepose.kernels.shapes.motion import Motion, velocity_at
@@ -138,20 +139,28 @@ def earliest_touch(held: Shapes, one: int, cage: Shapes, other: int, motion: Mot
     for i in range(held.parts[one].first_face, held.parts[one].last):
         first = until
         for j in range(cage.parts[other].first, cage.parts[other].last):
-            if first <= latest or cage.features[j].kind != VERTEX:
+            if first <= latest or not is_end(cage.features[j]):
                 break
-            now = ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)
-            first = min(first, safe_step(now)) if now.value > 0.0 else 0.0
+            first = min(first, until_plane(held, i, cage, j, motion, until))
         latest = max(latest, first)
     for j in range(cage.parts[other].first_face, cage.parts[other].last):
         first = until
         for i in range(held.parts[one].first, held.parts[one].last):
-            if first <= latest or held.features[i].kind != VERTEX:
+            if first <= latest or not is_end(held.features[i]):
                 break
-            now = ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)
-            first = min(first, safe_step(now)) if now.value > 0.0 else 0.0
+            first = min(first, until_plane(held, i, cage, j, motion, until))
         latest = max(latest, first)
     return latest
+
+
+@kernel
+def until_plane(held: Shapes, i: int, cage: Shapes, j: int, motion: Motion, until: float) -> float:
+    """Return an amount before which an end of one part does not reach the plane of a face of the other."""
+    if are_curved(held, i, cage, j):
+        now = approach(held, i, cage, j, motion, 0.0)
+        return surely_clear(now, now.gap) if now.gap > 0.0 else 0.0
+    at = ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)
+    return safe_step(at) if at.value > 0.0 else 0.0
 
 
 @kernel
@@ -178,9 +187,14 @@ def first_of_features(
     """
     if not can_touch(held, i, cage, j):
         return math.inf, math.inf
-    if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
+    curved = are_curved(held, i, cage, j)
+    if curved:
+        now = approach(held, i, cage, j, motion, 0.0)
+        if now.gap > 0.0 and surely_clear(now, now.gap) >= until:
+            return math.inf, math.inf
+    elif safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
         return math.inf, math.inf
-    if clear_step(held, i, cage, j, motion, 0.0, moved) >= until:
+    elif clear_step(held, i, cage, j, motion, 0.0, moved) >= until:
         return math.inf, math.inf
     met = meeting(held, i, cage, j)
     touches = met.is_one and abs(met.gap) <= touch_m
@@ -197,5 +211,6 @@ def first_of_features(
         if held.features[i].kind == EDGE and cage.features[j].kind == EDGE:
             crossed = cross(vector_from(held.features[i].direction), vector_from(cage.features[j].direction))
             side = -math.copysign(1.0, dot(met.normal, crossed))
-    found = first_touch(held, i, cage, j, motion, until, level, side, exact, touch_m, moved)
-    return found, met.gap
+    if curved:
+        return first_curved_touch(held, i, cage, j, motion, until, level, exact, touch_m, moved), met.gap
+    return first_touch(held, i, cage, j, motion, until, level, side, exact, touch_m, moved), met.gap

@@ -14,9 +14,21 @@ from typing import NamedTuple
 
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes, write_feature, write_fence
+from cagepose.kernels.shapes.features import (
+    EDGE,
+    FACE,
+    RIM,
+    VERTEX,
+    Shapes,
+    beyond_fence,
+    is_bar,
+    is_end,
+    write_feature,
+    write_fence,
+)
 from cagepose.kernels.shapes.meeting import PARALLEL, both_reach, meeting
 from cagepose.kernels.shapes.motion import Motion, moved_point, turned, turned_by_amount, velocity_at
+from cagepose.kernels.shapes.rims import middle_of_arc, reach_of_arc
 
 EVALUATIONS = 400
 """Of F, for one pair of features. A contact that grazes may need them all: then it counts where the search has come, if
@@ -179,13 +191,15 @@ def between_segments(p: Vector, u: Vector, length: float, q: Vector, w: Vector, 
 
 @kernel
 def can_touch(a: Shapes, i: int, b: Shapes, j: int) -> bool:
-    """Whether features of these kinds can touch: faces and edges meet at vertices and crossings."""
+    """Whether features of these kinds can touch: faces and edges meet at vertices, rims and crossings."""
     one, other = a.features[i].kind, b.features[j].kind
     if one == FACE or other == FACE:
-        return one == VERTEX or other == VERTEX
+        return is_end(a.features[i]) or is_end(b.features[j])
     if one == EDGE and other == EDGE:
-        return True
-    return a.features[i].radius + b.features[j].radius > 0.0
+        return min(a.features[i].radius, b.features[j].radius) >= 0.0
+    if (one == EDGE or one == RIM) and (other == EDGE or other == RIM):
+        return is_bar(a.features[i]) or is_bar(b.features[j])
+    return a.features[i].radius + b.features[j].radius != 0.0
 
 
 @kernel
@@ -197,7 +211,7 @@ def are_sharp_edges(a: Shapes, i: int, b: Shapes, j: int) -> bool:
 
 @kernel
 def distance_from(shapes: Shapes, i: int, point: Vector) -> float:
-    """Return how far a point is from a feature's core as far as it reaches; of a face, or less."""
+    """Return how far a point is from a feature's core as far as it reaches; of a face or a rim, or less."""
     feature = shapes.features[i]
     seen, direction = minus(point, vector_from(feature.point)), vector_from(feature.direction)
     if feature.kind == EDGE:
@@ -206,8 +220,10 @@ def distance_from(shapes: Shapes, i: int, point: Vector) -> float:
     if feature.kind == FACE:
         beyond = 0.0
         for f in range(feature.first_fence, feature.last_fence):
-            beyond = max(beyond, dot(vector_from(shapes.fences[f].direction), seen) - shapes.fences[f].bound)
+            beyond = max(beyond, beyond_fence(shapes.fences[f], seen))
         return math.hypot(dot(direction, seen), beyond)
+    if feature.kind == RIM:
+        return max(0.0, norm(minus(point, middle_of_arc(feature))) - reach_of_arc(feature))
     return norm(seen)
 
 
@@ -249,11 +265,13 @@ def stay_parallel(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, span
 def place_moved(a: Shapes, i: int, motion: Motion, amount: float, moved: Shapes) -> None:
     """Write a feature as it is after an amount."""
     feature, so_far = a.features[i], turned_by_amount(motion, amount)
-    point = moved_point(motion, vector_from(feature.point), so_far)
-    write_feature(feature, point, turned(motion, vector_from(feature.direction), so_far), moved.features[i])
+    point, toward = moved_point(motion, vector_from(feature.point), so_far), vector_from(feature.toward)
+    if feature.kind == RIM:
+        toward = turned(motion, toward, so_far)
+    direction = turned(motion, vector_from(feature.direction), so_far)
+    write_feature(feature, point, direction, toward, moved.features[i])
     for f in range(feature.first_fence, feature.last_fence):
-        fence = turned(motion, vector_from(a.fences[f].direction), so_far)
-        write_fence(fence, a.fences[f].bound, moved.fences[f])
+        write_fence(a.fences[f], turned(motion, vector_from(a.fences[f].direction), so_far), moved.fences[f])
 
 
 @kernel

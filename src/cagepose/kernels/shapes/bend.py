@@ -3,26 +3,29 @@
 With h_A and h_B the support functions of two convex bodies, their gap is the greatest over all unit normals n of
 -h_A(n) - h_B(-n). So its second derivative follows from how the places of contact move when the normal turns: by C_A
 and C_B, the radii of curvature of the two, across the normal. A vertex has zero, a plane infinite ones, an edge one of
-each, and a radius adds itself. With v the velocity of the object's material at the contact, and m = n x w for its
-angular velocity w, in the pose (x + t, exp(w) R),
+each, a rim of radius r about the axis c has r / |n x c| along its tangent, and a radius adds itself. With v the velocity
+of the object's material at the contact, and m = n x w for its angular velocity w, in the pose (x + t, exp(w) R),
 
     gap'' = -n . (w x (w x a)) + v K v + 2 v L m - m P m,
     K = 1/(C_A + C_B),  L = K C_A,  P = C_A K C_B,
 
-where a is the arm from the reference point. All three have limits where radii are infinite. What of the gap is open
-counts to C_B. A face of the object over a point of the cage has K = 0, L = 1 across the normal and P = 0: what a pair
-of features has beyond that is its bend.
+where a is the arm from the reference point. All three have limits where radii are infinite: where C_A is finite
+P = C_A - C_A K C_A, where C_B is L = 1 - K C_B and P = C_B - C_B K C_B. What of the gap is open counts to C_B. A face of
+the object over a point of the cage has K = 0, L = 1 across the normal and P = 0: what a pair of features has beyond that
+is its bend.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, NamedTuple
 
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, minus, plus, scaled, times, vector_from
+from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, minus, norm, plus, scaled, times, vector_from
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes
+from cagepose.kernels.shapes.features import EDGE, FACE, RIM, Shapes
 from cagepose.kernels.shapes.meeting import Meeting
+from cagepose.kernels.shapes.rims import outward_at
 
 NOTHING: Matrix = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
@@ -71,6 +74,11 @@ def added(a: Matrix, b: Matrix) -> Matrix:
 
 
 @kernel
+def scaled_matrix(matrix: Matrix, factor: float) -> Matrix:
+    return (scaled(matrix[0], factor), scaled(matrix[1], factor), scaled(matrix[2], factor))
+
+
+@kernel
 def across(normal: Vector, factor: float) -> Matrix:
     """Return factor times the identity across a unit normal."""
     n = outer(normal, normal, -factor)
@@ -81,49 +89,103 @@ def across(normal: Vector, factor: float) -> Matrix:
     )
 
 
+class Side(NamedTuple):
+    """Radii of curvature of one body across the normal: ``radius`` in all directions, ``arc`` more along the unit vector
+    ``tangent``, and none that is finite along ``line``, if it is an edge.
+    """
+
+    radius: float
+    arc: float
+    tangent: Vector
+    is_edge: bool
+    line: Vector
+
+
 @kernel
-def of_crossing_edges(u: Vector, w: Vector, normal: Vector, radius: float, distance: float) -> Curvatures:
-    """Return those of edges along u and w, so far apart."""
-    cosine = dot(u, w)
-    dual = scaled(minus(u, scaled(w, cosine)), 1.0 / (1.0 - cosine * cosine))  # dual . u = 1, dual . w = 0
+def side_at(shapes: Shapes, i: int, normal: Vector, core: Vector) -> Side:
+    """Return the radii of curvature of a feature that is no face, with this outward normal at a point of its core."""
+    feature, none = shapes.features[i], (0.0, 0.0, 0.0)
+    if feature.kind == EDGE:
+        u, taper = vector_from(feature.direction), feature.taper
+        if taper == 0.0:
+            return Side(feature.radius, 0.0, none, True, u)
+        square = 1.0 - taper * taper
+        radius = feature.radius - taper * dot(u, minus(core, vector_from(feature.point))) / square
+        return Side(radius, 0.0, none, True, scaled(minus(u, scaled(normal, taper)), 1.0 / math.sqrt(square)))
+    if feature.kind == RIM:
+        tangent = cross(vector_from(feature.direction), outward_at(feature, core))
+        across = norm(cross(vector_from(feature.direction), normal))
+        return Side(feature.radius, feature.length / across, tangent, False, none)
+    return Side(feature.radius, 0.0, none, False, none)
+
+
+@kernel
+def of_crossing_edges(one: Side, other: Side, normal: Vector, gap: float) -> Curvatures:
+    """Return those of edges that cross."""
+    u, radius = one.line, one.radius
+    cosine, distance = dot(u, other.line), gap + one.radius + other.radius
+    dual = scaled(minus(u, scaled(other.line, cosine)), 1.0 / (1.0 - cosine * cosine))  # dual . u = 1, dual . line = 0
     parallel = added(across(normal, radius), outer(u, u, distance * dot(dual, dual)))
     parallel = added(parallel, added(outer(dual, u, -radius), outer(u, dual, -radius)))
     return Curvatures(NOTHING, outer(dual, u, 1.0), parallel)
 
 
 @kernel
-def of_round_ones(a: Shapes, i: int, b: Shapes, j: int, normal: Vector, distance: float) -> Curvatures:
-    """Return those of a vertex and an edge, or of two vertices, with a radius, so far apart."""
-    radius = a.features[i].radius
-    rest = distance - radius
-    along = (0.0, 0.0, 0.0)
-    if a.features[i].kind == EDGE:
-        along = vector_from(a.features[i].direction)
-    elif b.features[j].kind == EDGE:
-        along = vector_from(b.features[j].direction)
-    share = radius / distance
-    relative = added(across(normal, 1.0 / distance), outer(along, along, -1.0 / distance))
-    shared = added(across(normal, share), outer(along, along, -share))
-    parallel = added(across(normal, share * rest), outer(along, along, -share * rest))
-    if a.features[i].kind == EDGE:
-        return Curvatures(relative, added(shared, outer(along, along, 1.0)), added(parallel, outer(along, along, rest)))
-    return Curvatures(relative, shared, added(parallel, outer(along, along, radius)))
+def finite(side: Side, normal: Vector) -> Matrix:
+    """Return the radii of curvature that are finite, as a matrix across the normal."""
+    return added(across(normal, side.radius), outer(side.tangent, side.tangent, side.arc))
+
+
+@kernel
+def inverse_across(matrix: Matrix, normal: Vector) -> Matrix:
+    """Return the inverse of a symmetric matrix across a unit normal: its adjugate there over its determinant."""
+    trace = matrix[0][0] + matrix[1][1] + matrix[2][2]
+    squares = dot(matrix[0], matrix[0]) + dot(matrix[1], matrix[1]) + dot(matrix[2], matrix[2])
+    factor = 2.0 / (trace * trace - squares)
+    whole = across(normal, trace * factor)
+    return added(whole, scaled_matrix(matrix, -factor))
+
+
+@kernel
+def product(a: Matrix, b: Matrix) -> Matrix:
+    """Return a b, of a symmetric b."""
+    return (times(b, a[0]), times(b, a[1]), times(b, a[2]))
+
+
+@kernel
+def of_finite(one: Side, other: Side, normal: Vector, gap: float) -> Curvatures:
+    """Return those of two features, one of them an edge at most: what the one without an edge moves by is finite."""
+    c_one, c_other = finite(one, normal), added(finite(other, normal), across(normal, gap))
+    both = added(c_one, c_other)
+    if one.is_edge or other.is_edge:
+        free = cross(normal, one.line if one.is_edge else other.line)
+        relative = outer(free, free, 1.0 / dot(free, times(both, free)))
+    else:
+        relative = inverse_across(both, normal)
+    moved = c_other if one.is_edge else c_one
+    parallel = added(moved, scaled_matrix(product(product(moved, relative), moved), -1.0))
+    share = product(relative, moved)
+    if one.is_edge:
+        share = added(across(normal, 1.0), scaled_matrix(share, -1.0))
+    return Curvatures(relative, share, parallel)
 
 
 @kernel
 def curvatures(a: Shapes, i: int, b: Shapes, j: int, met: Meeting) -> Curvatures:
     """Return K, L and P where feature i of the object and feature j of the cage meet."""
-    one, other = a.features[i].kind, b.features[j].kind
-    radius = a.features[i].radius
-    if one == VERTEX and other == FACE:
-        return Curvatures(NOTHING, NOTHING, across(met.normal, radius))
-    if one == FACE and other == VERTEX:
-        return Curvatures(NOTHING, across(met.normal, 1.0), across(met.normal, met.gap + b.features[j].radius))
-    distance = met.gap + radius + b.features[j].radius
-    if one == EDGE and other == EDGE:
-        u, w = vector_from(a.features[i].direction), vector_from(b.features[j].direction)
-        return of_crossing_edges(u, w, met.normal, radius, distance)
-    return of_round_ones(a, i, b, j, met.normal, distance)
+    one, other, normal, back = a.features[i], b.features[j], met.normal, scaled(met.normal, -1.0)
+    there = plus(met.place, scaled(normal, met.gap + other.radius))
+    core = minus(met.place, scaled(normal, one.radius))
+    if other.kind == FACE:
+        return Curvatures(NOTHING, NOTHING, finite(side_at(a, i, normal, core), normal))
+    side = side_at(b, j, back, there)
+    if one.kind == FACE:
+        parallel = added(finite(side, normal), across(normal, met.gap))
+        return Curvatures(NOTHING, across(normal, 1.0), parallel)
+    own = side_at(a, i, normal, core)
+    if own.is_edge and side.is_edge:
+        return of_crossing_edges(own, side, normal, met.gap)
+    return of_finite(own, side, normal, met.gap)
 
 
 @kernel

@@ -1,39 +1,51 @@
-"""Parts as features: vertices, edges and faces of a convex core, rounded by a radius.
+"""Parts as features: vertices, edges, faces and round rims of a core, rounded by a radius.
 
 A sphere is one vertex, a capsule two and the edge between them, a box or any hull all three kinds; the radius is added
-on all sides. Of each feature is known where its outward normals are, and where it ends: by half-spaces, its fences.
+on all sides. A cylinder is an edge with a radius, two round faces and two rims, and on a cone the radius of the edge
+changes along it. Of each feature is known where its outward normals are, and where it ends: by its fences.
+
+A hole is a bar of negative radius: what lies a radius against the outward normal from its axis is its wall.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
-from cagepose.kernels.algebra.vector import Matrix, Vector, plus, times, vector_from
+from cagepose.kernels.algebra.vector import Matrix, Vector, dot, minus, norm, plus, scaled, times, vector_from
 from cagepose.kernels.native.kernel import kernel
 
-VERTEX, EDGE, FACE = 0, 1, 2
-"""Kinds of features."""
+VERTEX, EDGE, FACE, RIM = 0, 1, 2, 3
+"""Kinds of features. A round rim is a row of arcs, each a feature, with a vertex at each of its ends: as a vertex it
+touches what lies flat on it."""
+INSIDE, OUTSIDE = 1.0, -1.0
+"""Sides of a round fence."""
 
 
 class Feature:
-    """A vertex, an edge or a face, in the frame of its body or in the world; a record.
+    """A vertex, an edge, a face or an arc of a rim, in the frame of its body or in the world; a record.
 
     Attributes
     ----------
     kind
         See above.
     point
-        The vertex, one end of the edge, or a point of the face, of the core, metres.
+        The vertex, one end of the edge, a point of the face, or the centre of the rim, of the core, metres.
     direction
-        Unit vector along an edge, outward normal of a face.
+        Unit vector along an edge, outward normal of a face; of a rim that of the flat end that it bounds.
+    toward
+        Of a rim: unit vector that its arc's middle has as the outward normal along the flat end.
     length
-        Of an edge, metres.
+        Of an edge, metres; radius of a rim, below zero that of a hole.
     radius
-        Added on all sides, metres.
+        Added on all sides, metres; below zero: of a hole.
+    taper
+        Outward normals of an edge make this sine with the plane across it: its radius shrinks by as much for each metre.
+        Of a rim: that of the round side that it bounds, as seen along its own direction.
     first_fence, last_fence
         Its fences, the last one not included.
     """
@@ -41,21 +53,29 @@ class Feature:
     kind: int
     point: Annotated[FloatArray, 3]
     direction: Annotated[FloatArray, 3]
+    toward: Annotated[FloatArray, 3]
     length: float
     radius: float
+    taper: float
     first_fence: int
     last_fence: int
 
 
 class Fence:
-    """A half-space x . direction <= bound; a record.
+    """A half-space x . direction <= bound, or what is inside or outside of a circle; a record.
 
-    Those of a vertex and of an edge hold its outward normals x (the bound is zero), those of a face its points x, as
-    seen from `Feature.point`.
+    Those of a vertex and of an edge hold its outward normals x, those of a face its points x, as seen from
+    `Feature.point`. Around a circle, ``direction`` leads to its middle, metres, and ``bound`` is its radius.
+
+    Attributes
+    ----------
+    circle
+        INSIDE or OUTSIDE of one; zero: a half-space.
     """
 
     direction: Annotated[FloatArray, 3]
     bound: float
+    circle: float
 
 
 class ShapePart:
@@ -64,7 +84,7 @@ class ShapePart:
     Attributes
     ----------
     first, first_face, last
-        Its features: vertices and edges, then faces, the last one not included.
+        Its features: vertices, rims, edges, then faces, the last one not included.
     middle, reach
         A ball around it, metres.
     least_length
@@ -97,30 +117,72 @@ def copied(shapes: Shapes) -> Shapes:
 
 
 @kernel
+def out_of_fence(fence: Fence, x: Vector) -> Vector:
+    """Return the unit vector across a fence, out of what it holds."""
+    direction = vector_from(fence.direction)
+    if fence.circle == 0.0:
+        return direction
+    seen = minus(x, direction)
+    return scaled(seen, fence.circle / norm(seen))
+
+
+@kernel
+def is_bar(feature: Feature) -> bool:
+    """Whether an edge or a rim is none of a hole."""
+    return feature.length > 0.0 and feature.radius >= 0.0
+
+
+@kernel
+def is_end(feature: Feature) -> bool:
+    """Whether a part may end in a feature, along some direction: it is a vertex, or the rim of a bar."""
+    return feature.kind == VERTEX or (feature.kind == RIM and is_bar(feature))
+
+
+@kernel
+def height_of_end(feature: Feature, origin: Vector, normal: Vector) -> float:
+    """Return how far a vertex, or the rim that an arc belongs to, leads along a unit normal, as seen from a place."""
+    height = dot(minus(vector_from(feature.point), origin), normal) + feature.radius
+    if feature.kind == RIM:
+        along = dot(vector_from(feature.direction), normal)
+        height += feature.length * math.sqrt(max(0.0, 1.0 - along * along))
+    return height
+
+
+@kernel
 def place_feature(shapes: Shapes, i: int, position: Vector, rotation: Matrix, placed: Shapes) -> None:
     """Write one feature as it is in the world with its body at a pose."""
     feature = shapes.features[i]
     point = plus(position, times(rotation, vector_from(feature.point)))
-    write_feature(feature, point, times(rotation, vector_from(feature.direction)), placed.features[i])
+    direction = times(rotation, vector_from(feature.direction))
+    write_feature(feature, point, direction, times(rotation, vector_from(feature.toward)), placed.features[i])
     for f in range(feature.first_fence, feature.last_fence):
-        fence = times(rotation, vector_from(shapes.fences[f].direction))
-        write_fence(fence, shapes.fences[f].bound, placed.fences[f])
+        write_fence(shapes.fences[f], times(rotation, vector_from(shapes.fences[f].direction)), placed.fences[f])
 
 
 @kernel
-def write_feature(feature: Feature, point: Vector, direction: Vector, out: Feature) -> None:
-    """Write a feature with another place and direction."""
-    out.kind, out.length, out.radius = feature.kind, feature.length, feature.radius
+def write_feature(feature: Feature, point: Vector, direction: Vector, toward: Vector, out: Feature) -> None:
+    """Write a feature with another place and other directions."""
+    out.kind, out.length, out.radius, out.taper = feature.kind, feature.length, feature.radius, feature.taper
     out.first_fence, out.last_fence = feature.first_fence, feature.last_fence
     for k in range(3):
-        out.point[k], out.direction[k] = point[k], direction[k]
+        out.point[k], out.direction[k], out.toward[k] = point[k], direction[k], toward[k]
 
 
 @kernel
-def write_fence(direction: Vector, bound: float, out: Fence) -> None:
-    out.bound = bound
+def write_fence(fence: Fence, direction: Vector, out: Fence) -> None:
+    """Write a fence with another direction."""
+    out.bound, out.circle = fence.bound, fence.circle
     for k in range(3):
         out.direction[k] = direction[k]
+
+
+@kernel
+def beyond_fence(fence: Fence, x: Vector) -> float:
+    """Return how far a normal or a point is beyond a fence; below zero: within it."""
+    direction = vector_from(fence.direction)
+    if fence.circle == 0.0:
+        return dot(direction, x) - fence.bound
+    return fence.circle * (norm(minus(x, direction)) - fence.bound)
 
 
 @kernel

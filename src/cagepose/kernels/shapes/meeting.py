@@ -12,7 +12,15 @@ from typing import NamedTuple
 
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes
+from cagepose.kernels.shapes.features import EDGE, FACE, RIM, VERTEX, Feature, Shapes, beyond_fence
+from cagepose.kernels.shapes.rims import (
+    beyond_normals,
+    foot_on,
+    is_on_arc,
+    nearest_on_edge,
+    nearest_on_rim,
+    outward_at,
+)
 
 PARALLEL = 1e-7
 """Sine: edges that make a smaller angle lie side by side, and meet at their ends."""
@@ -48,11 +56,16 @@ def apart() -> Meeting:
 
 
 @kernel
-def farthest_beyond(shapes: Shapes, i: int, normal: Vector) -> float:
-    """Return how far a direction is beyond the outward normals of a vertex or an edge, a sine; -inf: all are."""
+def farthest_beyond(shapes: Shapes, i: int, normal: Vector, core: Vector) -> float:
+    """Return how far a direction is beyond the outward normals of a vertex, an edge or, at a point of its core, a rim, a
+    sine; -inf: all are.
+    """
+    feature = shapes.features[i]
+    if feature.kind == RIM:
+        return beyond_normals(feature, core, normal)
     farthest = -math.inf
-    for f in range(shapes.features[i].first_fence, shapes.features[i].last_fence):
-        farthest = max(farthest, dot(vector_from(shapes.fences[f].direction), normal))
+    for f in range(feature.first_fence, feature.last_fence):
+        farthest = max(farthest, beyond_fence(shapes.fences[f], normal))
     return farthest
 
 
@@ -63,14 +76,16 @@ def reaches(shapes: Shapes, i: int, normal: Vector, core: Vector, slack: float, 
     seen = minus(core, vector_from(feature.point))
     if feature.kind == FACE:
         for f in range(feature.first_fence, feature.last_fence):
-            if dot(vector_from(shapes.fences[f].direction), seen) > shapes.fences[f].bound + slack_m:
+            if beyond_fence(shapes.fences[f], seen) > slack_m:
                 return False
         return True
     if feature.kind == EDGE:
-        along = dot(vector_from(feature.direction), seen)
+        along = dot(vector_from(feature.direction), seen) / (1.0 - feature.taper * feature.taper)
         if along < -slack_m or along > feature.length + slack_m:
             return False
-    return farthest_beyond(shapes, i, normal) <= slack
+    if feature.kind == RIM and not is_on_arc(feature, core, slack_m):
+        return False
+    return farthest_beyond(shapes, i, normal, core) <= slack
 
 
 @kernel
@@ -102,66 +117,143 @@ def face_and_vertex(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
 
 
 @kernel
-def outward_side(shapes: Shapes, i: int, normal: Vector) -> float:
-    """Return how much farther beyond its outward normals an edge has the opposite of a direction; zero: an edge without
-    faces has all directions.
+def outward_side(shapes: Shapes, i: int, normal: Vector, core: Vector) -> float:
+    """Return how much farther beyond its outward normals a feature has the opposite of a direction; zero: one without
+    fences has all directions.
     """
     feature = shapes.features[i]
-    if feature.first_fence == feature.last_fence:
+    if feature.kind != RIM and feature.first_fence == feature.last_fence:
         return 0.0
-    return farthest_beyond(shapes, i, scaled(normal, -1.0)) - farthest_beyond(shapes, i, normal)
+    return farthest_beyond(shapes, i, scaled(normal, -1.0), core) - farthest_beyond(shapes, i, normal, core)
 
 
 @kernel
 def edge_and_edge(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
     """Two edges that cross."""
-    u, w = vector_from(a.features[i].direction), vector_from(b.features[j].direction)
+    one, other = a.features[i], b.features[j]
+    u, w = vector_from(one.direction), vector_from(other.direction)
     crossed = cross(u, w)
     sine = norm(crossed)
-    if sine < PARALLEL:
+    if sine < PARALLEL or one.radius < 0.0 or other.radius < 0.0:
         return apart()
-    start = minus(vector_from(b.features[j].point), vector_from(a.features[i].point))
+    start = minus(vector_from(other.point), vector_from(one.point))
+    if one.taper != 0.0 or other.taper != 0.0:
+        return tapered_edges(one, other, start, crossed, sine)
     s = dot(cross(start, w), crossed) / (sine * sine)  # start + t w - s u is along the normal
     normal = scaled(crossed, 1.0 / sine)
     distance = dot(start, normal)
-    radius, others = a.features[i].radius, b.features[j].radius
+    core = plus(vector_from(one.point), scaled(u, s))
     turned = distance < 0.0
-    if radius + others < SHARP * min(
-        a.features[i].length, b.features[j].length
-    ):  # they may be a little into each other
-        out = outward_side(a, i, normal) - outward_side(b, j, normal)
-        turned = out < 0.0 if abs(out) > PARALLEL else turned
+    if one.radius + other.radius < SHARP * min(one.length, other.length):  # they may be a little into each other
+        turned = is_turned(a, i, core, b, j, core, normal, turned)
     if turned:
         normal, distance = scaled(normal, -1.0), -distance
-    place = plus(plus(vector_from(a.features[i].point), scaled(u, s)), scaled(normal, radius))
-    return Meeting(True, distance - radius - others, normal, place)
+    return Meeting(True, distance - one.radius - other.radius, normal, plus(core, scaled(normal, one.radius)))
+
+
+@kernel
+def is_turned(
+    a: Shapes, i: int, core: Vector, b: Shapes, j: int, other_core: Vector, normal: Vector, otherwise: bool
+) -> bool:
+    """Whether of two normals across sharp features the opposite one is out of the object, if their fences tell."""
+    out = outward_side(a, i, normal, core) - outward_side(b, j, normal, other_core)
+    return out < 0.0 if abs(out) > PARALLEL else otherwise
+
+
+@kernel
+def tapered_edges(one: Feature, other: Feature, start: Vector, crossed: Vector, sine: float) -> Meeting:
+    """Two edges that cross, whose radii change along them: with tapers s and s' the normal has n . u = s, n . w = -s'."""
+    u, w = vector_from(one.direction), vector_from(other.direction)
+    cosine, square = dot(u, w), sine * sine
+    along, other_along = (one.taper + other.taper * cosine) / square, (-other.taper - one.taper * cosine) / square
+    beyond = 1.0 - along * one.taper + other_along * other.taper
+    if beyond <= 0.0:
+        return apart()
+    across = math.copysign(math.sqrt(beyond), dot(start, crossed)) / sine
+    normal = plus(plus(scaled(u, along), scaled(w, other_along)), scaled(crossed, across))
+    gap = dot(normal, start) - one.radius - other.radius
+    distance = dot(start, crossed) / (across * square)
+    s = dot(cross(minus(start, scaled(normal, distance)), w), crossed) / square
+    core = plus(vector_from(one.point), scaled(u, s))
+    return Meeting(True, gap, normal, plus(core, scaled(normal, one.radius - one.taper * s)))
 
 
 @kernel
 def round_ones(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
     """A vertex and an edge, or two vertices, with a radius: their distance."""
-    radius, others = a.features[i].radius, b.features[j].radius
-    if radius + others == 0.0:
+    one, other = a.features[i], b.features[j]
+    if one.radius + other.radius == 0.0:
         return apart()
-    one, other = vector_from(a.features[i].point), vector_from(b.features[j].point)
-    if a.features[i].kind == EDGE:
-        along = vector_from(a.features[i].direction)
-        one = plus(one, scaled(along, dot(minus(other, one), along)))
-    elif b.features[j].kind == EDGE:
-        along = vector_from(b.features[j].direction)
-        other = plus(other, scaled(along, dot(minus(one, other), along)))
-    between = minus(other, one)
-    distance = norm(between)
+    core, others = vector_from(one.point), vector_from(other.point)
+    radius, other_radius, side = one.radius, other.radius, 1.0
+    if one.kind == EDGE:
+        nearest = nearest_on_edge(one, others)
+        core, radius, side = nearest.place, nearest.radius, math.copysign(1.0, one.radius)
+    elif other.kind == EDGE:
+        nearest = nearest_on_edge(other, core)
+        others, other_radius, side = nearest.place, nearest.radius, math.copysign(1.0, other.radius)
+    between = minus(others, core)
+    distance = side * norm(between)
     if distance == 0.0:
         return apart()
     normal = scaled(between, 1.0 / distance)
-    return Meeting(True, distance - radius - others, normal, plus(one, scaled(normal, radius)))
+    return Meeting(True, distance - radius - other_radius, normal, plus(core, scaled(normal, radius)))
+
+
+@kernel
+def on_rim_of(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
+    """A rim of the first body, seen as the object, and a feature of the second one."""
+    rim, other = a.features[i], b.features[j]
+    if other.kind == FACE and rim.length < 0.0:
+        return apart()
+    foot = foot_on(rim, other)
+    if not foot.is_within:
+        return apart()
+    if other.kind == FACE:
+        normal = scaled(vector_from(other.direction), -1.0)
+        gap = dot(normal, minus(vector_from(other.point), foot.point)) - other.radius
+        return Meeting(True, gap, normal, foot.point)
+    nearest, radius, side, along = vector_from(other.point), other.radius, 1.0, vector_from(other.direction)
+    if other.kind == EDGE:
+        on_axis = nearest_on_edge(other, foot.point)
+        nearest, radius, side = on_axis.place, on_axis.radius, math.copysign(1.0, other.radius)
+    elif other.kind == RIM:
+        nearest = nearest_on_rim(other, foot.point)
+        along = cross(along, outward_at(other, nearest))
+    between = minus(nearest, foot.point)
+    if radius != 0.0:
+        distance = side * norm(between)
+        if distance == 0.0:
+            return apart()
+        return Meeting(True, distance - radius, scaled(between, 1.0 / distance), foot.point)
+    crossed = cross(foot.tangent, along)
+    sine = norm(crossed)
+    if other.kind == VERTEX:
+        return apart()
+    if sine < PARALLEL:  # side by side, as of two discs in one plane
+        normal = outward_at(rim, foot.point)
+        return Meeting(True, dot(between, normal), normal, foot.point)
+    normal = scaled(crossed, 1.0 / sine)
+    gap = dot(between, normal)
+    if is_turned(a, i, foot.point, b, j, nearest, normal, gap < 0.0):
+        normal, gap = scaled(normal, -1.0), -gap
+    return Meeting(True, gap, normal, foot.point)
+
+
+@kernel
+def swapped(met: Meeting) -> Meeting:
+    """Return a meeting as the other body has it."""
+    return Meeting(met.is_one, met.gap, scaled(met.normal, -1.0), plus(met.place, scaled(met.normal, met.gap)))
 
 
 @kernel
 def meeting(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
     """Return how feature i of the object and feature j of the cage meet, both placed in the world."""
     one, other = a.features[i].kind, b.features[j].kind
+    if one == RIM:
+        return on_rim_of(a, i, b, j)
+    if other == RIM:
+        return swapped(on_rim_of(b, j, a, i))
     if one == VERTEX and other == FACE:
         return vertex_and_face(a, i, b, j)
     if one == FACE and other == VERTEX:

@@ -18,8 +18,9 @@ from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.along_motion import can_touch, distance_from
 from cagepose.kernels.shapes.bend import bends_by, curvatures
 from cagepose.kernels.shapes.body import PlacedBody, place_asked, rotation_of
-from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Shapes
+from cagepose.kernels.shapes.features import EDGE, FACE, RIM, Shapes, beyond_fence, height_of_end, is_end, out_of_fence
 from cagepose.kernels.shapes.meeting import Meeting, both_reach, farthest_beyond, meeting, reaches
+from cagepose.kernels.shapes.rims import middle_of_arc, nearest_on_edge, reach_of_arc
 
 ROOM_FOR_PAIR, MOST_ROOM = 128, 4096
 """Meetings that there is memory for: of each pair of parts, and of all."""
@@ -103,31 +104,49 @@ def balls_apart(a: Shapes, one: int, b: Shapes, other: int) -> float:
 
 
 @kernel
-def tells_apart(a: Shapes, i: int, b: Shapes, j: int, normal: Vector, slack: float) -> bool:
+def tells_apart(a: Shapes, i: int, b: Shapes, j: int, met: Meeting, slack: float) -> bool:
     """Whether two features are those of their parts that are farthest along the normal of their meeting."""
     one, other = a.features[i].kind, b.features[j].kind
-    if one == FACE:
-        return farthest_beyond(b, j, scaled(normal, -1.0)) <= slack
-    if other == FACE:
-        return farthest_beyond(a, i, normal) <= slack
-    if one == EDGE and other == EDGE:
-        return farthest_beyond(a, i, normal) <= slack and farthest_beyond(b, j, scaled(normal, -1.0)) <= slack
-    return False
+    core = minus(met.place, scaled(met.normal, a.features[i].radius))
+    there = plus(met.place, scaled(met.normal, met.gap + b.features[j].radius))
+    if one != FACE and farthest_beyond(a, i, met.normal, core) > slack:
+        return False
+    return other == FACE or farthest_beyond(b, j, scaled(met.normal, -1.0), there) <= slack
 
 
 @kernel
 def apart_along(a: Shapes, one: int, b: Shapes, other: int, normal: Vector) -> float:
     """Return how far apart two parts are along an outward normal of the first; they are no nearer than that."""
-    last, first, middle = -math.inf, math.inf, vector_from(a.parts[one].middle)
+    last, first, middle, back = -math.inf, math.inf, vector_from(a.parts[one].middle), scaled(normal, -1.0)
     for i in range(a.parts[one].first, a.parts[one].last):
-        if a.features[i].kind == VERTEX:
-            height = dot(minus(vector_from(a.features[i].point), middle), normal)
-            last = max(last, height + a.features[i].radius)
+        if is_end(a.features[i]):
+            last = max(last, height_of_end(a.features[i], middle, normal))
     for j in range(b.parts[other].first, b.parts[other].last):
-        if b.features[j].kind == VERTEX:
-            height = dot(minus(vector_from(b.features[j].point), middle), normal)
-            first = min(first, height - b.features[j].radius)
+        if is_end(b.features[j]):
+            first = min(first, -height_of_end(b.features[j], middle, back))
     return first - last
+
+
+@kernel
+def at_least_apart(a: Shapes, i: int, b: Shapes, j: int) -> float:
+    """Return how far apart two features are at least, if one is an arc: it is seldom near; zero: it was not asked.
+
+    Faces are always asked for the direction in which the parts are apart.
+    """
+    if a.features[i].kind == FACE or b.features[j].kind == FACE:
+        return 0.0
+    if b.features[j].kind == RIM:
+        return a_ball_from(b, j, a, i)
+    return a_ball_from(a, i, b, j) if a.features[i].kind == RIM else 0.0
+
+
+@kernel
+def a_ball_from(a: Shapes, i: int, b: Shapes, j: int) -> float:
+    """Return how far a ball around an arc is from another feature; zero: it may touch it."""
+    rim, other = a.features[i], b.features[j]
+    if other.radius < 0.0 or other.taper != 0.0:
+        return 0.0
+    return distance_from(b, j, middle_of_arc(rim)) - reach_of_arc(rim) - other.radius
 
 
 @kernel
@@ -144,10 +163,14 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
         for j in range(b.parts[other].first, b.parts[other].last):
             if not can_touch(a, i, b, j):
                 continue
+            away = at_least_apart(a, i, b, j)
+            if away > touch_m:
+                nearest = min(nearest, away)
+                continue
             met = meeting(a, i, b, j)
             if not met.is_one:
                 continue
-            if tells_apart(a, i, b, j, met.normal, slack):
+            if tells_apart(a, i, b, j, met, slack):
                 separation = max(separation, apart_along(a, one, b, other, met.normal))
             if not both_reach(a, i, b, j, met, slack, slack_m):
                 continue
@@ -261,9 +284,13 @@ def move_touching(one: Touching, to: Touching) -> None:
 @kernel
 def depth_in_part(shapes: Shapes, which: int, point: Vector) -> float:
     """Return how deep a point is in a part, metres; below zero: how far from it."""
-    beyond, nearest = -math.inf, math.inf
+    beyond, nearest, has_faces = -math.inf, math.inf, shapes.parts[which].first_face < shapes.parts[which].last
     for i in range(shapes.parts[which].first, shapes.parts[which].last):
         feature = shapes.features[i]
+        if feature.kind == EDGE and feature.first_fence == feature.last_fence and has_faces:  # a round side
+            on_axis = nearest_on_edge(feature, point)
+            beyond = max(beyond, on_axis.away - on_axis.radius)
+            continue
         if feature.kind != FACE:
             nearest = min(nearest, distance_from(shapes, i, point))
             continue
@@ -283,10 +310,9 @@ def covers(shapes: Shapes, which: int, i: int, place: Vector, normal: Vector, to
     if feature.kind == FACE:
         seen = minus(place, vector_from(feature.point))
         for f in range(feature.first_fence, feature.last_fence):
-            fence = vector_from(shapes.fences[f].direction)
-            beyond = dot(fence, seen) - shapes.fences[f].bound
+            beyond = beyond_fence(shapes.fences[f], seen)
             if beyond > -touch_m:
-                probe = minus(probe, scaled(fence, beyond + PROBE * touch_m))
+                probe = minus(probe, scaled(out_of_fence(shapes.fences[f], seen), beyond + PROBE * touch_m))
     for another in range(len(shapes.parts)):
         part = shapes.parts[another]
         if norm(minus(probe, vector_from(part.middle))) > part.reach:
@@ -308,19 +334,18 @@ def faces_from_ball(shapes: Shapes, which: int, middle: Vector, reach: float) ->
 
 
 @kernel
-def faces_from_vertices(a: Shapes, one: int, b: Shapes, other: int, enough_m: float) -> float:
-    """Return how far a part's vertices are beyond the faces of another one, or more than ``enough_m``; -inf: there are
+def faces_from_ends(a: Shapes, one: int, b: Shapes, other: int, enough_m: float) -> float:
+    """Return how far a part's ends are beyond the faces of another one, or more than ``enough_m``; -inf: there are
     no faces.
     """
     farthest = -math.inf
     for i in range(a.parts[one].first_face, a.parts[one].last):
         face, lowest = a.features[i], math.inf
         for j in range(b.parts[other].first, b.parts[other].last):
-            vertex = b.features[j]
-            if vertex.kind != VERTEX:
+            if not is_end(b.features[j]):
                 break
-            height = dot(vector_from(face.direction), minus(vector_from(vertex.point), vector_from(face.point)))
-            lowest = min(lowest, height - face.radius - vertex.radius)
+            height = -height_of_end(b.features[j], vector_from(face.point), scaled(vector_from(face.direction), -1.0))
+            lowest = min(lowest, height - face.radius)
         farthest = max(farthest, lowest)
         if farthest > enough_m:
             break
@@ -352,9 +377,9 @@ def find_meetings(
                 gap = max(gap, faces_from_ball(cage, other, vector_from(held.parts[one].middle), held.parts[one].reach))
             if gap <= touch_m:
                 place_asked(own, one, body)
-                gap = max(gap, faces_from_vertices(held, one, cage, other, touch_m))
+                gap = max(gap, faces_from_ends(held, one, cage, other, touch_m))
             if gap <= touch_m:
-                gap = max(gap, faces_from_vertices(cage, other, held, one, touch_m))
+                gap = max(gap, faces_from_ends(cage, other, held, one, touch_m))
             if gap <= touch_m:
                 gap = meet_parts(held, one, cage, other, gap, touch_m, found)
                 if math.isnan(gap):

@@ -1,0 +1,202 @@
+"""When curved features touch first: conservative advancement, then Newton's method on the gap, equation (2.14).
+
+Of rims, of the sides of cones and of holes no bound on the second derivative of the gap is known that serves. But their
+gap falls no faster than the one moves toward the other, and where that is the wall of a bar or a plane, motion along it
+does not count. So a step by the gap over this speed jumps over no contact; where the gap is within the touch tolerance,
+Newton's method gives the digits.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.along_motion import (
+    BEHIND,
+    EVALUATIONS,
+    FARTHER,
+    LEAST_STEP,
+    distance_from,
+    place_moved,
+    touches_after,
+)
+from cagepose.kernels.shapes.features import EDGE, FACE, RIM, VERTEX, Feature, Shapes
+from cagepose.kernels.shapes.meeting import Meeting, meeting
+from cagepose.kernels.shapes.motion import Motion, velocity_at
+from cagepose.kernels.shapes.rims import distance_at, foot_on, middle_of_arc, nearest_on_edge, reach_of_arc
+
+
+NEWTON = 12
+"""Steps of Newton's method at most."""
+
+
+class Approach(NamedTuple):
+    """How two features come nearer.
+
+    Attributes
+    ----------
+    gap
+        No more than how far apart they are, of planes and lines without end; below zero: about how deep in each other,
+        metres.
+    speed, growth
+        The gap falls no faster than this, metres for each unit of the amount; and how fast this may grow.
+    apart, fastest
+        How far apart they are as far as they reach, or less, and a speed that no point of the smaller one exceeds.
+    """
+
+    gap: float
+    speed: float
+    growth: float
+    apart: float
+    fastest: float
+
+
+@kernel
+def is_curved(feature: Feature) -> bool:
+    return feature.kind == RIM or (feature.kind == EDGE and (feature.taper != 0.0 or feature.radius < 0.0))
+
+
+@kernel
+def are_curved(a: Shapes, i: int, b: Shapes, j: int) -> bool:
+    """Whether first contact of two features is found here."""
+    return is_curved(a.features[i]) or is_curved(b.features[j])
+
+
+@kernel
+def ball_around(feature: Feature) -> tuple[Vector, float]:
+    """Return middle and radius of a ball around the core of a vertex, an edge or an arc."""
+    if feature.kind == RIM:
+        return middle_of_arc(feature), reach_of_arc(feature)
+    half = 0.5 * feature.length if feature.kind == EDGE else 0.0
+    return plus(vector_from(feature.point), scaled(vector_from(feature.direction), half)), half
+
+
+@kernel
+def is_smaller(one: Feature, other: Feature) -> bool:
+    """Whether a ball around the one says more than a ball around the other."""
+    if one.kind == FACE or other.kind == FACE:
+        return other.kind == FACE
+    return ball_around(one)[1] <= ball_around(other)[1]
+
+
+@kernel
+def lines_apart(one: Feature, other: Feature) -> float:
+    """Return how far apart two features are, of planes and lines without end, where they do not meet."""
+    if one.kind == RIM or other.kind == RIM:
+        rim, from_rim = (one, other) if one.kind == RIM else (other, one)
+        foot = foot_on(rim, from_rim)
+        if from_rim.kind == FACE:
+            across = minus(foot.point, vector_from(from_rim.point))
+            return dot(vector_from(from_rim.direction), across) - from_rim.radius
+        if from_rim.kind == VERTEX:
+            return norm(minus(foot.point, vector_from(from_rim.point))) - from_rim.radius
+        return distance_at(rim, from_rim, foot.point)
+    return 0.0
+
+
+@kernel
+def gap_of(one: Feature, other: Feature, met: Meeting, level: float) -> float:
+    """Return the gap of two features, of planes and lines without end.
+
+    Where sharp ones are far apart their fences do not tell on which side of each other they are.
+    """
+    if not met.is_one:
+        return lines_apart(one, other)
+    is_sharp = one.radius == other.radius == 0.0 and one.kind != FACE and other.kind != FACE
+    return abs(met.gap) if is_sharp and abs(met.gap) > level else met.gap
+
+
+@kernel
+def approach(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, level: float) -> Approach:
+    """Return how feature i of the object, placed, and feature j of the cage come nearer."""
+    one, other = moved.features[i], b.features[j]
+    first = is_smaller(one, other)
+    small, wide = (one, other) if first else (other, one)
+    middle, reach = ball_around(small)
+    way, spread = velocity_at(motion, middle), motion.rate * reach
+    fastest, along = norm(way) + spread, vector_from(wide.direction)
+    apart = 0.0
+    if wide.taper == 0.0 and wide.radius >= 0.0:
+        apart = distance_from(b, j, middle) if first else distance_from(moved, i, middle)
+        apart -= reach + small.radius + wide.radius
+    gap = gap_of(one, other, meeting(moved, i, b, j), level)
+    if wide.kind == FACE:
+        spread *= norm(cross(motion.axis, along))
+        return Approach(gap, abs(dot(way, along)) + spread, motion.rate * fastest, apart, fastest)
+    if wide.kind != EDGE:
+        return Approach(gap, fastest, 0.0, apart, fastest)
+    rise = dot(way, along)
+    across = norm(minus(way, scaled(along, rise)))
+    return Approach(gap, across + abs(wide.taper * rise) + spread, motion.rate * fastest, apart, fastest)
+
+
+@kernel
+def surely_clear(now: Approach, gap: float) -> float:
+    """Return for how long features do not touch whose lines and planes are so far apart."""
+    root = math.sqrt(now.speed * now.speed + 2.0 * now.growth * gap) + now.speed
+    clear = 2.0 * gap / root if root > 0.0 else math.inf
+    if now.apart > 0.0:
+        clear = max(clear, now.apart / now.fastest if now.fastest > 0.0 else math.inf)
+    return clear
+
+
+@kernel
+def root_of_gap(
+    a: Shapes, i: int, b: Shapes, j: int, motion: Motion, amount: float, level: float, moved: Shapes
+) -> float:
+    """Return where Newton's method leads on the gap of two features that come nearer; inf: nowhere."""
+    before = math.inf
+    for _ in range(NEWTON):
+        place_moved(a, i, motion, amount, moved)
+        met = meeting(moved, i, b, j)
+        closing = dot(met.normal, velocity_at(motion, met.place))
+        if not met.is_one or closing <= 0.0 or abs(met.gap + level) > before:
+            return math.inf
+        if abs(met.gap + level) == before or met.gap + level == 0.0:
+            break
+        before = abs(met.gap + level)
+        amount += (met.gap + level) / closing
+    return amount
+
+
+@kernel
+def first_curved_touch(
+    a: Shapes,
+    i: int,
+    b: Shapes,
+    j: int,
+    motion: Motion,
+    end: float,
+    level: float,
+    slack: float,
+    slack_m: float,
+    moved: Shapes,
+) -> float:
+    """Return the amount, up to ``end``, after which two features touch; inf: they do not. See `first_touch`."""
+    amount, behind = 0.0, BEHIND * end
+    for _ in range(EVALUATIONS):
+        place_moved(a, i, motion, amount, moved)
+        now = approach(moved, i, b, j, motion, level)
+        if level > 0.0 and now.gap > level:
+            level = 0.0
+        value = now.gap + level
+        if 0.0 <= value <= slack_m:
+            root = root_of_gap(a, i, b, j, motion, amount, level, moved)
+            if amount <= root <= end and touches_after(a, i, b, j, motion, root, level, slack, slack_m, moved):
+                return root
+        step = surely_clear(now, abs(value))
+        if step >= end - amount:
+            return math.inf
+        if step > LEAST_STEP * end:
+            amount += step
+            behind = BEHIND * end
+        elif touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
+            return amount
+        else:
+            amount += behind
+            behind *= FARTHER
+            if amount >= end:
+                return math.inf
+    return amount if touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved) else math.inf

@@ -1,0 +1,188 @@
+"""Round rims: where on an arc another feature is nearest, equation (2.13).
+
+A rim is a row of vertices without end: what meets it meets one of them, the foot. Of a face it is the lowest point, of a
+vertex the point in its direction, both in closed form. Of an edge or another rim it is where the way to the nearest
+point there has no part along the tangent: a root of one function of one angle.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Feature
+
+ARCS = 8
+"""Of one rim."""
+HALF_ARC = math.pi / ARCS
+SEARCHED = 1.05 * HALF_ARC
+"""To each side of an arc's middle: a little beyond its ends."""
+FLAT = 1e-13
+"""Sine: flatter, a face lies on all of a rim, and its vertices meet it."""
+ITERATIONS, ROUNDING = 60, 2e-16
+"""Of the search for a foot, radians."""
+REACH = 2.0 * math.sin(0.5 * SEARCHED)
+"""Of an arc from its middle, in radii."""
+
+
+class Foot(NamedTuple):
+    """The point of an arc that is nearest to another feature.
+
+    Attributes
+    ----------
+    is_within
+        Whether it is nearest among its neighbours, too; else it is an end of the arc.
+    point
+        In the world.
+    tangent
+        Unit vector along the rim there.
+    """
+
+    is_within: bool
+    point: Vector
+    tangent: Vector
+
+
+class OnAxis(NamedTuple):
+    """What of an edge is nearest to a point: a place on its axis, where it has a radius, and how far the point is from
+    there, below zero in a hole.
+    """
+
+    place: Vector
+    radius: float
+    away: float
+
+
+@kernel
+def nearest_on_edge(edge: Feature, point: Vector) -> OnAxis:
+    """Return what of an edge's line is nearest to a point."""
+    along = vector_from(edge.direction)
+    seen = minus(point, vector_from(edge.point))
+    height = dot(along, seen)
+    if edge.taper != 0.0:
+        side = norm(minus(seen, scaled(along, height))) / math.sqrt(1.0 - edge.taper * edge.taper)
+        height -= math.copysign(side, edge.radius) * edge.taper
+    place = plus(vector_from(edge.point), scaled(along, height))
+    radius = edge.radius - edge.taper * height
+    return OnAxis(place, radius, math.copysign(norm(minus(point, place)), edge.radius))
+
+
+@kernel
+def outward_at(rim: Feature, point: Vector) -> Vector:
+    """Return the outward normal along the flat end, at a point of a rim."""
+    return scaled(minus(point, vector_from(rim.point)), 1.0 / rim.length)
+
+
+@kernel
+def on_rim(rim: Feature, angle: float, is_within: bool) -> Foot:
+    """Return the point of a rim at an angle from its arc's middle."""
+    toward, axis = vector_from(rim.toward), vector_from(rim.direction)
+    outward = plus(scaled(toward, math.cos(angle)), scaled(cross(axis, toward), math.sin(angle)))
+    return Foot(is_within, plus(vector_from(rim.point), scaled(outward, rim.length)), cross(axis, outward))
+
+
+@kernel
+def farthest_along(rim: Feature, way: Vector) -> Foot:
+    """Return the point of an arc whose outward normal is nearest to a direction."""
+    toward, axis = vector_from(rim.toward), vector_from(rim.direction)
+    ahead, aside = dot(way, toward), dot(way, cross(axis, toward))
+    if math.hypot(ahead, aside) <= FLAT * norm(way):
+        return on_rim(rim, 0.0, False)
+    angle = math.atan2(aside, ahead)
+    held = min(max(angle, -SEARCHED), SEARCHED)
+    return on_rim(rim, held, held == angle)
+
+
+@kernel
+def nearest_on_rim(rim: Feature, point: Vector) -> Vector:
+    """Return the point of a whole rim that is nearest to a point."""
+    axis = vector_from(rim.direction)
+    seen = minus(point, vector_from(rim.point))
+    across = minus(seen, scaled(axis, dot(seen, axis)))
+    size = norm(across)
+    if size == 0.0:
+        across, size = vector_from(rim.toward), 1.0
+    return plus(vector_from(rim.point), scaled(across, abs(rim.length) / size))
+
+
+@kernel
+def rise(rim: Feature, other: Feature, angle: float) -> float:
+    """Return how the distance from an edge or another rim grows along a rim: of its sign alone use is made."""
+    at = on_rim(rim, angle, True)
+    if other.kind == EDGE:
+        nearest = nearest_on_edge(other, at.point)
+        away = scaled(minus(at.point, nearest.place), math.copysign(1.0, other.radius))
+    else:
+        away = minus(at.point, nearest_on_rim(other, at.point))
+    return dot(away, at.tangent) * math.copysign(1.0, rim.length)
+
+
+@kernel
+def distance_at(rim: Feature, other: Feature, point: Vector) -> float:
+    """Return how far a point of a rim is from an edge's side or another rim."""
+    if other.kind == EDGE:
+        nearest = nearest_on_edge(other, point)
+        return nearest.away - nearest.radius
+    return norm(minus(point, nearest_on_rim(other, point)))
+
+
+@kernel
+def foot_on(rim: Feature, other: Feature) -> Foot:
+    """Return where another feature, both in the world, is nearest to an arc of a rim."""
+    if other.kind == FACE:
+        return farthest_along(rim, scaled(vector_from(other.direction), -1.0))
+    if other.kind == VERTEX:
+        way = minus(vector_from(other.point), vector_from(rim.point))
+        return farthest_along(rim, scaled(way, math.copysign(1.0, rim.length)))
+    low, high, middle = -SEARCHED, SEARCHED, 0.0
+    at_low, at_high, at_middle = rise(rim, other, low), rise(rim, other, high), rise(rim, other, middle)
+    if at_low < 0.0 <= at_middle:
+        high, at_high = middle, at_middle
+    elif at_middle < 0.0 <= at_high:
+        low, at_low = middle, at_middle
+    else:
+        one, last = on_rim(rim, low, False), on_rim(rim, high, False)
+        return one if distance_at(rim, other, one.point) < distance_at(rim, other, last.point) else last
+    angle, last_side = low, 0.0
+    for _ in range(ITERATIONS):  # false position; where one end stays, its value is halved (Illinois)
+        before, angle = angle, min(max(low - at_low * (high - low) / (at_high - at_low), low), high)
+        at = rise(rim, other, angle)
+        if at == 0.0 or abs(angle - before) <= ROUNDING:
+            break
+        if at < 0.0:
+            low, at_low = angle, at
+            at_high *= 0.5 if last_side < 0.0 else 1.0
+        else:
+            high, at_high = angle, at
+            at_low *= 0.5 if last_side > 0.0 else 1.0
+        last_side = at
+    return on_rim(rim, angle, True)
+
+
+@kernel
+def is_on_arc(rim: Feature, point: Vector, slack_m: float) -> bool:
+    """Whether a point of a rim is on its arc, to a length beyond its ends."""
+    return dot(outward_at(rim, point), vector_from(rim.toward)) >= math.cos(HALF_ARC) - slack_m / abs(rim.length)
+
+
+@kernel
+def beyond_normals(rim: Feature, point: Vector, normal: Vector) -> float:
+    """Return how far a direction across the tangent is beyond the outward normals of a rim at one of its points, a
+    sine.
+    """
+    outward = outward_at(rim, point)
+    cosine = math.sqrt(1.0 - rim.taper * rim.taper)
+    on_side = rim.taper * dot(outward, normal) - cosine * dot(vector_from(rim.direction), normal)
+    return max(-dot(outward, normal), on_side)
+
+
+@kernel
+def middle_of_arc(rim: Feature) -> Vector:
+    return plus(vector_from(rim.point), scaled(vector_from(rim.toward), rim.length))
+
+
+@kernel
+def reach_of_arc(rim: Feature) -> float:
+    return REACH * abs(rim.length)
