@@ -154,7 +154,7 @@ class _Builder:
     def friction_of(self, model: SceneModel, held: Object, cage: Cage) -> dict[str, float]:
         """Return the coefficients of all that have their own, by name; those of shapes stand beside them."""
         found = dict((model.friction and model.friction.of) or {})
-        in_object = dict(zip((path[:2] for path in held.part_paths), names_of((*held.parts, *held.holes)), strict=True))
+        in_object = dict(zip((path[:2] for path in held.part_paths), held.element_names, strict=True))
         in_cage = dict(zip((path[:2] for path in cage.shape_paths), cage.element_names[len(cage.names) :], strict=True))
         shared = set(in_object.values()) & set(cage.element_names)
         for body, shapes, names in (

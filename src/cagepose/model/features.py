@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,8 +12,12 @@ from cagepose.kernels.algebra.record import dtype_of
 from cagepose.kernels.shapes.features import (
     EDGE,
     FACE,
+    HOLE,
     INSIDE,
+    OUTSIDE,
+    PIERCED,
     RIM,
+    SOLID,
     VERTEX,
     Feature,
     Fence,
@@ -29,27 +33,28 @@ from cagepose.model.hull import Hull, hull_of
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Convex, Disc, Rounded, Shape, Turned
 
+NO_DIRECTION, UP = np.zeros(3), np.array((0.0, 0.0, 1.0))
+AROUND = 50.0
+"""A hole that stands alone is one in a square plate: so many times its own size to each side."""
 
-def has_features(part: Shape) -> bool:
-    """Whether a shape is one that kernels know."""
-    return not isinstance(part, Hole)
 
-
-def shapes_of(parts: Iterable[Box | Shape | FloatArray]) -> Shapes:
+def shapes_of(parts: Iterable[Shape | FloatArray]) -> Shapes:
     """Return the features of parts in the frame of their body; a single point (3,) is a part, too."""
-    made = _Features()
-    for part in parts:
+    every = list(parts)
+    holes = [part for part in every if isinstance(part, Hole)]
+    solids = [part for part in every if isinstance(part, Shape) and not isinstance(part, Hole)]
+    made = _Shapes()
+    for part in every:
         if isinstance(part, np.ndarray):
-            made.add(hull_of(part[None]), Pose(), 0.0)
-        elif isinstance(part, Box):
-            made.add(hull_of(part.corners_object()), Pose(), 0.0)
-        elif isinstance(part, Rounded):
-            hull = part.hull if isinstance(part, Convex) else hull_of(part.core())
-            made.add(hull, part.pose_body_shape, part.radius_m)
-        elif isinstance(part, Turned) and has_features(part):
-            made.add_turned(part)
+            made.add(_hull_features(hull_of(part[None]), Pose(), 0.0))
+        elif isinstance(part, Hole):
+            made.add(_hole_features(part, [solid for solid in solids if solid.name in part.in_]))
         else:
-            raise TypeError(f"no features are known of a {part.kind}")
+            features = _solid_features(part)
+            for hole in holes:
+                if part.name in hole.in_:
+                    features.pierce(hole)
+            made.add(features)
     return made.shapes()
 
 
@@ -63,16 +68,22 @@ def shifted(shapes: Shapes, by: FloatArray) -> Shapes:
     return Shapes(*moved)
 
 
-NO_DIRECTION = np.zeros(3)
-
-
-class _Features:
-    """Rows of records, as they are added."""
+class _Shapes:
+    """Rows of records, as parts are added."""
 
     def __init__(self) -> None:
         self.parts: list[tuple[object, ...]] = []
         self.features: list[tuple[object, ...]] = []
         self.fences: list[tuple[FloatArray, float, float]] = []
+
+    def add(self, part: _Features) -> None:
+        first = len(self.features)
+        first_face = first + len(part.ends) + len(part.others)
+        for numbers, fences in (*part.ends, *part.others, *part.faces):
+            self.features.append((*numbers, len(self.fences), len(self.fences) + len(fences)))
+            self.fences.extend(fences)
+        ball = (part.middle, part.reach_m, part.least_length_m)
+        self.parts.append((part.kind, first, first_face, len(self.features), *ball))
 
     def shapes(self) -> Shapes:
         return Shapes(
@@ -81,70 +92,17 @@ class _Features:
             np.array(self.fences, dtype_of(Fence)),
         )
 
-    def add(self, hull: Hull, pose: Pose, radius_m: float) -> None:
-        """Add a hull, blown up by a radius."""
-        first, vertices, placed = len(self.features), pose.transform(hull.vertices_m), Pose()
-        normals = hull.normals @ pose.rotation.T
-        starts, ends = vertices[hull.edges[:, 0]], vertices[hull.edges[:, 1]]
-        lengths = np.linalg.norm(ends - starts, axis=1)
-        along = (ends - starts) / lengths[:, None]
-        outward = self._outward_in_faces(hull, vertices, normals)
-        for index, vertex in enumerate(vertices):
-            away = [*along[hull.edges[:, 0] == index], *-along[hull.edges[:, 1] == index]]
-            fences = [(direction, 0.0, 0.0) for direction in away]
-            self._feature(VERTEX, placed, vertex, radius=radius_m, fences=fences)
-        for index, pair in enumerate(hull.edges.tolist()):
-            inward = [(-direction, 0.0, 0.0) for sides in outward for side, direction in sides if side == tuple(pair)]
-            self._feature(EDGE, placed, starts[index], along[index], float(lengths[index]), radius_m, fences=inward)
-        first_face = len(self.features)
-        for face, normal, sides in zip(hull.faces, normals, outward, strict=True):
-            middle = vertices[list(face)].mean(axis=0)
-            bounds = [(direction, float(direction @ (vertices[side[0]] - middle)), 0.0) for side, direction in sides]
-            self._feature(FACE, placed, middle, normal, radius=radius_m, fences=bounds)
-        middle = vertices.mean(axis=0)
-        reach = float(np.linalg.norm(vertices - middle, axis=1).max()) + radius_m
-        self.parts.append((first, first_face, len(self.features), middle, reach, float(lengths.min(initial=np.inf))))
 
-    def add_turned(self, part: Turned) -> None:
-        """Add what is turned about an axis: flat ends, their rims, and the side between them."""
-        first, pose = len(self.features), part.pose_body_shape
-        rims, up = part.rims, np.array((0.0, 0.0, 1.0))
-        (low, wide), (high, narrow) = rims[0], rims[-1]
-        angle = math.atan2(wide - narrow, high - low)
-        sine, cosine = (-1.0, 0.0) if isinstance(part, Disc) else (math.sin(angle), math.cos(angle))
-        ends = [(low, wide, -up, sine if isinstance(part, Disc) else -sine), (high, narrow, up, sine)]
-        flat_ends = [end for end in ends if end[1] > 0.0]
-        for height, radius, out, taper in ends[: len(rims)]:
-            if radius == 0.0:
-                self._feature(VERTEX, pose, height * up, fences=[(-out, -taper, 0.0)])
-        for height, radius, out, taper in flat_ends[: len(rims)]:
-            self._add_rim(pose, height * up, radius, out, taper)
-        if not isinstance(part, Disc):
-            start, end = low - wide * sine / cosine, high - narrow * sine / cosine
-            if narrow > wide:  # from the wide end on, so that the radius there is that of something round
-                start, end, wide = end, start, narrow
-            along = math.copysign(1.0, end - start) * up
-            self._feature(EDGE, pose, start * up, along, abs(end - start), wide / cosine, abs(sine))
-        first_face = len(self.features)
-        for height, radius, out, _ in flat_ends:
-            self._feature(FACE, pose, height * up, out, fences=[(np.zeros(3), radius, INSIDE)])
-        middle = pose.transform(0.5 * (low + high) * up)
-        lengths = [radius for _, radius, *_ in flat_ends]
-        lengths += [] if isinstance(part, Disc) else [math.hypot(high - low, wide - narrow)]
-        self.parts.append((first, first_face, len(self.features), middle, part.farthest_m(middle), min(lengths)))
+class _Features:
+    """Features of one part with their fences: what it ends in, faces that all of it is behind, and others."""
 
-    def _add_rim(self, pose: Pose, center: FloatArray, radius: float, out: FloatArray, taper: float) -> None:
-        """Add the rim of a flat end: the ends of its arcs, and the arcs."""
-        angles = math.pi / ARCS * np.arange(2 * ARCS)
-        outward = np.stack([np.cos(angles), np.sin(angles), np.zeros(2 * ARCS)], axis=1)
-        for away in outward[1::2]:
-            along, down = np.cross(out, away), taper * away - math.sqrt(1.0 - taper * taper) * out
-            fences = [(direction, 0.0, 0.0) for direction in (along, -along, -away, down)]
-            self._feature(VERTEX, pose, center + radius * away, fences=fences)
-        for away in outward[::2]:
-            self._feature(RIM, pose, center, out, radius, taper=taper, toward=away)
+    def __init__(self, kind: int, middle: FloatArray, reach_m: float, least_length_m: float) -> None:
+        self.kind, self.middle, self.reach_m, self.least_length_m = kind, middle, reach_m, least_length_m
+        self.ends: list[tuple[list[Any], list[tuple[FloatArray, float, float]]]] = []
+        self.others: list[tuple[list[Any], list[tuple[FloatArray, float, float]]]] = []
+        self.faces: list[tuple[list[Any], list[tuple[FloatArray, float, float]]]] = []
 
-    def _feature(
+    def add(
         self,
         kind: int,
         pose: Pose,
@@ -152,24 +110,143 @@ class _Features:
         direction: FloatArray = NO_DIRECTION,
         length: float = 0.0,
         radius: float = 0.0,
-        taper: float = 0.0,
+        tapers: tuple[float, float] = (0.0, 1.0),
         toward: FloatArray = NO_DIRECTION,
         fences: Iterable[tuple[FloatArray, float, float]] = (),
     ) -> None:
-        """Add a feature that is given in the frame of its part."""
-        turn, first = pose.rotation, len(self.fences)
-        self.fences.extend((turn @ along, bound, circle) for along, bound, circle in fences)
-        at = (pose.transform(point), turn @ direction, turn @ toward)
-        self.features.append((kind, *at, length, radius, taper, first, len(self.fences)))
+        """Add a feature that is given in the frame of its shape."""
+        turn = pose.rotation
+        numbers = [kind, pose.transform(point), turn @ direction, turn @ toward, length, radius, *tapers]
+        of_end = kind == VERTEX or (kind == RIM and length > 0.0)
+        of_kind = self.ends if of_end else self.faces if kind == FACE and self.kind != HOLE else self.others
+        of_kind.append((numbers, [(turn @ along, bound, circle) for along, bound, circle in fences]))
 
-    @staticmethod
-    def _outward_in_faces(
-        hull: Hull, vertices: FloatArray, normals: FloatArray
-    ) -> list[list[tuple[tuple[int, int], FloatArray]]]:
-        """Return, of each face, its sides (lower index first), with the unit vectors out of the face across them."""
-        found = []
-        for face, normal in zip(hull.faces, normals, strict=True):
-            loop = list(zip(face, (*face[1:], face[0]), strict=True))
-            across = unit_rows(np.array([np.cross(vertices[end] - vertices[start], normal) for start, end in loop]))
-            found.append([((min(pair), max(pair)), row) for pair, row in zip(loop, across, strict=True)])
-        return found
+    def add_rim(
+        self, pose: Pose, height: float, radius: float, out: FloatArray, taper: float, end_taper: float = 1.0
+    ) -> None:
+        """Add a rim about the shape's z axis: the ends of its arcs, and the arcs. The radius of a hole is below zero."""
+        angles = math.pi / ARCS * np.arange(2 * ARCS)
+        outward = np.stack([np.cos(angles), np.sin(angles), np.zeros(2 * ARCS)], axis=1)
+        for away in outward[1::2]:
+            along = np.cross(out, away)
+            below = taper * away - math.sqrt(1.0 - taper * taper) * out
+            above = math.sqrt(1.0 - end_taper * end_taper) * out - end_taper * away
+            fences = [(direction, 0.0, 0.0) for direction in (along, -along, above, below)]
+            self.add(VERTEX, pose, height * UP + radius * away, fences=fences)
+        for away in outward[::2]:
+            self.add(RIM, pose, height * UP, out, radius, tapers=(taper, end_taper), toward=away)
+
+    def add_side(self, pose: Pose, low: tuple[float, float], high: tuple[float, float]) -> None:
+        """Add the side between two heights with their radii, those of a hole below zero."""
+        (start, radius), (end, other) = low, high
+        angle = math.atan2(radius - other, end - start)
+        sine, cosine = math.sin(angle), math.cos(angle)
+        start, end = start - radius * sine / cosine, end - other * sine / cosine
+        if abs(other) > abs(radius):  # from the wide end on, as the narrow one may be a tip
+            start, end, radius, sine = end, start, other, -sine
+        along = math.copysign(1.0, end - start) * UP
+        self.add(EDGE, pose, start * UP, along, abs(end - start), radius / cosine, tapers=(sine, 1.0))
+
+    def pierce(self, hole: Hole) -> None:
+        """Cut a hole out of the faces that it runs through."""
+        self.kind = PIERCED
+        for (_, point, normal, _, _, radius, *_), fences in self.faces:
+            circle = hole.circle_in(point + radius * normal, normal)
+            if circle is not None:
+                center, wide = circle
+                from_point = center - point
+                fences.append((from_point - (from_point @ normal) * normal, wide, OUTSIDE))
+
+
+def _solid_features(part: Shape) -> _Features:
+    if isinstance(part, Box):
+        return _hull_features(hull_of(part.corners_object()), Pose(), 0.0)
+    if isinstance(part, Rounded):
+        hull = part.hull if isinstance(part, Convex) else hull_of(part.core())
+        return _hull_features(hull, part.pose_body_shape, part.radius_m)
+    if isinstance(part, Turned):
+        return _turned_features(part)
+    raise TypeError(f"no features are known of a {part.kind}")
+
+
+def _hull_features(hull: Hull, pose: Pose, radius_m: float) -> _Features:
+    """Return the features of a hull, blown up by a radius."""
+    vertices, placed = pose.transform(hull.vertices_m), Pose()
+    normals = hull.normals @ pose.rotation.T
+    starts, ends = vertices[hull.edges[:, 0]], vertices[hull.edges[:, 1]]
+    lengths = np.linalg.norm(ends - starts, axis=1)
+    along = (ends - starts) / lengths[:, None]
+    middle = vertices.mean(axis=0)
+    reach = float(np.linalg.norm(vertices - middle, axis=1).max()) + radius_m
+    made = _Features(SOLID, middle, reach, float(lengths.min(initial=np.inf)))
+    outward = _outward_in_faces(hull, vertices, normals)
+    for index, vertex in enumerate(vertices):
+        away = [*along[hull.edges[:, 0] == index], *-along[hull.edges[:, 1] == index]]
+        made.add(VERTEX, placed, vertex, radius=radius_m, fences=[(direction, 0.0, 0.0) for direction in away])
+    for index, pair in enumerate(hull.edges.tolist()):
+        inward = [(-direction, 0.0, 0.0) for sides in outward for side, direction in sides if side == tuple(pair)]
+        made.add(EDGE, placed, starts[index], along[index], float(lengths[index]), radius_m, fences=inward)
+    for face, normal, sides in zip(hull.faces, normals, outward, strict=True):
+        center = vertices[list(face)].mean(axis=0)
+        bounds = [(direction, float(direction @ (vertices[side[0]] - center)), 0.0) for side, direction in sides]
+        made.add(FACE, placed, center, normal, radius=radius_m, fences=bounds)
+    return made
+
+
+def _turned_features(part: Turned) -> _Features:
+    """Return the features of what is turned about an axis: flat ends, their rims, and the side between them."""
+    pose, (low, wide), (high, narrow) = part.pose_body_shape, part.rims[0], part.rims[-1]
+    middle, is_flat = pose.transform(0.5 * (low + high) * UP), isinstance(part, Disc)
+    angle = math.atan2(wide - narrow, high - low)
+    slant = [] if is_flat else [math.hypot(high - low, wide - narrow)]
+    lengths = [radius for radius in (wide, narrow) if radius > 0.0] + slant
+    made = _Features(SOLID, middle, part.farthest_m(middle), min(lengths))
+    for height, radius, out in ((low, wide, -UP), (high, narrow, UP)):
+        taper = -1.0 if is_flat else math.sin(angle) * out[2]
+        if radius == 0.0:
+            made.add(VERTEX, pose, height * UP, fences=[(-out, -taper, 0.0)])
+            continue
+        made.add(FACE, pose, height * UP, out, fences=[(NO_DIRECTION, radius, INSIDE)])
+        if not is_flat or out[2] > 0.0:
+            made.add_rim(pose, height, radius, out, taper)
+    if not is_flat:
+        made.add_side(pose, (low, wide), (high, narrow))
+    return made
+
+
+def _hole_features(hole: Hole, solids: Sequence[Shape]) -> _Features:
+    """Return the features of a hole in parts, or in a plate of its own."""
+    pose, wide = hole.pose_body_shape, max(radius for _, radius in hole.rims)
+    depth, is_open = hole.run_through(solids)
+    if solids:
+        middle = pose.transform(-0.5 * depth * UP)
+        made = _Features(HOLE, middle, math.hypot(wide, 0.5 * depth), min(hole.radius_m, depth))
+    else:
+        side = 2.0 * AROUND * (wide + depth)
+        made = _solid_features(Box((side, side, depth), pose @ Pose((0.0, 0.0, -0.5 * depth))))
+        made.pierce(hole)
+        made.least_length_m = min(hole.radius_m, depth)
+    heights = [(-depth, hole.radius_m), *hole.rims[1:]]
+    for (low, radius), (high, other) in zip(heights, heights[1:], strict=False):
+        made.add_side(pose, (low, -radius), (high, -other))
+    slants = [math.atan2(other - radius, high - low) for (low, radius), (high, other) in zip(heights, heights[1:], strict=False)]
+    for index, (height, radius) in enumerate(heights[1:]):
+        end_taper = math.sin(slants[index + 1]) if index + 1 < len(slants) else 1.0
+        made.add_rim(pose, height, -radius, UP, math.sin(slants[index]), end_taper)
+    if is_open:
+        made.add_rim(pose, -depth, -hole.radius_m, -UP, 0.0)
+    else:
+        made.add(FACE, pose, -depth * UP, UP, fences=[(NO_DIRECTION, hole.radius_m, INSIDE)])
+    return made
+
+
+def _outward_in_faces(
+    hull: Hull, vertices: FloatArray, normals: FloatArray
+) -> list[list[tuple[tuple[int, int], FloatArray]]]:
+    """Return, of each face, its sides (lower index first), with the unit vectors out of the face across them."""
+    found = []
+    for face, normal in zip(hull.faces, normals, strict=True):
+        loop = list(zip(face, (*face[1:], face[0]), strict=True))
+        across = unit_rows(np.array([np.cross(vertices[end] - vertices[start], normal) for start, end in loop]))
+        found.append([((min(pair), max(pair)), row) for pair, row in zip(loop, across, strict=True)])
+    return found

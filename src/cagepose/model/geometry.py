@@ -11,7 +11,7 @@ from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.shapes.features import NO_SHAPES, Shapes, copied, place_shapes
 from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
-from cagepose.model.features import has_features, shapes_of
+from cagepose.model.features import shapes_of
 from cagepose.model.parts import Object
 from cagepose.model.seams import PlacedBox, Seams, close_seams
 from cagepose.model.shapes import Shape
@@ -49,7 +49,7 @@ def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox], touch_m: 
         box_rotations=np.array([box.rotation for box in placed]).reshape(-1, 3, 3),
         n_own_boxes=len(held.boxes),
         points_world=np.ascontiguousarray(cage.points_world()),
-        held=shapes_of(held.parts) if _knows_shapes(held, cage) else NO_SHAPES,
+        held=shapes_of((*held.parts, *held.holes)) if _has_shapes(held, cage) else NO_SHAPES,
         cage=in_world,
         touch_m=touch_m,
     )
@@ -57,15 +57,14 @@ def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox], touch_m: 
 
 def cage_shapes(held: Object, cage: Cage) -> Shapes:
     """Return all parts of the cage as features, its points first, in its frame; none where there are boxes and points
-    alone, or a shape that no kernel knows.
+    alone.
     """
-    return shapes_of([*cage.points_cage, *cage.shapes]) if _knows_shapes(held, cage) else NO_SHAPES
+    return shapes_of([*cage.points_cage, *cage.shapes, *cage.holes]) if _has_shapes(held, cage) else NO_SHAPES
 
 
-def _knows_shapes(held: Object, cage: Cage) -> bool:
-    """Whether a scene has other shapes than boxes and points, and kernels know all of them."""
-    shapes = (*held.shapes, *held.holes, *cage.shapes, *cage.holes)
-    return bool(shapes) and all(has_features(shape) for shape in shapes)
+def _has_shapes(held: Object, cage: Cage) -> bool:
+    """Whether a scene has other shapes than boxes and points."""
+    return bool(held.shapes or held.holes or cage.shapes or cage.holes)
 
 
 def _placed(held: Object) -> list[PlacedBox]:

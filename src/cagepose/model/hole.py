@@ -99,6 +99,38 @@ class Hole(Turned):
         height = self.chamfer.width_m / math.tan(self.chamfer.angle_rad)
         return bottom, (-height, self.radius_m), (0.0, self.radius_m + self.chamfer.width_m)
 
+    def circle_in(self, point_body: FloatArray, normal_body: FloatArray) -> tuple[FloatArray, float] | None:
+        """Return centre and radius, metres, of the circle that the hole cuts out of a plane across it, given by a point
+        and a unit normal; None: it does not reach there, or the plane is aslant.
+        """
+        axis, mouth = self.pose_body_shape.rotation[:, 2], self.pose_body_shape.position_m
+        height, slack = float((point_body - mouth) @ axis), self._slack_m
+        if float(np.linalg.norm(np.cross(axis, normal_body))) > ON_FACE or not -self.depth_m - slack <= height <= slack:
+            return None
+        heights, radii = zip(*self.rims, strict=True)
+        return mouth + height * axis, float(np.interp(height, heights, radii))
+
+    def run_through(self, parts: Sequence[Shape]) -> tuple[float, bool]:
+        """Return how deep the hole is in the parts that it is cut out of, metres, and whether it comes out below."""
+        axis, mouth = self.pose_body_shape.rotation[:, 2], self.pose_body_shape.position_m
+        if not parts:
+            return self.depth_m, True
+        lowest = min(-float(part.heights_m(-axis[None])[0]) - float(mouth @ axis) for part in parts)
+        is_open = lowest >= -self.depth_m - self._slack_m
+        return (-lowest, True) if is_open else (self.depth_m, False)
+
+    def leaves_sideways(self, parts: Sequence[Shape]) -> bool:
+        """Return whether the hole comes out of the parts that it is cut out of other than through a face across it."""
+        if not parts:
+            return False
+        depth, _ = self.run_through(parts)
+        rings = np.concatenate([self._ring(-share * depth, self.radius_m) for share in (0.01, 0.5, 0.99)])
+        return not np.any([part.holds(rings) for part in parts], axis=0).all()
+
+    @property
+    def _slack_m(self) -> float:
+        return ON_FACE * math.hypot(self.radius_m, self.depth_m)
+
     def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
         found: list[tuple[tuple[Key, ...], float]] = [(("radius",), 2.0 * self.radius_m), (("depth",), self.depth_m)]
         return found if self.chamfer is None else [*found, (("chamfer", "width"), self.chamfer.width_m)]

@@ -119,6 +119,11 @@ class Object:
         return (*self.boxes, *self.shapes)
 
     @property
+    def element_names(self) -> tuple[str, ...]:
+        """The names of all boxes, then of all other shapes, then of all holes."""
+        return names_of((*self.parts, *self.holes))
+
+    @property
     def reach_m(self) -> float:
         """The distance of the object's farthest point from its centre of gravity, metres."""
         return max(part.farthest_m(self.center_of_gravity_m) for part in (*self.parts, *self.holes))

@@ -196,7 +196,7 @@ _set_field = object.__setattr__
 
 
 def _check_friction_of(friction_of: dict[str, float], held: Object, cage: Cage, problems: ProblemList) -> None:
-    elements, parts = set(cage.element_names), set(names_of((*held.parts, *held.holes)))
+    elements, parts = set(cage.element_names), set(held.element_names)
     for name, coefficient in friction_of.items():
         at = ("friction", "of", name)
         if name in elements and name in parts:
@@ -302,7 +302,7 @@ def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: 
         path: tuple[Key, ...] = ("points", cage.names[other]) if is_point else cage.shape_paths[other - n_points][:2]
         problems.add(
             ("cage", *path),
-            f"starts {millimetres(-gaps[one, other])} inside {part} ({held.parts[one].name}); move it out or move the"
+            f"starts {millimetres(-gaps[one, other])} inside {part} ({held.element_names[one]}); move it out or move the"
             " object's start pose",
         )
 

@@ -3,26 +3,33 @@
 from __future__ import annotations
 
 from cagepose.errors import Key, Problem, SceneError
-from cagepose.model.features import has_features
+from cagepose.model.box import Box
+from cagepose.model.cage import Cage
+from cagepose.model.hole import Hole
+from cagepose.model.parts import Object
 from cagepose.model.scene import Scene
 from cagepose.model.shapes import Shape
 
-STAND_INS = {
-    "cylinder": "a capsule, or a convex shape with many corners, may stand for it",
-    "cone": "a convex shape with many corners may stand for it",
-    "disc": "a convex shape with many corners may stand for it",
-    "hole": "walls (boxes) around it may stand for it",
-}
-"""What may stand for a shape that no method runs yet, until one does."""
-
-
 def unknown_shapes(scene: Scene) -> list[Problem]:
-    """Return a problem for each shape that no method runs yet."""
-    return [
-        Problem(path, f"is a {shape.kind} ({shape.name}), which no method runs yet; {STAND_INS[shape.kind]}")
-        for path, shape in _placed(scene)
-        if not has_features(shape)
-    ]
+    """Return a problem for each hole that no method runs."""
+    found = []
+    for path, hole in _placed(scene):
+        if not isinstance(hole, Hole):
+            continue
+        body: Object | Cage = scene.object if path[0] == "object" else scene.cage
+        solids = [solid for solid in (*_boxes_of(body), *body.shapes) if solid.name in hole.in_]
+        if hole.leaves_sideways(solids):
+            found.append(
+                Problem(path, f"is a hole ({hole.name}) that comes out aslant, which no method runs; make it less deep")
+            )
+        elif scene.cage.names and isinstance(body, Object) and any(isinstance(solid, Box) for solid in solids):
+            says = f"is a hole ({hole.name}) in a box of the object, and points of the cage see no holes in boxes"
+            found.append(Problem(path, f"{says}; make the box a convex shape, or the points small spheres"))
+    return found
+
+
+def _boxes_of(body: Object | Cage) -> tuple[Box, ...]:
+    return body.boxes if isinstance(body, Object) else ()
 
 
 def other_shapes(scene: Scene, needs: str) -> list[Problem]:

@@ -67,7 +67,7 @@ def cases_of(scene: Scene, friction: float, start: Pose | None = None) -> Cases:
         np.array([scene.size_m]),
         np.array([friction]),
         _own_frictions(scene, scene.cage.element_names),
-        _own_frictions(scene, [str(part.name) for part in scene.object.parts]),
+        _own_frictions(scene, scene.object.element_names),
         cast(Rows[Rows[PhaseLoad]], actions_of(scene)[None]),
         kernel_tolerances(1.0, scene.tolerances.touch),
     )

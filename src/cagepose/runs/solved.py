@@ -162,7 +162,7 @@ def _motions(outcome: Outcome) -> Iterator[Motion | None]:
 
 def _contacts(scene: Scene, outcome: Outcome) -> list[Contact]:
     contacts: Any = outcome.contacts
-    point_names, box_names = scene.cage.element_names, [str(part.name) for part in scene.object.parts]
+    point_names, box_names = scene.cage.element_names, scene.object.element_names
     columns = zip(
         contacts["point"].tolist(),
         contacts["box"].tolist(),

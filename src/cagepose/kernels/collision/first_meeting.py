@@ -12,7 +12,7 @@ from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.advancement import approach, are_curved, first_curved_touch, surely_clear
 from cagepose.kernels.shapes.along_motion import ahead, can_touch, clear_step, first_touch, safe_step
 from cagepose.kernels.shapes.body import place_asked
-from cagepose.kernels.shapes.features import EDGE, Shapes, is_end
+from cagepose.kernels.shapes.features import EDGE, HOLE, SOLID, Shapes, is_end
 from cagepose.kernels.shapes.meeting import both_reach, meeting
 from cagepose.kernels.shapes.meetings import Meetings, balls_apart, slack_of
 from cagepose.kernels.shapes.motion import Motion, velocity_at
@@ -66,6 +66,12 @@ def until_past(held: Shapes, one: int, cage: Shapes, other: int, speed: float) -
 
 
 @kernel
+def are_convex(held: Shapes, one: int, cage: Shapes, other: int) -> bool:
+    """Whether two parts have no holes: convex ones that leave each other on a travel do not meet again."""
+    return held.parts[one].kind == SOLID and cage.parts[other].kind == SOLID
+
+
+@kernel
 def touch(meetings: Meetings, one: int, other: int) -> bool:
     """Whether two parts have a contact."""
     found = False
@@ -91,7 +97,9 @@ def first_meeting(
             if speed == 0.0 or (one < geometry.n_own_boxes and other < n_points):
                 continue
             gap = max(placement.meetings.gaps[one, other], balls_apart(held, one, cage, other))
-            if gap > SAFE * speed * end or (motion.rate == 0.0 and touch(placement.meetings, one, other)):
+            if gap > SAFE * speed * end:
+                continue
+            if motion.rate == 0.0 and are_convex(held, one, cage, other) and touch(placement.meetings, one, other):
                 continue
             place_asked(geometry.held, one, placement.body)
             until = end if motion.rate > 0.0 else min(end, until_past(held, one, cage, other, speed))
@@ -136,6 +144,8 @@ def next_pair(earliest: FloatArray, end: float) -> tuple[int, int]:
 def earliest_touch(held: Shapes, one: int, cage: Shapes, other: int, motion: Motion, until: float) -> float:
     """Return an amount before which two parts do not touch: so long all of the one is beyond a face of the other."""
     latest = 0.0
+    if held.parts[one].kind == HOLE or cage.parts[other].kind == HOLE:  # which ends in more than its vertices
+        return latest
     for i in range(held.parts[one].first_face, held.parts[one].last):
         first = until
         for j in range(cage.parts[other].first, cage.parts[other].last):
@@ -199,7 +209,7 @@ def first_of_features(
     met = meeting(held, i, cage, j)
     touches = met.is_one and abs(met.gap) <= touch_m
     leaves = touches and both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
-    if leaves and motion.rate == 0.0:
+    if leaves and motion.rate == 0.0 and min(held.features[i].radius, cage.features[j].radius) >= 0.0:
         return math.inf, math.inf
     if leaves and dot(met.normal, velocity_at(motion, met.place)) >= -LEAVES * speed:
         return math.inf, math.inf

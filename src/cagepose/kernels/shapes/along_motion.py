@@ -218,10 +218,11 @@ def distance_from(shapes: Shapes, i: int, point: Vector) -> float:
         along = min(max(dot(direction, seen), 0.0), feature.length)
         return norm(minus(seen, scaled(direction, along)))
     if feature.kind == FACE:
-        beyond = 0.0
+        height, beyond = dot(direction, seen), 0.0
+        in_plane = minus(seen, scaled(direction, height))
         for f in range(feature.first_fence, feature.last_fence):
-            beyond = max(beyond, beyond_fence(shapes.fences[f], seen))
-        return math.hypot(dot(direction, seen), beyond)
+            beyond = max(beyond, beyond_fence(shapes.fences[f], in_plane))
+        return math.hypot(height, beyond)
     if feature.kind == RIM:
         return max(0.0, norm(minus(point, middle_of_arc(feature))) - reach_of_arc(feature))
     return norm(seen)

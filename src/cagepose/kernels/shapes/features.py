@@ -22,6 +22,8 @@ from cagepose.kernels.native.kernel import kernel
 VERTEX, EDGE, FACE, RIM = 0, 1, 2, 3
 """Kinds of features. A round rim is a row of arcs, each a feature, with a vertex at each of its ends: as a vertex it
 touches what lies flat on it."""
+SOLID, PIERCED, HOLE = 0, 1, 2
+"""Kinds of parts: convex; convex but for its holes; the walls and rims of a hole that other parts have."""
 INSIDE, OUTSIDE = 1.0, -1.0
 """Sides of a round fence."""
 
@@ -45,7 +47,9 @@ class Feature:
         Added on all sides, metres; below zero: of a hole.
     taper
         Outward normals of an edge make this sine with the plane across it: its radius shrinks by as much for each metre.
-        Of a rim: that of the round side that it bounds, as seen along its own direction.
+        Of a rim: that of the round side below it, as seen along its own direction.
+    end_taper
+        Of a rim: that of what is above it, 1: a flat end.
     first_fence, last_fence
         Its fences, the last one not included.
     """
@@ -57,6 +61,7 @@ class Feature:
     length: float
     radius: float
     taper: float
+    end_taper: float
     first_fence: int
     last_fence: int
 
@@ -79,18 +84,22 @@ class Fence:
 
 
 class ShapePart:
-    """One convex part of a body; a record.
+    """One part of a body; a record.
 
     Attributes
     ----------
+    kind
+        See above.
     first, first_face, last
-        Its features: vertices, rims, edges, then faces, the last one not included.
+        Its features: vertices, rims of bars, edges, those of holes, then faces that all of it is behind, the last one
+        not included.
     middle, reach
         A ball around it, metres.
     least_length
         Length of its shortest edge, metres; inf: it has none.
     """
 
+    kind: int
     first: int
     first_face: int
     last: int
@@ -163,7 +172,7 @@ def place_feature(shapes: Shapes, i: int, position: Vector, rotation: Matrix, pl
 def write_feature(feature: Feature, point: Vector, direction: Vector, toward: Vector, out: Feature) -> None:
     """Write a feature with another place and other directions."""
     out.kind, out.length, out.radius, out.taper = feature.kind, feature.length, feature.radius, feature.taper
-    out.first_fence, out.last_fence = feature.first_fence, feature.last_fence
+    out.end_taper, out.first_fence, out.last_fence = feature.end_taper, feature.first_fence, feature.last_fence
     for k in range(3):
         out.point[k], out.direction[k], out.toward[k] = point[k], direction[k], toward[k]
 
@@ -189,6 +198,7 @@ def beyond_fence(fence: Fence, x: Vector) -> float:
 def place_part(shapes: Shapes, which: int, position: Vector, rotation: Matrix, placed: Shapes) -> None:
     """Write one part as it is in the world, without its features."""
     part, there = shapes.parts[which], placed.parts[which]
+    there.kind = part.kind
     there.first, there.first_face, there.last = part.first, part.first_face, part.last
     there.reach, there.least_length = part.reach, part.least_length
     middle = plus(position, times(rotation, vector_from(part.middle)))

@@ -2,7 +2,8 @@
 
 Convex parts are apart if along one direction they are: the normal of a face, or that across two edges, which is an
 outward normal of both. The greatest such distance is that of overlapping parts, below zero, and no more than that of
-parts that are apart; there, features that reach where they meet are nearest, and tell it.
+parts that are apart; there, features that reach where they meet are nearest, and tell it. Of parts with holes they tell
+all: these may be within each other's hull, so that a feature on their far side is known by its depth alone.
 """
 
 from __future__ import annotations
@@ -13,12 +14,26 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
-from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, row, scaled, transposed_times, vector_from
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled, transposed_times, vector_from
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.along_motion import can_touch, distance_from
 from cagepose.kernels.shapes.bend import bends_by, curvatures
 from cagepose.kernels.shapes.body import PlacedBody, place_asked, rotation_of
-from cagepose.kernels.shapes.features import EDGE, FACE, RIM, Shapes, beyond_fence, height_of_end, is_end, out_of_fence
+from cagepose.kernels.shapes.features import (
+    EDGE,
+    FACE,
+    HOLE,
+    PIERCED,
+    RIM,
+    SOLID,
+    VERTEX,
+    Feature,
+    Shapes,
+    beyond_fence,
+    height_of_end,
+    is_end,
+    out_of_fence,
+)
 from cagepose.kernels.shapes.meeting import Meeting, both_reach, farthest_beyond, meeting, reaches
 from cagepose.kernels.shapes.rims import middle_of_arc, nearest_on_edge, reach_of_arc
 
@@ -28,6 +43,8 @@ SAME_NORMAL = 1e-9
 """Radians. Meetings at one place with normals nearer than this are one."""
 SAME_PLACE = 4.0
 """In touch tolerances: meetings nearer to each other are at one place."""
+DEEPEST = 0.05
+"""Of the shortest edge or least radius: features of parts with holes that are deeper in each other do not touch."""
 PROBE, PROBE_MARGIN = 3.0, 1.5
 """In touch tolerances, as in `cagepose.kernels.collision.contacts`."""
 
@@ -128,6 +145,26 @@ def apart_along(a: Shapes, one: int, b: Shapes, other: int, normal: Vector) -> f
 
 
 @kernel
+def deepest_gap(a: Shapes, one: int, b: Shapes, other: int) -> float:
+    """Return the gap below which features of parts with holes meet on their far sides; -inf: there are no holes."""
+    if a.parts[one].kind == SOLID and b.parts[other].kind == SOLID:
+        return -math.inf
+    return -DEEPEST * min(a.parts[one].least_length, b.parts[other].least_length, a.parts[one].reach)
+
+
+@kernel
+def lie_flat(one: Feature, other: Feature, slack: float) -> bool:
+    """Whether a face or a ball lies on all of a rim, to a sine: then the rim's vertices tell all that is to be told."""
+    rim, on_rim = (one, other) if one.kind == RIM else (other, one)
+    axis, way = vector_from(rim.direction), vector_from(on_rim.direction)
+    if rim.kind != RIM or (on_rim.kind != FACE and on_rim.kind != VERTEX):
+        return False
+    if on_rim.kind == VERTEX:
+        way = minus(vector_from(on_rim.point), vector_from(rim.point))
+    return norm(cross(axis, way)) <= slack * norm(way)
+
+
+@kernel
 def at_least_apart(a: Shapes, i: int, b: Shapes, j: int) -> float:
     """Return how far apart two features are at least, if one is an arc: it is seldom near; zero: it was not asked.
 
@@ -158,7 +195,7 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
     """
     slack, slack_m = slack_of(a, one, b, other, touch_m), 2.0 * touch_m
     first = found.used[0]
-    separation, nearest = -math.inf, math.inf
+    separation, nearest, deepest = -math.inf, math.inf, deepest_gap(a, one, b, other)
     for i in range(a.parts[one].first, a.parts[one].last):
         for j in range(b.parts[other].first, b.parts[other].last):
             if not can_touch(a, i, b, j):
@@ -170,14 +207,15 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
             met = meeting(a, i, b, j)
             if not met.is_one:
                 continue
-            if tells_apart(a, i, b, j, met, slack):
+            if deepest == -math.inf and tells_apart(a, i, b, j, met, slack):
                 separation = max(separation, apart_along(a, one, b, other, met.normal))
             if not both_reach(a, i, b, j, met, slack, slack_m):
                 continue
             if met.gap > touch_m:
                 nearest = min(nearest, met.gap)
                 continue
-            if met.gap < on_far_side(max(separation, at_least_m), touch_m):
+            least_gap = on_far_side(max(separation, at_least_m), touch_m) if deepest == -math.inf else deepest
+            if met.gap < least_gap or lie_flat(a.features[i], b.features[j], slack):
                 continue
             if found.used[0] == len(found.rows):
                 found.used[0] = first
@@ -188,9 +226,12 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
                 found.used[0] += 1
             else:
                 note_twin(a, b, found.rows[told], found.rows[found.used[0]])
-    keep_nearest(found, first, on_far_side(max(separation, at_least_m), touch_m))
+    if deepest == -math.inf:
+        keep_nearest(found, first, on_far_side(max(separation, at_least_m), touch_m))
     for at in range(first, found.used[0]):
         nearest = min(nearest, found.rows[at].gap)
+    if deepest > -math.inf:
+        return nearest if nearest < math.inf else max(at_least_m, 0.0)
     overlap = -separation - a.features[a.parts[one].first].radius - b.features[b.parts[other].first].radius
     if nearest == math.inf or touch_m < overlap < math.inf:  # of cores: what reaches does so by the slack
         return max(separation, at_least_m)
@@ -287,6 +328,8 @@ def depth_in_part(shapes: Shapes, which: int, point: Vector) -> float:
     beyond, nearest, has_faces = -math.inf, math.inf, shapes.parts[which].first_face < shapes.parts[which].last
     for i in range(shapes.parts[which].first, shapes.parts[which].last):
         feature = shapes.features[i]
+        if feature.kind == EDGE and feature.radius < 0.0:
+            continue
         if feature.kind == EDGE and feature.first_fence == feature.last_fence and has_faces:  # a round side
             on_axis = nearest_on_edge(feature, point)
             beyond = max(beyond, on_axis.away - on_axis.radius)
@@ -303,21 +346,40 @@ def depth_in_part(shapes: Shapes, which: int, point: Vector) -> float:
 
 
 @kernel
+def is_in_hole(shapes: Shapes, which: int, point: Vector) -> bool:
+    """Whether a point lies within the walls of a hole."""
+    for i in range(shapes.parts[which].first, shapes.parts[which].last):
+        wall = shapes.features[i]
+        if wall.kind == EDGE and wall.radius < 0.0:
+            nearest = nearest_on_edge(wall, point)
+            along = dot(vector_from(wall.direction), minus(nearest.place, vector_from(wall.point)))
+            if nearest.away > nearest.radius and 0.0 <= along <= wall.length:
+                return True
+    return False
+
+
+@kernel
 def covers(shapes: Shapes, which: int, i: int, place: Vector, normal: Vector, touch_m: float) -> bool:
     """Whether another part of a body covers a place of a part's feature, with this outward normal."""
     feature = shapes.features[i]
     probe = plus(place, scaled(normal, PROBE * touch_m))
     if feature.kind == FACE:
-        seen = minus(place, vector_from(feature.point))
+        direction, seen = vector_from(feature.direction), minus(place, vector_from(feature.point))
+        seen = minus(seen, scaled(direction, dot(direction, seen)))
         for f in range(feature.first_fence, feature.last_fence):
             beyond = beyond_fence(shapes.fences[f], seen)
             if beyond > -touch_m:
                 probe = minus(probe, scaled(out_of_fence(shapes.fences[f], seen), beyond + PROBE * touch_m))
+    in_hole = False
+    for another in range(len(shapes.parts)):
+        in_hole = in_hole or (shapes.parts[another].kind != SOLID and is_in_hole(shapes, another, probe))
     for another in range(len(shapes.parts)):
         part = shapes.parts[another]
+        if another == which or part.kind == HOLE or (in_hole and part.kind == PIERCED):
+            continue
         if norm(minus(probe, vector_from(part.middle))) > part.reach:
             continue
-        if another != which and depth_in_part(shapes, another, probe) > PROBE_MARGIN * touch_m:
+        if depth_in_part(shapes, another, probe) > PROBE_MARGIN * touch_m:
             return True
     return False
 
@@ -339,6 +401,8 @@ def faces_from_ends(a: Shapes, one: int, b: Shapes, other: int, enough_m: float)
     no faces.
     """
     farthest = -math.inf
+    if b.parts[other].kind == HOLE:  # its ends are not all that it is
+        return farthest
     for i in range(a.parts[one].first_face, a.parts[one].last):
         face, lowest = a.features[i], math.inf
         for j in range(b.parts[other].first, b.parts[other].last):

@@ -172,10 +172,9 @@ def beyond_normals(rim: Feature, point: Vector, normal: Vector) -> float:
     """Return how far a direction across the tangent is beyond the outward normals of a rim at one of its points, a
     sine.
     """
-    outward = outward_at(rim, point)
-    cosine = math.sqrt(1.0 - rim.taper * rim.taper)
-    on_side = rim.taper * dot(outward, normal) - cosine * dot(vector_from(rim.direction), normal)
-    return max(-dot(outward, normal), on_side)
+    out, along = dot(outward_at(rim, point), normal), dot(vector_from(rim.direction), normal)
+    below = rim.taper * out - math.sqrt(1.0 - rim.taper * rim.taper) * along
+    return max(below, math.sqrt(1.0 - rim.end_taper * rim.end_taper) * along - rim.end_taper * out)
 
 
 @kernel
