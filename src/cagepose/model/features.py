@@ -80,7 +80,9 @@ class _Shapes:
         first = len(self.features)
         first_face = first + len(part.ends) + len(part.others)
         for numbers, fences in (*part.ends, *part.others, *part.faces):
-            self.features.append((*numbers, len(self.fences), len(self.fences) + len(fences)))
+            *numbers, arcs = numbers
+            arcs = [first + arc + (len(part.ends) if numbers[4] < 0.0 else 0) for arc in arcs] or [-1, -1]
+            self.features.append((*numbers, *arcs, len(self.fences), len(self.fences) + len(fences)))
             self.fences.extend(fences)
         ball = (part.middle, part.reach_m, part.least_length_m)
         self.parts.append((part.kind, first, first_face, len(self.features), *ball))
@@ -116,7 +118,7 @@ class _Features:
     ) -> None:
         """Add a feature that is given in the frame of its shape."""
         turn = pose.rotation
-        numbers = [kind, pose.transform(point), turn @ direction, turn @ toward, length, radius, *tapers]
+        numbers = [kind, pose.transform(point), turn @ direction, turn @ toward, length, radius, *tapers, []]
         of_end = kind == VERTEX or (kind == RIM and length > 0.0)
         of_kind = self.ends if of_end else self.faces if kind == FACE and self.kind != HOLE else self.others
         of_kind.append((numbers, [(turn @ along, bound, circle) for along, bound, circle in fences]))
@@ -127,12 +129,16 @@ class _Features:
         """Add a rim about the shape's z axis: the ends of its arcs, and the arcs. The radius of a hole is below zero."""
         angles = math.pi / ARCS * np.arange(2 * ARCS)
         outward = np.stack([np.cos(angles), np.sin(angles), np.zeros(2 * ARCS)], axis=1)
-        for away in outward[1::2]:
+        arcs_from = len(self.others if radius < 0.0 else self.ends) + (0 if radius < 0.0 else ARCS)
+        is_forward = out[2] > 0.0
+        for index, away in enumerate(outward[1::2]):
             along = np.cross(out, away)
+            arcs = (index, (index + 1) % ARCS) if is_forward else ((index + 1) % ARCS, index)
             below = taper * away - math.sqrt(1.0 - taper * taper) * out
             above = math.sqrt(1.0 - end_taper * end_taper) * out - end_taper * away
             fences = [(direction, 0.0, 0.0) for direction in (along, -along, above, below)]
-            self.add(VERTEX, pose, height * UP + radius * away, fences=fences)
+            self.add(VERTEX, pose, height * UP + radius * away, out, radius, toward=away, fences=fences)
+            self.ends[-1][0][-1] = [arcs_from + arc for arc in arcs]
         for away in outward[::2]:
             self.add(RIM, pose, height * UP, out, radius, tapers=(taper, end_taper), toward=away)
 

@@ -14,7 +14,7 @@ from cagepose.kernels.shapes.along_motion import ahead, can_touch, clear_step, f
 from cagepose.kernels.shapes.body import place_asked
 from cagepose.kernels.shapes.features import EDGE, HOLE, SOLID, Shapes, is_end
 from cagepose.kernels.shapes.meeting import both_reach, meeting
-from cagepose.kernels.shapes.meetings import Meetings, balls_apart, slack_of
+from cagepose.kernels.shapes.meetings import Meetings, balls_apart, lie_flat, slack_of
 from cagepose.kernels.shapes.motion import Motion, velocity_at
 
 SAFE = 1.0 + 1e-9
@@ -200,6 +200,8 @@ def first_of_features(
     curved = are_curved(held, i, cage, j)
     if curved:
         now = approach(held, i, cage, j, motion, 0.0)
+        if abs(now.gap) <= touch_m and lie_flat(held.features[i], cage.features[j], slack):  # its vertices touch
+            return math.inf, math.inf
         if now.gap > 0.0 and surely_clear(now, now.gap) >= until:
             return math.inf, math.inf
     elif safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:

@@ -19,7 +19,7 @@ from cagepose.kernels.collision.geometry import Geometry, Placement, box_point
 from cagepose.kernels.contact.friction import Friction, friction_share
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.bend import Bend, curvatures, write_bend, write_twin
+from cagepose.kernels.shapes.bend import Bend, curvatures, write_bend, write_on_rim, write_twin
 from cagepose.kernels.shapes.meeting import Meeting
 from cagepose.kernels.shapes.meetings import is_at_place, most_meetings
 
@@ -301,6 +301,19 @@ def tangents_to(normal: Vector) -> tuple[Vector, Vector]:
 
 
 @kernel
+def write_directions(contact: ContactRow, normal: Vector, arm: Vector, share: float, frame: Frame) -> None:
+    """Write normal and tangents of a contact of shapes, and its wrenches; the tangents are ``share`` long."""
+    one, other = tangents_to(normal)
+    directions = (normal, scaled(one, share), scaled(other, share))
+    for k in range(3):
+        contact.arm[k] = arm[k]
+    for j in range(3):
+        for k in range(3):
+            contact.directions[j, k] = directions[j][k]
+        write_scaled_wrench(directions[j], cross(arm, directions[j]), frame, contact.columns[j])
+
+
+@kernel
 def append_meeting(
     geometry: Geometry,
     placement: Placement,
@@ -321,17 +334,11 @@ def append_meeting(
     choose(contacts, place, place == first)
     normal, arm = vector_from(met.normal), minus(vector_from(met.place), center)
     share = friction_share(friction, met.cage_part, met.part)
-    one, other = tangents_to(normal)
-    directions = (normal, scaled(one, share), scaled(other, share))
-    for k in range(3):
-        contact.arm[k] = arm[k]
-    for j in range(3):
-        for k in range(3):
-            contact.directions[j, k] = directions[j][k]
-        write_scaled_wrench(directions[j], cross(arm, directions[j]), frame, contact.columns[j])
+    write_directions(contact, normal, arm, share, frame)
     held, cage, meeting = placement.body.world, geometry.cage, Meeting(True, met.gap, normal, vector_from(met.place))
     found = curvatures(held, met.feature, cage, met.cage_feature, meeting)
     write_bend(found, normal, arm, frame.axes, frame.radii, contacts.bends[place])
+    write_on_rim(held, met.feature, cage, met.cage_feature, center, contacts.bends[place].on_rim)
     if met.twin >= 0:
         found = curvatures(held, met.twin, cage, met.cage_twin, meeting)
         write_twin(found, normal, arm, frame.axes, frame.radii, contacts.bends[place])

@@ -21,6 +21,7 @@ from cagepose.kernels.contact.edges import (
     return_to_kept,
 )
 from cagepose.kernels.contact.metric import WRENCH, Frame
+from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims
 from cagepose.kernels.contact.self_stress import (
     OPPOSED,
     begin_unlocked,
@@ -170,6 +171,20 @@ def return_to_choice(
 
 @kernel
 def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness: float, work: ContactWorkspace) -> int:
+    """As `equilibrium_of_listed`; where rims lie flat, with all their points that a motion would go in at."""
+    code = equilibrium_of_listed(contacts, frame, friction, strictness, work)
+    for _ in range(MOST_ADDED):
+        if code != MOVES or not add_on_rims(contacts, frame, work.cone.passive.residual):
+            break
+        forget_locked(contacts, frame, work)
+        code = equilibrium_of_listed(contacts, frame, friction, strictness, work)
+    return code
+
+
+@kernel
+def equilibrium_of_listed(
+    contacts: ContactSet, frame: Frame, friction: float, strictness: float, work: ContactWorkspace
+) -> int:
     """Return the code of the load in ``work``: held, MOVES as soon as one choice of faces does not balance it, or
     UNSOLVED.
 

@@ -21,7 +21,8 @@ from cagepose.kernels.contact.equilibrium import (
     return_to_choice,
 )
 from cagepose.kernels.contact.metric import Frame
-from cagepose.kernels.contact.self_stress import carry_by_locked
+from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims
+from cagepose.kernels.contact.self_stress import carry_by_locked, forget_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
@@ -79,6 +80,13 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
     code = equilibrium(contacts, frame, friction, AT_REST, work)
     if code == MOVES:
         code = freest_motion(contacts, frame, friction, work)
+        for _ in range(MOST_ADDED):
+            if code != MOVES or friction == 0.0 or not add_on_rims(contacts, frame, work.y):
+                break
+            forget_locked(contacts, frame, work)
+            code = equilibrium(contacts, frame, friction, AT_REST, work)
+            if code == MOVES:
+                code = freest_motion(contacts, frame, friction, work)
         if work.locked.used > 0:
             carry_by_locked(contacts, frame, friction, work)
     return code

@@ -39,10 +39,11 @@ class Feature:
         The vertex, one end of the edge, a point of the face, or the centre of the rim, of the core, metres.
     direction
         Unit vector along an edge, outward normal of a face; of a rim that of the flat end that it bounds.
+        A vertex at the end of arcs has that of their rim.
     toward
-        Of a rim: unit vector that its arc's middle has as the outward normal along the flat end.
+        Of a rim: unit vector that its arc's middle, or the vertex, has as the outward normal along the flat end.
     length
-        Of an edge, metres; radius of a rim, below zero that of a hole.
+        Of an edge, metres; radius of a rim, below zero that of a hole. A vertex at the end of arcs has that of their rim.
     radius
         Added on all sides, metres; below zero: of a hole.
     taper
@@ -50,6 +51,8 @@ class Feature:
         Of a rim: that of the round side below it, as seen along its own direction.
     end_taper
         Of a rim: that of what is above it, 1: a flat end.
+    arc_before, arc_after
+        Of a vertex at the end of arcs: these features.
     first_fence, last_fence
         Its fences, the last one not included.
     """
@@ -62,6 +65,8 @@ class Feature:
     radius: float
     taper: float
     end_taper: float
+    arc_before: int
+    arc_after: int
     first_fence: int
     last_fence: int
 
@@ -173,6 +178,7 @@ def write_feature(feature: Feature, point: Vector, direction: Vector, toward: Ve
     """Write a feature with another place and other directions."""
     out.kind, out.length, out.radius, out.taper = feature.kind, feature.length, feature.radius, feature.taper
     out.end_taper, out.first_fence, out.last_fence = feature.end_taper, feature.first_fence, feature.last_fence
+    out.arc_before, out.arc_after = feature.arc_before, feature.arc_after
     for k in range(3):
         out.point[k], out.direction[k], out.toward[k] = point[k], direction[k], toward[k]
 
