@@ -218,10 +218,33 @@ def test_other_words_lead_to_ours(command: Callable[..., Any], in_folder: Path, 
     assert f"{word}: is no known shape; did you mean {meant}? " in command("check", "scene.yaml").err
 
 
-def test_what_no_method_runs_yet_is_told_by_name(command: Callable[..., Any], in_folder: Path) -> None:
-    pin = "cylinder: {radius: 5, length: 10}, position: [0, 0, 20]"
-    (in_folder / "scene.yaml").write_text(SCENE.format(pin, FLOOR))
+@pytest.mark.parametrize(
+    ("hole", "says"),
+    [
+        ("hole: {radius: 3, depth: 9, in: [wedge]}, position: [0, 0, 5]", "comes out aslant, which no method runs"),
+        ("hole: {radius: 3, depth: 2, in: [wedge]}, position: [0, 0, 5]", None),
+    ],
+)
+def test_a_hole_that_no_method_runs_is_told_by_name(
+    command: Callable[..., Any], in_folder: Path, hole: str, says: str | None
+) -> None:
+    wedge = "{name: wedge, convex: {vertices: [[-9, -9, 5], [9, -9, 5], [-9, 9, 5], [9, 9, 5], [-9, -9, -5], [-9, 9, -5]]}}"
+    text = SCENE.format("sphere: {radius: 5}, position: [0, 0, 30]", f"{wedge[1:-1]}}}\n    - {{{hole}")
+    (in_folder / "scene.yaml").write_text(text)
     for asked in ("check", "run"):
         answer = command(asked, "scene.yaml")
-        assert answer.code == 2
-        assert "is a cylinder (cylinder1), which no method runs yet; a capsule, or a convex shape with" in answer.err
+        assert answer.code == (0 if says is None else 2), answer.err
+        assert (says or "") in answer.err
+
+
+def test_a_part_that_starts_in_a_plate_beside_its_hole_is_refused(
+    command: Callable[..., Any], in_folder: Path
+) -> None:
+    hole = "hole: {radius: 6, depth: 9, in: [plate]}, position: [0, 0, 5]"
+    plate = "name: plate, box: {size: [90, 90, 10]}"
+    for across, code in ((0.5, 0), (1.5, 2)):
+        peg = f"cylinder: {{radius: 5, length: 20}}, position: [{across}, 0, -42]"
+        (in_folder / "scene.yaml").write_text(SCENE.format(peg, f"{plate}}}\n    - {{{hole}"))
+        answer = command("check", "scene.yaml")
+        assert answer.code == code, answer.err
+        assert ("starts inside object.shapes[0]" in answer.err) == (code == 2)

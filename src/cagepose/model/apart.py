@@ -1,15 +1,22 @@
-"""Whether two shapes, all of them convex, share no volume: shown by a plane between them."""
+"""Whether two convex shapes share no volume: shown by a plane between them; and whether parts with holes do, by samples."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
+from cagepose.model.hole import Hole
+from cagepose.model.pose import Pose
 from cagepose.model.shapes import Convex, Rounded, Shape, Turned
+from cagepose.model.surface import shape_mesh
 
 WITHIN = 1e-12
 """Shapes that overlap by no more than this share of their reach only touch: rounding."""
+SAMPLED, SHRUNK = 64, 1e-6
+"""Chords of a circle that samples lie on, and the share by which a part is shrunk so that it does not touch."""
 PARALLEL = 1e-9
 """Directions with a sine below this give no third one across both."""
 
@@ -36,6 +43,26 @@ def are_apart(one: Shape, other: Shape) -> bool:
     directions = np.concatenate([directions, -directions])
     gaps = -one.heights_m(directions) - other.heights_m(-directions)
     return float(gaps.max(initial=-reach)) >= -WITHIN * reach or _gilbert(one, other, offset, WITHIN * reach)
+
+
+def are_in_each_other(
+    one: Shape, other: Shape, pose_other_one: Pose, holes: Sequence[Hole], other_holes: Sequence[Hole]
+) -> bool:
+    """Return whether samples on the surface of either part lie in the other one, and in none of its holes; a part may
+    touch the other one. ``pose_other_one`` is that of the first part's body in the frame of the second one's.
+    """
+    return _is_in(one, other, pose_other_one, other_holes) or _is_in(other, one, pose_other_one.inverse(), holes)
+
+
+def _is_in(one: Shape, other: Shape, pose_other_one: Pose, other_holes: Sequence[Hole]) -> bool:
+    mesh = shape_mesh(one, SAMPLED)
+    points = np.concatenate([mesh.vertices_m, mesh.vertices_m[mesh.triangles].mean(axis=1)])
+    middle = points.mean(axis=0)
+    seen = pose_other_one.transform(middle + (1.0 - SHRUNK) * (points - middle))
+    held = other.holds(seen)
+    for hole in other_holes:
+        held &= ~hole.holds(seen)
+    return bool(held.any())
 
 
 def _directions(vectors: FloatArray) -> FloatArray:

@@ -11,6 +11,7 @@ import numpy as np
 from cagepose.errors import Key, key_path
 from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.kernels.collision.geometry import Geometry, empty_placement, place_object
+from cagepose.model.apart import are_in_each_other
 from cagepose.model.cage import Cage
 from cagepose.model.checks import ProblemList, check_kind, check_kinds, duplicates
 from cagepose.model.geometry import object_seams, scene_geometry, scene_size
@@ -138,6 +139,7 @@ class Scene:
         _check_distance(object, cage, size_m, problems)
         _check_points_outside(object, cage, geometry, touch_m, size_m, problems)
         _check_shapes_apart(object, cage, geometry, problems)
+        _check_pierced_apart(object, cage, problems)
         _check_loads(object, loads, touch_m, problems)
         problems.raise_if_any()
         named = object.boxes
@@ -305,6 +307,20 @@ def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: 
             f"starts {millimetres(-gaps[one, other])} inside {part} ({held.element_names[one]}); move it out or move the"
             " object's start pose",
         )
+
+
+def _check_pierced_apart(held: Object, cage: Cage, problems: ProblemList) -> None:
+    """Tell of each part with holes, or beside one with holes, that starts in the other: gaps do not show it."""
+    if not held.holes and not cage.holes:
+        return
+    pose = cage.pose_world_cage.inverse() @ held.pose_world_object
+    for part, part_path in zip(held.parts, held.part_paths, strict=False):
+        holes = [hole for hole in held.holes if part.name in hole.in_]
+        for shape, path in zip(cage.shapes, cage.shape_paths, strict=False):
+            others = [hole for hole in cage.holes if shape.name in hole.in_]
+            if (holes or others) and are_in_each_other(part, shape, pose, holes, others):
+                where = f"starts inside {key_path(('object', *part_path[:2]))} ({part.name})"
+                problems.add(("cage", *path[:2]), f"{where}; move it out or move the object's start pose")
 
 
 def _check_loads(held: Object, loads: tuple[Load, ...], touch_m: float, problems: ProblemList) -> None:

@@ -30,6 +30,12 @@ SHARP = 1e-6
 into each other by the touch tolerance; those of a greater one by where they are."""
 
 
+SIDEWAYS = 0.7
+"""Cosine between two axes that have a direction across both."""
+ROUNDING = 1e-13
+"""Of the radius of a rim: what is nearer to it is told by its fences which way is out."""
+
+
 class Meeting(NamedTuple):
     """Two features, the first of the object.
 
@@ -194,10 +200,23 @@ def round_ones(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
         others, other_radius, side = nearest.place, nearest.radius, math.copysign(1.0, other.radius)
     between = minus(others, core)
     distance = side * norm(between)
-    if distance == 0.0:
+    if distance != 0.0:
+        normal = scaled(between, 1.0 / distance)
+    elif side < 0.0:  # on the axis of a hole, as far from its wall on all sides
+        hole = one if one.radius < 0.0 else other
+        normal = off_axis(hole, 1.0 if one.radius < 0.0 else -1.0)
+    else:
         return apart()
-    normal = scaled(between, 1.0 / distance)
     return Meeting(True, distance - radius - other_radius, normal, plus(core, scaled(normal, radius)))
+
+
+@kernel
+def off_axis(hole: Feature, side: float) -> Vector:
+    """Return an outward normal of the wall of a hole, or its opposite."""
+    along = vector_from(hole.direction)
+    across = cross(along, (1.0, 0.0, 0.0) if abs(along[0]) < SIDEWAYS else (0.0, 1.0, 0.0))
+    wall = scaled(across, math.sqrt(1.0 - hole.taper * hole.taper) / norm(across))
+    return scaled(plus(wall, scaled(along, hole.taper)), side)
 
 
 @kernel
@@ -220,24 +239,48 @@ def on_rim_of(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
     elif other.kind == RIM:
         nearest = nearest_on_rim(other, foot.point)
         along = cross(along, outward_at(other, nearest))
-    between = minus(nearest, foot.point)
-    if radius != 0.0:
+    between, is_sharp = minus(nearest, foot.point), abs(radius) < SHARP * abs(rim.length)
+    if is_sharp and other.kind == EDGE and other.taper != 0.0:  # at a tip, which is a vertex of its own
+        return apart()
+    if other.kind == VERTEX or not is_sharp:
         distance = side * norm(between)
-        if distance == 0.0:
+        if distance == 0.0 or radius == 0.0:
             return apart()
-        return Meeting(True, distance - radius, scaled(between, 1.0 / distance), foot.point)
+        normal = scaled(between, 1.0 / distance)
+        if is_sharp and is_turned(a, i, foot.point, b, j, nearest, normal, False):
+            normal, distance = scaled(normal, -1.0), -distance
+        return Meeting(True, distance - radius, normal, foot.point)
     crossed = cross(foot.tangent, along)
     sine = norm(crossed)
-    if other.kind == VERTEX:
-        return apart()
-    if sine < PARALLEL:  # side by side, as of two discs in one plane
+    distance = norm(between)
+    if sine >= PARALLEL:
+        normal = scaled(crossed, 1.0 / sine)
+    elif distance > ROUNDING * abs(rim.length):  # side by side, as where one axis leans toward the other
+        normal = scaled(between, 1.0 / distance)
+    else:
         normal = outward_at(rim, foot.point)
-        return Meeting(True, dot(between, normal), normal, foot.point)
-    normal = scaled(crossed, 1.0 / sine)
     gap = dot(between, normal)
     if is_turned(a, i, foot.point, b, j, nearest, normal, gap < 0.0):
         normal, gap = scaled(normal, -1.0), -gap
-    return Meeting(True, gap, normal, foot.point)
+    return Meeting(True, gap - radius, normal, foot.point)
+
+
+@kernel
+def toward_vertex(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
+    """A sharp rim and a sharp vertex, which cannot touch, but be nearest to each other: the way between them."""
+    if b.features[j].kind == RIM:
+        return swapped(toward_vertex_from_rim(b.features[j], a.features[i]))
+    return toward_vertex_from_rim(a.features[i], b.features[j])
+
+
+@kernel
+def toward_vertex_from_rim(rim: Feature, vertex: Feature) -> Meeting:
+    foot = foot_on(rim, vertex)
+    between = minus(vector_from(vertex.point), foot.point)
+    distance = norm(between)
+    if not foot.is_within or distance == 0.0:
+        return apart()
+    return Meeting(True, distance, scaled(between, 1.0 / distance), foot.point)
 
 
 @kernel

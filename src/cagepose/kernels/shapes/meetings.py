@@ -34,7 +34,7 @@ from cagepose.kernels.shapes.features import (
     is_end,
     out_of_fence,
 )
-from cagepose.kernels.shapes.meeting import Meeting, both_reach, farthest_beyond, meeting, reaches
+from cagepose.kernels.shapes.meeting import Meeting, both_reach, farthest_beyond, meeting, reaches, toward_vertex
 from cagepose.kernels.shapes.rims import middle_of_arc, nearest_on_edge, reach_of_arc
 
 ROOM_FOR_PAIR, MOST_ROOM = 128, 4096
@@ -153,6 +153,27 @@ def deepest_gap(a: Shapes, one: int, b: Shapes, other: int) -> float:
 
 
 @kernel
+def one_ends(a: Shapes, i: int, b: Shapes, j: int, met: Meeting) -> bool:
+    """Whether one of two features that are in each other ends nearer than they are deep: then others meet there."""
+    core = minus(met.place, scaled(met.normal, a.features[i].radius))
+    there = plus(met.place, scaled(met.normal, met.gap + b.features[j].radius))
+    return ends_near(a, i, core, -2.0 * met.gap) or ends_near(b, j, there, -2.0 * met.gap)
+
+
+@kernel
+def ends_near(shapes: Shapes, i: int, core: Vector, reach: float) -> bool:
+    feature = shapes.features[i]
+    seen = minus(core, vector_from(feature.point))
+    if feature.kind == EDGE:
+        along = dot(vector_from(feature.direction), seen) / (1.0 - feature.taper * feature.taper)
+        return along < reach or along > feature.length - reach
+    ends = False
+    for f in range(feature.first_fence, feature.last_fence):
+        ends = ends or (feature.kind == FACE and beyond_fence(shapes.fences[f], seen) > -reach)
+    return ends
+
+
+@kernel
 def lie_flat(one: Feature, other: Feature, slack: float) -> bool:
     """Whether a face or a ball lies on all of a rim, to a sine: then the rim's vertices tell all that is to be told."""
     rim, on_rim = (one, other) if one.kind == RIM else (other, one)
@@ -165,25 +186,24 @@ def lie_flat(one: Feature, other: Feature, slack: float) -> bool:
 
 
 @kernel
-def at_least_apart(a: Shapes, i: int, b: Shapes, j: int) -> float:
-    """Return how far apart two features are at least, if one is an arc: it is seldom near; zero: it was not asked.
+def is_far_from_arc(a: Shapes, i: int, b: Shapes, j: int, touch_m: float) -> bool:
+    """Whether one of two features is an arc that surely does not touch the other one: most do not.
 
     Faces are always asked for the direction in which the parts are apart.
     """
     if a.features[i].kind == FACE or b.features[j].kind == FACE:
-        return 0.0
+        return False
     if b.features[j].kind == RIM:
-        return a_ball_from(b, j, a, i)
-    return a_ball_from(a, i, b, j) if a.features[i].kind == RIM else 0.0
+        return is_arc_far(b.features[j], a, i, touch_m)
+    return a.features[i].kind == RIM and is_arc_far(a.features[i], b, j, touch_m)
 
 
 @kernel
-def a_ball_from(a: Shapes, i: int, b: Shapes, j: int) -> float:
-    """Return how far a ball around an arc is from another feature; zero: it may touch it."""
-    rim, other = a.features[i], b.features[j]
+def is_arc_far(rim: Feature, shapes: Shapes, i: int, touch_m: float) -> bool:
+    other = shapes.features[i]
     if other.radius < 0.0 or other.taper != 0.0:
-        return 0.0
-    return distance_from(b, j, middle_of_arc(rim)) - reach_of_arc(rim) - other.radius
+        return False
+    return distance_from(shapes, i, middle_of_arc(rim)) - reach_of_arc(rim) - other.radius > touch_m
 
 
 @kernel
@@ -200,9 +220,7 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
         for j in range(b.parts[other].first, b.parts[other].last):
             if not can_touch(a, i, b, j):
                 continue
-            away = at_least_apart(a, i, b, j)
-            if away > touch_m:
-                nearest = min(nearest, away)
+            if is_far_from_arc(a, i, b, j, touch_m):
                 continue
             met = meeting(a, i, b, j)
             if not met.is_one:
@@ -212,10 +230,12 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
             if not both_reach(a, i, b, j, met, slack, slack_m):
                 continue
             if met.gap > touch_m:
-                nearest = min(nearest, met.gap)
+                nearest = min(nearest, met.gap) if deepest == -math.inf else nearest
                 continue
             least_gap = on_far_side(max(separation, at_least_m), touch_m) if deepest == -math.inf else deepest
             if met.gap < least_gap or lie_flat(a.features[i], b.features[j], slack):
+                continue
+            if deepest > -math.inf and met.gap < -SAME_PLACE * touch_m and one_ends(a, i, b, j, met):
                 continue
             if found.used[0] == len(found.rows):
                 found.used[0] = first
@@ -232,10 +252,30 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
         nearest = min(nearest, found.rows[at].gap)
     if deepest > -math.inf:
         return nearest if nearest < math.inf else max(at_least_m, 0.0)
-    overlap = -separation - a.features[a.parts[one].first].radius - b.features[b.parts[other].first].radius
-    if nearest == math.inf or touch_m < overlap < math.inf:  # of cores: what reaches does so by the slack
+    radii = a.features[a.parts[one].first].radius + b.features[b.parts[other].first].radius
+    if (nearest == math.inf or touch_m < -separation - radii < math.inf) and max(separation, at_least_m) <= touch_m:
+        separation = max(separation, apart_by_rims(a, one, b, other, slack))
+    if nearest == math.inf or touch_m < -separation - radii < math.inf:  # of cores: what reaches does so by the slack
         return max(separation, at_least_m)
     return nearest
+
+
+@kernel
+def apart_by_rims(a: Shapes, one: int, b: Shapes, other: int, slack: float) -> float:
+    """Return how far apart two parts are along the ways between their rims and other features, however far these are;
+    -inf: there are no rims.
+    """
+    separation = -math.inf
+    for i in range(a.parts[one].first, a.parts[one].last):
+        for j in range(b.parts[other].first, b.parts[other].last):
+            kind, other_kind = a.features[i].kind, b.features[j].kind
+            if separation > 0.0 or (kind != RIM and other_kind != RIM):
+                continue
+            is_vertex = kind == VERTEX or other_kind == VERTEX
+            met = toward_vertex(a, i, b, j) if is_vertex else meeting(a, i, b, j)
+            if met.is_one and (is_vertex or tells_apart(a, i, b, j, met, slack)):
+                separation = max(separation, apart_along(a, one, b, other, met.normal))
+    return separation
 
 
 @kernel
@@ -346,15 +386,25 @@ def depth_in_part(shapes: Shapes, which: int, point: Vector) -> float:
 
 
 @kernel
+def is_within_wall(wall: Feature, point: Vector) -> bool:
+    """Whether a point lies within a wall of a hole, at the heights of its rims or between them."""
+    along, seen = vector_from(wall.direction), minus(point, vector_from(wall.point))
+    height, far = dot(along, seen), wall.radius - wall.taper * wall.length
+    first, last = wall.radius * wall.taper, wall.length + far * wall.taper
+    if height < first or height > last:
+        return False
+    radius = wall.radius + (far - wall.radius) * (height - first) / (last - first)
+    side = norm(minus(seen, scaled(along, height)))
+    return side < -radius * math.sqrt(1.0 - wall.taper * wall.taper)
+
+
+@kernel
 def is_in_hole(shapes: Shapes, which: int, point: Vector) -> bool:
     """Whether a point lies within the walls of a hole."""
     for i in range(shapes.parts[which].first, shapes.parts[which].last):
         wall = shapes.features[i]
-        if wall.kind == EDGE and wall.radius < 0.0:
-            nearest = nearest_on_edge(wall, point)
-            along = dot(vector_from(wall.direction), minus(nearest.place, vector_from(wall.point)))
-            if nearest.away > nearest.radius and 0.0 <= along <= wall.length:
-                return True
+        if wall.kind == EDGE and wall.radius < 0.0 and is_within_wall(wall, point):
+            return True
     return False
 
 

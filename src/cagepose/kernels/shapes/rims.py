@@ -21,6 +21,8 @@ SEARCHED = 1.05 * HALF_ARC
 """To each side of an arc's middle: a little beyond its ends."""
 FLAT = 1e-13
 """Sine: flatter, a face lies on all of a rim, and its vertices meet it."""
+SECTIONS = 6
+"""Of an arc, that are searched for a foot each: two rims in nearly the same plane have several."""
 ITERATIONS, ROUNDING = 60, 2e-16
 """Of the search for a foot, radians."""
 REACH = 2.0 * math.sin(0.5 * SEARCHED)
@@ -136,15 +138,26 @@ def foot_on(rim: Feature, other: Feature) -> Foot:
     if other.kind == VERTEX:
         way = minus(vector_from(other.point), vector_from(rim.point))
         return farthest_along(rim, scaled(way, math.copysign(1.0, rim.length)))
-    low, high, middle = -SEARCHED, SEARCHED, 0.0
-    at_low, at_high, at_middle = rise(rim, other, low), rise(rim, other, high), rise(rim, other, middle)
-    if at_low < 0.0 <= at_middle:
-        high, at_high = middle, at_middle
-    elif at_middle < 0.0 <= at_high:
-        low, at_low = middle, at_middle
-    else:
-        one, last = on_rim(rim, low, False), on_rim(rim, high, False)
-        return one if distance_at(rim, other, one.point) < distance_at(rim, other, last.point) else last
+    best, least, before = on_rim(rim, -SEARCHED, False), math.inf, rise(rim, other, -SEARCHED)
+    width = 2.0 * SEARCHED / SECTIONS
+    for section in range(SECTIONS):
+        low = -SEARCHED + section * width
+        after = rise(rim, other, low + width)
+        if before < 0.0 <= after:
+            found = on_rim(rim, root_of_rise(rim, other, low, low + width, before, after), True)
+            distance = distance_at(rim, other, found.point)
+            if distance < least:
+                best, least = found, distance
+        before = after
+    if best.is_within:
+        return best
+    last = on_rim(rim, SEARCHED, False)
+    return best if distance_at(rim, other, best.point) < distance_at(rim, other, last.point) else last
+
+
+@kernel
+def root_of_rise(rim: Feature, other: Feature, low: float, high: float, at_low: float, at_high: float) -> float:
+    """Return the angle at which `rise` is zero, between two where it is below and not below zero."""
     angle, last_side = low, 0.0
     for _ in range(ITERATIONS):  # false position; where one end stays, its value is halved (Illinois)
         before, angle = angle, min(max(low - at_low * (high - low) / (at_high - at_low), low), high)
@@ -158,7 +171,7 @@ def foot_on(rim: Feature, other: Feature) -> Foot:
             high, at_high = angle, at
             at_low *= 0.5 if last_side > 0.0 else 1.0
         last_side = at
-    return on_rim(rim, angle, True)
+    return angle
 
 
 @kernel
