@@ -102,7 +102,10 @@ def nearest(one: Circles, other: Circles) -> Nearest:
         if along @ point > low:
             low, normal, stalled = float(along @ point), along, 0
         columns = np.column_stack(points)
-        shares, _ = nnls(np.vstack([columns / size, np.ones(len(points))]), np.array((0.0, 0.0, 0.0, 1.0)))
+        try:
+            shares, _ = nnls(np.vstack([columns / size, np.ones(len(points))]), np.array((0.0, 0.0, 0.0, 1.0)))
+        except RuntimeError:  # goes round in circles, of points that differ by rounding alone
+            break
         way = columns @ (shares / shares.sum())
         apart = float(np.linalg.norm(way))
         high, stalled = min(high, apart), stalled + 1
@@ -128,9 +131,13 @@ def gap(one: Circles, other: Circles, normal: np.ndarray | None = None) -> tuple
     best, by = max(told.low, -size), 0.5 * size
     for _ in range(ITERATIONS):
         told = nearest(one.moved(-by * normal), other)
-        if told.low - by <= best + ENOUGH * size:
+        is_better = told.low - by > best + ENOUGH * size
+        if is_better:
+            best, normal = told.low - by, told.normal
+        if by > 2e-3 * size:  # the nearer, the faster the normal turns into the true one, and the more there is rounding
+            by = max(0.2 * by, 2e-3 * size, -2.0 * best)
+        elif not is_better:
             break
-        best, normal = told.low - by, told.normal
     return best - radius, normal
 
 
