@@ -9,6 +9,7 @@ grid, and around its least values on ever smaller ones.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -86,15 +87,15 @@ def distance_of(part: Shape, points: np.ndarray) -> np.ndarray:
     assert isinstance(part, Rounded)
     ends = part.core()[:, 2]
     away = own - np.column_stack([0.0 * own[:, :2], np.clip(own[:, 2], ends.min(), ends.max())])
-    distances = np.linalg.norm(away, axis=1) - part.radius_m
-    return distances
+    own_distances: np.ndarray = np.linalg.norm(away, axis=1) - part.radius_m
+    return own_distances
 
 
 def _of_turned(part: Turned, radii: np.ndarray, heights: np.ndarray) -> np.ndarray:
     (low, wide), (high, narrow) = part.rims
     corners = np.array([(0.0, low), (wide, low), (narrow, high), (0.0, high)])
     nearest, beyond = np.full_like(radii, np.inf), np.full_like(radii, -np.inf)
-    for start, end in zip(corners, corners[1:], strict=False):
+    for start, end in pairwise(corners):
         length = np.linalg.norm(end - start)
         if length == 0.0:
             continue

@@ -98,7 +98,14 @@ SYMMETRIC = (
     Box((1.0, 1.0, 1.0)),
     Convex(CUBE * 0.25, 0.25),
 )
-TURNS = [(0, 0, 0), (np.pi, 0, 0), (np.pi / 2, 0, 0), (0, np.pi / 2, 0), (np.pi / 4, 0, 0), (0, np.arctan(0.5), np.pi / 2)]
+TURNS = [
+    (0, 0, 0),
+    (np.pi, 0, 0),
+    (np.pi / 2, 0, 0),
+    (0, np.pi / 2, 0),
+    (np.pi / 4, 0, 0),
+    (0, np.arctan(0.5), np.pi / 2),
+]
 WAYS = [(0, 0, 1), (1, 0, 0), (0, 1, 1), (0.5, 0, 1)]
 
 
@@ -128,7 +135,9 @@ def random_plate(rng: np.random.Generator) -> tuple[list[Shape], PiercedPlate, f
     depth = float(rng.choice([0.5, 1.0, rng.uniform(0.4, 1.5)]))
     chamfer = None
     if rng.random() < 0.4:
-        chamfer = Chamfer(float(rng.choice([0.1, 0.05])), float(rng.choice([np.pi / 4, np.pi / 6, rng.uniform(0.4, 1.2)])))
+        chamfer = Chamfer(
+            float(rng.choice([0.1, 0.05])), float(rng.choice([np.pi / 4, np.pi / 6, rng.uniform(0.4, 1.2)]))
+        )
     if rng.random() < 0.5:
         hole = Hole(radius, depth, chamfer)
         return [hole], plate_of(hole, True, WIDE), radius

@@ -140,7 +140,9 @@ def test_a_cylinder_and_a_disc_fall_on_a_floor(first, tilt):
     lowest = radius * math.sin(tilt)
     lands = first_amount(first, Cylinder(radius, 2.0 * half), FLOOR, pose, travel(0, 0, -1), 10.0)
     assert lands == pytest.approx(3.0 - lowest - half * math.cos(tilt), abs=1e-8)
-    assert first_amount(first, Disc(radius), FLOOR, pose, travel(0, 0, -1), 10.0) == pytest.approx(3.0 - lowest, abs=1e-8)
+    assert first_amount(first, Disc(radius), FLOOR, pose, travel(0, 0, -1), 10.0) == pytest.approx(
+        3.0 - lowest, abs=1e-8
+    )
 
 
 @pytest.mark.parametrize("radius", [0.4, 0.49, 0.499999])
@@ -154,9 +156,7 @@ def test_a_peg_goes_into_a_hole_and_turns_until_it_touches(first, cage, radius):
     assert aside == pytest.approx(0.5 - radius, abs=1e-9)
     for x in (0.0, 0.1):
         motion = motion_of(np.array((x, 0.0, 0.0)), np.zeros(3), 1.0, np.array((0.0, 1.0, 0.0)))
-        hit, told = check(
-            first, [peg], cage, pose, motion, 1.0, lambda at: pierced_plate.gap(peg, at, plate)[0], 3e-9
-        )
+        hit, told = check(first, [peg], cage, pose, motion, 1.0, lambda at: pierced_plate.gap(peg, at, plate)[0], 3e-9)
         assert not told
         assert hit.amount < 1.0
 

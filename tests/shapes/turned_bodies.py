@@ -64,7 +64,9 @@ class Circles:
         if sines[at] * self.radii[at] < 1e-15:
             return self.centers[at]
         outward = across[at] / sines[at]
-        outward = outward - (self.axes[at] @ outward) * self.axes[at]  # by rounding, where the normal is nearly the axis
+        outward = (
+            outward - (self.axes[at] @ outward) * self.axes[at]
+        )  # by rounding, where the normal is nearly the axis
         return self.centers[at] + self.radii[at] / np.linalg.norm(outward) * outward
 
 
@@ -134,7 +136,9 @@ def gap(one: Circles, other: Circles, normal: np.ndarray | None = None) -> tuple
         is_better = told.low - by > best + ENOUGH * size
         if is_better:
             best, normal = told.low - by, told.normal
-        if by > 2e-3 * size:  # the nearer, the faster the normal turns into the true one, and the more there is rounding
+        if (
+            by > 2e-3 * size
+        ):  # the nearer, the faster the normal turns into the true one, and the more there is rounding
             by = max(0.2 * by, 2e-3 * size, -2.0 * best)
         elif not is_better:
             break
