@@ -1,6 +1,6 @@
 """How far a part is from a plate with a round hole, searched along lines: an oracle.
 
-Within the hole and above the plate, how far a point is from the plate is a concave function wherever no rim of the plate
+Within the hole and above the plate, how far a point is from the plate is a concave function where no rim of the plate
 is near, so the least over a convex part is at its ends: on its rims, its edges, or a radius from its axis. And how far
 the part is from a rim of the plate is asked all along that rim. So all is a search along circles and segments: on a
 grid, and around its least values on ever smaller ones.
@@ -17,7 +17,7 @@ from cagepose import Box, Pose
 from cagepose.model.hole import Hole
 from cagepose.model.shapes import Rounded, Shape, Turned
 
-N_GRID, N_BEST, N_CLOSER = 240, 6, 52
+N_GRID, N_BEST, N_CLOSER = 180, 4, 48
 FAR = 1e-3
 """Of a plate: from so far the way to it is known."""
 CORNERS = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])

@@ -109,7 +109,7 @@ TURNS = [
 WAYS = [(0, 0, 1), (1, 0, 0), (0, 1, 1), (0.5, 0, 1)]
 
 
-@pytest.mark.parametrize("away", [0.0, 0.5, 1e5])
+@pytest.mark.parametrize("away", [0.5, 1e5])
 def test_gaps_at_symmetric_poses(away):
     """Flat on flat, side on side and across, rim on edge, tip on rim, axes in line: in round numbers."""
     check, wrong = Check(), []
