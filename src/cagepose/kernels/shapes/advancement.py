@@ -15,7 +15,6 @@ from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plu
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.along_motion import (
     BEHIND,
-    EVALUATIONS,
     FARTHER,
     LEAST_STEP,
     distance_from,
@@ -28,6 +27,8 @@ from cagepose.kernels.shapes.motion import Motion, velocity_at
 from cagepose.kernels.shapes.rims import distance_at, foot_on, middle_of_arc, nearest_on_edge, reach_of_arc
 
 
+ADVANCES = 6000
+"""Steps for one pair of features; only where they graze each other more than some tens are taken."""
 NEWTON = 12
 """Steps of Newton's method at most."""
 
@@ -176,7 +177,7 @@ def first_curved_touch(
 ) -> float:
     """Return the amount, up to ``end``, after which two features touch; inf: they do not. See `first_touch`."""
     amount, behind = 0.0, BEHIND * end
-    for _ in range(EVALUATIONS):
+    for _ in range(ADVANCES):
         place_moved(a, i, motion, amount, moved)
         now = approach(moved, i, b, j, motion, level)
         if level > 0.0 and now.gap > level:

@@ -30,6 +30,8 @@ SHARP = 1e-6
 into each other by the touch tolerance; those of a greater one by where they are."""
 
 
+TIP = 1e-9
+"""Of the radius of a rim that touches the side of a cone: where this has a smaller one, it is at its tip."""
 SIDEWAYS = 0.7
 """Cosine between two axes that have a direction across both."""
 ROUNDING = 1e-13
@@ -239,8 +241,9 @@ def on_rim_of(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
     elif other.kind == RIM:
         nearest = nearest_on_rim(other, foot.point)
         along = cross(along, outward_at(other, nearest))
-    between, is_sharp = minus(nearest, foot.point), abs(radius) < SHARP * abs(rim.length)
-    if is_sharp and other.kind == EDGE and other.taper != 0.0:  # at a tip, which is a vertex of its own
+    between, is_slanted = minus(nearest, foot.point), other.kind == EDGE and other.taper != 0.0
+    is_sharp = abs(radius) < (TIP if is_slanted else SHARP) * abs(rim.length)
+    if is_sharp and is_slanted:  # at a tip, which is a vertex of its own
         return apart()
     if other.kind == VERTEX or not is_sharp:
         distance = side * norm(between)
