@@ -11,7 +11,7 @@ from rich.text import Text
 from cagepose.cli.console import print_all
 from cagepose.cli.report import verdict_style
 from cagepose.files.units import LengthUnit, from_metres
-from cagepose.files.words import short
+from cagepose.model.wording import short
 from cagepose.studies.comparison import Comparison, Variant
 
 

@@ -12,8 +12,9 @@ from rich.text import Text
 from cagepose.cli.console import print_all
 from cagepose.files.play_document import LENGTHS
 from cagepose.files.units import LengthUnit, from_metres
-from cagepose.files.words import LengthWords, line_of, short
+from cagepose.files.words import LengthWords, line_of
 from cagepose.model.checks import FloatArray
+from cagepose.model.wording import short
 from cagepose.studies.cage_verdict import PathStep
 from cagepose.studies.play import Play, PlayEnd
 from cagepose.studies.play_rest import PlayRest

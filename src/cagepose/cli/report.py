@@ -14,7 +14,8 @@ from cagepose.cli.console import fits_screen, print_all
 from cagepose.cli.margin_report import margin_lines
 from cagepose.errors import printable
 from cagepose.files.units import LengthUnit
-from cagepose.files.words import LengthWords, components, line_of, names_of, short
+from cagepose.files.words import LengthWords, components, line_of, names_of
+from cagepose.model.wording import short
 from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.run import AT_REST, FAILURES, Event, PhaseRun, Run
 from cagepose.studies.margin import Margin

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.checks import FloatArray
+from cagepose.model.wording import short
 from cagepose.runs.run import Motion
 
 
@@ -41,11 +42,6 @@ def line_of(motion: Motion) -> str:
 def components(direction: FloatArray) -> str:
     """Return a unit vector to four digits."""
     return ", ".join(short(value, 4, 5e-5) for value in direction.tolist())
-
-
-def short(value: float, digits: int, noise: float) -> str:
-    """Return a number as people read it; below ``noise`` it is zero."""
-    return "0" if abs(value) < noise else f"{value:.{digits}g}"
 
 
 def names_of(names: Iterable[str]) -> str:

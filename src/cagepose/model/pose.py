@@ -12,6 +12,7 @@ from cagepose.errors import Problem, SceneError
 from cagepose.kernels.algebra import pose as kernel
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.model.checks import FloatArray, as_vector, finite_array
+from cagepose.model.wording import coordinates
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -66,6 +67,12 @@ class Pose:
         quaternion.setflags(write=False)
         object.__setattr__(self, "position_m", finite_array(position_m, (3,), "position"))
         object.__setattr__(self, "quaternion_wxyz", quaternion)
+
+    def __repr__(self) -> str:
+        turned = (
+            f", yaw pitch roll {coordinates(np.degrees(self.euler_zyx))} deg" if self.quaternion_wxyz[0] < 1.0 else ""
+        )
+        return f"<Pose {coordinates(self.position_m)} m{turned}>"
 
     @classmethod
     def from_unit(cls, position_m: FloatArray, quaternion_wxyz: FloatArray) -> Pose:

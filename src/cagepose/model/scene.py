@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import get_args
 
 import numpy as np
 
@@ -12,14 +13,24 @@ from cagepose.errors import Key, key_path
 from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.kernels.collision.geometry import Geometry, empty_placement, place_object
 from cagepose.model.cage import Cage
-from cagepose.model.checks import ProblemList, check_kind, check_kinds, duplicates
+from cagepose.model.checks import (
+    ProblemList,
+    check_choice,
+    check_kind,
+    check_kinds,
+    check_mapping,
+    check_text,
+    duplicates,
+    is_finite,
+)
 from cagepose.model.geometry import object_seams, scene_geometry, scene_size
 from cagepose.model.load import Load
-from cagepose.model.methods import Metric
+from cagepose.model.methods import METHODS, Metric
 from cagepose.model.naming import names_of
 from cagepose.model.parts import Object
 from cagepose.model.shapes import Shape
 from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
+from cagepose.model.wording import counted, few
 
 FARTHEST_START = 1e4
 """In sizes of the scene. The rounding of a position 1e4 sizes away is about 2e-12 of the size, near the resolution."""
@@ -113,11 +124,20 @@ class Scene:
             of the object at the start, a start too far from the cage, or a box or shape thinner than what the touch
             tolerance can tell apart.
         """
-        tolerances = tolerances or Tolerances()
+        tolerances = Tolerances() if tolerances is None else tolerances
         problems = ProblemList()
         loads = check_kinds(loads, Load, "loads", problems)
         check_kind(object, Object, ("object",), problems)
         check_kind(cage, Cage, ("cage",), problems)
+        check_kind(tolerances, Tolerances, ("tolerances",), problems)
+        check_text(name, ("name",), problems)
+        adjustable = check_kinds(adjustable, Adjustable, "adjustable", problems)
+        friction_of = {} if friction_of is None else friction_of
+        check_mapping(friction_of, ("friction", "of"), problems)
+        if method is not None:
+            check_choice(method, METHODS, "method", problems)
+        if metric is not None:
+            check_choice(metric, get_args(Metric), "metric", problems)
         problems.raise_if_any()
         if not loads:
             problems.add(("loads",), "is empty; give at least one phase with gravity or a force")
@@ -125,9 +145,8 @@ class Scene:
             problems.add(
                 ("loads", indices[1], "name"), f"{load_name!r} is already the name of loads[{indices[0]}]; rename one"
             )
-        if friction_coefficient is not None and not (np.isfinite(friction_coefficient) and friction_coefficient >= 0.0):
+        if friction_coefficient is not None and not (is_finite(friction_coefficient) and friction_coefficient >= 0.0):
             problems.add(("friction",), f"is {friction_coefficient!r}; give a finite coefficient, zero or above")
-        friction_of = dict(friction_of or {})
         _check_friction_of(friction_of, object, cage, problems)
         size_m = scene_size(object, cage)
         touch_m = tolerances.touch * size_m
@@ -145,19 +164,26 @@ class Scene:
             ("object", object),
             ("cage", cage),
             ("loads", loads),
-            ("name", str(name)),
+            ("name", name),
             ("friction_coefficient", None if friction_coefficient is None else float(friction_coefficient)),
             ("friction_of", {name: float(coefficient) for name, coefficient in friction_of.items()}),
             ("method", method),
             ("metric", metric),
             ("tolerances", tolerances),
-            ("adjustable", tuple(adjustable)),
+            ("adjustable", adjustable),
             ("geometry", geometry),
             ("open_seams", tuple((str(named[one].name), str(named[other].name)) for one, other in seams.open_pairs)),
             ("size_m", size_m),
             ("has_other_shapes", bool(object.shapes or object.holes or cage.shapes or cage.holes)),
         ):
             _set_field(self, field, value)
+
+    def __repr__(self) -> str:
+        held, cage = self.object, self.cage
+        parts = counted((len(held.boxes), "box", "boxes"), (len(held.shapes), "shape", "shapes"))
+        holders = counted((len(cage.names), "point", "points"), (len(cage.shapes), "shape", "shapes"))
+        loads = f"{'load' if len(self.loads) == 1 else 'loads'} {few(load.name for load in self.loads)}"
+        return f"<Scene {self.name!r}: {parts} in a cage of {holders}, {loads}>"
 
     def changed(
         self,
@@ -195,7 +221,7 @@ class Scene:
 _set_field = object.__setattr__
 
 
-def _check_friction_of(friction_of: dict[str, float], held: Object, cage: Cage, problems: ProblemList) -> None:
+def _check_friction_of(friction_of: Mapping[str, float], held: Object, cage: Cage, problems: ProblemList) -> None:
     elements, parts = set(cage.element_names), set(names_of((*held.parts, *held.holes)))
     for name, coefficient in friction_of.items():
         at = ("friction", "of", name)
@@ -203,7 +229,7 @@ def _check_friction_of(friction_of: dict[str, float], held: Object, cage: Cage, 
             problems.add(at, "is a name in the cage and in the object; rename one of the two")
         elif name not in elements and name not in parts:
             problems.add(at, "is neither in the cage nor in the object; give the name of a point, a box or a shape")
-        if not (np.isfinite(coefficient) and coefficient >= 0.0):
+        if not (is_finite(coefficient) and coefficient >= 0.0):
             problems.add(at, f"is {coefficient!r}; give a finite coefficient, zero or above")
 
 

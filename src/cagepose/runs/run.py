@@ -15,6 +15,7 @@ from cagepose.kernels.outcome.trace import MOTION_NAMES, NONE, TRAVEL
 from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.model.wording import coordinates, counted, few
 from cagepose.runs.proof import Proof
 
 MotionKind = Literal["travel", "turn", "screw"]
@@ -50,6 +51,13 @@ class Motion:
     through_world: FloatArray | None
     distance_m: float
     angle_rad: float
+
+    def __repr__(self) -> str:
+        along = self.direction_world if self.axis_world is None else self.axis_world
+        line = "" if along is None else f" {'along' if self.kind == 'travel' else 'about'} {coordinates(along, 4)}"
+        distance = "" if self.kind == "turn" else f" {self.distance_m:.6g} m"
+        angle = "" if self.kind == "travel" else f" {self.angle_rad:.6g} rad"
+        return f"<Motion: {self.kind}{distance}{angle}{line}>"
 
     def pose_at(self, start: Pose, fraction: float) -> Pose:
         """Return where an object is that was at ``start``, after ``fraction`` (0 to 1) of the motion.
@@ -106,6 +114,10 @@ class Contact:
     force_tangential_n: FloatArray | None = None
     place_world: FloatArray | None = None
 
+    def __repr__(self) -> str:
+        force = "" if self.force_normal_n is None else f": normal force {self.force_normal_n:.4g}"
+        return f"<Contact of {self.point!r} with {self.box!r}{force}>"
+
 
 @dataclass(frozen=True, eq=False)
 class Event:
@@ -141,6 +153,11 @@ class Event:
     note: Note | None
     path: tuple[Pose, ...] = ()
 
+    def __repr__(self) -> str:
+        moved = "no motion" if self.motion is None else self.motion.kind
+        hit = f", hits {few(self.hit)}" if self.hit else ""
+        return f"<Event {self.rule!r}: {moved}{hit}; {len(self.contacts)} touching>"
+
 
 @dataclass(frozen=True, eq=False)
 class PhaseRun:
@@ -164,6 +181,10 @@ class PhaseRun:
     events: tuple[Event, ...]
     contacts: tuple[Contact, ...]
     proof: Proof
+
+    def __repr__(self) -> str:
+        counts = counted((len(self.events), "event", "events"), (len(self.contacts), "contact", "contacts"))
+        return f"<PhaseRun {self.name!r}: {self.verdict}{f'; {counts}' if counts else ''}>"
 
     @property
     def pose(self) -> Pose:
@@ -189,6 +210,10 @@ class Frame:
     event_index: int
     fraction: float
     pose_world_object: Pose
+
+    def __repr__(self) -> str:
+        place = f"phase {self.phase_index}, event {self.event_index}, fraction {self.fraction:.4g}"
+        return f"<Frame: {place}, {self.pose_world_object}>"
 
 
 @dataclass(frozen=True, eq=False)
