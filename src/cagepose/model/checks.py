@@ -166,6 +166,11 @@ def expect(value: object, kind: type, key: str) -> None:
     problems.raise_if_any()
 
 
+def number_found(value: object) -> str:
+    """Name a wrong number: NumPy's as Python's; what is no number, as it is."""
+    return repr(float(value)) if isinstance(value, float) else repr(value)
+
+
 def degrees_of(angle_rad: object) -> str:
     """Name an angle that is wrong in degrees, as users of files know it; what is no number, as it is."""
     return f"{math.degrees(angle_rad):g} deg" if isinstance(angle_rad, float | int) else repr(angle_rad)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cagepose.errors import Key
-from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_text, finite_array, is_finite
+from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_text, finite_array, is_finite, number_found
 from cagepose.model.hull import Hull, hull_of
 from cagepose.model.pose import Pose
 
@@ -426,7 +426,6 @@ def set_lengths(shape: Shape, problems: ProblemList, *, may_be_zero: Sequence[st
     for key, length in lengths_m.items():
         if not is_finite(length) or length < 0.0 or (length == 0.0 and key not in may_be_zero):
             limit = "zero or above" if key in may_be_zero else "above zero"
-            found = float(length) if isinstance(length, float) else length  # NumPy's are shown as Python's
-            problems.add((key,), f"is {found!r}; give a finite number of metres, {limit}")
+            problems.add((key,), f"is {number_found(length)}; give a finite number of metres, {limit}")
         else:
             _set_field(shape, f"{key}_m", float(length))
