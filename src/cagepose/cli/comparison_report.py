@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from cagepose.cli.console import print_all
-from cagepose.cli.report import verdict_style
+from cagepose.cli.styles import verdict_style
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.wording import short
 from cagepose.studies.comparison import Comparison, Variant

@@ -12,6 +12,7 @@ import numpy as np
 from cagepose.errors import Key, key_path
 from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.kernels.collision.geometry import Geometry, empty_placement, place_object
+from cagepose.model.above import from_above
 from cagepose.model.cage import Cage
 from cagepose.model.checks import (
     ProblemList,
@@ -184,6 +185,11 @@ class Scene:
         holders = counted((len(cage.names), "point", "points"), (len(cage.shapes), "shape", "shapes"))
         loads = f"{'load' if len(self.loads) == 1 else 'loads'} {few(load.name for load in self.loads)}"
         return f"<Scene {self.name!r}: {parts} in a cage of {holders}, {loads}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: a picture."""
+        html: str = from_above("scene as html")(self)
+        return html
 
     def changed(
         self,

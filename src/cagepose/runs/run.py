@@ -12,6 +12,7 @@ import numpy as np
 from cagepose.kernels.algebra.pose import moved_pose
 from cagepose.kernels.outcome import motion as kernel
 from cagepose.kernels.outcome.trace import MOTION_NAMES, NONE, TRAVEL
+from cagepose.model.above import from_above
 from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -241,6 +242,16 @@ class Run:
     def __repr__(self) -> str:
         ended = ", ".join(f"{phase.name}: {phase.verdict}" for phase in self.phases)
         return f"<Run of {self.scene.name!r} ({self.method}): {ended}>"
+
+    def __str__(self) -> str:
+        """What ``cagepose run`` prints, lengths in millimetres."""
+        text: str = from_above("text")(self)
+        return text
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: a picture, and the same text."""
+        html: str = from_above("run as html")(self)
+        return html
 
     def __getattr__(self, name: str) -> object:
         """Read phases and warnings from the solution, once, when they are first asked for."""
