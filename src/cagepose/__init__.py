@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from cagepose.files.run_file import load_certificates as load_certificates
     from cagepose.files.run_file import load_run as load_run
     from cagepose.files.run_file import save_run as save_run
+    from cagepose.files.saved_scene import save_scene as save_scene
     from cagepose.files.scene_file import load_scene as load_scene
     from cagepose.model.box import Box as Box
     from cagepose.model.cage import Cage as Cage
@@ -113,6 +114,7 @@ _HOMES = {
     "cagepose.studies.margin": ("ContactMargin", "Margin", "margin"),
     "cagepose.studies.play": ("Play", "play"),
     "cagepose.files.run_file": ("load_certificates", "load_run", "save_run"),
+    "cagepose.files.saved_scene": ("save_scene",),
     "cagepose.files.scene_file": ("load_scene",),
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
@@ -180,6 +182,7 @@ __all__ = [
     "run",
     "run_many",
     "save_run",
+    "save_scene",
     "with_critical_friction",
 ]
 

@@ -49,7 +49,18 @@ def test_all_names_every_public_class_and_function_once() -> None:
         ),
         *("certificate", "check_certificate", "load_certificates"),
         *("Chamfer", "Hole", "Capsule", "Cone", "Convex", "Cylinder", "Disc", "Shape", "Sphere"),
-        *("__version__", "compare", "load_run", "load_scene", "margin", "play", "run", "run_many", "save_run"),
+        *(
+            "__version__",
+            "compare",
+            "load_run",
+            "load_scene",
+            "margin",
+            "play",
+            "run",
+            "run_many",
+            "save_run",
+            "save_scene",
+        ),
         "with_critical_friction",
     }
 

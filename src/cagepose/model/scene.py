@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import get_args
+from typing import Any, get_args
 
 import numpy as np
 
@@ -193,6 +193,8 @@ class Scene:
 
     def changed(
         self,
+        key: str | Mapping[str, Any] | None = None,
+        value: Any = None,
         *,
         friction_coefficient: float | None = None,
         metric: Metric | None = None,
@@ -200,22 +202,40 @@ class Scene:
     ) -> Scene:
         """Return the same scene but for what is given.
 
+        ``key`` is a path as in a scene file, such as ``"object.boxes[0].size[2]"``, or a mapping of several paths and
+        their values, which change together. Lengths are metres, as everywhere in Python; a key that ends in ``_deg``
+        takes degrees. None stands for what a file leaves out.
+
+        >>> from cagepose.model.box import Box
+        >>> from cagepose.model.pose import Pose
+        >>> cube = Object([Box((1, 1, 1))], pose=Pose((0, 0, 2)))
+        >>> scene = Scene(cube, Cage([(0, 0, 0)]), [Load("weight", gravity=(0, 0, -1))])
+        >>> scene.changed("object.mass", 2.0).object
+        <Object: 1 box, 2 kg>
+        >>> scene.changed({"object.pose.position[2]": 3.0, "cage.pose.position[2]": 1.0}).object.pose_world_object
+        <Pose (0, 0, 3) m>
+
         Raises
         ------
         SceneError
-            As for a new scene.
+            As for a new scene; or a key that is none.
         """
+        changed: Scene = self
+        if key is not None:
+            changed = from_above("changed scene")(self, key if isinstance(key, Mapping) else {key: value})
+        if friction_coefficient is None and metric is None and tolerances is None:
+            return changed
         return Scene(
-            self.object,
-            self.cage,
-            self.loads,
-            name=self.name,
-            friction_coefficient=self.friction_coefficient if friction_coefficient is None else friction_coefficient,
-            friction_of=self.friction_of,
-            method=self.method,
-            metric=self.metric if metric is None else metric,
-            tolerances=self.tolerances if tolerances is None else tolerances,
-            adjustable=self.adjustable,
+            changed.object,
+            changed.cage,
+            changed.loads,
+            name=changed.name,
+            friction_coefficient=changed.friction_coefficient if friction_coefficient is None else friction_coefficient,
+            friction_of=changed.friction_of,
+            method=changed.method,
+            metric=changed.metric if metric is None else metric,
+            tolerances=changed.tolerances if tolerances is None else tolerances,
+            adjustable=changed.adjustable,
         )
 
     @property
