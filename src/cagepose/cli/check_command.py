@@ -14,9 +14,11 @@ if TYPE_CHECKING:
 
 def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int:
     """Print what the scene holds, or every problem found."""
+    from cagepose.errors import printable
     from cagepose.files.scene_file import read_scene_file
     from cagepose.files.units import from_metres
     from cagepose.model.geometry import body_limits
+    from cagepose.model.remarks import remarks
     from cagepose.model.wording import counted
     from cagepose.runs.methods import chosen_method
 
@@ -34,6 +36,8 @@ def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int
         f"cage {_extent(body_limits(cage.shapes, cage.points_cage), unit)}\n"
         f"size {size:.6g} {unit}, touch tolerance {touch:.3g} {unit}; no problems found\n"
     )
+    for remark in remarks(found):
+        sys.stdout.write(printable(f"remark: {remark}") + "\n")
     return 0
 
 

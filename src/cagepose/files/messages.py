@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from cagepose.errors import Key, Problem
+from cagepose.files.hints import meant_by_key, meant_by_value
 from cagepose.files.key_path import Path, value_at
 from cagepose.files.schema import scene_json_schema
 from cagepose.files.schema_shapes import KINDS
@@ -92,9 +93,17 @@ def _message(details: ErrorDetails, path: Path, data: object) -> str:
         return f"is missing; add it{_example(path, data)}"
     if kind == "extra_forbidden":
         known = _known_keys(path[:-1], data)
-        return _unknown_shape(str(path[-1]), known) if _is_shape(path[:-1]) else _unknown_key(str(path[-1]), known)
+        if _is_shape(path[:-1]):
+            return _unknown_shape(str(path[-1]), known)
+        return _unknown_key(path, known, data)
     if kind == "union_tag_not_found":
         return f"is {shown(found)}; give {_FORMS[str(path[-1])]}"
+    if (meant := meant_by_value(path, found)) is not None:
+        return f"is {shown(found)}; {meant}"
+    if kind == "list_type" and isinstance(found, dict) and _holds_mappings(path, data):
+        by_name = all(isinstance(value, dict) for value in found.values())
+        form = "each with its own - and name" if by_name else "with - before the first of them"
+        return f"is {shown(found)}; make it a list, {form}"
     if kind in _WANTED:
         return f"is {shown(found)}; give {_WANTED[kind]}"
     if kind in _LIMITS:
@@ -126,29 +135,15 @@ def _choice(found: object, expected: str) -> str:
     return f"is {shown(found)}; use one of: {', '.join(choices)}"
 
 
-def _unknown_key(found: str, known: list[str]) -> str:
-    homes = _homes().get(found, [])
-    meant = f"it belongs to {_some_of(homes)}; " if homes else _close(found, known)
-    return f"is no known key; {meant}known keys: {', '.join(known)}"
-
-
-OTHER_WORDS = {
-    "roller": "capsule",
-    "rod": "capsule",
-    "pin": "capsule",
-    "ball": "sphere",
-    "block": "box",
-    "wall": "box",
-    "cuboid": "box",
-    "hull": "convex",
-    "mesh": "convex",
-    "polyhedron": "convex",
-    "frustum": "cone",
-    "bore": "hole",
-    "rotation": "euler_zyx_deg",
-    "euler_deg": "euler_zyx_deg",
-}
-"""What people call shapes and the keys beside them, and what they are called here."""
+def _unknown_key(path: Path, known: list[str], data: object) -> str:
+    found = str(path[-1])
+    homes, meant = _homes().get(found, []), meant_by_key(found, known)
+    if meant is not None:
+        plural = f"{found.lower()}s"
+        told = _ended(meant + (_example((*path[:-1], plural), data).removeprefix(",") if plural in known else ""))
+    else:
+        told = f"it belongs to {_some_of(homes)}; " if homes else _close(found, known)
+    return f"is no known key; {told}known keys: {', '.join(known)}"
 
 
 def _unknown_shape(found: str, known: list[str]) -> str:
@@ -156,9 +151,13 @@ def _unknown_shape(found: str, known: list[str]) -> str:
     others = [key for key in known if key not in KINDS]
     holders = [home.rpartition(".")[2] for home in _homes().get(found, []) if home.startswith("object.shapes[i].")]
     meant = f"it belongs within {_some_of(holders)}; " if holders else _close(found, known)
-    if found.lower() in OTHER_WORDS:
-        meant = f"did you mean {OTHER_WORDS[found.lower()]}? "
-    return f"is no known shape; {meant}known shapes: {', '.join(KINDS)}; known keys beside them: {', '.join(others)}"
+    hint = meant_by_key(found, known)
+    told = meant if hint is None else _ended(hint)
+    return f"is no known shape; {told}known shapes: {', '.join(KINDS)}; known keys beside them: {', '.join(others)}"
+
+
+def _ended(text: str) -> str:
+    return f"{text} " if text.endswith("?") else f"{text}; "
 
 
 def _some_of(places: list[str]) -> str:
@@ -198,6 +197,12 @@ def _example(path: Path, data: object) -> str:
         if examples := node.get("examples"):
             return f", for example {path[-1]}: {json.dumps(examples[0]).replace(chr(34), '')}"
     return ""
+
+
+def _holds_mappings(path: Path, data: object) -> bool:
+    """Whether what stands at ``path`` is a list of mappings."""
+    items = [node["items"] for node in _schema_nodes(path, data) if isinstance(node.get("items"), dict)]
+    return any("properties" in part for item in items for part in _alternatives(item))
 
 
 def _known_keys(path: Path, data: object) -> list[str]:
