@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.model.wording import coordinates, counted, few
+from cagepose.runs.frames import contact_columns, data_frame, event_columns
 from cagepose.runs.proof import Proof
 
 MotionKind = Literal["travel", "turn", "screw"]
@@ -286,6 +287,22 @@ class Run:
     def center_of_gravity_world(self) -> FloatArray:
         """The centre of gravity at the end, (3,), metres."""
         return self.pose.transform(self.scene.object.center_of_gravity_m)
+
+    def to_frame(self, rows: Literal["events", "contacts"] = "events") -> Any:
+        """Return a ``pandas.DataFrame`` with a row for each event, or for each contact at the end of each phase, with
+        the force that it carries. Lengths are metres, angles radians; what there is none of is NaN.
+
+        Raises
+        ------
+        MissingExtraError
+            There is no pandas.
+        ValueError
+            Other rows.
+        """
+        if rows not in ("events", "contacts"):
+            raise ValueError(f"rows is {rows!r}; give 'events' or 'contacts'")
+        events = rows == "events"
+        return data_frame(event_columns(self.phases) if events else contact_columns(self.scene, self.phases))
 
     def frames(self, per_turn: int = 10) -> Iterator[Frame]:
         """Yield the start pose, then ``per_turn`` pictures of each turn or screw and one of each travel.
