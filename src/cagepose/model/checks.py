@@ -161,6 +161,8 @@ def expect(value: object, kind: type, key: str) -> None:
     SceneError
         It is one.
     """
+    if isinstance(value, kind):
+        return
     problems = ProblemList()
     check_kind(value, kind, (key,), problems)
     problems.raise_if_any()
