@@ -16,6 +16,7 @@ from cagepose.files.build import build_scene
 from cagepose.files.key_path import Path as KeyPath
 from cagepose.files.key_path import parse_key_path, resolved, set_value, value_at
 from cagepose.files.messages import Finding, schema_findings, shown
+from cagepose.files.parameters import evaluated, expression_at
 from cagepose.files.points_file import POINTS_KEY, PointsTable, read_points
 from cagepose.files.read import read_text, starts_as_run
 from cagepose.files.schema import PointsFileModel, SceneModel
@@ -174,11 +175,20 @@ class _Attempt:
         self.scene_file: SceneFile | None = None
         self.findings: list[Finding] = []
         self.table_problems: list[FileProblem] = []
+        written = data
+        data, of_expressions = evaluated(data)
+        self.findings += [Finding(problem, False) for problem in of_expressions]
         self.table = self._read_table(value_at(data, POINTS_KEY), folder)
         try:
             model = SceneModel.model_validate(data)
         except ValidationError as error:
-            self.findings += schema_findings(error, data)
+            for finding in schema_findings(error, data):
+                text = expression_at(written, finding.problem.path)
+                if text is None:
+                    self.findings.append(finding)
+                elif not isinstance(value_at(data, finding.problem.path), str):  # else it came to nothing
+                    problem = Problem(finding.problem.path, f"{text!r} {finding.problem.message}")
+                    self.findings.append(Finding(problem, finding.about_key))
             return
         self.findings += [Finding(problem, False) for problem in _adjustable_problems(model, data)]
         if self.table is None and isinstance(model.cage.points, PointsFileModel):

@@ -19,6 +19,7 @@ from pydantic import (
 )
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 
+from cagepose.files.parameters import parameter_name_message
 from cagepose.files.schema_base import (
     Direction,
     Mapping,
@@ -272,6 +273,12 @@ class AdjustableModel(Mapping):
     )
 
 
+def _usable(name: str) -> str:
+    if message := parameter_name_message(name):
+        raise wrong(message)
+    return name
+
+
 class SceneModel(Mapping):
     """A part, the cage that holds it, and the loads that act on it one after the other."""
 
@@ -279,6 +286,12 @@ class SceneModel(Mapping):
 
     name: Name = Field(description="The scene's name.", examples=["bracket"])
     units: UnitsModel | None = Field(None, description="Units of the file; left out: millimetres.")
+    parameters: dict[Annotated[Name, AfterValidator(_usable)], Number] | None = Field(
+        None,
+        description="Named numbers. Wherever a number may stand, so may text that begins with = and says what it comes"
+        " to, such as '=10 + play/2'; a parameter may use those above it.",
+        examples=[{"play": 0.5}],
+    )
     object: ObjectModel = Field(description="The part that is held.", examples=[{"boxes": [_BOX]}])
     cage: CageModel = Field(description="What holds it.", examples=[{"points": _POINTS}])
     loads: list[LoadModel] = Field(
