@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -122,6 +122,22 @@ class SceneText:
                 problems.append(places.place(finding))
         problems.sort(key=_reading_order)
         raise SceneFileError(problems)
+
+    def scene_with(self, numbers: Mapping[KeyPath, float]) -> SceneFile:
+        """Return the scene with other numbers at some paths, for thousands of times: without places of what is wrong.
+
+        Raises
+        ------
+        SceneError
+            Such a scene cannot be used.
+        """
+        data = deepcopy(self.yaml.data)
+        for path, number in numbers.items():
+            set_value(data, path, number)
+        attempt = _Attempt(data, self.folder)
+        if attempt.scene_file is None:
+            raise SceneError([*attempt.table_problems, *(finding.problem for finding in attempt.findings)])
+        return attempt.scene_file
 
 
 def _reading_order(problem: FileProblem) -> tuple[int, int]:

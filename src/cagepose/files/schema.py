@@ -17,7 +17,6 @@ from pydantic import (
     WithJsonSchema,
     model_validator,
 )
-from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 
 from cagepose.files.parameters import parameter_name_message
 from cagepose.files.schema_base import (
@@ -30,6 +29,7 @@ from cagepose.files.schema_base import (
     Quaternion,
     Size,
     Vector,
+    json_schema,
     wrong,
 )
 from cagepose.files.schema_shapes import CoefficientModel, Shapes, either
@@ -312,12 +312,4 @@ class SceneModel(Mapping):
 
 def scene_json_schema() -> dict[str, Any]:
     """Return the JSON Schema (2020-12) of a scene file: editors check and complete scenes with it."""
-    schema = SceneModel.model_json_schema(schema_generator=_InOurOrder)
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
-
-
-class _InOurOrder(GenerateJsonSchema):
-    """Keys stay in the order of the classes above; the examples read as people write them."""
-
-    def sort(self, value: JsonSchemaValue, parent_key: str | None = None) -> JsonSchemaValue:  # noqa: ARG002 (pydantic's signature)
-        return value
+    return json_schema(SceneModel)
