@@ -60,7 +60,9 @@ class DistributionModel(Mapping):
         None, description="Least, most likely and greatest value.", examples=[[0.05, 0.1, 0.2]]
     )
     grid: Annotated[list[Number], Field(min_length=1), AfterValidator(_distinct)] | None = Field(
-        None, description="These values, equally likely; or each of them, where the sample is a grid.", examples=[[0.2, 0.5]]
+        None,
+        description="These values, equally likely; or each of them, where the sample is a grid.",
+        examples=[[0.2, 0.5]],
     )
     steps: StepsModel | None = Field(
         None,
@@ -100,7 +102,8 @@ class SampleModel(Mapping):
         "sobol", description="How values are drawn; grid: every combination of the values of all.", examples=["sobol"]
     )
     runs: Annotated[int, Field(ge=1, le=MOST_RUNS)] | None = Field(
-        None, description="How many runs; left out for a grid alone, which has as many as it has combinations.",
+        None,
+        description="How many runs; left out for a grid alone, which has as many as it has combinations.",
         examples=[10_000],
     )
     seed: Annotated[int, Field(ge=0, le=2**63)] = Field(1, description="Another seed draws other values.")

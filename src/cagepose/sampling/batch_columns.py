@@ -112,4 +112,3 @@ def _one_force(data: Any) -> Path | None:
         found += [("loads", index, "force")] if load.get("force") is not None else []
         found += [("loads", index, "forces", number) for number in range(len(load.get("forces") or []))]
     return found[0] if len(found) == 1 else None
-

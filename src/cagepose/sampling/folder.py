@@ -148,4 +148,3 @@ class StudyFolder:
 def _is_remnant(path: Path) -> bool:
     """Whether a file is what `write_whole` leaves if its process is killed."""
     return path.name.startswith(".") and path.name.endswith(".part")
-

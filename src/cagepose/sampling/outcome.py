@@ -73,7 +73,7 @@ class Outcomes:
         for poses in (self.position_m, self.quaternion_wxyz, self.euler_zyx):
             poses[rows] = np.nan
 
-    def write_run(self, row: int, run: Run, with_forces: bool) -> None:
+    def write_run(self, row: int, run: Run) -> None:
         """Write what `cagepose.run` says into a row."""
         verdicts, pose = [phase.verdict for phase in run.phases], run.pose
         self.phase_verdicts[row, : len(verdicts)] = verdicts
@@ -82,7 +82,7 @@ class Outcomes:
         places = {name: place for place, name in enumerate(run.scene.cage.element_names)}
         touched = [places[contact.point] for contact in run.contacts]
         self.touching[row, touched] = True
-        if with_forces and self.forces is not None:
+        if self.forces is not None:
             known = [contact.force_normal_n for contact in run.contacts]
             if None not in known:
                 self.forces[row] = 0.0

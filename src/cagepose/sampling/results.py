@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
+from cagepose.errors import StudyFolderError
 from cagepose.sampling.folder import StudyFolder
 from cagepose.sampling.row_columns import RowColumns
 
@@ -44,8 +45,20 @@ class StudyResults:
     def __repr__(self) -> str:
         return f"<StudyResults: {len(self)} runs in {os.fspath(self.folder.path)!r}>"
 
+    def require_rows(self) -> None:
+        """Do nothing if there is at least one row.
+
+        Raises
+        ------
+        StudyFolderError
+            There is none.
+        """
+        if not len(self):
+            raise StudyFolderError(f"{self.folder.path}: holds no rows yet; run the study with --resume")
+
     def table(self, columns: Sequence[str] | None = None) -> pa.Table:
         """Return the rows, or some columns of them, as a table of pyarrow."""
+        self.require_rows()
         return pa.concat_tables(self.folder.batches(columns)).unify_dictionaries()
 
     def to_pandas(self, columns: Sequence[str] | None = None) -> pandas.DataFrame:

@@ -35,8 +35,7 @@ class RowColumns:
     def __init__(self, study: StudyFile) -> None:
         self._study, scene = study, study.nominal.scene
         self._watched = {
-            name: to_metres(watch.point, study.nominal.length_unit)
-            for name, watch in (study.model.watch or {}).items()
+            name: to_metres(watch.point, study.nominal.length_unit) for name, watch in (study.model.watch or {}).items()
         }
         elements = scene.cage.element_names
         self.varied = tuple(one.key for one in study.varied)

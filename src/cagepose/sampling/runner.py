@@ -90,9 +90,10 @@ class Runner:
             rows = values[first : first + self.rows_of_a_part]
             told(self.run(rows), rows)
 
-    def run_one_by_one(self, values: FloatArray) -> Outcomes:
-        """Build and run the scene of each row."""
-        outcomes = empty_outcomes(self.study.nominal.scene, len(values), with_forces=self._with_forces)
+    def run_one_by_one(self, values: FloatArray, *, with_forces: bool | None = None) -> Outcomes:
+        """Build and run the scene of each row; with forces as the study says, if it is not said here."""
+        has_forces = self._with_forces if with_forces is None else with_forces
+        outcomes = empty_outcomes(self.study.nominal.scene, len(values), with_forces=has_forces)
         self._write_one_by_one(values, range(len(values)), outcomes)
         return outcomes
 
@@ -101,7 +102,7 @@ class Runner:
         for row in rows:
             try:
                 scene = self.study.scene_text.scene_with(dict(zip(paths, values[row].tolist(), strict=True))).scene
-                outcomes.write_run(row, run(scene), self._with_forces)
+                outcomes.write_run(row, run(scene))
             except SceneError as error:
                 outcomes.write_refusal(row, str(error))
 

@@ -16,8 +16,8 @@ from cagepose.sampling.row_columns import RowColumns
 from cagepose.sampling.runner import Runner
 from cagepose.sampling.sample import Sample
 
-Progress = Callable[[int, int], None]
-"""Called with how many rows are done, and how many there are."""
+Progress = Callable[[int, int, bool], None]
+"""Called with how many rows are done, how many there are, and whether the last of them were run now."""
 
 
 class Study:
@@ -118,11 +118,12 @@ class Study:
         try:
             for first in range(0, n_runs, runner.rows_of_a_part):
                 last = min(first + runner.rows_of_a_part, n_runs)
-                if not kept.has(first, last):
+                is_missing = not kept.has(first, last)
+                if is_missing:
                     values = self._sample.values(first, last)
                     kept.write(first, last, self._columns.table(first, values, runner.run(values)))
                 if progress is not None:
-                    progress(last, n_runs)
+                    progress(last, n_runs, is_missing)
         finally:
             runner.close()
         return StudyResults(folder)

@@ -1,0 +1,76 @@
+"""The report of a study: a page that stands alone, its numbers as JSON, its pictures, and chosen runs as scenes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from cagepose.files.write import MADE_BY, json_text, write_whole
+from cagepose.sampling.chosen_runs import write_scenes
+from cagepose.sampling.figures import draw
+from cagepose.sampling.findings import Findings, document
+from cagepose.views.style import figure_bytes
+
+PAGE_NAME, NUMBERS_NAME = "report.html", "report.json"
+
+
+def write_report(findings: Findings) -> list[Path]:
+    """Write everything into the study's folder; return the files, the page first.
+
+    Raises
+    ------
+    OSError
+        A file cannot be written.
+    """
+    folder, numbers = findings.results.folder.path, document(findings)
+    pictures = {name: figure_bytes(figure, ".svg") for name, figure in draw(findings).items()}
+    write_scenes(findings.results, list(findings.chosen))
+    contents = {f"{name}.svg": content for name, content in pictures.items()}
+    contents[NUMBERS_NAME] = json_text(numbers).encode()
+    contents[PAGE_NAME] = page_text(numbers, findings, pictures).encode()
+    for name, content in contents.items():
+        write_whole(folder / name, content)
+    return [folder / name for name in reversed(contents)]
+
+
+def page_text(numbers: dict[str, Any], findings: Findings, pictures: dict[str, bytes]) -> str:
+    """Return the page."""
+    templates = Environment(
+        loader=PackageLoader("cagepose.sampling"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    templates.filters |= {"number": shown_number, "percent": shown_share}
+    svgs = {name: Markup(_inner_svg(content)) for name, content in pictures.items()}
+    return templates.get_template("report.jinja").render(
+        made_by=MADE_BY, found=numbers, pictures=svgs, planned=findings.n_planned
+    )
+
+
+def _inner_svg(content: bytes) -> str:
+    """An SVG file without what stands before its first tag, to stand within a page."""
+    text = content.decode()
+    return text[text.index("<svg") :]
+
+
+def shown_number(value: float | None) -> str:
+    """Write a number as people read it.
+
+    >>> shown_number(0.123456), shown_number(None), shown_number(-0.0)
+    ('0.1235', '-', '0')
+    """
+    return "-" if value is None else f"{value + 0.0:.4g}"
+
+
+def shown_share(value: float) -> str:
+    """Write a share: more digits near all and none.
+
+    >>> shown_share(0.5), shown_share(0.99973)
+    ('50.0 %', '99.973 %')
+    """
+    return f"{100.0 * value:.{1 if 0.01 <= value <= 0.99 else 3}f} %"
