@@ -54,7 +54,7 @@ def study_command(
                     f"\ncagepose: what is done is kept; go on with: cagepose study {file} --out {out} --resume\n"
                 )
                 raise
-        return _report(results, workers, json=json)
+        return _report(results, workers, is_shown=folder is not None, json=json)
     except OSError as error:
         from cagepose.errors import printable
 
@@ -76,22 +76,24 @@ def _problem(file: str, folder: str | None, out: str | None, resume: bool, worke
     return "study needs --out FOLDER for its rows and its report." if out is None else None
 
 
-def _report(results: StudyResults, workers: int, *, json: bool) -> int:
+def _report(results: StudyResults, workers: int, *, is_shown: bool, json: bool) -> int:
+    """Print what a study says; one that is only shown and has its report is not asked anew."""
     from cagepose.sampling.findings import document, findings_of
-    from cagepose.sampling.report import write_report
+    from cagepose.sampling.report import kept_numbers, numbers_text, write_report
 
-    findings = findings_of(results, workers)
-    written = write_report(findings)
+    numbers, written = kept_numbers(results) if is_shown else None, ""
+    if numbers is None:
+        findings = findings_of(results, workers)
+        files = write_report(findings)
+        numbers, written = document(findings), f"wrote {files[0]} and {len(files) - 1} files beside it\n"
     if json:
-        from cagepose.files.write import json_text
-
-        sys.stdout.write(json_text(document(findings)))
+        sys.stdout.write(numbers_text(numbers))
         return 0
     from cagepose.cli.study_report import print_study
     from cagepose.errors import printable
 
-    print_study(document(findings))
-    sys.stdout.write(printable(f"wrote {written[0]} and {len(written) - 1} files beside it") + "\n")
+    print_study(numbers)
+    sys.stdout.write(printable(written.removesuffix("\n")) + "\n" if written else "")
     return 0
 
 

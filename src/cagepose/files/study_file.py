@@ -117,11 +117,12 @@ def parse_study(text: str, source: str = "study.yaml") -> StudyFile:
 
 
 def _placed(yaml: YamlSource, findings: list[Finding]) -> SceneFileError:
-    problems = []
+    problems = list[FileProblem]()
     for problem, about_key in findings:
         mark = yaml.mark(problem.path, of_key=about_key)
         problems.append(FileProblem(problem.path, problem.message, yaml.source, *(mark or (None, None))))
-    return SceneFileError(sorted(problems, key=lambda problem: (problem.line or 0, problem.column or 0)))
+    problems.sort(key=lambda problem: (problem.line or 0, problem.column or 0))
+    return SceneFileError(problems)
 
 
 def _of_nominal(problem: Problem, varied: tuple[VariedKey, ...]) -> Finding:

@@ -47,7 +47,7 @@ class BatchColumns:
 
     def usable(self, columns: Columns) -> NDArray[np.bool_]:
         """Return which rows hold numbers that a scene file may, (n,); the others are for the scene's own checks."""
-        found = np.logical_and.reduce([np.abs(column) <= LARGEST for column in columns.values()])
+        found: NDArray[np.bool_] = np.logical_and.reduce([np.abs(column) <= LARGEST for column in columns.values()])
         if FRICTION in columns:
             found &= columns[FRICTION] >= 0.0
         if self._force is not None:
@@ -87,7 +87,7 @@ class BatchColumns:
         rows = np.tile(np.array(value_at(self._data, place), dtype=np.float64), (len(_any(columns)), 1))
         for path, column in columns.items():
             if path[:-1] == place:
-                rows[:, path[-1]] = column
+                rows[:, int(path[-1])] = column
         return rows
 
     def _points(self, columns: Columns) -> FloatArray:
@@ -97,7 +97,7 @@ class BatchColumns:
         rows = np.tile(base, (len(_any(columns)), 1, 1))
         for path, column in columns.items():
             if path[:2] == ("cage", "points"):
-                rows[:, names.index(path[2]), path[3]] = column
+                rows[:, names.index(path[2]), int(path[3])] = column
         return rows
 
 

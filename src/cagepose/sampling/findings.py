@@ -119,7 +119,8 @@ def document(findings: Findings) -> dict[str, Any]:
             for run in findings.chosen
         ],
     }
-    return _without_nan(document)
+    plain: dict[str, Any] = _without_nan(document)
+    return plain
 
 
 def _share(n: int, n_runs: int) -> dict[str, Any]:

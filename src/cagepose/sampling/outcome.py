@@ -58,7 +58,8 @@ class Outcomes:
 
     @property
     def _last(self) -> NDArray[np.int64]:
-        return np.maximum((self.phase_verdicts != "").sum(axis=1) - 1, 0)
+        found: NDArray[np.int64] = np.maximum((self.phase_verdicts != "").sum(axis=1) - 1, 0)
+        return found
 
     def points_world_m(self, point_object_m: FloatArray) -> FloatArray:
         """Return where a point of the object, (3,), is at the end, (n, 3)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from cagepose.files.write import MADE_BY, json_text, write_whole
 from cagepose.sampling.chosen_runs import write_scenes
 from cagepose.sampling.figures import draw
 from cagepose.sampling.findings import Findings, document
+from cagepose.sampling.results import StudyResults
 from cagepose.views.style import figure_bytes
 
 PAGE_NAME, NUMBERS_NAME = "report.html", "report.json"
@@ -29,11 +31,25 @@ def write_report(findings: Findings) -> list[Path]:
     pictures = {name: figure_bytes(figure, ".svg") for name, figure in draw(findings).items()}
     write_scenes(findings.results, list(findings.chosen))
     contents = {f"{name}.svg": content for name, content in pictures.items()}
-    contents[NUMBERS_NAME] = json_text(numbers).encode()
+    contents[NUMBERS_NAME] = numbers_text(numbers).encode()
     contents[PAGE_NAME] = page_text(numbers, findings, pictures).encode()
     for name, content in contents.items():
         write_whole(folder / name, content)
     return [folder / name for name in reversed(contents)]
+
+
+def numbers_text(numbers: dict[str, Any]) -> str:
+    """Return the numbers as JSON, the map's cells on one line."""
+    return json_text({key: value for key, value in numbers.items() if key != "map"}, map=numbers["map"])
+
+
+def kept_numbers(results: StudyResults) -> dict[str, Any] | None:
+    """Return the numbers of a report that was written of these rows; None: there is none, or of fewer rows."""
+    try:
+        numbers: dict[str, Any] = json.loads((results.folder.path / NUMBERS_NAME).read_text(encoding="utf-8"))
+        return numbers if numbers["runs"] == len(results) else None
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
 
 
 def page_text(numbers: dict[str, Any], findings: Findings, pictures: dict[str, bytes]) -> str:
@@ -61,10 +77,10 @@ def _inner_svg(content: bytes) -> str:
 def shown_number(value: float | None) -> str:
     """Write a number as people read it.
 
-    >>> shown_number(0.123456), shown_number(None), shown_number(-0.0)
-    ('0.1235', '-', '0')
+    >>> shown_number(0.12345649), shown_number(None), shown_number(-0.0)
+    ('0.123456', '-', '0')
     """
-    return "-" if value is None else f"{value + 0.0:.4g}"
+    return "-" if value is None else f"{value + 0.0:.6g}"
 
 
 def shown_share(value: float) -> str:

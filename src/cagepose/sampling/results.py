@@ -56,6 +56,23 @@ class StudyResults:
         if not len(self):
             raise StudyFolderError(f"{self.folder.path}: holds no rows yet; run the study with --resume")
 
+    def report(self, workers: int | None = None) -> dict[str, Any]:
+        """Write the report into the folder and return its numbers; ``workers`` as for `Study.run`.
+
+        Raises
+        ------
+        StudyFolderError
+            There are no rows.
+        OSError
+            It cannot be written.
+        """
+        from cagepose.sampling.findings import document, findings_of  # which read results
+        from cagepose.sampling.report import write_report
+
+        findings = findings_of(self, workers)
+        write_report(findings)
+        return document(findings)
+
     def table(self, columns: Sequence[str] | None = None) -> pa.Table:
         """Return the rows, or some columns of them, as a table of pyarrow."""
         self.require_rows()

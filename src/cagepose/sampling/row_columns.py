@@ -79,7 +79,8 @@ class RowColumns:
         """
         ran = columns["verdict"] != REFUSED
         if self._study.accept is None:
-            return ran & np.isin(columns["verdict"], sorted(AT_REST))
+            at_rest: NDArray[np.bool_] = ran & np.isin(columns["verdict"], sorted(AT_REST))
+            return at_rest
         found = np.asarray(self._study.accept.value(columns))
         if found.dtype != np.bool_:
             raise ValueError("is no comparison; write what is true of a good run, such as verdict == 'rests'")
@@ -91,7 +92,7 @@ class RowColumns:
         arrays: dict[str, pa.Array] = {"run": pa.array(np.arange(first, first + len(values)))}
         for name, column in self.columns(values, outcomes).items():
             if column.dtype.kind == "U":
-                found = pa.array(np.where(column == "", None, column.astype(object)), pa.string()).dictionary_encode()
+                found = pa.array(column.astype(object), pa.string(), mask=column == "").dictionary_encode()
             else:
                 found = pa.array(column, from_pandas=True)  # NaN is null
             arrays[name] = found

@@ -159,5 +159,6 @@ def _run_task(values: FloatArray) -> Outcomes:
 
 def _joined(parts: list[Outcomes]) -> Outcomes:
     """One below the other."""
-    columns = (tuple(getattr(part, field.name) for part in parts) for field in fields(Outcomes))
-    return Outcomes(*(None if column[0] is None else np.concatenate(column) for column in columns))
+    columns: Any = (tuple(getattr(part, field.name) for part in parts) for field in fields(Outcomes))
+    joined: Any = (None if column[0] is None else np.concatenate(column) for column in columns)
+    return Outcomes(*joined)

@@ -49,9 +49,10 @@ class Sample:
         n_varied = len(self._distributions)
         if self._method == GRID:
             indices = np.unravel_index(np.arange(first, last), self._counts)
-            return (np.stack(indices, axis=1) + 0.5) / np.array(self._counts)
+            grid: FloatArray = (np.stack(indices, axis=1) + 0.5) / np.array(self._counts)
+            return grid
         if self._method == "random":
-            bits = np.random.PCG64(self._seed).advance(first * n_varied)  # type: ignore[attr-defined]
+            bits = np.random.PCG64(self._seed).advance(first * n_varied)
             return np.random.Generator(bits).random((last - first, n_varied))
         if self._method == "sobol":
             return self._sobol_rows(first, last, n_varied)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from SALib.analyze import sobol as analysis
@@ -19,6 +20,8 @@ ACCEPTED = "accepted"
 BASE = 1024
 """Rows of the design for each varied number, and two more."""
 BASE_ONE_BY_ONE = 256
+LEAST_WHOLE = 0.5
+"""Of the design's blocks: a block in which a run ends at no pose says nothing of poses, and is left out."""
 SAME = 1e-9
 """Beside its greatest value a quantity that varies less does not vary."""
 
@@ -30,7 +33,7 @@ class Sensitivity:
     Attributes
     ----------
     name, n_runs
-        Of the quantity, or "accepted"; how many runs of the design say so.
+        Of the quantity, or "accepted"; how many runs of the design it is from.
     first, first_interval
         Share of the variance that is due to each number alone, (n_varied,), and half of its 95 % interval.
     total, total_interval
@@ -70,17 +73,18 @@ def sensitivities(
     ]
 
 
-def _indices(name: str, measured: FloatArray, problem: dict[str, object], seed: int) -> Sensitivity:
-    nothing = np.zeros(0)
-    n_missing = int(np.isnan(measured).sum())
-    missing = None
-    if n_missing:
-        missing = f"{n_missing} of {len(measured)} runs of the design end at no pose"
+def _indices(name: str, measured: FloatArray, problem: dict[str, Any], seed: int) -> Sensitivity:
+    nothing, missing = np.zeros(0), None
+    blocks = measured.reshape(-1, problem["num_vars"] + 2)  # of runs that belong together
+    whole = blocks[~np.isnan(blocks).any(axis=1)]
+    measured = whole.ravel()
+    if len(whole) < LEAST_WHOLE * len(blocks):
+        missing = "ends at no pose in too many runs of the design"
     elif np.ptp(measured) <= SAME * max(float(np.abs(measured).max()), 1e-300):
-        missing = "is the same in all runs"
+        missing = "is the same in all of them"
     if missing is not None:
         return Sensitivity(name, len(measured), nothing, nothing, nothing, nothing, missing)
     with np.errstate(invalid="ignore", divide="ignore"):  # of resamples that happen to be constant
         found = analysis.analyze(problem, measured, calc_second_order=False, seed=seed % 2**32)
-    indices = [np.asarray(found[key], dtype=np.float64) for key in ("S1", "S1_conf", "ST", "ST_conf")]
-    return Sensitivity(name, len(measured), *indices)
+    first, first_half, total, total_half = (np.asarray(found[key]) for key in ("S1", "S1_conf", "ST", "ST_conf"))
+    return Sensitivity(name, len(measured), first, first_half, total, total_half)
