@@ -108,7 +108,7 @@ def parse_study(text: str, source: str = "study.yaml") -> StudyFile:
     _check_map(model, varied, problems)
     accept = _accept(model, problems)
     if problems:
-        raise _placed(yaml, [Finding(problem, False) for problem in problems])
+        raise _placed(yaml, [Finding(problem, problem.path[0] == "vary") for problem in problems])
     try:
         nominal = scene_text.scene_with({one.path: one.nominal for one in varied})
     except SceneError as error:
@@ -222,9 +222,9 @@ def _accept(model: StudyModel, problems: list[Problem]) -> Expression | None:
         return None
 
 
-def refused_accept(study: StudyFile, source: str, message: str) -> SceneFileError:
-    """Return the error for an expression that is found wrong where the first run's columns are known."""
-    return _placed(parse_yaml(study.text, source), [Finding(Problem(("accept",), message), False)])
+def refused_at(key: str, study: StudyFile, source: str, message: str) -> SceneFileError:
+    """Return the error for the value of a key that is found wrong only where its study is made ready to run."""
+    return _placed(parse_yaml(study.text, source), [Finding(Problem((key,), message), False)])
 
 
 def copies(study: StudyFile) -> dict[str, str]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.files.study_file import StudyFile, parse_study, read_study_file, refused_accept, study_text
+from cagepose.files.study_file import StudyFile, parse_study, read_study_file, refused_at, study_text
 from cagepose.sampling.distribution import distribution_of
 from cagepose.sampling.folder import StudyFolder
 from cagepose.sampling.results import StudyResults
@@ -71,12 +71,15 @@ class Study:
 
     def _begin(self, file: StudyFile, source: str) -> None:
         self._file, self._columns = file, RowColumns(file)
-        self._sample = Sample(file.model.sample, [distribution_of(one) for one in file.varied])
+        try:
+            self._sample = Sample(file.model.sample, [distribution_of(one) for one in file.varied])
+        except ValueError as error:
+            raise refused_at("sample", file, source, str(error)) from None
         nominal = np.array([[one.nominal for one in file.varied]])
         try:
             self._columns.columns(nominal, Runner(file).run(nominal))
         except ValueError as error:
-            raise refused_accept(file, source, str(error)) from None
+            raise refused_at("accept", file, source, str(error)) from None
 
     def __len__(self) -> int:
         """How many runs it has."""
