@@ -59,7 +59,7 @@ def study_command(
         from cagepose.errors import printable
 
         sys.stderr.write(
-            printable(f"{target}: cannot be written ({error.strerror or error}); make room, --resume") + "\n"
+            printable(f"{target}: cannot be written ({error.strerror or error}); make room and add --resume") + "\n"
         )
         return 2
 
