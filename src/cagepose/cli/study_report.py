@@ -83,4 +83,4 @@ def _percent(share: float) -> str:
 
 
 def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value + 0.0:.6g}"
+    return "-" if value is None else f"{value + 0.0:.5g}"

@@ -37,7 +37,7 @@ class ContactRow:
 
 @dataclass(frozen=True)
 class ContactTable:
-    """All of them; ``unit`` is that of the last phase's forces, ``n_runs`` how many runs the forces are of."""
+    """All of them; ``unit``, "N" or "load", is that of the last phase's forces, ``n_runs`` how many runs they are of."""
 
     rows: tuple[ContactRow, ...]
     unit: str
@@ -57,7 +57,7 @@ def contact_table(results: StudyResults, runner: Runner, statistics: Statistics)
         counts += carries.sum(axis=0)
         greatest = np.maximum(greatest, known.max(axis=0, initial=-np.inf))
     scene = results.study.nominal.scene
-    unit = "N" if force_unit(scene, scene.loads[-1]) == "N" else "of the load"
+    unit = "N" if force_unit(scene, scene.loads[-1]) == "N" else "load"
     rows = [
         ContactRow(
             name,

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 from cagepose.sampling.capture_map import CaptureMap
-from cagepose.sampling.distribution import SIGMAS, Distribution
+from cagepose.sampling.distribution import Distribution
 from cagepose.sampling.findings import Findings
 from cagepose.sampling.sensitivity import ACCEPTED, Sensitivity
 from cagepose.sampling.statistics import BINS, Spread
@@ -93,7 +93,7 @@ def _tornado_figure(
     rows: Sequence[ToleranceRow], names: Sequence[str], distributions: Sequence[Distribution]
 ) -> Figure:
     n_bars = min(len(names), MOST_BARS)
-    reaches = SIGMAS * np.array([one.sigma for one in distributions])
+    reaches = np.array([(one.high - one.low) / 2.0 for one in distributions])
     figure, panels = _panels(len(rows), 0.7 + 0.2 * n_bars, 2)
     for panel, row in zip(panels, rows, strict=True):
         changes = row.derivatives * reaches
@@ -103,7 +103,7 @@ def _tornado_figure(
         panel.axvline(0.0, color=BLACK, linewidth=0.8)
         panel.set_yticks(np.arange(n_bars), [names[one] for one in order])
         panel.set_title(row.name)
-        panel.set_xlabel("change for three standard deviations")
+        panel.set_xlabel("change from the middle to either end")
     return figure
 
 

@@ -78,15 +78,17 @@ def shown_number(value: float | None) -> str:
     """Write a number as people read it.
 
     >>> shown_number(0.12345649), shown_number(None), shown_number(-0.0)
-    ('0.123456', '-', '0')
+    ('0.12346', '-', '0')
     """
-    return "-" if value is None else f"{value + 0.0:.6g}"
+    return "-" if value is None else f"{value + 0.0:.5g}"
 
 
 def shown_share(value: float) -> str:
     """Write a share: more digits near all and none.
 
-    >>> shown_share(0.5), shown_share(0.99973)
-    ('50.0 %', '99.973 %')
+    >>> shown_share(0.5), shown_share(0.99973), shown_share(1.0)
+    ('50.0 %', '99.973 %', '100 %')
     """
+    if value in (0.0, 1.0):
+        return f"{100.0 * value:.0f} %"
     return f"{100.0 * value:.{1 if 0.01 <= value <= 0.99 else 3}f} %"
