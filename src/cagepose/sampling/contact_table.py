@@ -37,7 +37,7 @@ class ContactRow:
 
 @dataclass(frozen=True)
 class ContactTable:
-    """All of them; ``unit``, "N" or "load", is that of the last phase's forces, ``n_runs`` how many runs they are of."""
+    """All of them; ``unit``, "N" or "load", is that of the forces of the last phase; ``n_runs`` they are of."""
 
     rows: tuple[ContactRow, ...]
     unit: str
