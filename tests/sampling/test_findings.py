@@ -6,6 +6,7 @@ import json
 import math
 import re
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ import pytest
 from scipy import stats
 
 from cagepose import Study, StudyResults, load_scene, run
-from cagepose.sampling.capture_map import largest_box
+from cagepose.sampling.capture_map import largest_box, refined_map
 from cagepose.sampling.sensitivity import _indices
 from cagepose.sampling.statistics import Spread, statistics_of, wilson
 from our_studies import RunStudy
@@ -164,6 +165,28 @@ def test_the_largest_box_is_that_of_trying_all() -> None:
         assert (found is None) == (not good[row, column])
         if found is not None:
             assert areas[found] == max(areas.values())
+
+
+def _look_up(whole: np.ndarray, times_asked: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    np.add.at(times_asked, (rows, columns), 1)
+    return whole[rows, columns]
+
+
+def test_a_refined_map_is_the_whole_grid_by_few_runs() -> None:
+    """Rings, wedges and steps in random places, none of them narrower than a block of the first lattice."""
+    rng = np.random.default_rng(8)
+    for count in (2, 3, 61, 130, 500, 1000):
+        for _ in range(3):
+            x, y = np.meshgrid(np.linspace(-1, 1, count), np.linspace(-1, 1, count))
+            a, b, c, d = rng.uniform(-0.5, 0.5, 4)
+            radius = np.hypot(x - a, y - b)
+            whole = (radius < 0.7).astype(int) + 2 * (radius < 0.4) + 4 * (y > c + 2.0 * d * x + 0.2 * np.sin(5.0 * x))
+            times_asked = np.zeros(whole.shape, int)
+            found, n_runs = refined_map(count, partial(_look_up, whole, times_asked))
+            assert np.array_equal(found, whole)
+            assert n_runs == times_asked.sum()
+            assert times_asked.max() == 1
+            assert n_runs <= (0.1 * count**2 if count == 1000 else count**2)
 
 
 @pytest.mark.usefixtures("small_designs")

@@ -162,6 +162,7 @@ def _sensitivity(found: Sensitivity, results: StudyResults) -> dict[str, Any]:
 def _map(found: CaptureMap) -> dict[str, Any]:
     return {
         "over": list(found.keys),
+        "runs": found.n_runs,
         "across": found.across.tolist(),
         "up": found.up.tolist(),
         "verdicts": found.verdicts.tolist(),
