@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path as PathOnDisk
 
 import numpy as np
 
@@ -77,8 +79,8 @@ def chosen_runs(results: StudyResults, statistics: Statistics) -> list[ChosenRun
     return [replace(found, name=name, file=f"{name.replace(' ', '-')}.yaml") for name, found in named]
 
 
-def write_scenes(results: StudyResults, chosen: list[ChosenRun]) -> None:
-    """Write the scenes of chosen runs beside the study's own scene: the file with other numbers.
+def write_scenes(results: StudyResults, chosen: Sequence[ChosenRun]) -> list[PathOnDisk]:
+    """Write the scenes of chosen runs beside the study's own scene, the file with other numbers; return the files.
 
     Raises
     ------
@@ -90,3 +92,4 @@ def write_scenes(results: StudyResults, chosen: list[ChosenRun]) -> None:
     for run in chosen:
         changes: dict[Path, object] = dict(zip(paths, run.values.tolist(), strict=True))
         write_whole(folder / run.file, with_values(text, changes).encode())
+    return [folder / run.file for run in chosen]

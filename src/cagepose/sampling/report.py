@@ -29,13 +29,12 @@ def write_report(findings: Findings) -> list[Path]:
     """
     folder, numbers = findings.results.folder.path, document(findings)
     pictures = {name: figure_bytes(figure, ".svg") for name, figure in draw(findings).items()}
-    write_scenes(findings.results, list(findings.chosen))
     contents = {f"{name}.svg": content for name, content in pictures.items()}
     contents[NUMBERS_NAME] = numbers_text(numbers).encode()
     contents[PAGE_NAME] = page_text(numbers, findings, pictures).encode()
     for name, content in contents.items():
         write_whole(folder / name, content)
-    return [folder / name for name in reversed(contents)]
+    return [*(folder / name for name in reversed(contents)), *write_scenes(findings.results, findings.chosen)]
 
 
 def numbers_text(numbers: dict[str, Any]) -> str:
