@@ -22,6 +22,7 @@ from cagepose.files.scene_edit import setting
 from cagepose.files.scene_file import read_scene_text
 from cagepose.sampling import runner
 from cagepose.sampling.runner import Runner
+from our_scenes import SCENES
 from our_studies import RAIL, RunStudy
 
 NEWTONS = ["object.mass=3", "loads[1].gravity=[0,0,-9.81]", "loads[0].gravity=[0,0,-9.81]"]
@@ -66,8 +67,8 @@ def compare_with_runs(results: StudyResults, method: str | None = None) -> dict[
         assert [row[f"position_{axis}"] for axis in "xyz"] == document["pose"]["position"]
         assert [row[f"{angle}_deg"] for angle in ("yaw", "pitch", "roll")] == document["pose"]["euler_zyx_deg"]
         reached = {phase["name"]: phase["verdict"] for phase in document["phases"]}
-        verdicts = {name: row[f"verdict_{name}"] for name in ("weight", "push")}
-        assert verdicts == {"weight": None, "push": None, **reached}
+        phases = [load.name for load in scene_file.scene.loads]
+        assert {name: row[f"verdict_{name}"] for name in phases} == {**dict.fromkeys(phases), **reached}
         touching = {f"touching_{contact['point']}" for contact in document["phases"][-1]["contacts"]}
         assert {name for name, value in row.items() if name.startswith("touching_") and value} == touching
         assert row["accepted"] == (row["verdict"] in ("stable", "rests", "may rest"))
@@ -91,6 +92,19 @@ def test_a_row_of_the_batch_is_the_run_of_its_scene(
 def test_a_row_whose_scene_is_built_is_the_run_of_its_scene(run_study: RunStudy, varied: str) -> None:
     results = run_study(BUILT[varied], 25)
     assert not Runner(results.study).is_batch
+    compare_with_runs(results)
+
+
+@pytest.mark.parametrize("path", SCENES, ids=[path.stem for path in SCENES])
+def test_rows_of_every_scene_are_its_runs(run_study: RunStudy, path: Path) -> None:
+    data: Any = read_scene_text(path).yaml.data
+    vary: dict[str, Any] = {"friction.coefficient": {"uniform": [0, 0.2]}}
+    if data["cage"].get("points"):
+        vary["cage.points.*[2]"] = {"normal": {"sigma": 0.01}}
+    if data["object"].get("mass"):
+        vary["object.mass"] = {"uniform": [0.1, 1.0]}
+    results = run_study(vary, 12, scene=path)
+    assert Runner(results.study).is_batch == ("object.mass" not in vary)
     compare_with_runs(results)
 
 

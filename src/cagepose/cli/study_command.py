@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import sys
 import time
-from typing import TYPE_CHECKING, Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -36,32 +37,44 @@ def study_command(
     if problem is not None:
         sys.stderr.write(f"cagepose: {problem} See: cagepose study --help\n")
         return 2
+    from cagepose.errors import printable
     from cagepose.sampling.results import StudyResults
     from cagepose.sampling.study import Study
 
     workers = workers or os.cpu_count() or 1
-    target = out if folder is None else folder
-    assert target is not None, "one of the two is given"
     try:
         if folder is not None:
-            results = StudyResults(folder)
+            numbers, written = _reported(StudyResults(folder), workers, is_shown=True)
         else:
-            study = Study.load(file)
-            try:
-                results = study.run(target, resume=resume, workers=workers, progress=_progress())
-            except KeyboardInterrupt:
-                sys.stderr.write(
-                    f"\ncagepose: what is done is kept; go on with: cagepose study {file} --out {out} --resume\n"
-                )
-                raise
-        return _report(results, workers, is_shown=folder is not None, json=json)
+            assert out is not None, "it was asked for above"
+            results = Study.load(file).run(out, resume=resume, workers=workers, progress=_progress())
+            numbers, written = _reported(results, workers, is_shown=False)
     except OSError as error:
-        from cagepose.errors import printable
-
-        sys.stderr.write(
-            printable(f"{target}: cannot be written ({error.strerror or error}); make room and add --resume") + "\n"
-        )
+        remedy = "make room and add --resume" if folder is None else "make room"
+        reason = f"cannot be written ({error.strerror or error}); {remedy}"
+        sys.stderr.write(printable(f"{folder or out}: {reason}") + "\n")
         return 2
+    except KeyboardInterrupt:
+        if out is not None:
+            sys.stderr.write(f"\ncagepose: what is done is kept; go on with: {_again(file, out)}\n")
+        raise
+    if json:
+        from cagepose.sampling.report import numbers_text
+
+        sys.stdout.write(numbers_text(numbers))
+        return 0
+    from cagepose.cli.study_report import print_study
+
+    print_study(numbers)
+    if written:
+        sys.stdout.write(printable(f"wrote {written[0]} and {len(written) - 1} files beside it") + "\n")
+    return 0
+
+
+def _again(file: str, out: str) -> str:
+    from shlex import join
+
+    return join(["cagepose", "study", file, "--out", out, "--resume"])
 
 
 def _problem(file: str, folder: str | None, out: str | None, resume: bool, workers: int | None) -> str | None:
@@ -76,25 +89,16 @@ def _problem(file: str, folder: str | None, out: str | None, resume: bool, worke
     return "study needs --out FOLDER for its rows and its report." if out is None else None
 
 
-def _report(results: StudyResults, workers: int, *, is_shown: bool, json: bool) -> int:
-    """Print what a study says; one that is only shown and has its report is not asked anew."""
+def _reported(results: StudyResults, workers: int, *, is_shown: bool) -> tuple[dict[str, Any], list[Path]]:
+    """Return what a study says, and the files of a report; one that is only shown and has its report gets no other."""
     from cagepose.sampling.findings import document, findings_of
-    from cagepose.sampling.report import kept_numbers, numbers_text, write_report
+    from cagepose.sampling.report import kept_numbers, write_report
 
-    numbers, written = kept_numbers(results) if is_shown else None, ""
-    if numbers is None:
-        findings = findings_of(results, workers)
-        files = write_report(findings)
-        numbers, written = document(findings), f"wrote {files[0]} and {len(files) - 1} files beside it\n"
-    if json:
-        sys.stdout.write(numbers_text(numbers))
-        return 0
-    from cagepose.cli.study_report import print_study
-    from cagepose.errors import printable
-
-    print_study(numbers)
-    sys.stdout.write(printable(written.removesuffix("\n")) + "\n" if written else "")
-    return 0
+    numbers = kept_numbers(results) if is_shown else None
+    if numbers is not None:
+        return numbers, []
+    findings = findings_of(results, workers)
+    return document(findings), write_report(findings)
 
 
 def _progress() -> Progress:

@@ -51,18 +51,21 @@ class Expressions:
         SceneError
             Some come to no number. If one of them is a parameter, it is the only one that is named: others use it.
         """
-        names = _Names()
+        names: dict[str, Any] = {}
         found: dict[Path, Any] = {}
         for name, given in self._parameters.items():
             path: Path = ("parameters", name)
-            if path not in self.by_path and not isinstance(given, (int, float)):
-                raise SceneError([])  # no number: the schema says so
-            names[name] = (varied or {}).get(name, given)
-            if path in self.by_path and name not in (varied or {}):
+            if varied is not None and name in varied:
+                names[name] = varied[name]
+            elif path in self.by_path:
                 try:
                     found[path] = names[name] = _number(self.by_path[path], names)
                 except ValueError as error:
                     raise SceneError([Problem(path, str(error))]) from None
+            elif isinstance(given, (int, float)) and not isinstance(given, bool):
+                names[name] = float(given)
+            else:
+                raise SceneError([])  # no number: the schema says so
         problems = []
         for path, expression in self.by_path.items():
             if path[0] != "parameters":
@@ -85,16 +88,6 @@ def _number(expression: Expression, names: Mapping[str, Any]) -> Any:
 
 def _is_array(value: object) -> bool:
     return getattr(value, "ndim", 0) > 0
-
-
-class _Names(dict[str, Any]):
-    """Parameters by name; those that are no numbers, which the schema refuses, count as missing."""
-
-    def __setitem__(self, name: str, value: Any) -> None:
-        if isinstance(value, int) and not isinstance(value, bool):
-            value = float(value)
-        if isinstance(value, float) or _is_array(value):
-            super().__setitem__(name, value)
 
 
 def evaluated(data: object) -> tuple[object, list[Problem]]:

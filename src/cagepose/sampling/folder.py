@@ -40,23 +40,22 @@ class StudyFolder:
             raise self._refused("is not a folder; name one, or a new one")
         self.path.mkdir(exist_ok=True)
         if not (self.path / STUDY_NAME).exists():
-            if any(not _is_remnant(path) for path in self.path.iterdir() if path.name not in wanted):
+            if not all(_is_remnant(path) or _holds(path, wanted.get(path.name)) for path in self.path.iterdir()):
                 raise self._refused("holds something else than a study; name another folder, or a new one")
         else:
             for name, content in wanted.items():
-                path = self.path / name
-                if not path.is_file() or path.read_bytes() != content:
+                if not _holds(self.path / name, content):
                     message = f"holds another study: its {name} differs; name another folder, or a new one"
                     raise self._refused(message)
             if not resume:
                 raise self._refused("holds this study already; add --resume to go on with it, or name another folder")
-        (self.path / PARTS).mkdir(exist_ok=True)
-        for path in (*self.path.iterdir(), *(self.path / PARTS).iterdir()):
-            if _is_remnant(path) and path.is_file():
+        for path in (*self.path.glob(".*"), *(self.path / PARTS).glob(".*")):
+            if _is_remnant(path):
                 path.unlink()  # of a process that was killed
         for name, content in sorted(wanted.items(), key=lambda item: item[0] == STUDY_NAME):
             if not (self.path / name).exists():  # the study's own file last: with it, all is there
                 write_whole(self.path / name, content)
+        (self.path / PARTS).mkdir(exist_ok=True)
 
     def study(self) -> StudyFile:
         """Return the study that the folder holds.
@@ -147,4 +146,9 @@ class StudyFolder:
 
 def _is_remnant(path: Path) -> bool:
     """Whether a file is what `write_whole` leaves if its process is killed."""
-    return path.name.startswith(".") and path.name.endswith(".part")
+    return path.name.startswith(".") and path.name.endswith(".part") and path.is_file()
+
+
+def _holds(path: Path, content: bytes | None) -> bool:
+    """Whether a file is there and has this content."""
+    return content is not None and path.is_file() and path.read_bytes() == content

@@ -53,12 +53,7 @@ class Outcomes:
     @property
     def verdict(self) -> NDArray[Any]:
         """Of the last phase that was reached, (n,)."""
-        found: NDArray[Any] = self.phase_verdicts[np.arange(len(self)), self._last]
-        return found
-
-    @property
-    def _last(self) -> NDArray[np.int64]:
-        found: NDArray[np.int64] = np.maximum((self.phase_verdicts != "").sum(axis=1) - 1, 0)
+        found: NDArray[Any] = self.phase_verdicts[np.arange(len(self)), _last_reached(self.phase_verdicts)]
         return found
 
     def points_world_m(self, point_object_m: FloatArray) -> FloatArray:
@@ -113,7 +108,7 @@ def empty_outcomes(scene: Scene, n_runs: int, *, with_forces: bool) -> Outcomes:
 def outcomes_of(runs: Runs) -> Outcomes:
     """Return what `run_many` found; rows without a valid start have "invalid" as their first verdict."""
     n_runs = len(runs)
-    rows, last = np.arange(n_runs), np.maximum((runs.phase_verdicts != "").sum(axis=1) - 1, 0)
+    rows, last = np.arange(n_runs), _last_reached(runs.phase_verdicts)
     return Outcomes(
         runs.phase_verdicts,
         runs.position_m[rows, last],
@@ -124,3 +119,8 @@ def outcomes_of(runs: Runs) -> Outcomes:
         np.full(n_runs, None, dtype=object),
         np.full(n_runs, runs.solve_s / max(n_runs, 1) * 1e6),
     )
+
+
+def _last_reached(phase_verdicts: NDArray[Any]) -> NDArray[np.int64]:
+    found: NDArray[np.int64] = np.maximum((phase_verdicts != "").sum(axis=1) - 1, 0)
+    return found
