@@ -141,10 +141,10 @@ def test_blocks_of_a_design_in_which_a_run_has_no_pose_are_left_out() -> None:
     measured = rng.normal(size=300)
     without = measured.reshape(-1, 3)[1:].ravel().copy()
     measured[1] = np.nan
-    found, expected = _indices("q", measured, problem, 1), _indices("q", without, problem, 1)
+    found, expected = _indices("q", measured, problem, 1, 0.0), _indices("q", without, problem, 1, 0.0)
     assert (found.n_runs, found.first.tolist()) == (297, expected.first.tolist())
     measured[:200] = np.nan
-    assert "too many" in (_indices("q", measured, problem, 1).missing or "")
+    assert "too many" in (_indices("q", measured, problem, 1, 0.0).missing or "")
 
 
 def test_the_largest_box_is_that_of_trying_all() -> None:

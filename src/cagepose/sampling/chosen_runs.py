@@ -51,7 +51,7 @@ def chosen_runs(results: StudyResults, statistics: Statistics) -> list[ChosenRun
     A row that was refused is none of them: it has no run.
     """
     columns = results.columns
-    used = [name for name in columns.quantities if statistics.spreads[name].sigma > 0.0]
+    used = [name for name in columns.quantities if statistics.spreads[name].sigma > columns.resolution[name]]
     names = ["run", *columns.varied, "verdict", "accepted", *used]
     worst: list[tuple[tuple[int, float, int], ChosenRun]] = []
     typical: list[tuple[tuple[int, float, int], ChosenRun]] = []

@@ -42,8 +42,13 @@ def draw(findings: Findings) -> dict[str, Figure]:
             pictures["sobol"] = _sobol_figure(known, names)
         if any((row.derivatives != 0.0).any() for row in rows):
             pictures["tornado"] = _tornado_figure(rows, names, findings.distributions)
-        spreads = {name: findings.statistics.spreads[name] for name in asked}
-        if any(spread.greatest > spread.least for spread in spreads.values()):
+        resolution, all_spreads = findings.results.columns.resolution, findings.statistics.spreads
+        spreads = {
+            name: all_spreads[name]
+            for name in asked
+            if all_spreads[name].greatest - all_spreads[name].least > resolution[name]
+        }
+        if spreads:
             pictures["spread"] = _spread_figure(spreads)
         if findings.map is not None:
             pictures["map"] = _map_figure(findings.map)
@@ -108,9 +113,8 @@ def _tornado_figure(
 
 
 def _spread_figure(spreads: dict[str, Spread]) -> Figure:
-    shown = {name: spread for name, spread in spreads.items() if spread.greatest > spread.least}
-    figure, panels = _panels(len(shown), 1.7, 3)
-    for panel, (name, spread) in zip(panels, shown.items(), strict=True):
+    figure, panels = _panels(len(spreads), 1.7, 3)
+    for panel, (name, spread) in zip(panels, spreads.items(), strict=True):
         counts = spread.counts.reshape(80, BINS // 80).sum(axis=1)
         edges = np.linspace(spread.least, spread.greatest, 81)
         panel.stairs(counts / counts.max(), edges, fill=True, color=BLUE, alpha=0.7)

@@ -16,6 +16,8 @@ from cagepose.model.checks import FloatArray
 from cagepose.runs.run import AT_REST
 from cagepose.sampling.outcome import REFUSED, Outcomes
 
+SAME, SAME_DEG = 1e-8, 1e-6
+"""Of lengths, as a fraction of the scene's size; and of angles."""
 AXES, ANGLES = ("x", "y", "z"), ("yaw_deg", "pitch_deg", "roll_deg")
 
 
@@ -26,6 +28,8 @@ class RowColumns:
     ----------
     varied, quantities
         Names of the varied numbers, and of what is measured of each run: the final pose and the watched points.
+    resolution
+        By quantity: what varies by less does not vary, but for rounding and the touch tolerance.
     verdicts
         Those of the verdicts, the last one first.
     touching, forces
@@ -40,7 +44,9 @@ class RowColumns:
         elements = scene.cage.element_names
         self.varied = tuple(one.key for one in study.varied)
         watched = tuple(f"{name}_{axis}" for name in self._watched for axis in AXES)
+        lengths = float(from_metres(SAME * scene.size_m, study.nominal.length_unit))
         self.quantities = (*(f"position_{axis}" for axis in AXES), *ANGLES, *watched)
+        self.resolution = {name: SAME_DEG if name in ANGLES else lengths for name in self.quantities}
         self.verdicts = ("verdict", *(f"verdict_{load.name}" for load in scene.loads))
         self.touching = {f"touching_{name}": name for name in elements}
         self.forces = {f"force_{name}": name for name in elements} if study.model.forces else {}

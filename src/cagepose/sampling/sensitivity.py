@@ -22,8 +22,6 @@ BASE = 1024
 BASE_ONE_BY_ONE = 256
 LEAST_WHOLE = 0.5
 """Of the design's blocks: a block in which a run ends at no pose says nothing of poses, and is left out."""
-SAME = 1e-9
-"""Beside its greatest value a quantity that varies less does not vary."""
 
 
 @dataclass(frozen=True)
@@ -68,19 +66,19 @@ def sensitivities(
 
     runner.run_in_parts(values, told)
     return [
-        _indices(name, np.concatenate([part[name] for part in parts]), problem, seed)
+        _indices(name, np.concatenate([part[name] for part in parts]), problem, seed, columns.resolution.get(name, 0.0))
         for name in (ACCEPTED, *columns.quantities)
     ]
 
 
-def _indices(name: str, measured: FloatArray, problem: dict[str, Any], seed: int) -> Sensitivity:
+def _indices(name: str, measured: FloatArray, problem: dict[str, Any], seed: int, resolution: float) -> Sensitivity:
     nothing, missing = np.zeros(0), None
     blocks = measured.reshape(-1, problem["num_vars"] + 2)  # of runs that belong together
     whole = blocks[~np.isnan(blocks).any(axis=1)]
     measured = whole.ravel()
     if len(whole) < LEAST_WHOLE * len(blocks):
         missing = "ends at no pose in too many runs of the design"
-    elif np.ptp(measured) <= SAME * max(float(np.abs(measured).max()), 1e-300):
+    elif np.ptp(measured) <= resolution:
         missing = "is the same in all of them"
     if missing is not None:
         return Sensitivity(name, len(measured), nothing, nothing, nothing, nothing, missing)
