@@ -86,6 +86,8 @@ EDITS = [
     ("a grid beyond all runs", STUDY[STUDY.index("vary:") : STUDY.index("watch:")],
      "vary:\n  cage.points.*[0]: {steps: {first: -9, last: 9, count: 90000}}\nsample: {method: grid}\n",
      "4:9: sample: has 65610000000000000000 combinations; give grids of at most 1073741824 in all"),
+    ("a hypercube beyond all memory", "method: sobol, runs: 100,", "method: latin hypercube, runs: 100000000,",
+     "6:9: sample: is a Latin hypercube, which is kept as a whole: at most 100000000 numbers; use sobol"),
     ("no runs", "runs: 100, ", "", "6:9: sample: has no runs; add how many, for example runs: 10000"),
     ("zero runs", RUNS, "runs: 0", "6:31: sample.runs: is 0; give a number from 1 upwards"),
     ("half a run", RUNS, "runs: 1.5", "6:31: sample.runs: is 1.5"),
@@ -156,6 +158,12 @@ def test_a_right_study_has_its_runs(study: Path) -> None:
 def test_a_scene_that_is_wrong_is_told_in_its_own_place() -> None:
     Path("scene.yaml").write_text(SCENE.replace("[2, 4, 10]", "[2, 4, 3]"), encoding="utf-8")
     with pytest.raises(SceneFileError, match=r"scene\.yaml:8:12: cage\.points\.C1: starts 2 mm inside"):
+        Study.load("study.yaml")
+    turned = SCENE.replace("[0, 0, -1]}", "[0, 0, -1], moments: [{direction: [0, 0, 1], magnitude: 1}]}")
+    Path("scene.yaml").write_text(turned.replace("object:", "method: stepwise\nobject:\n  mass: 1"), encoding="utf-8")
+    with pytest.raises(
+        SceneFileError, match=r"study\.yaml:1:8: scene: cannot be run: loads\[0\]: 'gravity' has moments"
+    ):
         Study.load("study.yaml")
     Path("scene.yaml").unlink()
     with pytest.raises(SceneFileError, match="does not exist; check the name"):

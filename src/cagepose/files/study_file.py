@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
+from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -169,24 +170,13 @@ def _nominal(data: object, path: KeyPath, distribution: DistributionModel) -> fl
     if expression_at(data, path) is not None:
         raise ValueError(f"holds the expression {given!r}; vary the parameters that it is made of")
     if given is None:
-        set_value(_copied_way(data, path), path, 0.0)
+        set_value(deepcopy(data), path, 0.0)  # says where there is no such place
         if distribution.middle is None:
             raise ValueError("is not in the scene, so the normal distribution needs its mean; give mean")
         return distribution.middle
     if isinstance(given, bool) or not isinstance(given, (int, float)):
         raise ValueError(f"is {shown(given)}; vary a number of the scene")
     return float(given)
-
-
-def _copied_way(data: object, path: KeyPath) -> object:
-    """A copy of what lies along a path, to try a change on."""
-    if not path or not isinstance(data, (dict, list)):
-        return data
-    copied = dict(data) if isinstance(data, dict) else list(data)
-    inner = value_at(data, path[:1])
-    if inner is not None:
-        copied[path[0]] = _copied_way(inner, path[1:])  # type: ignore[index]
-    return copied
 
 
 def _check_sample(model: StudyModel, problems: list[Problem]) -> None:

@@ -13,7 +13,9 @@ from cagepose.files.schema_study import MOST_RUNS, SampleModel
 from cagepose.model.checks import FloatArray
 from cagepose.sampling.distribution import Distribution
 
-GRID = "grid"
+GRID, LATIN = "grid", "latin hypercube"
+MOST_LATIN = 100_000_000
+"""Numbers of a Latin hypercube: 0.8 GB."""
 
 
 class Sample:
@@ -27,7 +29,7 @@ class Sample:
     Raises
     ------
     ValueError
-        A grid of more than `MOST_RUNS` combinations.
+        A grid of more than `MOST_RUNS` combinations, or a Latin hypercube of more than `MOST_LATIN` numbers.
     """
 
     def __init__(self, model: SampleModel, distributions: Sequence[Distribution]) -> None:
@@ -36,6 +38,8 @@ class Sample:
         self.n_runs = math.prod(self._counts) if self._method == GRID else int(model.runs or 0)
         if self.n_runs > MOST_RUNS:
             raise ValueError(f"has {self.n_runs} combinations; give grids of at most {MOST_RUNS} in all")
+        if self._method == LATIN and self.n_runs * len(distributions) > MOST_LATIN:
+            raise ValueError(f"is a Latin hypercube, which is kept as a whole: at most {MOST_LATIN} numbers; use sobol")
         self._sobol: qmc.Sobol | None = None
         self._latin: FloatArray | None = None
 

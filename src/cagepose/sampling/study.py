@@ -76,8 +76,11 @@ class Study:
         except ValueError as error:
             raise refused_at("sample", file, source, str(error)) from None
         nominal = np.array([[one.nominal for one in file.varied]])
+        outcomes = Runner(file).run_one_by_one(nominal)
+        if outcomes.errors[0] is not None:
+            raise refused_at("scene", file, source, f"cannot be run: {outcomes.errors[0]}")
         try:
-            self._columns.columns(nominal, Runner(file).run(nominal))
+            self._columns.columns(nominal, outcomes)
         except ValueError as error:
             raise refused_at("accept", file, source, str(error)) from None
 
