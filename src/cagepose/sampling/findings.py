@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 import cagepose
 from cagepose.runs.methods import chosen_method
 from cagepose.sampling.capture_map import CaptureMap, capture_map
@@ -160,13 +162,16 @@ def _sensitivity(found: Sensitivity, results: StudyResults) -> dict[str, Any]:
 
 
 def _map(found: CaptureMap) -> dict[str, Any]:
+    """A million cells are a few megabytes as numbers: which of the verdicts, and whether accepted, rows up."""
+    names, codes = np.unique(found.verdicts, return_inverse=True)
     return {
         "over": list(found.keys),
         "runs": found.n_runs,
         "across": found.across.tolist(),
         "up": found.up.tolist(),
-        "verdicts": found.verdicts.tolist(),
-        "accepted": found.accepted.tolist(),
+        "verdicts": names.tolist(),
+        "verdict_cells": codes.reshape(found.verdicts.shape).tolist(),
+        "accepted_cells": found.accepted.astype(np.int64).tolist(),
         "box": None if found.box is None else [list(side) for side in found.box],
     }
 
