@@ -14,11 +14,10 @@ from typing import Any
 
 import pytest
 
-from cagepose import MissingExtraError, StudyResults
+from cagepose import MissingExtraError, Study, StudyResults
 from cagepose.cli.app import main
 from cagepose.files import write
 from cagepose.sampling import folder as folder_module
-from cagepose.views.extra import require_study
 from our_studies import RAIL
 
 STUDY = f"""\
@@ -139,5 +138,18 @@ def test_ctrl_c_leaves_a_folder_to_go_on_with(study: str, tmp_path: Path) -> Non
 def test_a_missing_extra_is_named_with_its_install_line(monkeypatch: pytest.MonkeyPatch) -> None:
     find = util.find_spec
     monkeypatch.setattr("cagepose.views.extra.find_spec", lambda name: None if name == "pyarrow" else find(name))
-    with pytest.raises(MissingExtraError, match=r"studies need pyarrow.*pip install 'cagepose\[study\]'"):
-        require_study()
+    missing = r"studies need pyarrow.*pip install 'cagepose\[study\]'"
+    with pytest.raises(MissingExtraError, match=missing):
+        StudyResults("out")
+    with pytest.raises(MissingExtraError, match=missing):
+        Study(RAIL, {"cage.pose.euler_zyx_deg[1]": {"uniform": [0, 1]}}, {"runs": 1})
+
+
+def test_the_classes_can_be_imported_without_the_extra() -> None:
+    """``from cagepose import *`` asks for all names, and most users have no use for studies."""
+    code = (
+        "import sys\nfor name in ('scipy', 'pyarrow', 'SALib', 'jinja2', 'matplotlib', 'pandas'):\n"
+        "    sys.modules[name] = None\nfrom cagepose import *\nprint(Study.__name__, StudyResults.__name__)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "Study StudyResults\n"

@@ -7,14 +7,13 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pyarrow as pa
 
 from cagepose.errors import StudyFolderError
-from cagepose.sampling.folder import StudyFolder
-from cagepose.sampling.row_columns import RowColumns
+from cagepose.views.extra import require_study
 
 if TYPE_CHECKING:
     import pandas
+    import pyarrow
 
 
 class StudyResults:
@@ -31,9 +30,15 @@ class StudyResults:
     ------
     StudyFolderError
         The folder holds no study, or a part of it cannot be read.
+    MissingExtraError
+        The extra ``study`` is not installed.
     """
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
+        require_study()
+        from cagepose.sampling.folder import StudyFolder  # the class itself can be imported without the extra
+        from cagepose.sampling.row_columns import RowColumns
+
         self.folder = StudyFolder(folder)
         self.study = self.folder.study()
         self.columns = RowColumns(self.study)
@@ -73,10 +78,12 @@ class StudyResults:
         write_report(findings)
         return document(findings)
 
-    def table(self, columns: Sequence[str] | None = None) -> pa.Table:
+    def table(self, columns: Sequence[str] | None = None) -> pyarrow.Table:
         """Return the rows, or some columns of them, as a table of pyarrow."""
         self.require_rows()
-        return pa.concat_tables(self.folder.batches(columns)).unify_dictionaries()
+        import pyarrow
+
+        return pyarrow.concat_tables(self.folder.batches(columns)).unify_dictionaries()
 
     def to_pandas(self, columns: Sequence[str] | None = None) -> pandas.DataFrame:
         """Return the rows, or some columns of them, as a data frame of pandas."""

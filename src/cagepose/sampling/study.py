@@ -9,12 +9,9 @@ from typing import Any
 import numpy as np
 
 from cagepose.files.study_file import StudyFile, parse_study, read_study_file, refused_at, study_text
-from cagepose.sampling.distribution import distribution_of
-from cagepose.sampling.folder import StudyFolder
 from cagepose.sampling.results import StudyResults
-from cagepose.sampling.row_columns import RowColumns
 from cagepose.sampling.runner import Runner
-from cagepose.sampling.sample import Sample
+from cagepose.views.extra import require_study
 
 Progress = Callable[[int, int, bool], None]
 """Called with how many rows are done, how many there are, and whether the last of them were run now."""
@@ -38,6 +35,8 @@ class Study:
     ------
     SceneFileError
         No such scene, or what is asked for cannot be; lists every problem found.
+    MissingExtraError
+        The extra ``study`` is not installed.
     """
 
     def __init__(
@@ -70,6 +69,11 @@ class Study:
         return study
 
     def _begin(self, file: StudyFile, source: str) -> None:
+        require_study()
+        from cagepose.sampling.distribution import distribution_of  # the class itself can be imported without the extra
+        from cagepose.sampling.row_columns import RowColumns
+        from cagepose.sampling.sample import Sample
+
         self._file, self._columns = file, RowColumns(file)
         try:
             self._sample = Sample(file.model.sample, [distribution_of(one) for one in file.varied])
@@ -119,6 +123,8 @@ class Study:
         KeyboardInterrupt
             Ctrl-C was pressed; all parts that are there are whole.
         """
+        from cagepose.sampling.folder import StudyFolder
+
         kept, runner, n_runs = StudyFolder(folder), Runner(self._file, workers), len(self)
         kept.begin(self._file, resume=resume)
         try:
