@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from cagepose.errors import RunFileError as RunFileError
     from cagepose.errors import SceneError as SceneError
     from cagepose.errors import SceneFileError as SceneFileError
+    from cagepose.errors import StudyFolderError as StudyFolderError
     from cagepose.files.run_file import load_certificates as load_certificates
     from cagepose.files.run_file import load_run as load_run
     from cagepose.files.run_file import save_run as save_run
@@ -60,6 +61,8 @@ if TYPE_CHECKING:
     from cagepose.runs.run import Run as Run
     from cagepose.runs.solve import run as run
     from cagepose.runs.variation import Variation as Variation
+    from cagepose.sampling.results import StudyResults as StudyResults
+    from cagepose.sampling.study import Study as Study
     from cagepose.studies.certificate import Certificate as Certificate
     from cagepose.studies.certificate import ChosenFaces as ChosenFaces
     from cagepose.studies.certificate import ModeTree as ModeTree
@@ -90,6 +93,7 @@ _HOMES = {
         "RunFileError",
         "SceneError",
         "SceneFileError",
+        "StudyFolderError",
     ),
     "cagepose.model.box": ("Box",),
     "cagepose.model.cage": ("Cage",),
@@ -106,6 +110,8 @@ _HOMES = {
     "cagepose.runs.run": ("Contact", "Event", "Frame", "Motion", "PhaseRun", "Run"),
     "cagepose.runs.solve": ("run",),
     "cagepose.runs.variation": ("Variation",),
+    "cagepose.sampling.results": ("StudyResults",),
+    "cagepose.sampling.study": ("Study",),
     "cagepose.studies.certificate": ("Certificate", "ChosenFaces", "ModeTree", "OtherOnset"),
     "cagepose.studies.certificate_check": ("CertificateCheck", "check_certificate"),
     "cagepose.studies.certify": ("certificate",),
@@ -167,6 +173,9 @@ __all__ = [
     "Shape",
     "Sphere",
     "Spring",
+    "Study",
+    "StudyFolderError",
+    "StudyResults",
     "Tolerances",
     "Variant",
     "Variation",

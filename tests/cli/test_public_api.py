@@ -37,6 +37,7 @@ def test_all_names_every_public_class_and_function_once() -> None:
             "Run",
         ),
         *("RunFileError", "Runs", "Scene", "SceneError", "SceneFileError", "Spring", "Tolerances", "Variant"),
+        *("Study", "StudyFolderError", "StudyResults"),
         "Variation",
         *(
             "Certificate",

@@ -41,6 +41,10 @@ COMMANDS = {
         "cagepose.cli.view_command:view_command",
         "See a run in three dimensions: live, or as a page that plays offline.",
     ),
+    "study": (
+        "cagepose.cli.study_command:study_command",
+        "Run a scene many times with numbers that vary: yield, tolerances, what matters.",
+    ),
     "reproduce": (
         "cagepose.cli.reproduce_command:reproduce_command",
         "Run the paper's cases and write a report of its numbers beside ours.",
