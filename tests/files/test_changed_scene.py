@@ -14,6 +14,7 @@ from cagepose.files.units import LENGTH_UNITS, LengthUnit
 from cagepose.model.pose import Pose
 
 SCENES = sorted((Path(__file__).resolve().parents[2] / "scenes").glob("*.yaml"))
+WITH_PARAMETERS = SCENES[0].parent / "studies" / "rail.yaml"
 RAIL = cagepose.load_scene(SCENES[0].parent / "rail-pitch.yaml")
 
 HOLED = cagepose.Scene(
@@ -88,6 +89,39 @@ def test_all_that_a_scene_can_have_is_saved(tmp_path: Path) -> None:
         assert close(record_of(found), record_of(HOLED))
     text = (tmp_path / "mm.yaml").read_text(encoding="utf-8")
     assert "    - {name: plate, size: [100, 100, 20], position: [0, 0, 0]}\n" in text
+
+
+def test_expressions_are_saved_as_what_they_came_to_and_parameters_are_left_out(tmp_path: Path) -> None:
+    text = WITH_PARAMETERS.read_text(encoding="utf-8")
+    text += "adjustable:\n  play: {key: parameters.play, range: [0.5, 2]}\n"
+    text += "  back: {key: 'loads[1].force.at[0]', range: [-600, 0]}\n"
+    (tmp_path / "rail.yaml").write_text(text, encoding="utf-8")
+    scene = cagepose.load_scene(tmp_path / "rail.yaml", ["parameters.play=0.3", "parameters.yaw=0.7"])
+    assert [entry.name for entry in scene.adjustable] == ["play", "back"]
+    cagepose.save_scene(scene, tmp_path / "again.yaml")
+    again = cagepose.load_scene(tmp_path / "again.yaml")
+    assert [entry.name for entry in again.adjustable] == ["back"]
+    assert record_of(again) == {**record_of(scene), "adjustable": record_of(again)["adjustable"]}
+    saved = (tmp_path / "again.yaml").read_text(encoding="utf-8")
+    assert "parameters:" not in saved
+    assert "parameters." not in saved
+    assert "[-91.5, -31.55, -0.65]" in saved
+
+
+def test_numbers_that_were_expressions_change_like_all_others() -> None:
+    scene = cagepose.load_scene(WITH_PARAMETERS)
+    raised = scene.changed({"cage.points.C1[2]": -0.002, "cage.pose.euler_zyx_deg[0]": 0.3})
+    assert raised.cage.points_cage[0].tolist() == [-0.0915, -0.03155, -0.002]
+    assert raised.cage.points_cage[1:].tolist() == scene.cage.points_cage[1:].tolist()
+    assert np.degrees(raised.cage.pose_world_cage.euler_zyx[0]) == pytest.approx(0.3)
+    for key in ("parameters.play", "parameters"):
+        with pytest.raises(SceneError) as caught:
+            scene.changed({key: 0.3, "object.mass": 1.0})
+        assert str(caught.value).startswith(
+            f"{key}: is of a scene file, and a scene holds what its expressions came to;"
+        )
+    with pytest.raises(SceneError, match=r"object\.mass: is text '=2'; give a number"):
+        scene.changed("object.mass", "=2")
 
 
 def test_what_others_wrote_is_not_replaced(tmp_path: Path) -> None:

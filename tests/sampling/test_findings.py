@@ -52,7 +52,7 @@ def test_the_tilt_of_a_rail_with_normal_gaps_has_the_distribution_of_the_closed_
     level = ["cage.pose.euler_zyx_deg=[0, 0, 0]", "object.pose.euler_zyx_deg=[0, 0, 0]"]
     scene = scene_with("parameters={gap: 2}", *rollers, *level, "loads=[{name: weight, gravity: [0, 0, -1]}]")
     vary = {"parameters.gap": {"normal": {"sigma": 0.05}}}
-    frame = run_study(vary, 3000, scene=scene, method="random", seed=11).to_pandas()
+    frame = run_study(vary, 3000, scene=scene, method="random", seed=11).to_frame()
     assert (frame["verdict"] == "rests").all()
     thick, apart = 1.0, 183.0
 
@@ -64,13 +64,13 @@ def test_the_tilt_of_a_rail_with_normal_gaps_has_the_distribution_of_the_closed_
     gaps = frame["parameters.gap"].to_numpy()
     tilts = np.arctan2(gaps, apart) - np.arcsin(thick / np.hypot(gaps, apart))
     assert frame["pitch_deg"].to_numpy() == pytest.approx(np.degrees(tilts), abs=1e-6)
-    quantiles = run_study(vary, 3000, scene=scene, folder="sobol").to_pandas()["pitch_deg"].quantile([0.1, 0.5, 0.9])
+    quantiles = run_study(vary, 3000, scene=scene, folder="sobol").to_frame()["pitch_deg"].quantile([0.1, 0.5, 0.9])
     assert share_below(quantiles.to_numpy()) == pytest.approx([0.1, 0.5, 0.9], abs=2e-3)
 
 
 def test_statistics_are_those_of_all_rows(run_study: RunStudy, peg: Path) -> None:
     results = run_study(HEIGHTS, 5000, scene=peg, accept="position.z < 0.55")
-    found, frame = statistics_of(results), results.to_pandas()
+    found, frame = statistics_of(results), results.to_frame()
     spread, heights = found.spreads["position_z"], frame["position_z"]
     assert (found.n_runs, found.n_accepted) == (5000, int((heights < 0.55).sum()))
     assert dict(found.verdicts) == frame["verdict"].value_counts().to_dict()
@@ -234,7 +234,7 @@ def test_chosen_runs_are_scenes_that_run_as_their_rows_do(run_study: RunStudy, t
 def test_contacts_say_how_often_and_how_much(run_study: RunStudy) -> None:
     vary = {f"cage.pose.euler_zyx_deg[{axis}]": {"uniform": [-0.1, 0.1]} for axis in range(3)}
     with_forces = run_study(vary, 120, forces=True)
-    frame = with_forces.to_pandas()
+    frame = with_forces.to_frame()
     found = {row["name"]: row for row in with_forces.report()["contacts"]["rows"]}
     asked_again = run_study(vary, 120, folder="again").report()["contacts"]
     assert asked_again["forces_of_runs"] == 120

@@ -279,7 +279,7 @@ def test_rows_come_as_a_data_frame(run_study: RunStudy, monkeypatch: pytest.Monk
     monkeypatch.setattr(runner, "ROWS_OF_A_BATCH", 512)
     results = run_study({**ANGLES, "cage.pose.position[2]": {"uniform": [-2, 2]}}, 1100)
     assert len(results.folder.parts()) == 3
-    frame = results.to_pandas()
+    frame = results.to_frame()
     assert frame["run"].tolist() == list(range(1100))
     refused = frame[frame["verdict"] == "refused"]
     assert len(refused) > 100

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from cagepose import SceneFileError, Study
+from cagepose import Scene, SceneError, SceneFileError, Study, StudyResults
 from cagepose.cli.app import main
 
 SCENE = """\
@@ -177,3 +178,59 @@ def test_a_study_in_python_is_checked_as_its_file_is() -> None:
     with pytest.raises(SceneFileError, match="is no plain data"):
         Study("scene.yaml", {"parameters.side": object()}, {"runs": 10})
     assert len(Study("scene.yaml", {"parameters.side": {"uniform": [9, 11]}}, {"runs": 10})) == 10
+
+
+def test_a_hint_for_scenes_is_none_for_names_in_a_study(tmp_path: Path) -> None:
+    (tmp_path / "scene.yaml").write_text(SCENE, encoding="utf-8")
+    (tmp_path / "study.yaml").write_text(STUDY.replace(CORNER, "force: [5, 5, 5]"), encoding="utf-8")
+    with pytest.raises(SceneFileError, match=r"watch\.force: is a list; give keys with values"):
+        Study.load(tmp_path / "study.yaml")
+
+
+def test_what_stands_in_the_place_of_an_argument_is_refused_by_its_name(tmp_path: Path) -> None:
+    (tmp_path / "scene.yaml").write_text(SCENE, encoding="utf-8")
+    vary, sample = {"object.mass": {"uniform": [1, 2]}}, {"runs": 8}
+    good = {"scene": tmp_path / "scene.yaml", "vary": vary, "sample": sample}
+    scene = Study(**good)._file.nominal.scene
+    assert isinstance(scene, Scene)
+    for name, value, told in (
+        ("scene", scene, "scene: is of type Scene; give the name of a scene file: cagepose.save_scene writes one"),
+        ("scene", None, "scene: is of type NoneType; give the name of a scene file: cagepose.save_scene writes one"),
+        ("vary", [1], "vary: is a list; give keys with values"),
+        ("vary", {"object.mass": (1, 2)}, "vary.object.mass: is a list; give keys with values"),
+        ("sample", 8, "sample: is 8; give keys with values"),
+        ("watch", "corner", "watch: is text 'corner'; give keys with values"),
+        ("accept", 5, "accept: is 5; give text"),
+        ("accept", object(), "is no plain data (type object); give numbers and text"),
+    ):
+        with pytest.raises(SceneError) as caught:
+            Study(**{**good, name: value})
+        assert told in str(caught.value)
+    for workers in (0, -1, "2", True):
+        with pytest.raises(SceneError) as caught:
+            Study(**good).run(tmp_path / "out", workers=workers)
+        assert str(caught.value) == f"workers: is {workers!r}; give 1 or more"
+    assert not (tmp_path / "out").exists()
+
+
+def test_values_may_be_arrays(tmp_path: Path) -> None:
+    (tmp_path / "scene.yaml").write_text(SCENE, encoding="utf-8")
+    vary = {"object.mass": {"grid": np.linspace(1.0, 2.0, 3)}, "friction.coefficient": {"grid": [np.float32(0.5)]}}
+    assert len(Study(tmp_path / "scene.yaml", vary, {"method": "grid", "seed": np.int64(2)})) == 3
+
+
+def test_a_study_and_what_it_found_are_shown_in_a_line(tmp_path: Path) -> None:
+    (tmp_path / "scene.yaml").write_text(SCENE, encoding="utf-8")
+    study = Study(
+        tmp_path / "scene.yaml", {"parameters.side": {"uniform": [9, 11]}}, {"runs": 8}, accept="pitch_deg < 1"
+    )
+    assert repr(study) == "<Study of 'sample': 8 runs, parameters.side vary>"
+    results = study.run(tmp_path / "out")
+    assert repr(results) == f"<StudyResults: 8 runs in {str(tmp_path / 'out')!r}>"
+    found = (results.study, results.columns, results.folder, *results.study.varied, results.study.scene_text)
+    for thing in (*found, results.study.nominal, results.study.accept):
+        text = repr(thing)
+        assert text.startswith(("<", "SceneFile("))
+        assert len(text) <= 160 + len(str(tmp_path)), text
+        assert "\n" not in text
+    assert repr(StudyResults(tmp_path / "out")) == repr(results)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
 from cagepose.cli.console import print_all
+from cagepose.cli.styles import plain_table
 
 MOST_ROWS = 8
 """Of numbers that matter; the page shows more."""
@@ -33,7 +33,7 @@ def print_study(found: dict[str, Any]) -> None:
 
 
 def _verdicts(found: dict[str, Any]) -> Table:
-    table = _table("verdict", "runs", "share", "95 % interval")
+    table = plain_table("verdict", "runs", "share", "95 % interval")
     for name, share in found["verdicts"].items():
         limits = f"{_percent(share['low'])} to {_percent(share['high'])}"
         table.add_row(name, f"{share['runs']:,}", _percent(share["share"]), limits)
@@ -41,7 +41,7 @@ def _verdicts(found: dict[str, Any]) -> Table:
 
 
 def _tolerances(found: dict[str, Any]) -> Table:
-    table = _table("quantity", "nominal", "worst case", "root sum square", "runs: 99.73 %", "runs: range")
+    table = plain_table("quantity", "nominal", "worst case", "root sum square", "runs: 99.73 %", "runs: range")
     for row in found["tolerances"]:
         runs = row["monte_carlo"]
         pairs = (row["worst_case"], row["root_sum_square"], runs["three_sigma"], runs["range"])
@@ -54,7 +54,7 @@ def _matters(found: dict[str, Any]) -> Table | None:
     if not shown:
         return None
     first = shown[0]
-    table = _table(f"what matters for {first['name']}", "alone", "with others")
+    table = plain_table(f"what matters for {first['name']}", "alone", "with others")
     for row in sorted(first["indices"], key=lambda row: -row["total"])[:MOST_ROWS]:
         table.add_row(
             row["key"],
@@ -69,13 +69,6 @@ def _box(found: dict[str, Any]) -> str:
         return "capture map: the nominal run is not accepted"
     sides = [f"{key} {_number(a)} to {_number(b)}" for key, (a, b) in zip(found["over"], found["box"], strict=True)]
     return f"largest box of accepted runs: {', '.join(sides)}"
-
-
-def _table(*headings: str) -> Table:
-    table = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
-    for heading in headings:
-        table.add_column(heading, overflow="fold")
-    return table
 
 
 def _percent(share: float) -> str:

@@ -18,6 +18,10 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 
 ANGLES, QUATERNION = "euler_zyx_deg", "quat_wxyz"
+NO_PARAMETERS = (
+    "is of a scene file, and a scene holds what its expressions came to; change these numbers, or read the file with"
+    " another value: cagepose.load_scene(file, ['parameters.play=0.3'])"
+)
 
 
 def changed_scene(scene: Scene, changes: Mapping[str, object]) -> Scene:
@@ -33,6 +37,9 @@ def changed_scene(scene: Scene, changes: Mapping[str, object]) -> Scene:
     for key, value in changes.items():
         try:
             path = resolved(data, _by_index(scene, data, parse_key_path(key)))
+            if path[0] == "parameters":
+                problems.append(Problem(path, NO_PARAMETERS))
+                continue
             _choose_orientation(data, path)
             set_value(data, path, _plain(value))
         except ValueError as error:

@@ -47,6 +47,9 @@ class Expression:
         except (SyntaxError, ValueError, MemoryError, RecursionError):
             raise ValueError(f"is no expression ({_short(self.text)}); {_ALLOWED}") from None
 
+    def __repr__(self) -> str:
+        return f"<Expression {_short(self.text)!r}>"
+
     def value(self, names: Mapping[str, Any]) -> Any:
         """Return what it comes to; ``names`` are numbers, text, or arrays of either.
 

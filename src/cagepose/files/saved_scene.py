@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import io
 import os
+from typing import Any
 
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
+from cagepose.files.key_path import parse_key_path, resolved, value_at
 from cagepose.files.scene_document import scene_document
 from cagepose.files.units import LengthUnit
 from cagepose.files.write import MADE_BY, check_can_write, is_made_by_us, write_whole
@@ -21,8 +23,9 @@ LINE = 110
 def save_scene(scene: Scene, path: str | os.PathLike[str], length_unit: LengthUnit = "mm") -> None:
     """Write a scene file from which `load_scene` reads the same scene, whole or not at all.
 
-    Numbers are as short as that allows. The ranges of adjustable numbers are written as they are: give the unit of the
-    file that they come from.
+    Numbers are as short as that allows; a scene holds no parameters, but what its expressions came to. The ranges of
+    adjustable numbers are written as they are: give the unit of the file that they come from. Those whose key leads to
+    no number of the file, such as a parameter, are left out.
 
     Raises
     ------
@@ -38,8 +41,23 @@ def save_scene(scene: Scene, path: str | os.PathLike[str], length_unit: LengthUn
     yaml.indent(mapping=2, sequence=4, offset=2)
     stream = io.StringIO(f"# A scene, {MADE_BY}.\n")
     stream.seek(0, io.SEEK_END)
-    yaml.dump(_styled(scene_document(scene, length_unit)), stream)
+    yaml.dump(_styled(_readable(scene_document(scene, length_unit))), stream)
     write_whole(path, stream.getvalue().encode())
+
+
+def _readable(data: dict[str, Any]) -> dict[str, Any]:
+    """Return data without the adjustable numbers that stand nowhere in them: no file may have such."""
+    found = {name: entry for name, entry in data.get("adjustable", {}).items() if _has_number(data, entry["key"])}
+    others = {key: value for key, value in data.items() if key != "adjustable"}
+    return {**others, "adjustable": found} if found else others
+
+
+def _has_number(data: dict[str, Any], key: str) -> bool:
+    try:
+        value = value_at(data, resolved(data, parse_key_path(key)))
+    except ValueError:
+        return False
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _styled(value: object) -> object:

@@ -98,6 +98,9 @@ class SceneText:
     yaml: YamlSource
     folder: Path
 
+    def __repr__(self) -> str:
+        return f"<SceneText {self.yaml.source!r}>"
+
     def scene_file(self, set_values: Sequence[str] = ()) -> SceneFile:
         """Return the scene with some values changed; see `load_scene`.
 

@@ -9,6 +9,7 @@ from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 from pydantic import ValidationError
 
 from cagepose.errors import FileProblem, Problem, SceneError, SceneFileError, key_path
@@ -23,6 +24,7 @@ from cagepose.files.scene_edit import with_values
 from cagepose.files.scene_file import SceneFile, SceneText, read_scene_text
 from cagepose.files.schema_study import DistributionModel, StudyModel
 from cagepose.files.yaml_source import YamlSource, parse_yaml
+from cagepose.model.wording import few
 
 ALL = "*"
 STUDY_NAME, SCENE_NAME, POINTS_NAME = "study.yaml", "scene.yaml", "points.csv"
@@ -48,6 +50,9 @@ class VariedKey:
     distribution: DistributionModel
     nominal: float
 
+    def __repr__(self) -> str:
+        return f"<VariedKey {self.key}: {self.distribution.kind}, nominal {self.nominal:.6g}>"
+
 
 @dataclass(frozen=True)
 class StudyFile:
@@ -71,6 +76,9 @@ class StudyFile:
     nominal: SceneFile
     varied: tuple[VariedKey, ...]
     accept: Expression | None
+
+    def __repr__(self) -> str:
+        return f"<StudyFile of {self.nominal.scene.name!r}: {few(one.key for one in self.varied)} vary>"
 
 
 def read_study_file(path: str | os.PathLike[str]) -> StudyFile:
@@ -237,6 +245,13 @@ def study_text(content: Mapping[str, object]) -> str:
         It is no plain data.
     """
     try:
-        return json.dumps(content, indent=1)
+        return json.dumps(content, indent=1, default=_plain)
     except (TypeError, ValueError) as error:
         raise SceneFileError([FileProblem((), f"is no plain data ({error}); give numbers and text", "study")]) from None
+
+
+def _plain(value: object) -> object:
+    """Return an array as lists, and a number of NumPy's as Python's."""
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    raise TypeError(f"type {type(value).__name__}")

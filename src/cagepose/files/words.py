@@ -45,10 +45,10 @@ def components(direction: FloatArray) -> str:
 
 
 def names_of(names: Iterable[str]) -> str:
-    """Return names in a row, told apart by commas where a blank could be one of a name.
+    """Return names in a row, told apart by commas where a blank could be one of a name; one with a comma is quoted.
 
-    >>> names_of(["C1", "C2"]), names_of(["pin left", "pin right"])
-    ('C1 C2', 'pin left, pin right')
+    >>> names_of(["C1", "C2"]), names_of(["pin left", "pin right"]), names_of(["C1", "a,b"])
+    ('C1 C2', 'pin left, pin right', 'C1, "a,b"')
     """
-    all_names = list(names)
-    return (", " if any(" " in name for name in all_names) else " ").join(all_names)
+    all_names = [f'"{name}"' if "," in name else name for name in names]
+    return (", " if any(" " in name or "," in name for name in all_names) else " ").join(all_names)

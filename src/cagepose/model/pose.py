@@ -124,3 +124,11 @@ def quaternions_of(angles_zyx: FloatArray) -> FloatArray:
     found = np.empty((len(angles_zyx), 4))
     kernel.write_quaternions(angles_zyx, found)
     return found
+
+
+def placed(points: FloatArray, position_m: FloatArray, quaternion_wxyz: FloatArray) -> FloatArray:
+    """Map points by many poses at once, (..., 3), (..., 3) and (..., 4), which broadcast; quaternions of length one."""
+    scalar, vector = quaternion_wxyz[..., :1], quaternion_wxyz[..., 1:]
+    across = 2.0 * np.cross(vector, points)
+    found: FloatArray = points + scalar * across + np.cross(vector, across) + position_m
+    return found

@@ -19,6 +19,7 @@ from cagepose.kernels.outcome.endings import INVALID, NOT_RUN
 from cagepose.kernels.outcome.trace import RESTS, VERDICT_NAMES
 from cagepose.kernels.stability.proof import OTHER_ONSET, TOO_MANY_CHOICES, UNIQUENESS_NOT_SHOWN
 from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, finite_array, is_finite
+from cagepose.model.pose import placed
 from cagepose.model.scene import Scene
 from cagepose.runs.batch import Batch
 from cagepose.runs.frames import ANGLES, POSITION, data_frame
@@ -98,10 +99,7 @@ class Runs:
             Points of another shape, NaN or infinite.
         """
         points = finite_array(points_object_m, (-1, 3), "points")
-        scalar, vector = self.quaternion_wxyz[:, :, None, :1], self.quaternion_wxyz[:, :, None, 1:]
-        across = 2.0 * np.cross(vector, points)
-        found: FloatArray = points + scalar * across + np.cross(vector, across) + self.position_m[:, :, None]
-        return found
+        return placed(points, self.position_m[:, :, None], self.quaternion_wxyz[:, :, None])
 
     def to_frame(self) -> Any:
         """Return a ``pandas.DataFrame`` with a row for each phase of each run that was reached: the run's row, the

@@ -23,6 +23,9 @@ class StudyFolder:
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
 
+    def __repr__(self) -> str:
+        return f"<StudyFolder {os.fspath(self.path)!r}>"
+
     def begin(self, study: StudyFile, *, resume: bool) -> None:
         """Make the folder ready for the parts of a study.
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.model.checks import FloatArray
+from cagepose.model.pose import placed
 from cagepose.model.scene import Scene
 from cagepose.runs.many import Runs
 from cagepose.runs.run import Run
@@ -58,10 +59,7 @@ class Outcomes:
 
     def points_world_m(self, point_object_m: FloatArray) -> FloatArray:
         """Return where a point of the object, (3,), is at the end, (n, 3)."""
-        w, vector = self.quaternion_wxyz[:, :1], self.quaternion_wxyz[:, 1:]
-        twice = 2.0 * np.cross(vector, point_object_m)
-        placed: FloatArray = self.position_m + point_object_m + w * twice + np.cross(vector, twice)
-        return placed
+        return placed(point_object_m, self.position_m, self.quaternion_wxyz)
 
     def clear(self, rows: NDArray[np.bool_]) -> None:
         """Make rows as if nothing was written to them."""

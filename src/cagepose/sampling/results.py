@@ -85,8 +85,8 @@ class StudyResults:
 
         return pyarrow.concat_tables(self.folder.batches(columns)).unify_dictionaries()
 
-    def to_pandas(self, columns: Sequence[str] | None = None) -> pandas.DataFrame:
-        """Return the rows, or some columns of them, as a data frame of pandas."""
+    def to_frame(self, columns: Sequence[str] | None = None) -> pandas.DataFrame:
+        """Return the rows, or some columns of them, as a ``pandas.DataFrame``."""
         return self.table(columns).to_pandas()
 
     def parts(self, columns: Sequence[str]) -> Iterator[dict[str, np.ndarray]]:

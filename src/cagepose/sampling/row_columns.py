@@ -13,6 +13,7 @@ from cagepose import __version__
 from cagepose.files.study_file import StudyFile
 from cagepose.files.units import from_metres, to_metres
 from cagepose.model.checks import FloatArray
+from cagepose.model.wording import few
 from cagepose.runs.run import AT_REST
 from cagepose.sampling.outcome import REFUSED, Outcomes
 
@@ -50,6 +51,9 @@ class RowColumns:
         self.verdicts = ("verdict", *(f"verdict_{load.name}" for load in scene.loads))
         self.touching = {f"touching_{name}": name for name in elements}
         self.forces = {f"force_{name}": name for name in elements} if study.model.forces else {}
+
+    def __repr__(self) -> str:
+        return f"<RowColumns: {few(self.varied)} vary; {few(self.quantities)} measured>"
 
     def quantities_of(self, outcomes: Outcomes) -> dict[str, FloatArray]:
         """Return what is measured, in the scene file's unit and degrees; NaN: no pose."""

@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.errors import SceneError
+from cagepose.errors import Problem, SceneError
 from cagepose.files.key_path import set_value, value_at
 from cagepose.files.parameters import Expressions, evaluated
 from cagepose.files.study_file import StudyFile
-from cagepose.model.checks import FloatArray
+from cagepose.model.checks import FloatArray, is_finite
 from cagepose.runs.many import run_many
 from cagepose.runs.solve import run
 from cagepose.sampling.batch_columns import BatchColumns, Columns
@@ -47,9 +47,16 @@ class Runner:
         Whether the batch kernel can vary all numbers.
     rows_of_a_part
         How many rows are run at once.
+
+    Raises
+    ------
+    SceneError
+        ``workers`` is no number from 1 upwards.
     """
 
     def __init__(self, study: StudyFile, workers: int | None = None) -> None:
+        if workers is not None and not (is_finite(workers) and workers >= 1):
+            raise SceneError([Problem(("workers",), f"is {workers!r}; give 1 or more")])
         self.study, self._workers = study, workers
         self._with_forces = bool(study.model.forces)
         nominal: Any = deepcopy(study.scene_text.yaml.data)

@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from cagepose.errors import Problem, SceneError
 from cagepose.files.study_file import StudyFile, parse_study, read_study_file, refused_at, study_text
+from cagepose.model.wording import few
 from cagepose.sampling.results import StudyResults
 from cagepose.sampling.runner import Runner
 from cagepose.views.extra import require_study
@@ -33,7 +35,7 @@ class Study:
 
     Raises
     ------
-    SceneFileError
+    SceneError
         No such scene, or what is asked for cannot be; lists every problem found.
     MissingExtraError
         The extra ``study`` is not installed.
@@ -50,7 +52,7 @@ class Study:
         forces: bool | None = None,
         map: Mapping[str, Any] | None = None,
     ) -> None:
-        content = {"scene": os.fspath(scene), "vary": vary, "sample": sample}
+        content = {"scene": _file_name(scene), "vary": vary, "sample": sample}
         given = {"watch": watch, "accept": accept, "forces": forces, "map": map}
         text = study_text({**content, **{key: value for key, value in given.items() if value is not None}})
         self._begin(parse_study(text, "study"), "study")
@@ -88,6 +90,10 @@ class Study:
         except ValueError as error:
             raise refused_at("accept", file, source, str(error)) from None
 
+    def __repr__(self) -> str:
+        varied = few(one.key for one in self._file.varied)
+        return f"<Study of {self._file.nominal.scene.name!r}: {len(self)} runs, {varied} vary>"
+
     def __len__(self) -> int:
         """How many runs it has."""
         return self._sample.n_runs
@@ -116,6 +122,8 @@ class Study:
 
         Raises
         ------
+        SceneError
+            ``workers`` is no number from 1 upwards.
         StudyFolderError
             The folder holds something else.
         OSError
@@ -139,3 +147,10 @@ class Study:
         finally:
             runner.close()
         return StudyResults(folder)
+
+
+def _file_name(scene: object) -> str:
+    if isinstance(scene, str | os.PathLike):
+        return os.fspath(scene)
+    message = f"is of type {type(scene).__name__}; give the name of a scene file: cagepose.save_scene writes one"
+    raise SceneError([Problem(("scene",), message)])
