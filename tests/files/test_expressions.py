@@ -110,6 +110,11 @@ def test_all_wrong_expressions_are_told_at_once_and_right_ones_are_not() -> None
     assert [problem.split(": ")[1] for problem in found] == ["object.boxes[0].size[1]", "cage.points[1][1]"]
 
 
+def test_a_wrong_key_is_told_as_one_whatever_stands_there() -> None:
+    (problem,) = problems_of(SCENE, "friction.mu==2*half")
+    assert problem.startswith("--set friction.mu==2*half: friction.mu: is no known key; did you mean coefficient?")
+
+
 def test_a_setting_that_is_wrong_is_named() -> None:
     (problem,) = problems_of(SCENE, "object.mass==weight")
     assert problem.startswith("--set object.mass==weight: object.mass: has the unknown name weight")

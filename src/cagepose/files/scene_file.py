@@ -203,11 +203,11 @@ class _Attempt:
         except ValidationError as error:
             for finding in schema_findings(error, data):
                 text = expression_at(written, finding.problem.path)
-                if text is None:
+                if text is None or finding.about_key:
                     self.findings.append(finding)
                 elif not isinstance(value_at(data, finding.problem.path), str):  # else it came to nothing
                     problem = Problem(finding.problem.path, f"{text!r} {finding.problem.message}")
-                    self.findings.append(Finding(problem, finding.about_key))
+                    self.findings.append(Finding(problem, False))
             return
         self.findings += [Finding(problem, False) for problem in _adjustable_problems(model, data)]
         if self.table is None and isinstance(model.cage.points, PointsFileModel):
