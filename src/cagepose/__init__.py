@@ -22,9 +22,11 @@ if TYPE_CHECKING:
     from cagepose.errors import RunFileError as RunFileError
     from cagepose.errors import SceneError as SceneError
     from cagepose.errors import SceneFileError as SceneFileError
+    from cagepose.errors import StudyFolderError as StudyFolderError
     from cagepose.files.run_file import load_certificates as load_certificates
     from cagepose.files.run_file import load_run as load_run
     from cagepose.files.run_file import save_run as save_run
+    from cagepose.files.saved_scene import save_scene as save_scene
     from cagepose.files.scene_file import load_scene as load_scene
     from cagepose.model.box import Box as Box
     from cagepose.model.cage import Cage as Cage
@@ -59,6 +61,8 @@ if TYPE_CHECKING:
     from cagepose.runs.run import Run as Run
     from cagepose.runs.solve import run as run
     from cagepose.runs.variation import Variation as Variation
+    from cagepose.sampling.results import StudyResults as StudyResults
+    from cagepose.sampling.study import Study as Study
     from cagepose.studies.certificate import Certificate as Certificate
     from cagepose.studies.certificate import ChosenFaces as ChosenFaces
     from cagepose.studies.certificate import ModeTree as ModeTree
@@ -89,6 +93,7 @@ _HOMES = {
         "RunFileError",
         "SceneError",
         "SceneFileError",
+        "StudyFolderError",
     ),
     "cagepose.model.box": ("Box",),
     "cagepose.model.cage": ("Cage",),
@@ -105,6 +110,8 @@ _HOMES = {
     "cagepose.runs.run": ("Contact", "Event", "Frame", "Motion", "PhaseRun", "Run"),
     "cagepose.runs.solve": ("run",),
     "cagepose.runs.variation": ("Variation",),
+    "cagepose.sampling.results": ("StudyResults",),
+    "cagepose.sampling.study": ("Study",),
     "cagepose.studies.certificate": ("Certificate", "ChosenFaces", "ModeTree", "OtherOnset"),
     "cagepose.studies.certificate_check": ("CertificateCheck", "check_certificate"),
     "cagepose.studies.certify": ("certificate",),
@@ -113,6 +120,7 @@ _HOMES = {
     "cagepose.studies.margin": ("ContactMargin", "Margin", "margin"),
     "cagepose.studies.play": ("Play", "play"),
     "cagepose.files.run_file": ("load_certificates", "load_run", "save_run"),
+    "cagepose.files.saved_scene": ("save_scene",),
     "cagepose.files.scene_file": ("load_scene",),
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
@@ -165,6 +173,9 @@ __all__ = [
     "Shape",
     "Sphere",
     "Spring",
+    "Study",
+    "StudyFolderError",
+    "StudyResults",
     "Tolerances",
     "Variant",
     "Variation",
@@ -180,6 +191,7 @@ __all__ = [
     "run",
     "run_many",
     "save_run",
+    "save_scene",
     "with_critical_friction",
 ]
 
@@ -196,7 +208,7 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted(__all__)
 
 
 def _version() -> str:

@@ -3,6 +3,7 @@
     CageposeError
     ├── SceneError           a scene that cannot be right: every problem found, each with its place
     │   └── SceneFileError   the same, found in a scene file: each place has its line and column
+    ├── StudyFolderError     a folder that holds no study, another one, or a damaged part
     ├── RunFileError         a saved run that cannot be read
     ├── CertificateError     a certificate of rest that proves nothing
     ├── MissingExtraError    a part of cagepose that is not installed
@@ -80,7 +81,11 @@ class FileProblem(Problem):
 
 
 class SceneFileError(SceneError):
-    """A scene file that cannot be used: missing, not YAML, or a scene that cannot be right."""
+    """A scene or study file that cannot be used: missing, not YAML, or a scene that cannot be right."""
+
+
+class StudyFolderError(CageposeError, ValueError):
+    """A folder of a study that cannot be used: it holds none, another one, or a part that cannot be read."""
 
 
 class RunFileError(CageposeError, ValueError):

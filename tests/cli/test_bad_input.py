@@ -24,7 +24,7 @@ POINTS = """\
 """
 PUSH = "  - name: push\n    force: {direction: [1, 0, 0], at: [0, 0, 0]}\n"
 
-KEYS = "name, units, object, cage, loads, friction, method, metric, tolerances, adjustable"
+KEYS = "name, units, parameters, object, cage, loads, friction, method, metric, tolerances, adjustable"
 
 # What is broken, the text to replace, what to put there, and the whole line that must come out.
 EDITS = [
@@ -50,11 +50,12 @@ EDITS = [
      "4:18: object.boxes[0].size[1]: is text '1_0'; give a number"),
     ("true for a number", SIZE, "size: [10, true, 10]", "4:18: object.boxes[0].size[1]: is true; give a number"),
     ("null for a number", SIZE, "size: [10, null, 10]", "4:18: object.boxes[0].size[1]: is empty; give a number"),
-    ("number for a list", SIZE, "size: 10", "4:13: object.boxes[0].size: is 10; give a list in brackets"),
+    ("number for a list", SIZE, "size: 10",
+     "4:13: object.boxes[0].size: is 10; write the three edge lengths: size: [10, 10, 10]"),
     ("number for text", "name: sample", "name: 12",
      "1:7: name: is 12; give text (in quotes if it looks like a number)"),
     ("list for keys", "pose: {position: [2, 4, 10]}", "pose: [2, 4, 10]",
-     "6:9: object.pose: is a list; give keys with values"),
+     "6:9: object.pose: is a list; write pose: {position: [2, 4, 10]}"),
     ("not a number", SIZE, "size: [10, .nan, 10]",
      "4:18: object.boxes[0].size[1]: is not a number (.nan); give a finite number"),
     ("infinite", SIZE, "size: [10, -.inf, 10]", "4:18: object.boxes[0].size[1]: is infinite; give a finite number"),
@@ -110,7 +111,7 @@ EDITS = [
     ("unknown method", "name: sample", "name: sample\nmethod: magic", "2:9: method: is 'magic';"
      " use one of: stepwise, quasistatic"),
     ("unknown unit", "name: sample", "name: sample\nunits: {length: ft}",
-     "2:17: units.length: is text 'ft'; use one of: mm, m, in"),
+     "2:17: units.length: is text 'ft'; multiply the lengths by 12 and use in"),
     ("unknown metric", "name: sample", "name: sample\nmetric: slow",
      "2:9: metric: is text 'slow'; use one of: release, drag"),
     ("two orientations", "pose: {", "pose: {euler_zyx_deg: [0, 0, 0], quat_wxyz: [1, 0, 0, 0], ",
@@ -292,3 +293,22 @@ def test_hundreds_of_points_at_one_place_or_with_a_size_that_is_mistyped_are_tol
         == 503
     )
     assert time.perf_counter() - began < 5.0
+
+
+@pytest.mark.usefixtures("sample")
+def test_a_scene_whose_ending_was_left_out_is_found(command):
+    for wrong in ("scene", "scenes.yaml", "scene.yml"):
+        told = "did you mean scene.yaml? Else check the name and the folder"
+        assert command("run", wrong) == (2, "", f"{wrong}: does not exist; {told}\n")
+    assert command("run", "entirely-other.yaml").err.endswith("does not exist; check the name and the folder\n")
+
+
+def test_two_scenes_and_a_scene_without_a_command_are_told_apart_from_changes(command, sample):
+    assert "one scene at a time, and other.yaml is left over" in command("run", sample, "other.yaml").err
+    assert "each change needs its own --set" in command("run", sample, "object.mass=2").err
+    assert command(sample) == (2, "", f"cagepose: {sample} is no command; did you mean: cagepose run {sample}\n")
+
+
+def test_check_prints_remarks(command, sample):
+    out = command("check", sample, "--set", "friction.coefficient=3").out
+    assert out.splitlines()[-1].startswith("remark: friction: a coefficient of 3 is more than dry surfaces have")

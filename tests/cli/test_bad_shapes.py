@@ -43,7 +43,7 @@ BROKEN = [
     ("empty sphere", "sphere: ", FLOOR,
      "4:7: object.shapes[0]: has an empty sphere; give its numbers, or remove the key"),
     ("unknown key in a sphere", "sphere: {radius: 3, diameter: 6}", FLOOR,
-     "4:28: object.shapes[0].sphere.diameter: is no known key; remove it; known keys: radius"),
+     "4:28: object.shapes[0].sphere.diameter: is no known key; give half of it as radius; known keys: radius"),
     ("length missing", "cylinder: {radius: 3}", FLOOR,
      "4:18: object.shapes[0].cylinder.length: is missing; add it, for example length: 20"),
     ("zero length", "capsule: {radius: 3, length: 0}", FLOOR,
@@ -157,7 +157,7 @@ BODIES = [
     ("no shapes", "  shapes:\n    - {box: {size: [90, 90, 10]}}\n", "  shapes: []\n",
      "7:11: cage.shapes: is empty; give at least one"),
     ("shapes by name", "  shapes:\n    - {box: {size: [90, 90, 10]}}\n", "  shapes: {floor: {radius: 3}}\n",
-     "7:11: cage.shapes: is keys with values; give a list in brackets"),
+     "7:11: cage.shapes: is keys with values; make it a list, each with its own - and name"),
     ("name of a box", "  shapes:\n    - {cyl", "  boxes: [{size: [1, 1, 1], position: [0, 0, 9], name: a}]\n"
      "  shapes:\n    - {name: a, cyl", "5:14: object.shapes[0].name: 'a' is already the name of boxes[0]; rename one"),
     ("name of a point", "  shapes:\n    - {box", "  points: {a: [0, 0, 70]}\n  shapes:\n    - {name: a, box",

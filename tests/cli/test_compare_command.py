@@ -11,8 +11,10 @@ from typing import Any
 
 import pytest
 
+import cagepose
 import cagepose.studies.comparison
 from cagepose import Run, Scene
+from cagepose.cli.comparison_report import print_comparison
 
 Command = Callable[..., Any]
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
@@ -126,3 +128,14 @@ def test_the_exit_code_is_1_only_if_every_variant_failed(
     answer = command("compare", sample)
     assert answer.code == 1
     assert "spins" in answer.out
+
+
+def test_a_narrow_screen_breaks_no_number(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    for key, value in (("COLUMNS", "80"), ("TERM", "dumb")):
+        monkeypatch.setenv(key, value)
+    print_comparison(cagepose.compare(cagepose.load_scene(SCENES / "ladder.yaml")), "mm")
+    lines = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+    assert max(map(len, lines)) <= 80
+    assert any(re.match(r"stepwise +stable \(proof: .*\), \d+ events$", line) for line in lines)
+    assert sum(bool(re.match(r"  centre of gravity +\(\S+, \S+, \S+\) mm$", line)) for line in lines) == 5

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -148,3 +149,21 @@ def test_points_without_play_and_points_that_are_none_are_refused(command: Comma
         "--at: says whose play is drawn; give --kind play with it",
         "--at 1,2: is not three numbers; write them as x,y,z without blanks",
     ]
+
+
+@pytest.mark.parametrize("columns", [80, 150])
+def test_the_ranges_of_freedoms_and_points_are_a_line_each(
+    columns: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """No number is broken on a narrow screen, and a wide one shows more digits."""
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    for key, value in (("COLUMNS", str(columns)), ("TERM", "dumb")):
+        monkeypatch.setenv(key, value)
+    scene = load_scene(RAIL)
+    print_play(play(scene, [(-0.6, 0.02, -0.0607)]), (), "mm")
+    lines = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+    assert max(map(len, lines)) <= columns
+    pitch = "-0.3131 to 0.3131" if columns == 80 else "-0.313084 to 0.313084"
+    assert any(re.match(rf"pitch +deg +\S+ to \S+ +{pitch} +\S+ to \S+$", line) for line in lines)
+    assert any(re.match(r"point 1 along z +mm +\S+ to \S+ +\S+ to \S+ +\S+ to \S+$", line) for line in lines)
+    assert "point 1: (-600, 20, -60.7) mm in the object's frame" in lines

@@ -37,6 +37,7 @@ def test_all_names_every_public_class_and_function_once() -> None:
             "Run",
         ),
         *("RunFileError", "Runs", "Scene", "SceneError", "SceneFileError", "Spring", "Tolerances", "Variant"),
+        *("Study", "StudyFolderError", "StudyResults"),
         "Variation",
         *(
             "Certificate",
@@ -49,7 +50,18 @@ def test_all_names_every_public_class_and_function_once() -> None:
         ),
         *("certificate", "check_certificate", "load_certificates"),
         *("Chamfer", "Hole", "Capsule", "Cone", "Convex", "Cylinder", "Disc", "Shape", "Sphere"),
-        *("__version__", "compare", "load_run", "load_scene", "margin", "play", "run", "run_many", "save_run"),
+        *(
+            "__version__",
+            "compare",
+            "load_run",
+            "load_scene",
+            "margin",
+            "play",
+            "run",
+            "run_many",
+            "save_run",
+            "save_scene",
+        ),
         "with_critical_friction",
     }
 

@@ -38,7 +38,7 @@ def found(make):
     [
         (lambda: Hole(0.0, 1.0), "radius: is 0.0"),
         (lambda: Hole(1.0, math.nan), "depth: is nan"),
-        (lambda: Hole(1.0, 1.0, 0.1), "chamfer: is of type float; give a cagepose.Chamfer"),
+        (lambda: Hole(1.0, 1.0, 0.1), "chamfer: is 0.1; give a cagepose.Chamfer"),
         (lambda: Hole(1.0, 1.0, Chamfer(-0.1, 0.7)), "chamfer.width: is -0.1; give a finite number of metres"),
         (lambda: Hole(1.0, 1.0, Chamfer(0.1, 0.0)), "chamfer.angle_deg: is 0 deg; give an angle above 0 and below 90"),
         (lambda: Hole(1.0, 1.0, Chamfer(1.0, 0.7)), "chamfer: reaches the bottom"),

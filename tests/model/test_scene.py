@@ -39,12 +39,16 @@ def test_all_problems_are_found_at_once():
 def test_arguments_of_other_classes_are_named():
     box = Box((2, 2, 2))
     held = Object([box])
-    assert problems_of(lambda: Object([box], pose=(0, 0, 1))) == ["pose: is of type tuple; give a cagepose.Pose"]
+    assert problems_of(lambda: Object([box], pose=(0, 0, 1))) == [
+        "pose: is (0, 0, 1); give a cagepose.Pose: cagepose.Pose((0, 0, 1))"
+    ]
     assert problems_of(lambda: Object(box)) == ["boxes: is of type Box; give a list of cagepose.Box"]
-    assert problems_of(lambda: Box((1, 1, 1), (0, 0, 1))) == ["pose: is of type tuple; give a cagepose.Pose"]
+    assert problems_of(lambda: Box((1, 1, 1), (0, 0, 1))) == [
+        "pose: is (0, 0, 1); give a cagepose.Pose: cagepose.Pose((0, 0, 1))"
+    ]
     assert problems_of(lambda: Scene(held, FAR, DOWN)) == [
         "loads: is of type Load; give a list of cagepose.Load",
-        "cage: is of type list; give a cagepose.Cage",
+        "cage: is [(5, 5, 5), (5, -5, 5), (-5, 0, -5)]; give a cagepose.Cage",
     ]
 
 

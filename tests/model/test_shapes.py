@@ -34,11 +34,11 @@ GIVEN = {"center_of_gravity_m": (0, 0, 0), "mass_kg": 1.0, "inertia_kg_m2": np.e
     ("make", "problem"),
     [
         (lambda: Sphere(-1.0), "radius: is -1.0; give a finite number of metres, above zero"),
-        (lambda: Sphere(0), "radius: is 0.0; give a finite number of metres, above zero"),
+        (lambda: Sphere(0), "radius: is 0; give a finite number of metres, above zero"),
         (lambda: Sphere(np.float64("nan")), "radius: is nan; give a finite number of metres, above zero"),
         (lambda: Sphere("3"), "radius: is '3'; give a finite number of metres, above zero"),
         (lambda: Sphere(True), "radius: is True; give a finite number of metres, above zero"),
-        (lambda: Sphere(1.0, (0, 0, 1)), "pose: is of type tuple; give a cagepose.Pose"),
+        (lambda: Sphere(1.0, (0, 0, 1)), "pose: is (0, 0, 1); give a cagepose.Pose: cagepose.Pose((0, 0, 1))"),
         (lambda: Capsule(1.0, 0.0), "length: is 0.0; give a finite number of metres, above zero"),
         (lambda: Cylinder(math.inf, 1.0), "radius: is inf; give a finite number of metres, above zero"),
         (lambda: Cylinder(1.0, -2.0), "length: is -2.0; give a finite number of metres, above zero"),

@@ -102,7 +102,7 @@ def test_an_endless_travel_has_no_poses_on_its_way():
 
 
 def test_an_unknown_method_is_refused_with_the_known_ones():
-    with pytest.raises(SceneError, match="known methods: stepwise, quasistatic"):
+    with pytest.raises(SceneError, match="use one of: stepwise, quasistatic"):
         run(rail_scene(), method="magic")
 
 

@@ -31,6 +31,18 @@ def separation_along(one: Circles, other: Circles, normal: np.ndarray) -> float:
     return between - one.radius - other.radius
 
 
+def tip_is_at_rim(one: Circles, other: Circles, touch_m: float) -> bool:
+    """Whether a tip of either is nearest to a sharp rim of the other: as two sharp corners, they do not touch, but pass."""
+    for body, beside in ((one, other), (other, one)):
+        for tip in body.centers[body.radii == 0.0]:
+            for center, axis, radius in zip(beside.centers, beside.axes, beside.radii, strict=True):
+                along = float((tip - center) @ axis)
+                aside = float(np.linalg.norm(tip - center - along * axis)) - radius
+                if radius > 0.0 and math.hypot(along, aside) <= 2.0 * touch_m:
+                    return True
+    return False
+
+
 class Check:
     """Asks pairs of parts for their gap, and keeps the worst answers."""
 
@@ -57,7 +69,7 @@ class Check:
             self.worst["too near"] = max(self.worst["too near"], (away - found) / touch_m)
             if not found <= least + RESOLUTION * size or not found >= away - WITHIN * touch_m:
                 return told
-            if len(rows) == 0 and abs(away) <= 0.9 * touch_m:
+            if len(rows) == 0 and abs(away) <= 0.9 * touch_m and not tip_is_at_rim(one, other, touch_m):
                 return f"nothing touches; {told}"
         elif overlap(one, other):
             self.seen["overlapping"] += 1

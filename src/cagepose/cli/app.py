@@ -41,6 +41,10 @@ COMMANDS = {
         "cagepose.cli.view_command:view_command",
         "See a run in three dimensions: live, or as a page that plays offline.",
     ),
+    "study": (
+        "cagepose.cli.study_command:study_command",
+        "Run a scene many times with numbers that vary: yield, tolerances, what matters.",
+    ),
     "reproduce": (
         "cagepose.cli.reproduce_command:reproduce_command",
         "Run the paper's cases and write a report of its numbers beside ours.",
@@ -120,6 +124,9 @@ def _dispatch(tokens: list[str]) -> int:
     try:
         code = app(tokens, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
+        if tokens[0].endswith((".yaml", ".yml", ".json")):
+            sys.stderr.write(f"cagepose: {tokens[0]} is no command; did you mean: cagepose run {tokens[0]}\n")
+            return BAD_INPUT
         help_command = f"cagepose {tokens[0]} --help" if tokens[0] in COMMANDS else "cagepose --help"
         sys.stderr.write(f"cagepose: {_usage_message(error)} See: {help_command}\n")
         return BAD_INPUT
@@ -133,7 +140,10 @@ def _usage_message(error: CycloptsError) -> str:
     from cyclopts import UnusedCliTokensError
 
     if isinstance(error, UnusedCliTokensError):
-        return f"too many arguments: {' '.join(error.unused_tokens or [])}; each change needs its own --set."
+        unused = error.unused_tokens or []
+        if unused and unused[0].endswith((".yaml", ".yml", ".json")):
+            return f"one scene at a time, and {' '.join(unused)} is left over; run the command once for each."
+        return f"too many arguments: {' '.join(unused)}; each change needs its own --set."
     return " ".join(str(error).split())
 
 

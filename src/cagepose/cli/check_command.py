@@ -14,9 +14,12 @@ if TYPE_CHECKING:
 
 def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int:
     """Print what the scene holds, or every problem found."""
+    from cagepose.errors import printable
     from cagepose.files.scene_file import read_scene_file
     from cagepose.files.units import from_metres
     from cagepose.model.geometry import body_limits
+    from cagepose.model.remarks import remarks
+    from cagepose.model.wording import counted
     from cagepose.runs.methods import chosen_method
 
     scene_file = read_scene_file(scene, set_values)
@@ -25,21 +28,23 @@ def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int
     touch = float(from_metres(found.touch_m, unit))
     held, cage = found.object, found.cage
     sys.stdout.write(
-        f"{found.name}: {_counts((len(held.boxes), 'box', 'boxes'), (len(held.shapes), 'shape', 'shapes'))},"
-        f" {_counts((len(cage.names), 'cage point', 'cage points'), (len(cage.shapes), 'cage shape', 'cage shapes'))},"
-        f" {_counts((len(found.loads), 'load', 'loads'))} ({', '.join(load.name for load in found.loads)}),"
+        f"{found.name}: {counted((len(held.boxes), 'box', 'boxes'), (len(held.shapes), 'shape', 'shapes'))},"
+        f" {counted((len(cage.names), 'cage point', 'cage points'), (len(cage.shapes), 'cage shape', 'cage shapes'))},"
+        f" {counted((len(found.loads), 'load', 'loads'))} ({', '.join(load.name for load in found.loads)}),"
         f" method {chosen_method(found).name}\n"
         f"object {_extent(body_limits(held.parts), unit)}\n"
         f"cage {_extent(body_limits(cage.shapes, cage.points_cage), unit)}\n"
         f"size {size:.6g} {unit}, touch tolerance {touch:.3g} {unit}; no problems found\n"
     )
+    for remark in remarks(found):
+        sys.stdout.write(printable(f"remark: {remark}") + "\n")
     return 0
 
 
 def _extent(limits_m: FloatArray, unit: LengthUnit) -> str:
     """``10 x 20 x 5 mm: x -5 to 5, ...`` in the body's frame: a mistaken unit is seen at once."""
     from cagepose.files.units import from_metres
-    from cagepose.files.words import short
+    from cagepose.model.wording import short
 
     low, high = from_metres(limits_m, unit).tolist()
     noise = 1e-12 * max(abs(value) for value in (*low, *high))
@@ -49,8 +54,3 @@ def _extent(limits_m: FloatArray, unit: LengthUnit) -> str:
     ]
     edges = " x ".join(short(other - one, 6, noise) for one, other in zip(low, high, strict=True))
     return f"{edges} {unit}: {', '.join(sides)}"
-
-
-def _counts(*numbers: tuple[int, str, str]) -> str:
-    """``1 box, 2 shapes``: of what there is none of, nothing is said."""
-    return ", ".join(f"{number} {one if number == 1 else many}" for number, one, many in numbers if number)

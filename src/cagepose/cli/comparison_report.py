@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
-from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
-from cagepose.cli.console import print_all
-from cagepose.cli.report import verdict_style
+from cagepose.cli.console import fits, print_all, screen_width
+from cagepose.cli.styles import plain_table, verdict_style
 from cagepose.files.units import LengthUnit, from_metres
-from cagepose.files.words import short
+from cagepose.model.wording import short
 from cagepose.studies.comparison import Comparison, Variant
 
 
 def print_comparison(comparison: Comparison, unit: LengthUnit) -> None:
     """Print to standard output, lengths in ``unit``."""
-    table = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
-    for heading in ("variant", "verdict", "proof", f"centre of gravity ({unit})", "yaw, pitch, roll (deg)", "events"):
-        table.add_column(heading, overflow="fold")
-    for variant in comparison.variants:
-        table.add_row(*_row(variant, unit))
+    rows = [_row(variant, unit) for variant in comparison.variants]
+    table = plain_table(
+        "variant", "verdict", "proof", f"centre of gravity ({unit})", "yaw, pitch, roll (deg)", "events"
+    )
+    for row in rows:
+        table.add_row(*row)
     blocks = []
     for (where, reason), labels in _partings(comparison).items():
         part = "parts" if len(labels) == 1 else "part"
@@ -31,7 +32,19 @@ def print_comparison(comparison: Comparison, unit: LengthUnit) -> None:
     if together:
         blocks.append(f"{together} of {n_others} {'goes' if together == 1 else 'go'} the way of stepwise to its end")
     name = comparison.variants[0].run.scene.name
-    print_all(Text(name), "", table, "", Text("\n\n".join(blocks)))
+    shown = table if fits(table, screen_width()) else _list(rows, unit)
+    print_all(Text(name), "", shown, "", Text("\n\n".join(blocks)))
+
+
+def _list(rows: Sequence[Sequence[Text]], unit: LengthUnit) -> Table:
+    """Return the rows as three lines each, for a screen that is too narrow for the table."""
+    table = Table.grid(padding=(0, 2))
+    for label, verdict, proof, center, angles, n_events in rows:
+        ended = Text.assemble(verdict, f" (proof: {proof}), {n_events} events")
+        table.add_row(label, ended)
+        table.add_row("  centre of gravity", Text(f"({center}) {unit}"))
+        table.add_row("  yaw, pitch, roll", Text(f"({angles}) deg"))
+    return table
 
 
 def _partings(comparison: Comparison) -> dict[tuple[str, str], list[str]]:

@@ -5,19 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
-from cagepose.cli.console import print_all
+from cagepose.cli.console import fits, print_all, screen_width
+from cagepose.cli.styles import plain_table
 from cagepose.files.play_document import LENGTHS
 from cagepose.files.units import LengthUnit, from_metres
-from cagepose.files.words import LengthWords, line_of, short
+from cagepose.files.words import LengthWords, line_of
 from cagepose.model.checks import FloatArray
+from cagepose.model.wording import short
 from cagepose.studies.cage_verdict import PathStep
 from cagepose.studies.play import Play, PlayEnd
 from cagepose.studies.play_rest import PlayRest
 
+DIGITS = (6, 5, 4)
+"""Of ranges: as many as fit the screen."""
 MOST_CLEARANCES = 4
 """Of those that limit an end, so many are printed; the document has all."""
 ALIKE = 0.99
@@ -39,23 +42,13 @@ STYLES = {"caged": "bold green", "not certified": "bold yellow", "escapes": "bol
 
 def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
     """Print to standard output, lengths in ``unit``, angles in degrees."""
-    table = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
-    for heading in ("", "unit", "linear", "exact", "certified within"):
-        table.add_column(heading, overflow="fold")
-    why = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
-    for heading in ("end", "limited by", f"back per {unit} closed", f"on per {unit} opened", "halved if closed by"):
-        why.add_column(heading, overflow="fold")
     rows = [(name, name in LENGTHS, ends.low, ends.high) for name, ends in play.freedoms.items()]
-    rows += [(_point_name(place, play, unit), True, point.low, point.high) for place, point in enumerate(play.points)]
+    rows += [(_point_name(place, play), True, point.low, point.high) for place, point in enumerate(play.points)]
+    width = screen_width()
+    tables = [_ranges(rows, unit, digits) for digits in DIGITS]
+    table = next((table for table in tables if fits(table, width)), tables[-1])
+    why = plain_table("end", "limited by", f"back per {unit} closed", f"on per {unit} opened", "halved if closed by")
     for name, is_length, low, high in rows:
-        unit_name = str(unit) if is_length else "deg"
-        ranges = [
-            f"{_value(low.linear, is_length, unit)} to {_value(high.linear, is_length, unit)}",
-            f"{_exact(low, is_length, unit)} to {_exact(high, is_length, unit)}",
-        ]
-        is_certified = low.certified is not None and high.certified is not None
-        bound = f"{_value(low.certified, is_length, unit)} to {_value(high.certified, is_length, unit)}"
-        table.add_row(*(Text(cell) for cell in (name, unit_name, *ranges, bound if is_certified else "-")))
         for sign, end in (("least", low), ("greatest", high)):
             for number, (worth, points) in enumerate(_limits(end, is_length, unit).items()):
                 title = f"{sign} {name}" if number == 0 else ""
@@ -73,7 +66,7 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
         print_all(Text(f"it leaves its face with the object's origin at ({_triple(cage.leaves_at.position_m, unit)})"))
     if cage.path is not None:
         print_all(Text(f"way out: {_way_out(cage.path, LengthWords(unit, play.scene.size_m))}"))
-    print_all("", table, "", Text(MEANING), "")
+    print_all("", table, "", *_legend(play, unit), Text(MEANING), "")
     if why.row_count:
         print_all(why, "", Text(HALVED), "")
     for rest in rests:
@@ -85,6 +78,30 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
                 Text(f"{load.name} has more than a weight and one force: where it leaves the object says cagepose run")
             )
     print_all(Text(f"analysis {play.analysis_s * 1e3:.3g} ms, certificate {play.certificate_s * 1e3:.3g} ms"))
+
+
+def _ranges(rows: Sequence[tuple[str, bool, PlayEnd, PlayEnd]], unit: LengthUnit, digits: int) -> Table:
+    """Return the table of ranges: names, whether they are lengths, and both ends."""
+    table = plain_table("", "unit", "linear", "exact", "certified within")
+    for name, is_length, low, high in rows:
+
+        def written(value: float | None, is_length: bool = is_length) -> str:
+            return _value(value, is_length, unit, digits)
+
+        ranges = [
+            f"{written(low.linear)} to {written(high.linear)}",
+            f"{_exact(low, is_length, unit, digits)} to {_exact(high, is_length, unit, digits)}",
+        ]
+        is_certified = low.certified is not None and high.certified is not None
+        bound = f"{written(low.certified)} to {written(high.certified)}" if is_certified else "-"
+        table.add_row(*(Text(cell) for cell in (name, str(unit) if is_length else "deg", *ranges, bound)))
+    return table
+
+
+def _legend(play: Play, unit: LengthUnit) -> list[Text]:
+    """Say which points are meant."""
+    places = {_place_of(place, play): point.at_object for place, point in enumerate(play.points)}
+    return [Text(f"{name}: ({_triple(at, unit)}) {unit} in the object's frame") for name, at in places.items()]
 
 
 def _rest(rest: PlayRest, unit: LengthUnit) -> Text:
@@ -111,22 +128,28 @@ def _triple(lengths_m: FloatArray, unit: LengthUnit) -> str:
     return ", ".join(short(value, 6, 1e-12) for value in from_metres(lengths_m, unit).tolist())
 
 
-def _point_name(place: int, play: Play, unit: LengthUnit) -> str:
-    point = play.points[place]
-    at = ", ".join(f"{value:.6g}" for value in from_metres(point.at_object, unit).tolist())
-    along = ", ".join(short(value, 4, 1e-12) for value in point.direction_cage.tolist())
-    return f"({at}) along ({along})"
+def _place_of(place: int, play: Play) -> str:
+    """Number the points of the object, of which each is asked about along several directions."""
+    different = list(dict.fromkeys(tuple(point.at_object.tolist()) for point in play.points))
+    return f"point {different.index(tuple(play.points[place].at_object.tolist())) + 1}"
 
 
-def _value(value: float | None, is_length: bool, unit: LengthUnit) -> str:
+def _point_name(place: int, play: Play) -> str:
+    direction = play.points[place].direction_cage
+    axes = [axis for axis, part in zip("xyz", direction.tolist(), strict=True) if part == 1.0]
+    along = axes[0] if axes else f"({', '.join(short(value, 4, 1e-12) for value in direction.tolist())})"
+    return f"{_place_of(place, play)} along {along}"
+
+
+def _value(value: float | None, is_length: bool, unit: LengthUnit, digits: int) -> str:
     if value is None:
         return "no end"
     shown = float(from_metres(value, unit)) if is_length else math.degrees(value)
-    return short(shown, 6, 1e-12)
+    return short(shown, digits, 1e-12)
 
 
-def _exact(end: PlayEnd, is_length: bool, unit: LengthUnit) -> str:
-    value = _value(end.reached, is_length, unit)
+def _exact(end: PlayEnd, is_length: bool, unit: LengthUnit, digits: int) -> str:
+    value = _value(end.reached, is_length, unit, digits)
     return f"past {value}" if end.status == "not converged" else f"{value}*" if end.status == "proven" else value
 
 

@@ -27,6 +27,9 @@ def run_command(
     margin: Annotated[
         bool, Switch, Parameter(help="Find what each rest balances beside its load, and what each contact may carry.")
     ] = False,
+    verbose: Annotated[
+        bool, Switch, Parameter(help="Print what touches after each event, and pose and proof of every phase.")
+    ] = False,
     check_tolerance: Annotated[
         bool, Switch, Parameter(help="Run again with other touch tolerances and warn if the verdict changes.")
     ] = False,
@@ -73,7 +76,7 @@ def run_command(
     else:
         from cagepose.cli.report import print_report
 
-        print_report(result, scene_file.length_unit, notes, margins)
+        print_report(result, scene_file.length_unit, notes, margins, is_verbose=verbose)
     return code
 
 

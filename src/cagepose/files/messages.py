@@ -8,12 +8,14 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any, NamedTuple
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from cagepose.errors import Key, Problem
+from cagepose.files.hints import meant_by_key, meant_by_value
 from cagepose.files.key_path import Path, value_at
-from cagepose.files.schema import scene_json_schema
+from cagepose.files.schema import SceneModel
+from cagepose.files.schema_base import json_schema
 from cagepose.files.schema_shapes import KINDS
 
 _WANTED = {
@@ -45,12 +47,13 @@ class Finding(NamedTuple):
     about_key: bool
 
 
-def schema_findings(error: ValidationError, data: object) -> list[Finding]:
-    """Turn all that pydantic found in ``data`` into problems."""
+def schema_findings(error: ValidationError, data: object, model: type[BaseModel] = SceneModel) -> list[Finding]:
+    """Turn all that pydantic found in ``data``, which was to be a ``model``, into problems."""
     findings = []
     for details in error.errors(include_url=False):
         path = _file_path(details["loc"])
-        findings.append(Finding(Problem(path, _message(details, path, data)), details["type"] == "extra_forbidden"))
+        message = _message(details, path, data, model)
+        findings.append(Finding(Problem(path, message), details["type"] == "extra_forbidden"))
     return findings
 
 
@@ -84,17 +87,25 @@ def _file_path(location: tuple[Key, ...]) -> Path:
     return location[:-1] if location[-1:] == ("[key]",) else location
 
 
-def _message(details: ErrorDetails, path: Path, data: object) -> str:
+def _message(details: ErrorDetails, path: Path, data: object, model: type[BaseModel]) -> str:
     kind, found, context = details["type"], details["input"], details.get("ctx", {})
     if kind == "cagepose":
         return str(context["message"])
     if kind == "missing":
-        return f"is missing; add it{_example(path, data)}"
+        return f"is missing; add it{_example(path, data, model)}"
     if kind == "extra_forbidden":
-        known = _known_keys(path[:-1], data)
-        return _unknown_shape(str(path[-1]), known) if _is_shape(path[:-1]) else _unknown_key(str(path[-1]), known)
+        known, homes = _known_keys(path[:-1], data, model), _homes(model).get(str(path[-1]), [])
+        if _is_shape(path[:-1]):
+            return _unknown_shape(str(path[-1]), known, homes)
+        return _unknown_key(path, known, homes, data, model)
     if kind == "union_tag_not_found":
         return f"is {shown(found)}; give {_FORMS[str(path[-1])]}"
+    if model is SceneModel and (meant := meant_by_value(path, found)) is not None:
+        return f"is {shown(found)}; {meant}"
+    if kind == "list_type" and isinstance(found, dict) and _holds_mappings(path, data, model):
+        by_name = all(isinstance(value, dict) for value in found.values())
+        form = "each with its own - and name" if by_name else "with - before the first of them"
+        return f"is {shown(found)}; make it a list, {form}"
     if kind in _WANTED:
         return f"is {shown(found)}; give {_WANTED[kind]}"
     if kind in _LIMITS:
@@ -126,39 +137,29 @@ def _choice(found: object, expected: str) -> str:
     return f"is {shown(found)}; use one of: {', '.join(choices)}"
 
 
-def _unknown_key(found: str, known: list[str]) -> str:
-    homes = _homes().get(found, [])
-    meant = f"it belongs to {_some_of(homes)}; " if homes else _close(found, known)
-    return f"is no known key; {meant}known keys: {', '.join(known)}"
+def _unknown_key(path: Path, known: list[str], homes: list[str], data: object, model: type[BaseModel]) -> str:
+    found = str(path[-1])
+    meant, plural = meant_by_key(found, known), f"{found.lower()}s"
+    if meant is not None:
+        example = _example((*path[:-1], plural), data, model).removeprefix(",") if plural in known else ""
+        told = _ended(meant + example)
+    else:
+        told = f"it belongs to {_some_of(homes)}; " if homes else _close(found, known)
+    return f"is no known key; {told}known keys: {', '.join(known)}"
 
 
-OTHER_WORDS = {
-    "roller": "capsule",
-    "rod": "capsule",
-    "pin": "capsule",
-    "ball": "sphere",
-    "block": "box",
-    "wall": "box",
-    "cuboid": "box",
-    "hull": "convex",
-    "mesh": "convex",
-    "polyhedron": "convex",
-    "frustum": "cone",
-    "bore": "hole",
-    "rotation": "euler_zyx_deg",
-    "euler_deg": "euler_zyx_deg",
-}
-"""What people call shapes and the keys beside them, and what they are called here."""
-
-
-def _unknown_shape(found: str, known: list[str]) -> str:
+def _unknown_shape(found: str, known: list[str], homes: list[str]) -> str:
     """For a key of a shape, most of which are the names of all shapes that there are."""
     others = [key for key in known if key not in KINDS]
-    holders = [home.rpartition(".")[2] for home in _homes().get(found, []) if home.startswith("object.shapes[i].")]
+    holders = [home.rpartition(".")[2] for home in homes if home.startswith("object.shapes[i].")]
     meant = f"it belongs within {_some_of(holders)}; " if holders else _close(found, known)
-    if found.lower() in OTHER_WORDS:
-        meant = f"did you mean {OTHER_WORDS[found.lower()]}? "
-    return f"is no known shape; {meant}known shapes: {', '.join(KINDS)}; known keys beside them: {', '.join(others)}"
+    hint = meant_by_key(found, known)
+    told = meant if hint is None else _ended(hint)
+    return f"is no known shape; {told}known shapes: {', '.join(KINDS)}; known keys beside them: {', '.join(others)}"
+
+
+def _ended(text: str) -> str:
+    return f"{text} " if text.endswith("?") else f"{text}; "
 
 
 def _some_of(places: list[str]) -> str:
@@ -176,12 +177,12 @@ def _is_shape(path: Path) -> bool:
 
 
 @cache
-def _homes() -> dict[str, list[str]]:
-    """Return for each key the mappings that have it, as ``loads[i].force``; none for keys of the scene itself."""
+def _homes(model: type[BaseModel]) -> dict[str, list[str]]:
+    """Return for each key the mappings that have it, as ``loads[i].force``; none for keys of the file itself."""
     homes: dict[str, list[str]] = {}
 
     def visit(node: dict[str, Any], place: str) -> None:
-        for part in _alternatives(node):
+        for part in _alternatives(node, model):
             for key, child in part.get("properties", {}).items():
                 if place and place not in homes.setdefault(key, []):
                     homes[key].append(place)
@@ -189,48 +190,55 @@ def _homes() -> dict[str, list[str]]:
             if isinstance(part.get("items"), dict):
                 visit(part["items"], f"{place}[i]")
 
-    visit(_schema(), "")
+    visit(_schema(model), "")
     return homes
 
 
-def _example(path: Path, data: object) -> str:
-    for node in _schema_nodes(path, data):
+def _example(path: Path, data: object, model: type[BaseModel]) -> str:
+    for node in _schema_nodes(path, data, model):
         if examples := node.get("examples"):
             return f", for example {path[-1]}: {json.dumps(examples[0]).replace(chr(34), '')}"
     return ""
 
 
-def _known_keys(path: Path, data: object) -> list[str]:
+def _holds_mappings(path: Path, data: object, model: type[BaseModel]) -> bool:
+    """Whether what stands at ``path`` is a list of mappings."""
+    items = [node["items"] for node in _schema_nodes(path, data, model) if isinstance(node.get("items"), dict)]
+    return any("properties" in part for item in items for part in _alternatives(item, model))
+
+
+def _known_keys(path: Path, data: object, model: type[BaseModel]) -> list[str]:
     """Return the keys that the mapping at ``path`` may have."""
-    return [key for node in _schema_nodes(path, data) for key in node.get("properties", {})]
+    return [key for node in _schema_nodes(path, data, model) for key in node.get("properties", {})]
 
 
 @cache
-def _schema() -> dict[str, Any]:
-    return scene_json_schema()
+def _schema(model: type[BaseModel]) -> dict[str, Any]:
+    return json_schema(model)
 
 
-def _schema_nodes(path: Path, data: object) -> Iterator[dict[str, Any]]:
+def _schema_nodes(path: Path, data: object, model: type[BaseModel]) -> Iterator[dict[str, Any]]:
     """Yield the parts of the JSON Schema that speak about ``path``."""
-    nodes = list(_alternatives(_schema()))
+    nodes = list(_alternatives(_schema(model), model))
     for depth, key in enumerate(path):
         is_index = isinstance(value_at(data, path[:depth]), list)
         children = [
             node.get("items") if is_index else node.get("properties", {}).get(key, node.get("additionalProperties"))
             for node in nodes
         ]
-        nodes = [part for child in children if isinstance(child, dict) for part in _alternatives(child)]
+        nodes = [part for child in children if isinstance(child, dict) for part in _alternatives(child, model)]
     yield from nodes
 
 
-def _alternatives(node: dict[str, Any]) -> Iterator[dict[str, Any]]:
+def _alternatives(node: dict[str, Any], model: type[BaseModel]) -> Iterator[dict[str, Any]]:
     """Yield ``node`` with its references followed, and each of its choices."""
     if "$ref" in node:
-        yield from _alternatives({**_schema()["$defs"][node["$ref"].rpartition("/")[2]], **_without_ref(node)})
+        referred = _schema(model)["$defs"][node["$ref"].rpartition("/")[2]]
+        yield from _alternatives({**referred, **_without_ref(node)}, model)
         return
     yield node
     for choice in (*node.get("anyOf", ()), *node.get("oneOf", ())):
-        yield from _alternatives(choice)
+        yield from _alternatives(choice, model)
 
 
 def _without_ref(node: dict[str, Any]) -> dict[str, Any]:

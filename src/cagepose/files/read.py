@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import difflib
 import os
 from pathlib import Path
 
@@ -11,6 +12,9 @@ from cagepose.errors import FileProblem, Key, SceneFileError
 MAX_FILE_BYTES = 4 * 1024 * 1024
 """The size limit of a scene file and of a points file: about 100,000 points, far above any cage we know of."""
 
+SCENE_SUFFIXES = (".yaml", ".yml", ".json")
+CLOSE = 0.75
+"""Of names: more alike than this are taken for a slip."""
 HEAD_BYTES = 100
 """Of a file: within these a saved run shows that it is one."""
 
@@ -33,7 +37,7 @@ def read_text(path: Path, source: str, at: tuple[Key, ...] = ()) -> str:
         if path.is_dir():
             raise refuse("is a directory; name a file in it")
         if not path.exists():
-            raise refuse("does not exist; check the name and the folder")
+            raise refuse(f"does not exist; {_meant(path)}check the name and the folder")
         if not path.is_file():
             raise refuse("is not a regular file; save the text in one and name that")
         with path.open("rb") as stream:
@@ -54,6 +58,17 @@ def read_text(path: Path, source: str, at: tuple[Key, ...] = ()) -> str:
         line, column = before.count(b"\n") + 1, error.start - (before.rfind(b"\n") + 1) + 1
         byte = f"{content[error.start]:#04x}"
         raise refuse(f"holds byte {byte}, which is not UTF-8; save it as UTF-8", line, column) from None
+
+
+def _meant(path: Path) -> str:
+    """Return a question after a file beside the one that is missing, if there is one of a similar name."""
+    try:
+        names = [found.name for found in path.parent.iterdir() if found.suffix in SCENE_SUFFIXES]
+    except OSError:
+        return ""
+    same = [name for name in names if Path(name).stem == path.name]
+    close = same or difflib.get_close_matches(path.name, names, n=1, cutoff=CLOSE)
+    return f"did you mean {path.parent / close[0]}? Else " if close else ""
 
 
 def looks_like_run(path: str | os.PathLike[str]) -> bool:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from ruamel.yaml import YAML
 
-from cagepose.files.key_path import parse_key_path, set_value, value_at
+from cagepose.files.key_path import Path, parse_key_path, set_value, value_at
 from cagepose.files.scene_file import SceneText
 from cagepose.files.yaml_source import parse_yaml
 
@@ -66,14 +66,22 @@ def edited_text(scene_text: SceneText, set_values: Sequence[str]) -> str:
         The scene that would result cannot be used, see `load_scene`.
     """
     scene_text.scene_file(set_values)
+    plain = YAML(typ="safe", pure=True)
+    changes: dict[Path, object] = {}
+    for argument in set_values:
+        key, _, text = argument.partition("=")
+        changes[parse_key_path(key.strip())] = plain.load(text)
+    return with_values(scene_text.text, changes)
+
+
+def with_values(text: str, changes: Mapping[Path, object]) -> str:
+    """Return the text of a scene or study file with other values at some paths, unchecked."""
     yaml = YAML()
     yaml.preserve_quotes = True
     yaml.width = 4096  # no line is broken anew
-    data = yaml.load(scene_text.text)
-    plain = YAML(typ="safe", pure=True)
-    for argument in set_values:
-        key, _, text = argument.partition("=")
-        set_value(data, parse_key_path(key.strip()), plain.load(text))
+    data = yaml.load(text)
+    for path, value in changes.items():
+        set_value(data, path, value)
     stream = io.StringIO()
     yaml.dump(data, stream)
     return stream.getvalue()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -16,6 +16,7 @@ from cagepose.files.build import build_scene
 from cagepose.files.key_path import Path as KeyPath
 from cagepose.files.key_path import parse_key_path, resolved, set_value, value_at
 from cagepose.files.messages import Finding, schema_findings, shown
+from cagepose.files.parameters import evaluated, expression_at
 from cagepose.files.points_file import POINTS_KEY, PointsTable, read_points
 from cagepose.files.read import read_text, starts_as_run
 from cagepose.files.schema import PointsFileModel, SceneModel
@@ -97,6 +98,9 @@ class SceneText:
     yaml: YamlSource
     folder: Path
 
+    def __repr__(self) -> str:
+        return f"<SceneText {self.yaml.source!r}>"
+
     def scene_file(self, set_values: Sequence[str] = ()) -> SceneFile:
         """Return the scene with some values changed; see `load_scene`.
 
@@ -121,6 +125,22 @@ class SceneText:
                 problems.append(places.place(finding))
         problems.sort(key=_reading_order)
         raise SceneFileError(problems)
+
+    def scene_with(self, numbers: Mapping[KeyPath, float]) -> SceneFile:
+        """Return the scene with other numbers at some paths, for thousands of times: without places of what is wrong.
+
+        Raises
+        ------
+        SceneError
+            Such a scene cannot be used.
+        """
+        data = deepcopy(self.yaml.data)
+        for path, number in numbers.items():
+            set_value(data, path, number)
+        attempt = _Attempt(data, self.folder)
+        if attempt.scene_file is None:
+            raise SceneError([*attempt.table_problems, *(finding.problem for finding in attempt.findings)])
+        return attempt.scene_file
 
 
 def _reading_order(problem: FileProblem) -> tuple[int, int]:
@@ -174,11 +194,20 @@ class _Attempt:
         self.scene_file: SceneFile | None = None
         self.findings: list[Finding] = []
         self.table_problems: list[FileProblem] = []
+        written = data
+        data, of_expressions = evaluated(data)
+        self.findings += [Finding(problem, False) for problem in of_expressions]
         self.table = self._read_table(value_at(data, POINTS_KEY), folder)
         try:
             model = SceneModel.model_validate(data)
         except ValidationError as error:
-            self.findings += schema_findings(error, data)
+            for finding in schema_findings(error, data):
+                text = expression_at(written, finding.problem.path)
+                if text is None or finding.about_key:
+                    self.findings.append(finding)
+                elif not isinstance(value_at(data, finding.problem.path), str):  # else it came to nothing
+                    problem = Problem(finding.problem.path, f"{text!r} {finding.problem.message}")
+                    self.findings.append(Finding(problem, False))
             return
         self.findings += [Finding(problem, False) for problem in _adjustable_problems(model, data)]
         if self.table is None and isinstance(model.cage.points, PointsFileModel):

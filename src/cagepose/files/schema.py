@@ -17,8 +17,8 @@ from pydantic import (
     WithJsonSchema,
     model_validator,
 )
-from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 
+from cagepose.files.parameters import parameter_name_message
 from cagepose.files.schema_base import (
     Direction,
     Mapping,
@@ -29,6 +29,7 @@ from cagepose.files.schema_base import (
     Quaternion,
     Size,
     Vector,
+    json_schema,
     wrong,
 )
 from cagepose.files.schema_shapes import CoefficientModel, Shapes, either
@@ -272,6 +273,12 @@ class AdjustableModel(Mapping):
     )
 
 
+def _usable(name: str) -> str:
+    if message := parameter_name_message(name):
+        raise wrong(message)
+    return name
+
+
 class SceneModel(Mapping):
     """A part, the cage that holds it, and the loads that act on it one after the other."""
 
@@ -279,6 +286,12 @@ class SceneModel(Mapping):
 
     name: Name = Field(description="The scene's name.", examples=["bracket"])
     units: UnitsModel | None = Field(None, description="Units of the file; left out: millimetres.")
+    parameters: dict[Annotated[Name, AfterValidator(_usable)], Number] | None = Field(
+        None,
+        description="Named numbers. Wherever a number may stand, so may text that begins with = and says what it comes"
+        " to, such as '=10 + play/2'; a parameter may use those above it.",
+        examples=[{"play": 0.5}],
+    )
     object: ObjectModel = Field(description="The part that is held.", examples=[{"boxes": [_BOX]}])
     cage: CageModel = Field(description="What holds it.", examples=[{"points": _POINTS}])
     loads: list[LoadModel] = Field(
@@ -299,12 +312,4 @@ class SceneModel(Mapping):
 
 def scene_json_schema() -> dict[str, Any]:
     """Return the JSON Schema (2020-12) of a scene file: editors check and complete scenes with it."""
-    schema = SceneModel.model_json_schema(schema_generator=_InOurOrder)
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
-
-
-class _InOurOrder(GenerateJsonSchema):
-    """Keys stay in the order of the classes above; the examples read as people write them."""
-
-    def sort(self, value: JsonSchemaValue, parent_key: str | None = None) -> JsonSchemaValue:  # noqa: ARG002 (pydantic's signature)
-        return value
+    return json_schema(SceneModel)

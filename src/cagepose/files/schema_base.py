@@ -1,10 +1,11 @@
-"""What all models of a scene file share: strict mappings, and the numbers and names in them."""
+"""What all models of a scene or study file share: strict mappings, the numbers and names in them, and their schema."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
+from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import PydanticCustomError
 
 LARGEST = 1e12
@@ -50,3 +51,16 @@ class Mapping(BaseModel):
 
     # Models are built when they are first asked for: those that are parts of another only there, and not twice.
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True, defer_build=True)
+
+
+def json_schema(model: type[BaseModel]) -> dict[str, Any]:
+    """Return the JSON Schema (2020-12) of a file."""
+    schema = model.model_json_schema(schema_generator=_InOurOrder)
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+class _InOurOrder(GenerateJsonSchema):
+    """Keys stay in the order of the classes; the examples read as people write them."""
+
+    def sort(self, value: JsonSchemaValue, parent_key: str | None = None) -> JsonSchemaValue:  # noqa: ARG002 (pydantic's signature)
+        return value

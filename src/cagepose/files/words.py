@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.checks import FloatArray
+from cagepose.model.wording import short
 from cagepose.runs.run import Motion
 
 
@@ -43,16 +44,11 @@ def components(direction: FloatArray) -> str:
     return ", ".join(short(value, 4, 5e-5) for value in direction.tolist())
 
 
-def short(value: float, digits: int, noise: float) -> str:
-    """Return a number as people read it; below ``noise`` it is zero."""
-    return "0" if abs(value) < noise else f"{value:.{digits}g}"
-
-
 def names_of(names: Iterable[str]) -> str:
-    """Return names in a row, told apart by commas where a blank could be one of a name.
+    """Return names in a row, told apart by commas where a blank could be one of a name; one with a comma is quoted.
 
-    >>> names_of(["C1", "C2"]), names_of(["pin left", "pin right"])
-    ('C1 C2', 'pin left, pin right')
+    >>> names_of(["C1", "C2"]), names_of(["pin left", "pin right"]), names_of(["C1", "a,b"])
+    ('C1 C2', 'pin left, pin right', 'C1, "a,b"')
     """
-    all_names = list(names)
-    return (", " if any(" " in name for name in all_names) else " ").join(all_names)
+    all_names = [f'"{name}"' if "," in name else name for name in names]
+    return (", " if any(" " in name or "," in name for name in all_names) else " ").join(all_names)

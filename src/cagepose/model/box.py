@@ -15,7 +15,7 @@ from cagepose.model.shapes import WITHIN, Shape
 from cagepose.model.volume import BOX_SIGNS
 
 
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Box(Shape):
     """A rectangular block of the object, or of the cage.
 
@@ -48,6 +48,9 @@ class Box(Shape):
         self._place(pose_object_box, name, problems)
         object.__setattr__(self, "size_m", size)
         object.__setattr__(self, "pose_object_box", self.pose_body_shape)
+
+    def _measures(self) -> str:
+        return " x ".join(f"{length:.6g}" for length in self.size_m.tolist()) + " m"
 
     def corners_object(self) -> FloatArray:
         """The eight corners in the object's frame, (8, 3), metres."""

@@ -12,11 +12,12 @@ from numpy.typing import ArrayLike
 
 from cagepose.errors import Key
 from cagepose.model.box import Box
-from cagepose.model.checks import FloatArray, ProblemList, check_kinds, duplicates, finite_array
+from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, duplicates, finite_array
 from cagepose.model.hole import Hole, check_holes
 from cagepose.model.naming import check_names, names_of, placed
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import AnyShape, Shape
+from cagepose.model.wording import counted
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -66,8 +67,10 @@ class Cage:
             finite_array(points, (-1, 3), "points") if has_points else finite_array(np.zeros((0, 3)), (0, 3), "points")
         )
         default_names = tuple(f"C{index + 1}" for index in range(len(array)))
-        given = default_names if names is None else tuple(str(name) for name in names)
         problems = ProblemList()
+        given = default_names if names is None else check_kinds(names, str, "names", problems)
+        pose = Pose() if pose is None else pose
+        check_kind(pose, Pose, ("pose",), problems)
         listed = {
             "shapes": check_kinds(shapes, Shape, "shapes", problems),
             "holes": check_kinds(holes, Hole, "holes", problems),
@@ -89,10 +92,14 @@ class Cage:
         problems.raise_if_any()
         object.__setattr__(self, "points_cage", array)
         object.__setattr__(self, "names", given)
-        object.__setattr__(self, "pose_world_cage", pose or Pose())
+        object.__setattr__(self, "pose_world_cage", pose)
         object.__setattr__(self, "shapes", solids)
         object.__setattr__(self, "holes", holes)
         object.__setattr__(self, "shape_paths", paths)
+
+    def __repr__(self) -> str:
+        points, shapes = (len(self.names), "point", "points"), (len(self.shapes), "shape", "shapes")
+        return f"<Cage: {counted(points, shapes, (len(self.holes), 'hole', 'holes'))}>"
 
     @cached_property
     def element_names(self) -> tuple[str, ...]:

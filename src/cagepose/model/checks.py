@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -28,13 +30,13 @@ def finite_array(value: ArrayLike, shape: tuple[int, ...], key: str) -> FloatArr
     try:
         array = np.array(value, dtype=np.float64, order="C")  # as kernels take arrays
     except (TypeError, ValueError):
-        raise SceneError([Problem((key,), f"is not made of numbers: {value!r}")]) from None
+        message = f"is not made of numbers: {_cut(value)}; give {_numbers(shape)}"
+        raise SceneError([Problem((key,), message)]) from None
     fits = array.ndim == len(shape) and all(
         found == wanted or (wanted == -1 and found >= 1) for found, wanted in zip(array.shape, shape, strict=True)
     )
     if not fits:
-        wanted_text = " x ".join("n" if n == -1 else str(n) for n in shape)
-        raise SceneError([Problem((key,), f"has shape {array.shape}; give {wanted_text} numbers")])
+        raise SceneError([Problem((key,), f"has shape {array.shape}; give {_numbers(shape)}")])
     if not np.isfinite(array).all():
         if array.size <= SHOWN:
             raise SceneError([Problem((key,), f"holds a number that is not finite: {array.tolist()}")])
@@ -42,6 +44,15 @@ def finite_array(value: ArrayLike, shape: tuple[int, ...], key: str) -> FloatArr
         raise SceneError([Problem((key, *at), f"is {array[tuple(at)]}; give a finite number")])
     array.setflags(write=False)
     return array
+
+
+def _numbers(shape: tuple[int, ...]) -> str:
+    return f"{' x '.join('n' if n == -1 else str(n) for n in shape)} numbers"
+
+
+def is_finite(value: object) -> bool:
+    """Return whether a value is one finite number: no text, no list, no truth value."""
+    return not isinstance(value, bool) and isinstance(value, Real) and math.isfinite(value)
 
 
 def unit_vector(value: ArrayLike, key: str) -> FloatArray:
@@ -103,16 +114,103 @@ class ProblemList:
             raise SceneError(self.problems)
 
 
+FROM_THREE_NUMBERS = {
+    "Box": "cagepose.Box({})",
+    "Force": "cagepose.Force({}, at_m=(0, 0, 0))",
+    "Load": "cagepose.Load('weight', gravity={})",
+    "Moment": "cagepose.Moment({}, magnitude_nm=1.0)",
+    "Pose": "cagepose.Pose({})",
+}
+"""What people mean who give three numbers in the place of an object."""
+FROM_TEXT = {
+    "Pose": "name={} gives a name",
+    "Run": "cagepose.load_run({}) reads one that was saved",
+    "Scene": "cagepose.load_scene({}) reads one",
+}
+"""What they mean who give text."""
+FROM_OBJECTS = {
+    ("Run", "Scene"): "cagepose.run(scene) makes one",
+    ("Scene", "Run"): "run.scene is that of a run",
+    ("Certificate", "Run"): "cagepose.certificate(run) makes one",
+}
+SHOWN_LENGTH = 40
+"""Characters of a wrong value in a message."""
+
+
 def check_kind(value: object, kind: type, path: tuple[str | int, ...], problems: ProblemList) -> None:
-    """Note a problem where a value is of another class than ``kind``."""
-    if not isinstance(value, kind):
-        problems.add(path, f"is of type {type(value).__name__}; give a cagepose.{kind.__name__}")
+    """Note a problem where a value is of another class than ``kind``, and what may have been meant."""
+    if isinstance(value, kind):
+        return
+    name, meant = kind.__name__, None
+    if isinstance(value, str):
+        meant = FROM_TEXT.get(name)
+    elif isinstance(value, Sequence | np.ndarray):
+        meant = FROM_THREE_NUMBERS.get(name) if len(value) == 3 and all(map(is_finite, value)) else None
+        value = tuple(value.tolist()) if isinstance(value, np.ndarray) else value
+    else:
+        meant = FROM_OBJECTS.get((name, type(value).__name__))
+    hint = "" if meant is None else f": {meant.format(_cut(value))}"
+    problems.add(path, f"is {_found(value)}; give a cagepose.{name}{hint}")
+
+
+def expect(value: object, kind: type, key: str) -> None:
+    """Refuse a value of another class than ``kind``.
+
+    Raises
+    ------
+    SceneError
+        It is one.
+    """
+    if isinstance(value, kind):
+        return
+    problems = ProblemList()
+    check_kind(value, kind, (key,), problems)
+    problems.raise_if_any()
+
+
+def number_found(value: object) -> str:
+    """Name a wrong number: NumPy's as Python's; what is no number, as it is."""
+    return repr(float(value)) if isinstance(value, float) else repr(value)
+
+
+def degrees_of(angle_rad: object) -> str:
+    """Name an angle that is wrong in degrees, as users of files know it; what is no number, as it is."""
+    return f"{math.degrees(angle_rad):g} deg" if isinstance(angle_rad, float | int) else repr(angle_rad)
+
+
+def check_choice(value: object, known: Sequence[str], key: str, problems: ProblemList) -> None:
+    """Note a problem where a value is none of some words."""
+    if not (isinstance(value, str) and value in known):
+        problems.add((key,), f"is {_found(value)}; use one of: {', '.join(known)}")
+
+
+def check_mapping(value: object, path: tuple[str | int, ...], problems: ProblemList) -> None:
+    """Note a problem where a value is no mapping."""
+    if not isinstance(value, Mapping):
+        problems.add(path, f"is {_found(value)}; give a dict of names and numbers")
+
+
+def check_text(value: object, path: tuple[str | int, ...], problems: ProblemList) -> None:
+    """Note a problem where a value is no text."""
+    if not isinstance(value, str):
+        problems.add(path, f"is {_found(value)}; give text, such as 'weight'")
+
+
+def _found(value: object) -> str:
+    """Name a wrong value: itself if it is short, else its type."""
+    is_plain = value is None or isinstance(value, str | tuple | list | bool | int | float)
+    return repr(value) if is_plain and len(repr(value)) <= SHOWN_LENGTH else f"of type {type(value).__name__}"
+
+
+def _cut(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= SHOWN_LENGTH else f"{text[: SHOWN_LENGTH - 3]}..."
 
 
 def check_kinds(values: object, kind: type, key: str, problems: ProblemList) -> tuple[Any, ...]:
     """Return what is in a list; note a problem where that is no list, or holds another class than ``kind``."""
-    if isinstance(values, kind) or not isinstance(values, Iterable):
-        problems.add((key,), f"is of type {type(values).__name__}; give a list of cagepose.{kind.__name__}")
+    if isinstance(values, kind | str) or not isinstance(values, Iterable):
+        problems.add((key,), f"is {_found(values)}; give a list of cagepose.{kind.__name__}")
         return ()
     found = tuple(values)
     for index, value in enumerate(found):

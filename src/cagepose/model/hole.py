@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from cagepose.errors import Key
-from cagepose.model.checks import FloatArray, ProblemList, check_kind
+from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, degrees_of, is_finite
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Shape, Turned, set_lengths
 
@@ -36,7 +36,7 @@ class Chamfer:
     angle_rad: float
 
 
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Hole(Turned):
     """A round hole with a flat bottom: along z, its mouth at z = 0, its bottom at z = -depth.
 
@@ -78,16 +78,17 @@ class Hole(Turned):
         if chamfer is not None:
             check_kind(chamfer, Chamfer, ("chamfer",), problems)
             problems.raise_if_any()
-            if not (math.isfinite(chamfer.width_m) and chamfer.width_m > 0.0):
+            if not (is_finite(chamfer.width_m) and chamfer.width_m > 0.0):
                 found = f"is {chamfer.width_m!r}; give a finite number of metres, above zero"
                 problems.add(("chamfer", "width"), found)
-            elif not 0.0 < chamfer.angle_rad < math.pi / 2.0:
-                found = f"is {math.degrees(chamfer.angle_rad):g} deg; give an angle above 0 and below 90 deg"
+            elif not (is_finite(chamfer.angle_rad) and 0.0 < chamfer.angle_rad < math.pi / 2.0):
+                found = f"is {degrees_of(chamfer.angle_rad)}; give an angle above 0 and below 90 deg"
                 problems.add(("chamfer", "angle_deg"), found)
             elif not problems.problems and chamfer.width_m / math.tan(chamfer.angle_rad) >= self.depth_m:
                 problems.add(("chamfer",), "reaches the bottom; make it narrower or flatter, or the hole deeper")
         object.__setattr__(self, "chamfer", chamfer)
-        object.__setattr__(self, "in_", (in_,) if isinstance(in_, str) else tuple(in_))
+        names = (in_,) if isinstance(in_, str) else check_kinds(in_, str, "in", problems)
+        object.__setattr__(self, "in_", names)
         self._place(pose_body_shape, name, problems)
 
     @property

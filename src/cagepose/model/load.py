@@ -5,11 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from cagepose.errors import Problem, SceneError
-from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, finite_array, unit_vector
+from cagepose.model.checks import (
+    FloatArray,
+    ProblemList,
+    check_kind,
+    check_kinds,
+    check_text,
+    finite_array,
+    is_finite,
+    unit_vector,
+)
+from cagepose.model.wording import coordinates, counted
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -47,6 +56,11 @@ class Force:
         _set_field(self, "magnitude_n", None if magnitude_n is None else _magnitude(magnitude_n))
         _set_field(self, "follows", bool(follows))
 
+    def __repr__(self) -> str:
+        size = "" if self.magnitude_n is None else f" {self.magnitude_n:.6g} N"
+        follows = ", follows" if self.follows else ""
+        return f"<Force{size} along {coordinates(self.direction, 4)} at {coordinates(self.at_object_m)} m{follows}>"
+
 
 @dataclass(frozen=True, init=False, eq=False)
 class Moment:
@@ -76,6 +90,10 @@ class Moment:
         _set_field(self, "direction", unit_vector(direction, "direction"))
         _set_field(self, "magnitude_nm", _magnitude(magnitude_nm))
         _set_field(self, "follows", bool(follows))
+
+    def __repr__(self) -> str:
+        follows = ", follows" if self.follows else ""
+        return f"<Moment {self.magnitude_nm:.6g} N m about {coordinates(self.direction, 4)}{follows}>"
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -110,17 +128,22 @@ class Spring:
             A wrong shape, NaN or infinite, a stiffness below zero, or neither stiffness nor preload.
         """
         problems = ProblemList()
-        if not (np.isfinite(stiffness_n_per_m) and stiffness_n_per_m >= 0.0):
+        if not (is_finite(stiffness_n_per_m) and stiffness_n_per_m >= 0.0):
             problems.add(("stiffness",), f"is {stiffness_n_per_m!r}; give a finite number, zero or above")
-        if not np.isfinite(preload_n):
+        if not is_finite(preload_n):
             problems.add(("preload",), f"is {preload_n!r}; give a finite number")
-        if stiffness_n_per_m == 0.0 and preload_n == 0.0:
+        if not problems.problems and stiffness_n_per_m == 0.0 and preload_n == 0.0:
             problems.add(("stiffness",), "is zero without a preload, so the spring does nothing; give one of them")
         problems.raise_if_any()
         _set_field(self, "at_object_m", finite_array(at_m, (3,), "at"))
         _set_field(self, "to_world_m", finite_array(to_m, (3,), "to"))
         _set_field(self, "stiffness_n_per_m", float(stiffness_n_per_m))
         _set_field(self, "preload_n", float(preload_n))
+
+    def __repr__(self) -> str:
+        preload = f", preload {self.preload_n:.6g} N" if self.preload_n else ""
+        ends = f"{coordinates(self.at_object_m)} m to {coordinates(self.to_world_m)} m"
+        return f"<Spring {ends}: {self.stiffness_n_per_m:.6g} N/m{preload}>"
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -169,9 +192,10 @@ class Load:
             without a magnitude beside other forces, moments or springs.
         """
         problems = ProblemList()
+        check_text(name, ("name",), problems)
         if force is not None:
             check_kind(force, Force, ("force",), problems)
-        _set_field(self, "name", str(name))
+        _set_field(self, "name", name)
         _set_field(self, "force", force)
         _set_field(self, "forces", check_kinds(forces, Force, "forces", problems))
         _set_field(self, "moments", check_kinds(moments, Moment, "moments", problems))
@@ -193,6 +217,15 @@ class Load:
         problems.raise_if_any()
         _set_field(self, "gravity_world", None if gravity is None else finite_array(gravity, (3,), "gravity"))
 
+    def __repr__(self) -> str:
+        gravity = "" if self.gravity_world is None else f"gravity {coordinates(self.gravity_world, 4)}"
+        counts = counted(
+            (len(self.pushes), "force", "forces"),
+            (len(self.moments), "moment", "moments"),
+            (len(self.springs), "spring", "springs"),
+        )
+        return f"<Load {self.name!r}: {', '.join(part for part in (gravity, counts) if part)}>"
+
     @property
     def is_weight_alone(self) -> bool:
         """Whether nothing but gravity acts."""
@@ -208,7 +241,7 @@ _set_field = object.__setattr__
 
 
 def _magnitude(value: float) -> float:
-    if not (np.isfinite(value) and value > 0.0):
+    if not (is_finite(value) and value > 0.0):
         message = f"is {value!r}; a magnitude must be a finite number above zero (turn the direction instead)"
         raise SceneError([Problem(("magnitude",), message)])
     return float(value)

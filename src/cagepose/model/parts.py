@@ -12,13 +12,14 @@ from numpy.typing import ArrayLike
 
 from cagepose.errors import Key, Problem, SceneError
 from cagepose.model.box import Box
-from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, finite_array
+from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, finite_array, is_finite
 from cagepose.model.hole import Hole, check_holes
 from cagepose.model.naming import check_names, names_of, placed
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import AnyShape, Disc, Shape
 from cagepose.model.union import body_moments
 from cagepose.model.volume import VolumeMoments
+from cagepose.model.wording import counted
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -79,7 +80,8 @@ class Object:
             "shapes": check_kinds(shapes, Shape, "shapes", problems),
             "holes": check_kinds(holes, Hole, "holes", problems),
         }
-        check_kind(pose or Pose(), Pose, ("pose",), problems)
+        pose = Pose() if pose is None else pose
+        check_kind(pose, Pose, ("pose",), problems)
         problems.raise_if_any()
         paths, everything = placed(given, lambda part: 2 if isinstance(part, Hole) else not isinstance(part, Box))
         parts = tuple(part for part in everything if not isinstance(part, Hole))
@@ -88,7 +90,7 @@ class Object:
         check_names(names_of(everything), [path[:2] for path in paths], problems)
         holes = tuple(hole for hole in everything if isinstance(hole, Hole))
         check_holes(holes, paths[len(parts) :], parts, problems)
-        if mass_kg is not None and not (np.isfinite(mass_kg) and mass_kg > 0.0):
+        if mass_kg is not None and not (is_finite(mass_kg) and mass_kg > 0.0):
             problems.add(("mass",), f"is {mass_kg!r}; a mass must be a finite number above zero")
         inertia = None
         try:
@@ -111,7 +113,12 @@ class Object:
             _ = self._union_moments  # says what is missing
         object.__setattr__(self, "mass_kg", None if mass_kg is None else float(mass_kg))
         object.__setattr__(self, "inertia_kg_m2", inertia)
-        object.__setattr__(self, "pose_world_object", pose or Pose())
+        object.__setattr__(self, "pose_world_object", pose)
+
+    def __repr__(self) -> str:
+        boxes, shapes = (len(self.boxes), "box", "boxes"), (len(self.shapes), "shape", "shapes")
+        mass = "" if self.mass_kg is None else f", {self.mass_kg:.6g} kg"
+        return f"<Object: {counted(boxes, shapes, (len(self.holes), 'hole', 'holes'))}{mass}>"
 
     @cached_property
     def parts(self) -> tuple[Box | AnyShape, ...]:

@@ -12,6 +12,7 @@ from cagepose.errors import Problem, SceneError
 from cagepose.kernels.algebra import pose as kernel
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.model.checks import FloatArray, as_vector, finite_array
+from cagepose.model.wording import coordinates
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -67,6 +68,12 @@ class Pose:
         object.__setattr__(self, "position_m", finite_array(position_m, (3,), "position"))
         object.__setattr__(self, "quaternion_wxyz", quaternion)
 
+    def __repr__(self) -> str:
+        turned = (
+            f", yaw pitch roll {coordinates(np.degrees(self.euler_zyx))} deg" if self.quaternion_wxyz[0] < 1.0 else ""
+        )
+        return f"<Pose {coordinates(self.position_m)} m{turned}>"
+
     @classmethod
     def from_unit(cls, position_m: FloatArray, quaternion_wxyz: FloatArray) -> Pose:
         """Return the pose of arrays that cannot be written to, the quaternion being unit with w >= 0: unchecked, as
@@ -116,4 +123,12 @@ def quaternions_of(angles_zyx: FloatArray) -> FloatArray:
     """Return the quaternions (n, 4), w >= 0, of rows of intrinsic ZYX angles (n, 3) in radians."""
     found = np.empty((len(angles_zyx), 4))
     kernel.write_quaternions(angles_zyx, found)
+    return found
+
+
+def placed(points: FloatArray, position_m: FloatArray, quaternion_wxyz: FloatArray) -> FloatArray:
+    """Map points by many poses at once, (..., 3), (..., 3) and (..., 4), which broadcast; quaternions of length one."""
+    scalar, vector = quaternion_wxyz[..., :1], quaternion_wxyz[..., 1:]
+    across = 2.0 * np.cross(vector, points)
+    found: FloatArray = points + scalar * across + np.cross(vector, across) + position_m
     return found

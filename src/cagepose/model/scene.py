@@ -5,22 +5,34 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any, get_args
 
 import numpy as np
 
 from cagepose.errors import Key, key_path
 from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.kernels.collision.geometry import Geometry, empty_placement, place_object
+from cagepose.model.above import from_above
 from cagepose.model.apart import are_in_each_other
 from cagepose.model.cage import Cage
-from cagepose.model.checks import ProblemList, check_kind, check_kinds, duplicates
+from cagepose.model.checks import (
+    ProblemList,
+    check_choice,
+    check_kind,
+    check_kinds,
+    check_mapping,
+    check_text,
+    duplicates,
+    is_finite,
+)
 from cagepose.model.geometry import object_seams, scene_geometry, scene_size
 from cagepose.model.load import Load
-from cagepose.model.methods import Metric
+from cagepose.model.methods import METHODS, Metric
 from cagepose.model.naming import names_of
 from cagepose.model.parts import Object
 from cagepose.model.shapes import Shape
 from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
+from cagepose.model.wording import counted, few
 
 FARTHEST_START = 1e4
 """In sizes of the scene. The rounding of a position 1e4 sizes away is about 2e-12 of the size, near the resolution."""
@@ -114,11 +126,20 @@ class Scene:
             of the object at the start, a start too far from the cage, or a box or shape thinner than what the touch
             tolerance can tell apart.
         """
-        tolerances = tolerances or Tolerances()
+        tolerances = Tolerances() if tolerances is None else tolerances
         problems = ProblemList()
         loads = check_kinds(loads, Load, "loads", problems)
         check_kind(object, Object, ("object",), problems)
         check_kind(cage, Cage, ("cage",), problems)
+        check_kind(tolerances, Tolerances, ("tolerances",), problems)
+        check_text(name, ("name",), problems)
+        adjustable = check_kinds(adjustable, Adjustable, "adjustable", problems)
+        friction_of = {} if friction_of is None else friction_of
+        check_mapping(friction_of, ("friction", "of"), problems)
+        if method is not None:
+            check_choice(method, METHODS, "method", problems)
+        if metric is not None:
+            check_choice(metric, get_args(Metric), "metric", problems)
         problems.raise_if_any()
         if not loads:
             problems.add(("loads",), "is empty; give at least one phase with gravity or a force")
@@ -126,9 +147,8 @@ class Scene:
             problems.add(
                 ("loads", indices[1], "name"), f"{load_name!r} is already the name of loads[{indices[0]}]; rename one"
             )
-        if friction_coefficient is not None and not (np.isfinite(friction_coefficient) and friction_coefficient >= 0.0):
+        if friction_coefficient is not None and not (is_finite(friction_coefficient) and friction_coefficient >= 0.0):
             problems.add(("friction",), f"is {friction_coefficient!r}; give a finite coefficient, zero or above")
-        friction_of = dict(friction_of or {})
         _check_friction_of(friction_of, object, cage, problems)
         size_m = scene_size(object, cage)
         touch_m = tolerances.touch * size_m
@@ -147,13 +167,13 @@ class Scene:
             ("object", object),
             ("cage", cage),
             ("loads", loads),
-            ("name", str(name)),
+            ("name", name),
             ("friction_coefficient", None if friction_coefficient is None else float(friction_coefficient)),
             ("friction_of", {name: float(coefficient) for name, coefficient in friction_of.items()}),
             ("method", method),
             ("metric", metric),
             ("tolerances", tolerances),
-            ("adjustable", tuple(adjustable)),
+            ("adjustable", adjustable),
             ("geometry", geometry),
             ("open_seams", tuple((str(named[one].name), str(named[other].name)) for one, other in seams.open_pairs)),
             ("size_m", size_m),
@@ -161,8 +181,22 @@ class Scene:
         ):
             _set_field(self, field, value)
 
+    def __repr__(self) -> str:
+        held, cage = self.object, self.cage
+        parts = counted((len(held.boxes), "box", "boxes"), (len(held.shapes), "shape", "shapes"))
+        holders = counted((len(cage.names), "point", "points"), (len(cage.shapes), "shape", "shapes"))
+        loads = f"{'load' if len(self.loads) == 1 else 'loads'} {few(load.name for load in self.loads)}"
+        return f"<Scene {self.name!r}: {parts} in a cage of {holders}, {loads}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: a picture."""
+        html: str = from_above("scene as html")(self)
+        return html
+
     def changed(
         self,
+        key: str | Mapping[str, Any] | None = None,
+        value: Any = None,
         *,
         friction_coefficient: float | None = None,
         metric: Metric | None = None,
@@ -170,22 +204,40 @@ class Scene:
     ) -> Scene:
         """Return the same scene but for what is given.
 
+        ``key`` is a path as in a scene file, such as ``"object.boxes[0].size[2]"``, or a mapping of several paths and
+        their values, which change together. Lengths are metres, as everywhere in Python; a key that ends in ``_deg``
+        takes degrees. None stands for what a file leaves out.
+
+        >>> from cagepose.model.box import Box
+        >>> from cagepose.model.pose import Pose
+        >>> cube = Object([Box((1, 1, 1))], pose=Pose((0, 0, 2)))
+        >>> scene = Scene(cube, Cage([(0, 0, 0)]), [Load("weight", gravity=(0, 0, -1))])
+        >>> scene.changed("object.mass", 2.0).object
+        <Object: 1 box, 2 kg>
+        >>> scene.changed({"object.pose.position[2]": 3.0, "cage.pose.position[2]": 1.0}).object.pose_world_object
+        <Pose (0, 0, 3) m>
+
         Raises
         ------
         SceneError
-            As for a new scene.
+            As for a new scene; or a key that is none.
         """
+        changed: Scene = self
+        if key is not None:
+            changed = from_above("changed scene")(self, key if isinstance(key, Mapping) else {key: value})
+        if friction_coefficient is None and metric is None and tolerances is None:
+            return changed
         return Scene(
-            self.object,
-            self.cage,
-            self.loads,
-            name=self.name,
-            friction_coefficient=self.friction_coefficient if friction_coefficient is None else friction_coefficient,
-            friction_of=self.friction_of,
-            method=self.method,
-            metric=self.metric if metric is None else metric,
-            tolerances=self.tolerances if tolerances is None else tolerances,
-            adjustable=self.adjustable,
+            changed.object,
+            changed.cage,
+            changed.loads,
+            name=changed.name,
+            friction_coefficient=changed.friction_coefficient if friction_coefficient is None else friction_coefficient,
+            friction_of=changed.friction_of,
+            method=changed.method,
+            metric=changed.metric if metric is None else metric,
+            tolerances=changed.tolerances if tolerances is None else tolerances,
+            adjustable=changed.adjustable,
         )
 
     @property
@@ -197,7 +249,7 @@ class Scene:
 _set_field = object.__setattr__
 
 
-def _check_friction_of(friction_of: dict[str, float], held: Object, cage: Cage, problems: ProblemList) -> None:
+def _check_friction_of(friction_of: Mapping[str, float], held: Object, cage: Cage, problems: ProblemList) -> None:
     elements, parts = set(cage.element_names), set(held.element_names)
     for name, coefficient in friction_of.items():
         at = ("friction", "of", name)
@@ -205,7 +257,7 @@ def _check_friction_of(friction_of: dict[str, float], held: Object, cage: Cage, 
             problems.add(at, "is a name in the cage and in the object; rename one of the two")
         elif name not in elements and name not in parts:
             problems.add(at, "is neither in the cage nor in the object; give the name of a point, a box or a shape")
-        if not (np.isfinite(coefficient) and coefficient >= 0.0):
+        if not (is_finite(coefficient) and coefficient >= 0.0):
             problems.add(at, f"is {coefficient!r}; give a finite coefficient, zero or above")
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cagepose.errors import Key
-from cagepose.model.checks import FloatArray, ProblemList, check_kind, finite_array
+from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_text, finite_array, is_finite, number_found
 from cagepose.model.hull import Hull, hull_of
 from cagepose.model.pose import Pose
 
@@ -25,7 +25,7 @@ WITHIN = 1e-9
 """A point this far out, as a fraction of the shape's size, is still in it."""
 
 
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Shape(ABC):
     """What all shapes have.
 
@@ -43,11 +43,23 @@ class Shape(ABC):
     pose_body_shape: Pose
     name: str | None
 
+    def __repr__(self) -> str:
+        name = "" if self.name is None else f" {self.name!r}"
+        return f"<{type(self).__name__}{name}: {self._measures()}>"
+
+    def _measures(self) -> str:
+        """Return the numbers that make the shape, in words."""
+        lengths = {key.removesuffix("_m"): value for key, value in vars(self).items() if key.endswith("_m")}
+        return ", ".join(f"{key.replace('_', ' ')} {value:.6g} m" for key, value in lengths.items())
+
     def _place(self, pose: Pose | None, name: str | None, problems: ProblemList) -> None:
         """Set what all shapes have; raise what was found wrong with the whole shape."""
-        check_kind(pose or Pose(), Pose, ("pose",), problems)
+        pose = Pose() if pose is None else pose
+        check_kind(pose, Pose, ("pose",), problems)
+        if name is not None:
+            check_text(name, ("name",), problems)
         problems.raise_if_any()
-        _set_field(self, "pose_body_shape", pose or Pose())
+        _set_field(self, "pose_body_shape", pose)
         _set_field(self, "name", name)
 
     @abstractmethod
@@ -80,7 +92,7 @@ class Shape(ABC):
         return other
 
 
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Rounded(Shape):
     """The hull of points, blown up by a radius."""
 
@@ -112,7 +124,7 @@ class Rounded(Shape):
         return [(("radius",), 2.0 * self.radius_m)]
 
 
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Turned(Shape):
     """What a straight line makes that turns about the shape's z axis, with flat ends."""
 
@@ -149,7 +161,7 @@ class Turned(Shape):
         return [(("radius",), 2.0 * max(radii)), *along]
 
 
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Sphere(Rounded):
     """A ball about the shape's origin.
 
@@ -176,7 +188,7 @@ class Sphere(Rounded):
         return np.zeros((1, 3))
 
 
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Capsule(Rounded):
     """A round bar with round ends, along z, its middle at the shape's origin.
 
@@ -208,7 +220,7 @@ class Capsule(Rounded):
         return np.array([(0.0, 0.0, -self.length_m / 2.0), (0.0, 0.0, self.length_m / 2.0)])
 
 
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Convex(Rounded):
     """The convex hull of some points, blown up by a radius.
 
@@ -250,6 +262,10 @@ class Convex(Rounded):
             problems.add(("vertices",), "lie too far from each other beside how near others are; check the farthest")
         self._place(pose_body_shape, name, problems)
 
+    def _measures(self) -> str:
+        rounded = f", radius {self.radius_m:.6g} m" if self.radius_m else ""
+        return f"{len(self.vertices_m)} vertices{rounded}"
+
     @cached_property
     def hull(self) -> Hull:
         """Corners, edges and faces of the hull, in the shape's own frame."""
@@ -281,7 +297,7 @@ class Convex(Rounded):
         return [(("vertices",), float(across_faces.min()) + 2.0 * self.radius_m)]
 
 
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Cylinder(Turned):
     """A round bar with flat ends and sharp rims, along z, its middle at the shape's origin.
 
@@ -313,7 +329,7 @@ class Cylinder(Turned):
         return (-self.length_m / 2.0, self.radius_m), (self.length_m / 2.0, self.radius_m)
 
 
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Cone(Turned):
     """A frustum of a cone with flat ends, along z, its middle at the shape's origin.
 
@@ -370,7 +386,7 @@ class Cone(Turned):
         return [((widest[1],), 2.0 * widest[0]), (("length",), self.length_m)]
 
 
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Disc(Turned):
     """A flat round disc without thickness, across z, its middle at the shape's origin.
 
@@ -408,11 +424,8 @@ _set_field = object.__setattr__
 def set_lengths(shape: Shape, problems: ProblemList, *, may_be_zero: Sequence[str] = (), **lengths_m: float) -> None:
     """Check lengths and set each as the field of its key with its unit."""
     for key, length in lengths_m.items():
-        is_number = np.isscalar(length) and np.isreal(length) and not isinstance(length, (bool, str))
-        if not is_number or not np.isfinite(length) or length < 0.0 or (length == 0.0 and key not in may_be_zero):
+        if not is_finite(length) or length < 0.0 or (length == 0.0 and key not in may_be_zero):
             limit = "zero or above" if key in may_be_zero else "above zero"
-            problems.add(
-                (key,), f"is {float(length) if is_number else length!r}; give a finite number of metres, {limit}"
-            )
+            problems.add((key,), f"is {number_found(length)}; give a finite number of metres, {limit}")
         else:
             _set_field(shape, f"{key}_m", float(length))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cagepose.model.checks import ProblemList
+from cagepose.model.checks import ProblemList, degrees_of, is_finite
 
 TOUCH_DEFAULT = 1e-9
 TOUCH_LEAST = 1e-11
@@ -35,14 +35,14 @@ class Tolerances:
 
     def __post_init__(self) -> None:
         problems = ProblemList()
-        if not TOUCH_LEAST <= self.touch <= TOUCH_GREATEST:
+        if not is_finite(self.touch) or not TOUCH_LEAST <= self.touch <= TOUCH_GREATEST:
             problems.add(
                 ("touch",),
                 f"is {self.touch!r}; give a fraction of the scene's size, {TOUCH_LEAST:g} to {TOUCH_GREATEST:g}",
             )
-        if not 0.0 <= self.grazing_band_rad < np.pi / 4.0:
+        if not is_finite(self.grazing_band_rad) or not 0.0 <= self.grazing_band_rad < np.pi / 4.0:
             problems.add(
                 ("grazing_band_deg",),
-                f"is {np.degrees(self.grazing_band_rad):g} deg; give an angle from 0 to below 45 deg",
+                f"is {degrees_of(self.grazing_band_rad)}; give an angle from 0 to below 45 deg",
             )
         problems.raise_if_any()

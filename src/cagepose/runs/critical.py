@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from cagepose.model.checks import expect
 from cagepose.runs.judge import critical_friction_at
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, PhaseRun, Run
@@ -15,6 +16,7 @@ def with_critical_friction(run: Run) -> Run:
     It stands in each phase's ``proof.critical_friction``: 0 if the contacts hold without friction, infinite if no
     friction is enough; None for a phase that did not end held.
     """
+    expect(run, Run, "run")
     friction = chosen_method(run.scene, run.method).friction(run.scene)
     phases = list[PhaseRun]()
     for number, phase in enumerate(run.phases):

@@ -11,16 +11,18 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cagepose.errors import Problem, SceneError
 from cagepose.kernels.algebra.pose import write_euler_zyx
 from cagepose.kernels.outcome.endings import INVALID, NOT_RUN
 from cagepose.kernels.outcome.trace import RESTS, VERDICT_NAMES
 from cagepose.kernels.stability.proof import OTHER_ONSET, TOO_MANY_CHOICES, UNIQUENESS_NOT_SHOWN
-from cagepose.model.checks import FloatArray
+from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, finite_array, is_finite
+from cagepose.model.pose import placed
 from cagepose.model.scene import Scene
 from cagepose.runs.batch import Batch
+from cagepose.runs.frames import ANGLES, POSITION, data_frame
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.variation import Variation
 
@@ -47,9 +49,11 @@ class Runs:
     position_m, quaternion_wxyz
         The object's pose in the world after each phase, (n, n_phases, 3) and (n, n_phases, 4); NaN where not reached.
     touching
-        Which cage points touch after each phase, (n, n_phases, n_points).
+        Which cage points and shapes touch after each phase, (n, n_phases, n_elements).
     solve_s
         How long all runs took together, seconds.
+    phases, elements
+        Names of the phases, and of the cage's points and shapes; of scenes that differ in them, numbers from 1.
     """
 
     methods: NDArray[np.str_]
@@ -59,6 +63,8 @@ class Runs:
     quaternion_wxyz: FloatArray
     touching: NDArray[np.bool_]
     solve_s: float
+    phases: tuple[str, ...]
+    elements: tuple[str, ...]
 
     def __len__(self) -> int:
         return len(self.phase_verdicts)
@@ -82,6 +88,40 @@ class Runs:
         angles = np.empty(self.position_m.shape)
         write_euler_zyx(self.quaternion_wxyz.reshape(-1, 4), angles.reshape(-1, 3))
         return angles
+
+    def points_world(self, points_object_m: ArrayLike) -> FloatArray:
+        """Return where points of the object are after each phase, (n, n_phases, n_points, 3), metres; NaN where it was
+        not reached. ``points_object_m``: in the object's frame, (n_points, 3).
+
+        Raises
+        ------
+        SceneError
+            Points of another shape, NaN or infinite.
+        """
+        points = finite_array(points_object_m, (-1, 3), "points")
+        return placed(points, self.position_m[:, :, None], self.quaternion_wxyz[:, :, None])
+
+    def to_frame(self) -> Any:
+        """Return a ``pandas.DataFrame`` with a row for each phase of each run that was reached: the run's row, the
+        phase's name, verdict, steps, pose in metres and radians, and whether each point and shape of the cage touches.
+
+        Raises
+        ------
+        MissingExtraError
+            There is no pandas.
+        """
+        rows, phases = np.nonzero(self.phase_verdicts != "")
+        columns: dict[str, object] = {
+            "run": rows,
+            "phase": np.array(self.phases)[phases],
+            "method": self.methods[rows],
+            "verdict": self.phase_verdicts[rows, phases],
+            "n_steps": self.n_steps[rows, phases],
+            **dict(zip(POSITION, self.position_m[rows, phases].T, strict=True)),
+            **dict(zip(ANGLES, self.euler_zyx[rows, phases].T, strict=True)),
+        }
+        columns |= {f"touches {name}": self.touching[rows, phases, place] for place, name in enumerate(self.elements)}
+        return data_frame(columns)
 
 
 def run_many(
@@ -118,13 +158,17 @@ def run_many(
     KeyboardInterrupt
         Ctrl-C was pressed; no thread goes on.
     """
-    all_scenes = [scenes] if isinstance(scenes, Scene) else list(scenes)
+    problems = ProblemList()
+    all_scenes = [scenes] if isinstance(scenes, Scene) else check_kinds(scenes, Scene, "scenes", problems)
+    if variation is not None:
+        check_kind(variation, Variation, ("variation",), problems)
+    problems.raise_if_any()
     if not all_scenes:
         raise SceneError([Problem(("scenes",), "is empty; give at least one scene")])
     if variation is not None and not isinstance(scenes, Scene):
         raise SceneError([Problem(("variation",), f"is of one scene, and {len(all_scenes)} are given; give one scene")])
-    if threads is not None and threads < 1:
-        raise SceneError([Problem(("threads",), f"is {threads}; give 1 or more")])
+    if threads is not None and not (is_finite(threads) and threads >= 1):
+        raise SceneError([Problem(("threads",), f"is {threads!r}; give 1 or more")])
     methods = [chosen_method(scene, method) for scene in all_scenes]
     batches = [
         Batch(scene, chosen, variation or Variation()) for scene, chosen in zip(all_scenes, methods, strict=True)
@@ -132,7 +176,7 @@ def run_many(
     began = time.perf_counter()
     _run_all(batches, threads or os.cpu_count() or 1, _Progress() if progress is True else progress or None)
     solve_s = time.perf_counter() - began
-    return _columns([chosen.name for chosen in methods], batches, solve_s)
+    return _columns(all_scenes, [chosen.name for chosen in methods], batches, solve_s)
 
 
 def _run_all(batches: Sequence[Batch], n_threads: int, progress: Callable[[float], None] | None) -> None:
@@ -157,7 +201,7 @@ def _run_all(batches: Sequence[Batch], n_threads: int, progress: Callable[[float
         executor.shutdown(cancel_futures=True)
 
 
-def _columns(methods: list[str], batches: Sequence[Batch], solve_s: float) -> Runs:
+def _columns(scenes: Sequence[Scene], methods: list[str], batches: Sequence[Batch], solve_s: float) -> Runs:
     names = np.full(max(INVALID, len(VERDICT_NAMES)) + 2, "", dtype="<U10")
     names[: len(VERDICT_NAMES)] = VERDICT_NAMES
     names[INVALID], names[NOT_RUN] = "invalid", ""
@@ -174,7 +218,16 @@ def _columns(methods: list[str], batches: Sequence[Batch], solve_s: float) -> Ru
         _stacked([found.quaternions for found in endings], np.nan),
         _stacked([found.touching for found in endings], False),
         solve_s,
+        _common([tuple(load.name for load in scene.loads) for scene in scenes]),
+        _common([scene.cage.element_names for scene in scenes]),
     )
+
+
+def _common(names: list[tuple[str, ...]]) -> tuple[str, ...]:
+    """Return names that are the same for all scenes, else numbers."""
+    if len(set(names)) == 1:
+        return names[0]
+    return tuple(str(number) for number in range(1, max(map(len, names)) + 1))
 
 
 def _stacked(arrays: list[NDArray[Any]], filling: Any) -> NDArray[Any]:

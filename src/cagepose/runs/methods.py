@@ -13,6 +13,7 @@ from cagepose.kernels.quasistatic import run as quasistatic_kernels
 from cagepose.kernels.quasistatic.step import RULE_NAMES
 from cagepose.kernels.quasistatic.workspace import empty_quasistatic_workspace
 from cagepose.kernels.stepwise import run as stepwise_kernels
+from cagepose.model.checks import ProblemList, check_choice, expect
 from cagepose.model.load import Load
 from cagepose.model.methods import DEFAULT_FRICTION, DEFAULT_METHOD, METHODS
 from cagepose.model.scene import Scene
@@ -110,9 +111,13 @@ def chosen_method(scene: Scene, method: str | None = None) -> Method:
     SceneError
         An unknown method, or one that does not run what acts in the scene, its friction or its shapes.
     """
-    name = method or scene.method or DEFAULT_METHOD
-    if name not in REGISTRY:
-        raise SceneError([Problem(("method",), f"is {name!r}; known methods: {', '.join(METHODS)}")])
+    expect(scene, Scene, "scene")
+    name = scene.method or DEFAULT_METHOD
+    if method is not None:
+        wrong = ProblemList()
+        check_choice(method, METHODS, "method", wrong)
+        wrong.raise_if_any()
+        name = method
     chosen = REGISTRY[name]
     if scene.has_other_shapes:
         unknown = unknown_shapes(scene)

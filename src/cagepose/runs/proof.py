@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from cagepose.model.checks import FloatArray
+from cagepose.model.wording import coordinates
 
 ProofVerdict = Literal["rests", "may rest", "moves"]
 Stability = Literal["stable", "marginal", "unstable", "not shown"]
@@ -33,6 +34,11 @@ class FreeMotion:
     axis_world: FloatArray | None
     through_world: FloatArray | None
     pitch_m: float
+
+    def __repr__(self) -> str:
+        along = self.direction_world if self.axis_world is None else self.axis_world
+        line = "" if along is None else f" {'along' if self.kind == 'travel' else 'about'} {coordinates(along, 4)}"
+        return f"<FreeMotion: {self.kind}{line}>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +94,10 @@ class Proof:
     critical_friction: float | None = None
     gap_work: float | None = None
     largest_force: float | None = None
+
+    def __repr__(self) -> str:
+        stability = "" if self.stability is None else f" ({self.stability})"
+        return f"<Proof: {self.verdict}{stability}, residual {self.residual:.1e}>"
 
     @property
     def uniqueness(self) -> Uniqueness | None:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from cagepose.kernels.quasistatic.run import QuasistaticRules
 from cagepose.kernels.quasistatic.step import RULE_NAMES, STUCK
 from cagepose.model.load import Load
+from cagepose.model.remarks import remarks
 from cagepose.model.scene import Scene
 from cagepose.runs.run import PhaseRun
 from cagepose.runs.warnings_of_runs import (
@@ -36,6 +37,7 @@ def quasistatic_rules(_scene: Scene) -> QuasistaticRules:
 
 def quasistatic_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: float) -> Iterator[str]:
     """What a careful reader should know: seams, weights, contacts on edges, and what is less than a proven rest."""
+    yield from remarks(scene)
     yield from seam_warnings(scene)
     yield from weight_warnings(scene, len(phases))
     yield from lost_weight_warnings(scene, len(phases))

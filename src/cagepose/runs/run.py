@@ -5,16 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from cagepose.kernels.algebra.pose import moved_pose
 from cagepose.kernels.outcome import motion as kernel
 from cagepose.kernels.outcome.trace import MOTION_NAMES, NONE, TRAVEL
+from cagepose.model.above import from_above
 from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.model.wording import coordinates, counted, few
+from cagepose.runs.frames import contact_columns, data_frame, event_columns
 from cagepose.runs.proof import Proof
 
 MotionKind = Literal["travel", "turn", "screw"]
@@ -50,6 +53,13 @@ class Motion:
     through_world: FloatArray | None
     distance_m: float
     angle_rad: float
+
+    def __repr__(self) -> str:
+        along = self.direction_world if self.axis_world is None else self.axis_world
+        line = "" if along is None else f" {'along' if self.kind == 'travel' else 'about'} {coordinates(along, 4)}"
+        distance = "" if self.kind == "turn" else f" {self.distance_m:.6g} m"
+        angle = "" if self.kind == "travel" else f" {self.angle_rad:.6g} rad"
+        return f"<Motion: {self.kind}{distance}{angle}{line}>"
 
     def pose_at(self, start: Pose, fraction: float) -> Pose:
         """Return where an object is that was at ``start``, after ``fraction`` (0 to 1) of the motion.
@@ -106,6 +116,10 @@ class Contact:
     force_tangential_n: FloatArray | None = None
     place_world: FloatArray | None = None
 
+    def __repr__(self) -> str:
+        force = "" if self.force_normal_n is None else f": normal force {self.force_normal_n:.4g}"
+        return f"<Contact of {self.point!r} with {self.box!r}{force}>"
+
 
 @dataclass(frozen=True, eq=False)
 class Event:
@@ -141,6 +155,11 @@ class Event:
     note: Note | None
     path: tuple[Pose, ...] = ()
 
+    def __repr__(self) -> str:
+        moved = "no motion" if self.motion is None else self.motion.kind
+        hit = f", hits {few(self.hit)}" if self.hit else ""
+        return f"<Event {self.rule!r}: {moved}{hit}; {len(self.contacts)} touching>"
+
 
 @dataclass(frozen=True, eq=False)
 class PhaseRun:
@@ -164,6 +183,10 @@ class PhaseRun:
     events: tuple[Event, ...]
     contacts: tuple[Contact, ...]
     proof: Proof
+
+    def __repr__(self) -> str:
+        counts = counted((len(self.events), "event", "events"), (len(self.contacts), "contact", "contacts"))
+        return f"<PhaseRun {self.name!r}: {self.verdict}{f'; {counts}' if counts else ''}>"
 
     @property
     def pose(self) -> Pose:
@@ -189,6 +212,10 @@ class Frame:
     event_index: int
     fraction: float
     pose_world_object: Pose
+
+    def __repr__(self) -> str:
+        place = f"phase {self.phase_index}, event {self.event_index}, fraction {self.fraction:.4g}"
+        return f"<Frame: {place}, {self.pose_world_object}>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,6 +243,16 @@ class Run:
     def __repr__(self) -> str:
         ended = ", ".join(f"{phase.name}: {phase.verdict}" for phase in self.phases)
         return f"<Run of {self.scene.name!r} ({self.method}): {ended}>"
+
+    def __str__(self) -> str:
+        """What ``cagepose run`` prints, lengths in millimetres."""
+        text: str = from_above("text")(self)
+        return text
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: a picture, and the same text."""
+        html: str = from_above("run as html")(self)
+        return html
 
     def __getattr__(self, name: str) -> object:
         """Read phases and warnings from the solution, once, when they are first asked for."""
@@ -250,6 +287,22 @@ class Run:
     def center_of_gravity_world(self) -> FloatArray:
         """The centre of gravity at the end, (3,), metres."""
         return self.pose.transform(self.scene.object.center_of_gravity_m)
+
+    def to_frame(self, rows: Literal["events", "contacts"] = "events") -> Any:
+        """Return a ``pandas.DataFrame`` with a row for each event, or for each contact at the end of each phase, with
+        the force that it carries. Lengths are metres, angles radians; what there is none of is NaN.
+
+        Raises
+        ------
+        MissingExtraError
+            There is no pandas.
+        ValueError
+            Other rows.
+        """
+        if rows not in ("events", "contacts"):
+            raise ValueError(f"rows is {rows!r}; give 'events' or 'contacts'")
+        events = rows == "events"
+        return data_frame(event_columns(self.phases) if events else contact_columns(self.scene, self.phases))
 
     def frames(self, per_turn: int = 10) -> Iterator[Frame]:
         """Yield the start pose, then ``per_turn`` pictures of each turn or screw and one of each travel.

@@ -9,6 +9,7 @@ from cagepose.kernels.collision.turn import key_of_angle
 from cagepose.kernels.stepwise.run import StepwiseRules
 from cagepose.kernels.stepwise.slip import SlipRules
 from cagepose.kernels.stepwise.support import SupportRules
+from cagepose.model.remarks import remarks
 from cagepose.model.scene import Scene
 from cagepose.runs.run import Note, PhaseRun
 from cagepose.runs.warnings_of_runs import edge_warnings, proof_warnings, seam_warnings, unrun_warnings
@@ -61,6 +62,7 @@ def stepwise_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: float)
     """What a careful reader should know: ties, conventions, poses beyond the method's range, contacts on edges, and
     where the mechanics contradicts the rules.
     """
+    yield from remarks(scene)
     yield from seam_warnings(scene)
     largest = 0.0
     start = scene.object.pose_world_object.inverse()

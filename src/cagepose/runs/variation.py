@@ -40,6 +40,11 @@ class Variation:
     force_at_object_m: ArrayLike | None = None
     force_magnitude_n: ArrayLike | None = None
 
+    def __repr__(self) -> str:
+        given = {field.name: value for field in fields(self) if (value := getattr(self, field.name)) is not None}
+        rows = ", ".join(f"{name} {np.shape(value)}" for name, value in given.items())
+        return f"<Variation of {rows or 'nothing'}>"
+
     def columns(self, scene: Scene) -> tuple[int, dict[str, FloatArray]]:
         """Return the number of runs and what is given, checked, by name.
 

@@ -34,6 +34,9 @@ class PathStep:
     motion: Motion
     pose_world_object: Pose
 
+    def __repr__(self) -> str:
+        return f"<PathStep: {self.motion.kind} to {self.pose_world_object}>"
+
 
 @dataclass(frozen=True, eq=False)
 class CageVerdict:
@@ -62,6 +65,9 @@ class CageVerdict:
     path: tuple[PathStep, ...] | None
     leaves_at: Pose | None
     n_tried: int
+
+    def __repr__(self) -> str:
+        return f"<CageVerdict: {self.verdict}>"
 
 
 def judge_cage(

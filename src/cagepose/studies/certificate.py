@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from cagepose.model.checks import FloatArray
+from cagepose.model.wording import counted
 from cagepose.runs.proof import Uniqueness
 from cagepose.studies.contact_problem import ContactFace
 
@@ -47,6 +48,9 @@ class ModeTree:
     twists: Annotated[FloatArray, (-1, 6)]
     pressures: Annotated[FloatArray, (-1, -1, 3)]
 
+    def __repr__(self) -> str:
+        return f"<ModeTree: {len(self.parents)} nodes, {len(self.leaves())} leaves>"
+
     def leaves(self) -> list[int]:
         """Return the nodes that are not divided."""
         divided = set(self.parents)
@@ -80,6 +84,10 @@ class ChosenFaces:
     forces: Annotated[FloatArray, (-1, 3)]
     tree: ModeTree | None
 
+    def __repr__(self) -> str:
+        proof = "no tree" if self.tree is None else repr(self.tree)
+        return f"<ChosenFaces: {len(self.contacts)} contacts, {proof}>"
+
 
 @dataclass(frozen=True, eq=False)
 class OtherOnset:
@@ -93,6 +101,9 @@ class OtherOnset:
 
     contacts: tuple[int, ...]
     forces: Annotated[FloatArray, (-1, 3)]
+
+    def __repr__(self) -> str:
+        return f"<OtherOnset: {len(self.contacts)} contacts>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,3 +132,7 @@ class Certificate:
     friction: Annotated[FloatArray, (-1,)]
     choices: tuple[ChosenFaces, ...]
     onset: OtherOnset | None
+
+    def __repr__(self) -> str:
+        counts = counted((len(self.contacts), "contact", "contacts"), (len(self.choices), "choice", "choices"))
+        return f"<Certificate: {self.uniqueness}, {counts} of faces>"

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cagepose.errors import CertificateError
-from cagepose.model.checks import FloatArray
+from cagepose.model.checks import FloatArray, expect
 from cagepose.runs.proof import Uniqueness
 from cagepose.runs.run import Run
 from cagepose.studies.certificate import Certificate, ChosenFaces, Decision, ModeTree, OtherOnset
@@ -84,6 +84,8 @@ def check_certificate(certificate: Certificate, run: Run, phase: int = -1) -> Ce
     IndexError
         The run has no such phase.
     """
+    expect(certificate, Certificate, "certificate")
+    expect(run, Run, "run")
     number = range(len(run.phases))[phase]
     problem = contact_problem(run, number)
     places = _places(certificate, problem)

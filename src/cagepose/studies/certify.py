@@ -19,7 +19,7 @@ from cagepose.kernels.contact.friction import friction_of
 from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.stability import relaxation, strong
 from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
-from cagepose.model.checks import FloatArray
+from cagepose.model.checks import FloatArray, expect
 from cagepose.model.scope import check_boxes_and_points
 from cagepose.runs.cases import cases_of
 from cagepose.runs.judge import judged_workspace
@@ -61,6 +61,7 @@ def certificate(run: Run, phase: int = -1) -> Certificate | None:
     SceneError
         The scene has other shapes than boxes and points.
     """
+    expect(run, Run, "run")
     check_boxes_and_points(run.scene, "certificate")
     number = range(len(run.phases))[phase]
     ended = run.phases[number]

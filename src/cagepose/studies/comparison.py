@@ -9,11 +9,12 @@ from typing import get_args
 
 import numpy as np
 
-from cagepose.model.checks import FloatArray
+from cagepose.model.checks import FloatArray, expect
 from cagepose.model.methods import DEFAULT_FRICTION, Metric
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.model.scope import check_boxes_and_points
+from cagepose.model.wording import counted
 from cagepose.runs.run import AT_REST, Event, Motion, PhaseRun, Run, Verdict
 from cagepose.runs.solve import run
 
@@ -61,6 +62,9 @@ class Variant:
     friction: float
     run: Run
 
+    def __repr__(self) -> str:
+        return f"<Variant {self.label!r}: {self.run.verdict}>"
+
 
 @dataclass(frozen=True, eq=False)
 class Parting:
@@ -84,6 +88,9 @@ class Parting:
     first_number: int | None
     reason: str
 
+    def __repr__(self) -> str:
+        return f"<Parting of {self.label!r} in {self.phase!r}>"
+
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
@@ -91,6 +98,10 @@ class Comparison:
 
     variants: tuple[Variant, ...]
     partings: tuple[Parting, ...]
+
+    def __repr__(self) -> str:
+        counts = counted((len(self.variants), "variant", "variants"), (len(self.partings), "parting", "partings"))
+        return f"<Comparison of {self.variants[0].run.scene.name!r}: {counts}>"
 
 
 def compare(scene: Scene, frictions: Sequence[float] | None = None) -> Comparison:
@@ -108,6 +119,7 @@ def compare(scene: Scene, frictions: Sequence[float] | None = None) -> Compariso
     SceneError
         A coefficient below zero, or other shapes than boxes and points.
     """
+    expect(scene, Scene, "scene")
     check_boxes_and_points(scene, "compare")
     own = DEFAULT_FRICTION["stepwise"] if scene.friction_coefficient is None else scene.friction_coefficient
     variants = [Variant("stepwise", own, run(scene, "stepwise"))]

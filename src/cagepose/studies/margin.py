@@ -12,7 +12,8 @@ import numpy as np
 from cagepose.kernels.contact.contact_set import SAME_NORMAL
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
 from cagepose.kernels.shapes.meetings import SAME_PLACE
-from cagepose.model.checks import FloatArray
+from cagepose.model.checks import FloatArray, expect
+from cagepose.model.wording import counted
 from cagepose.runs.actions import wrench_at
 from cagepose.runs.cases import contact_friction
 from cagepose.runs.load_scaling import scaled_load
@@ -60,6 +61,10 @@ class ContactMargin:
     equally_stiff_n: float
     equally_stiff_tangential_n: FloatArray
 
+    def __repr__(self) -> str:
+        normal = f"{self.equally_stiff_n:.4g} ({self.least_n:.4g} to {self.greatest_n:.4g})"
+        return f"<ContactMargin of {self.point!r} with {self.box!r}: {normal}>"
+
 
 @dataclass(frozen=True, eq=False)
 class Margin:
@@ -89,6 +94,11 @@ class Margin:
     moment_direction_world: FloatArray
     contacts: tuple[ContactMargin, ...]
 
+    def __repr__(self) -> str:
+        units = ("N", "N m") if self.in_newtons else ("of the load", "m times the load")
+        extra = f"force {self.force_n:.4g} {units[0]}, moment {self.moment_nm:.4g} {units[1]}"
+        return f"<Margin: {extra}, {counted((len(self.contacts), 'contact', 'contacts'))}>"
+
 
 def margin(run: Run, phase: int = -1) -> Margin | None:
     """Say how large an extra force and moment a phase's end still balances, and what each contact may carry.
@@ -109,6 +119,7 @@ def margin(run: Run, phase: int = -1) -> Margin | None:
     IndexError
         The run has no such phase.
     """
+    expect(run, Run, "run")
     number = range(len(run.phases))[phase]
     ended = run.phases[number]
     if ended.verdict not in AT_REST or ended.proof.verdict == "moves" or not ended.contacts:

@@ -19,10 +19,11 @@ from cagepose.kernels.play.extreme import OPEN, REACHED, Extreme
 from cagepose.kernels.play.goal import SHIFT, Goal
 from cagepose.kernels.play.polytope import empty_play_workspace
 from cagepose.kernels.play.search import find_play, find_play_from
-from cagepose.model.checks import FloatArray, finite_array, unit_vector
+from cagepose.model.checks import FloatArray, expect, finite_array, unit_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import FARTHEST_START, Scene, millimetres
 from cagepose.model.scope import check_boxes_and_points
+from cagepose.model.wording import coordinates, few
 from cagepose.studies.cage_verdict import CageVerdict, judge_cage
 from cagepose.studies.play_frame import FREEDOMS, PlayFrame, range_goals
 from cagepose.studies.play_limits import Clearance, limiting_clearances
@@ -63,6 +64,9 @@ class PlayEnd:
     _find_pose: Callable[[], Pose | None] = field(repr=False)
     _find_clearances: Callable[[], tuple[Clearance, ...]] = field(repr=False)
 
+    def __repr__(self) -> str:
+        return f"<PlayEnd: {_end(self)} ({self.status})>"
+
     @property
     def exact(self) -> float | None:
         """The end, local or proven; None: without end, or not converged."""
@@ -91,6 +95,9 @@ class PlayRange:
     low: PlayEnd
     high: PlayEnd
 
+    def __repr__(self) -> str:
+        return f"<PlayRange: {_end(self.low)} to {_end(self.high)}>"
+
 
 @dataclass(frozen=True, eq=False)
 class PointPlay:
@@ -100,6 +107,10 @@ class PointPlay:
     direction_cage: FloatArray
     low: PlayEnd
     high: PlayEnd
+
+    def __repr__(self) -> str:
+        line = f"{coordinates(self.at_object)} m along {coordinates(self.direction_cage, 4)}"
+        return f"<PointPlay of {line}: {_end(self.low)} to {_end(self.high)}>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,6 +137,13 @@ class Play:
     cage: CageVerdict
     analysis_s: float
     certificate_s: float
+
+    def __repr__(self) -> str:
+        return f"<Play of {self.scene.name!r}: {self.cage.verdict}; {few(self.freedoms, 6)}, {len(self.points)} points>"
+
+
+def _end(end: PlayEnd) -> str:
+    return "no end" if end.reached is None else f"{end.reached:.6g}"
 
 
 def play(
@@ -157,6 +175,7 @@ def play(
         The scene has other shapes than boxes and points; or a point or direction is not three finite numbers, a
         direction of length zero, or a point far away.
     """
+    expect(scene, Scene, "scene")
     check_boxes_and_points(scene, "play")
     points = [_point_near(scene, point) for point in at]
     along = [unit_vector(direction, "direction") for direction in (directions if len(directions) else np.eye(3))]

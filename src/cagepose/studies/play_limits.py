@@ -34,6 +34,10 @@ class Clearance:
     closing: float
     opening: float
 
+    def __repr__(self) -> str:
+        worth = f"closing {self.closing:.4g}, opening {self.opening:.4g}"
+        return f"<Clearance of {self.point!r} to {self.box!r}: {self.gap_m:.6g} m; {worth}>"
+
 
 def limiting_clearances(scene: Scene, frame: PlayFrame, goal: Goal, extreme: Extreme) -> tuple[Clearance, ...]:
     """Return what limits a goal at the extreme that was found for it, the gap that is best to close first."""

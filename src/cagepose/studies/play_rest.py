@@ -43,6 +43,9 @@ class PressedPoint:
     box: str
     force_n: float
 
+    def __repr__(self) -> str:
+        return f"<PressedPoint {self.point!r} on {self.box!r}: {self.force_n:.4g}>"
+
 
 @dataclass(frozen=True, eq=False)
 class OpenFreedom:
@@ -83,6 +86,10 @@ class PlayRest:
     forces: tuple[PressedPoint, ...]
     exact_forces: tuple[PressedPoint, ...]
     undetermined: tuple[OpenFreedom, ...]
+
+    def __repr__(self) -> str:
+        pose = self.pose_world_object or self.linear_pose_world_object
+        return f"<PlayRest of {self.phase!r}: {'no end' if pose is None else pose}>"
 
 
 def play_rests(scene: Scene) -> tuple[PlayRest, ...]:

@@ -6,6 +6,14 @@ from importlib.util import find_spec
 
 from cagepose.errors import MissingExtraError
 
+STUDY_MODULES = {
+    "scipy": "SciPy",
+    "pyarrow": "pyarrow",
+    "SALib": "SALib",
+    "jinja2": "Jinja2",
+    "matplotlib": "matplotlib",
+}
+
 
 def require_pillow() -> None:
     """Do nothing if Pillow is installed.
@@ -40,6 +48,18 @@ def require_report() -> None:
     require_matplotlib()
     _require("jinja2", "the report needs Jinja2", "plot")
     _require("markdown_it", "the report needs markdown-it-py", "plot")
+
+
+def require_study() -> None:
+    """Do nothing if all is installed that studies of many runs need.
+
+    Raises
+    ------
+    MissingExtraError
+        As `require_pillow`.
+    """
+    for module, name in STUDY_MODULES.items():
+        _require(module, f"studies need {name}", "study")
 
 
 def _require(module: str, need: str, extra: str) -> None:

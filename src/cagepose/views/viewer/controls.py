@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from cagepose.files.key_path import parse_key_path, resolved, value_at
+from cagepose.files.parameters import evaluated
 from cagepose.files.scene_file import SceneFile, SceneText
 from cagepose.files.units import from_metres
 from cagepose.model.methods import METHODS
@@ -76,7 +77,7 @@ def controls(scene_text: SceneText) -> list[Control]:
     SceneFileError
         The scene cannot be used, see `load_scene`.
     """
-    return _Maker(scene_text.yaml.data, scene_text.scene_file()).controls()
+    return _Maker(evaluated(scene_text.yaml.data)[0], scene_text.scene_file()).controls()
 
 
 class _Maker:

@@ -1,0 +1,111 @@
+"""The events of a run as text: a table, or two lines for each where that does not fit the screen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from rich.console import RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from cagepose.cli.console import fits
+from cagepose.cli.styles import plain_table, verdict_style
+from cagepose.files.words import LengthWords, line_of, names_of
+from cagepose.runs.run import Event, PhaseRun, Run
+
+MOST_NAMES = 12
+"""Of points and shapes in a row; ``--verbose`` prints all."""
+
+
+class _Row(NamedTuple):
+    """An event, its number in the run, its phase, and the names that touch from it on, and no more."""
+
+    number: int
+    event: Event
+    phase: PhaseRun
+    reached: tuple[str, ...]
+    left: tuple[str, ...]
+
+
+def event_table(run: Run, words: LengthWords, width: int, *, is_verbose: bool) -> list[RenderableType]:
+    """Return what to print for the events; ``is_verbose``: with all that touches after each."""
+    table = _table(run, words, is_verbose=is_verbose)
+    return [table] if fits(table, width) else _lists(run, words, is_verbose=is_verbose)
+
+
+def _rows(run: Run) -> Iterator[_Row]:
+    number = 0
+    before: tuple[str, ...] = ()
+    for phase in run.phases:
+        for event in phase.events:
+            number += 1
+            is_new = set(event.hit if number == 1 else (*event.hit, *(set(event.contacts) - set(before))))
+            reached = tuple(name for name in event.contacts if name in is_new)
+            left = tuple(name for name in before if name not in event.contacts)
+            yield _Row(number, event, phase, reached, left)
+            before = event.contacts
+
+
+def _table(run: Run, words: LengthWords, *, is_verbose: bool) -> Table:
+    rows = list(_rows(run))
+    has_left = any(row.left for row in rows)
+    table = plain_table("#", "phase", "rule", "motion", "along / about", "amount", "reaches")
+    if has_left:
+        table.add_column("leaves", overflow="fold")
+    if is_verbose:
+        table.add_column("contacts", overflow="fold")
+    last = run.phases[0]
+    for row in rows:
+        if row.phase is not last:
+            table.add_section()
+        last, motion = row.phase, row.event.motion
+        line, amount = ("", "") if motion is None else (line_of(motion), words.amount(motion))
+        names = (row.reached, row.left) if has_left else (row.reached,)
+        cells = [Text(line), Text(amount), *(Text(listed(of_event, is_verbose=is_verbose)) for of_event in names)]
+        if is_verbose:
+            cells.append(Text(names_of(row.event.contacts)))
+        table.add_row(Text(str(row.number)), Text(row.phase.name), Text(row.event.rule), _what(row), *cells)
+    return table
+
+
+def _lists(run: Run, words: LengthWords, *, is_verbose: bool) -> list[RenderableType]:
+    """Return the same in two lines for each event: what moved, and what touches now and no more."""
+    rows = list(_rows(run))
+    widths = len(str(len(rows))), max(len(row.event.rule) for row in rows)
+    parts: list[RenderableType] = []
+    for phase in run.phases:
+        table = Table.grid(padding=(0, 2))
+        table.add_column(justify="right", min_width=widths[0])
+        table.add_column(min_width=widths[1])
+        for row in (row for row in rows if row.phase is phase):
+            table.add_row(Text(str(row.number)), Text(row.event.rule), _told(row, words, is_verbose=is_verbose))
+        parts += [*([""] if parts else []), Text(f"{phase.name}:"), table]
+    return parts
+
+
+def _told(row: _Row, words: LengthWords, *, is_verbose: bool) -> Text:
+    told, motion = _what(row), row.event.motion
+    if motion is not None:
+        told.append(f" {words.amount(motion)} {'along' if motion.kind == 'travel' else 'about'} {line_of(motion)}")
+    for sign, names in (("+", row.reached), ("-", row.left)):
+        if names:
+            told.append(f"\n{sign} {listed(names, is_verbose=is_verbose)}")
+    if is_verbose:
+        told.append(f"\ntouching {names_of(row.event.contacts) or 'nothing'}")
+    return told
+
+
+def listed(names: Sequence[str], *, is_verbose: bool) -> str:
+    """Return names in a row, of many the first alone unless all are asked for."""
+    if is_verbose or len(names) <= MOST_NAMES:
+        return names_of(names)
+    return f"{names_of(names[:MOST_NAMES])} and {len(names) - MOST_NAMES} more"
+
+
+def _what(row: _Row) -> Text:
+    """The motion, or what the phase came to where nothing moved."""
+    if row.event.motion is not None:
+        return Text(row.event.motion.kind)
+    verdict = row.phase.verdict if row.event is row.phase.events[-1] else None
+    return Text(verdict or "-", style=verdict_style(verdict) if verdict else "")

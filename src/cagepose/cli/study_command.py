@@ -1,0 +1,138 @@
+"""``cagepose study``: run a scene many times with numbers that vary, and say what that means."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from cagepose.cli.options import Switch
+
+if TYPE_CHECKING:
+    from cagepose.sampling.results import StudyResults
+    from cagepose.sampling.study import Progress
+
+SHOW = "show"
+SECONDS_BETWEEN_LINES = 10.0
+
+
+def study_command(
+    file: Annotated[str, Parameter(help="Study file (YAML or JSON), or the word show.")],
+    folder: Annotated[str | None, Parameter(help="After show: the folder of a study.")] = None,
+    /,
+    *,
+    out: Annotated[str | None, Parameter(help="Folder for rows and report; made if it is not there.")] = None,
+    resume: Annotated[bool, Switch, Parameter(help="Go on with a folder that holds this study already.")] = False,
+    workers: Annotated[
+        int | None, Parameter(help="Threads, or processes where scenes are built row by row; left out: all cores.")
+    ] = None,
+    json: Annotated[bool, Switch, Parameter(help="Print the report's numbers as JSON instead of tables.")] = False,
+) -> int:
+    """Run a study into a folder with its report, or show what a folder says: cagepose study show FOLDER"""
+    problem = _problem(file, folder, out, resume, workers)
+    if problem is not None:
+        sys.stderr.write(f"cagepose: {problem} See: cagepose study --help\n")
+        return 2
+    from cagepose.errors import printable
+    from cagepose.sampling.results import StudyResults
+    from cagepose.sampling.study import Study
+
+    workers = workers or os.cpu_count() or 1
+    try:
+        if folder is not None:
+            numbers, written = _reported(StudyResults(folder), workers, is_shown=True)
+        else:
+            assert out is not None, "it was asked for above"
+            results = Study.load(file).run(out, resume=resume, workers=workers, progress=_progress())
+            numbers, written = _reported(results, workers, is_shown=False)
+    except OSError as error:
+        remedy = "make room and add --resume" if folder is None else "make room"
+        reason = f"cannot be written ({error.strerror or error}); {remedy}"
+        sys.stderr.write(printable(f"{folder or out}: {reason}") + "\n")
+        return 2
+    except KeyboardInterrupt:
+        if out is not None:
+            sys.stderr.write(f"\ncagepose: what is done is kept; go on with: {_again(file, out)}\n")
+        raise
+    if json:
+        from cagepose.sampling.report import numbers_text
+
+        sys.stdout.write(numbers_text(numbers))
+        return 0
+    from cagepose.cli.study_report import print_study
+
+    print_study(numbers)
+    if written:
+        sys.stdout.write(printable(f"wrote {written[0]} and {len(written) - 1} files beside it") + "\n")
+    return 0
+
+
+def _again(file: str, out: str) -> str:
+    from shlex import join
+
+    return join(["cagepose", "study", file, "--out", out, "--resume"])
+
+
+def _problem(file: str, folder: str | None, out: str | None, resume: bool, workers: int | None) -> str | None:
+    if workers is not None and workers < 1:
+        return f"--workers is {workers}; give 1 or more."
+    if file == SHOW:
+        if folder is None:
+            return "study show needs the folder of a study."
+        return "study show runs nothing; leave --out and --resume out." if out is not None or resume else None
+    if folder is not None:
+        return f"too many arguments: {folder}; write study FILE --out FOLDER, or study show FOLDER."
+    return "study needs --out FOLDER for its rows and its report." if out is None else None
+
+
+def _reported(results: StudyResults, workers: int, *, is_shown: bool) -> tuple[dict[str, Any], list[Path]]:
+    """Return what a study says, and the files of a report; one that is only shown and has its report gets no other."""
+    from cagepose.sampling.findings import document, findings_of
+    from cagepose.sampling.report import kept_numbers, write_report
+
+    numbers = kept_numbers(results) if is_shown else None
+    if numbers is not None:
+        return numbers, []
+    findings = findings_of(results, workers)
+    return document(findings), write_report(findings)
+
+
+def _progress() -> Progress:
+    """Return what tells on standard error how far a study is and how long it will take: one line on a terminal."""
+    began, told, skipped = time.perf_counter(), 0.0, 0
+    on_screen = sys.stderr.isatty()
+
+    def tell(done: int, n_runs: int, ran: bool) -> None:
+        nonlocal told, skipped
+        now = time.perf_counter()
+        skipped = skipped if ran else done  # what was there took no time
+        elapsed = now - began
+        left = elapsed * (n_runs - done) / max(done - skipped, 1)
+        if done < n_runs and not on_screen and now - told < SECONDS_BETWEEN_LINES:
+            return
+        told = now
+        text = (
+            f"cagepose: {done:,} of {n_runs:,} runs, {_duration(left)} left"
+            if done < n_runs
+            else (f"cagepose: {n_runs:,} runs in {_duration(elapsed)}")
+        )
+        sys.stderr.write(f"\r{text:60}" + ("\n" if done == n_runs else "") if on_screen else f"{text}\n")
+        sys.stderr.flush()
+
+    return tell
+
+
+def _duration(seconds: float) -> str:
+    """As people say it.
+
+    >>> _duration(4.2), _duration(200.0), _duration(9000.0)
+    ('4.2 s', '3 min 20 s', '2 h 30 min')
+    """
+    if seconds < 60.0:
+        return f"{seconds:.1f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest} s" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"

@@ -1,0 +1,79 @@
+"""A study's findings as tables on the terminal."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.table import Table
+
+from cagepose.cli.console import print_all
+from cagepose.cli.styles import plain_table
+
+MOST_ROWS = 8
+"""Of numbers that matter; the page shows more."""
+
+
+def print_study(found: dict[str, Any]) -> None:
+    """Print yield, tolerances, what matters and the permitted box; ``found`` is what report.json holds."""
+    share = found["yield"]
+    parts: list[Any] = [
+        f"{found['scene']}: {found['runs']:,} runs ({found['method']})",
+        f"yield {_percent(share['share'])}, between {_percent(share['low'])} and {_percent(share['high'])} (95 %)",
+        "",
+        _verdicts(found),
+        "",
+        _tolerances(found),
+    ]
+    matters = _matters(found)
+    if matters is not None:
+        parts += ["", matters]
+    if found["map"] is not None:
+        parts += ["", _box(found["map"])]
+    print_all(*parts)
+
+
+def _verdicts(found: dict[str, Any]) -> Table:
+    table = plain_table("verdict", "runs", "share", "95 % interval")
+    for name, share in found["verdicts"].items():
+        limits = f"{_percent(share['low'])} to {_percent(share['high'])}"
+        table.add_row(name, f"{share['runs']:,}", _percent(share["share"]), limits)
+    return table
+
+
+def _tolerances(found: dict[str, Any]) -> Table:
+    table = plain_table("quantity", "nominal", "worst case", "root sum square", "runs: 99.73 %", "runs: range")
+    for row in found["tolerances"]:
+        runs = row["monte_carlo"]
+        pairs = (row["worst_case"], row["root_sum_square"], runs["three_sigma"], runs["range"])
+        table.add_row(row["name"], _number(row["nominal"]), *(f"{_number(a)} to {_number(b)}" for a, b in pairs))
+    return table
+
+
+def _matters(found: dict[str, Any]) -> Table | None:
+    shown = [one for one in found["sensitivities"] if one["missing"] is None]
+    if not shown:
+        return None
+    first = shown[0]
+    table = plain_table(f"what matters for {first['name']}", "alone", "with others")
+    for row in sorted(first["indices"], key=lambda row: -row["total"])[:MOST_ROWS]:
+        table.add_row(
+            row["key"],
+            f"{row['first']:.3f} ± {row['first_interval']:.3f}",
+            f"{row['total']:.3f} ± {row['total_interval']:.3f}",
+        )
+    return table
+
+
+def _box(found: dict[str, Any]) -> str:
+    if found["box"] is None:
+        return "capture map: the nominal run is not accepted"
+    sides = [f"{key} {_number(a)} to {_number(b)}" for key, (a, b) in zip(found["over"], found["box"], strict=True)]
+    return f"largest box of accepted runs: {', '.join(sides)}"
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.2f} %"
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value + 0.0:.5g}"

@@ -1,0 +1,185 @@
+"""Expressions of scene and study files: arithmetic and comparisons of named numbers, and nothing else.
+
+simpleeval walks the parsed text; of what it can do we leave in names, numbers, text, arithmetic, comparisons, ``and``,
+``or``, ``not``, and three functions. Names may stand for arrays, so that one walk answers for all rows of a table, each
+row with the bits that it has by itself.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+from collections.abc import Callable, Mapping
+from functools import reduce
+from typing import Any
+
+import numpy as np
+from simpleeval import FeatureNotAvailable, FunctionNotDefined, NameNotDefined, OperatorNotDefined, SimpleEval
+
+LONGEST = 1000
+"""Characters: what is longer is no formula of a person, and deep nesting would end Python's stack."""
+_ALLOWED = "write numbers, names, + - * / **, comparisons, and, or, not, abs, min, max"
+
+
+class Expression:
+    """One expression, parsed.
+
+    Attributes
+    ----------
+    text
+        As it was written.
+
+    Raises
+    ------
+    ValueError
+        It is no expression, or holds what none may; the message says what, and the remedy.
+
+    >>> Expression("1 + play / 2").value({"play": 0.5})
+    1.25
+    """
+
+    def __init__(self, text: str) -> None:
+        self.text = text.strip()
+        if len(self.text) > LONGEST:
+            raise ValueError(f"has {len(self.text)} characters; write a formula of at most {LONGEST}")
+        try:
+            self._tree = ast.parse(self.text, mode="eval").body
+        except (SyntaxError, ValueError, MemoryError, RecursionError):
+            raise ValueError(f"is no expression ({_short(self.text)}); {_ALLOWED}") from None
+
+    def __repr__(self) -> str:
+        return f"<Expression {_short(self.text)!r}>"
+
+    def value(self, names: Mapping[str, Any]) -> Any:
+        """Return what it comes to; ``names`` are numbers, text, or arrays of either.
+
+        Raises
+        ------
+        ValueError
+            An unknown name, something else than arithmetic and comparisons, or a number that there is not.
+        """
+        evaluator = _Evaluator(names)
+        try:
+            with np.errstate(all="ignore"):
+                return evaluator.eval(self.text, previously_parsed=self._tree)
+        except NameNotDefined as error:
+            known = ", ".join(names) or "none"
+            raise ValueError(f"has the unknown name {error.name}; known names: {known}") from None
+        except FunctionNotDefined as error:
+            raise ValueError(f"calls {error.func_name}, which no expression may; {_ALLOWED}") from None
+        except OperatorNotDefined as error:
+            raise ValueError(f"holds the operator {type(error.attr).__name__}; {_ALLOWED}") from None
+        except FeatureNotAvailable:
+            raise ValueError(f"holds more than arithmetic and comparisons ({_short(self.text)}); {_ALLOWED}") from None
+        except ZeroDivisionError:
+            raise ValueError(f"divides by zero ({_short(self.text)}); change it or the parameters") from None
+        except OverflowError:
+            raise ValueError(f"is too large a number ({_short(self.text)}); change it or the parameters") from None
+        except (TypeError, np.exceptions.DTypePromotionError) as error:
+            raise ValueError(f"cannot be worked out ({error}); give each operator and function what it takes") from None
+        except RecursionError:
+            raise ValueError("is nested too deep; simplify it") from None
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _power(base: Any, exponent: Any) -> Any:
+    """Python's power of each element: NumPy's may differ in the last digit."""
+    if not isinstance(base, np.ndarray) and not isinstance(exponent, np.ndarray):
+        return base**exponent
+    bases, exponents = np.broadcast_arrays(base, exponent)
+    return np.array([_real_power(one, two) for one, two in zip(bases.tolist(), exponents.tolist(), strict=True)])
+
+
+def _real_power(base: float, exponent: float) -> float:
+    try:
+        found = base**exponent
+    except (ZeroDivisionError, OverflowError):
+        return np.nan
+    return found if isinstance(found, float) else np.nan
+
+
+def _is_array(*values: Any) -> bool:
+    return any(isinstance(value, np.ndarray) for value in values)
+
+
+def _least(*values: Any) -> Any:
+    return reduce(np.fmin, values) if _is_array(*values) else min(*values)
+
+
+def _greatest(*values: Any) -> Any:
+    return reduce(np.fmax, values) if _is_array(*values) else max(*values)
+
+
+_OPERATORS: dict[type, Callable[..., Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: _power,
+    ast.UAdd: operator.pos,
+    ast.USub: operator.neg,
+    ast.Not: np.logical_not,
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+}
+FUNCTIONS: dict[str, Callable[..., Any]] = {"abs": abs, "min": _least, "max": _greatest}
+
+
+class _Evaluator(SimpleEval):  # type: ignore[misc]  # it has no types
+    def __init__(self, names: Mapping[str, Any]) -> None:
+        super().__init__(operators=_OPERATORS, functions=FUNCTIONS, names=names)
+        self.nodes = {
+            ast.Name: self._eval_name,
+            ast.Attribute: self._eval_attribute,
+            ast.UnaryOp: self._eval_unaryop,
+            ast.BinOp: self._eval_binop,
+            ast.BoolOp: self._eval_boolop,
+            ast.Compare: self._eval_compare,
+            ast.Call: self._eval_call,
+            ast.Constant: self._eval_constant,
+        }
+
+    @staticmethod
+    def _eval_constant(node: ast.Constant) -> float | str:
+        """Whole numbers as floats, too: no power of them fills the memory."""
+        if isinstance(node.value, str):
+            return node.value
+        if isinstance(node.value, (int, float)) and not isinstance(node.value, bool):
+            return float(node.value)
+        raise FeatureNotAvailable("a constant that is neither a number nor text")
+
+    def _eval_attribute(self, node: ast.Attribute) -> Any:
+        """``tip.z`` is the name ``tip_z``; a name with dots, such as ``friction.coefficient``, is itself."""
+        name = ast.unparse(node)
+        for known in (name, name.replace(".", "_")):
+            if known in self.names:
+                return self.names[known]
+        raise NameNotDefined(name, self.expr)
+
+    def _eval_call(self, node: ast.Call) -> Any:
+        if not isinstance(node.func, ast.Name) or node.func.id not in FUNCTIONS or node.keywords or not node.args:
+            raise FunctionNotDefined(ast.unparse(node.func), self.expr)
+        name, values = node.func.id, [self._eval(argument) for argument in node.args]
+        if (name == "abs") != (len(values) == 1):
+            raise TypeError(f"{name} of {len(values)}")
+        return FUNCTIONS[name](*values)
+
+    def _eval_boolop(self, node: ast.BoolOp) -> Any:
+        join = np.logical_and if isinstance(node.op, ast.And) else np.logical_or
+        return reduce(join, map(self._eval, node.values))
+
+    def _eval_compare(self, node: ast.Compare) -> Any:
+        terms = [self._eval(term) for term in (node.left, *node.comparators)]
+        found = []
+        for kind, one, other in zip(node.ops, terms, terms[1:], strict=False):
+            if type(kind) not in self.operators:
+                raise OperatorNotDefined(kind, self.expr)
+            found.append(self.operators[type(kind)](one, other))
+        return reduce(np.logical_and, found)

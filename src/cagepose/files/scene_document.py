@@ -1,0 +1,214 @@
+"""A `Scene` as the data of a scene file, from which the same scene is read again, to the last bit of each number."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cagepose.files.units import LengthUnit, from_metres, to_metres
+from cagepose.model.box import Box
+from cagepose.model.cage import Cage
+from cagepose.model.hole import Hole
+from cagepose.model.load import Force, Load, Moment, Spring
+from cagepose.model.parts import Object
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
+from cagepose.model.shapes import Convex, Shape
+from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT
+
+FEWEST_DIGITS, MOST_DIGITS = 6, 17
+"""Of a number that is written; 17 tell any two doubles apart."""
+MOST_DECIMALS = 15
+"""Of an angle in degrees."""
+
+FULL_TURNS = ((0.0, 0.0, 0.0), (360.0, 0.0, 0.0), (0.0, 0.0, 360.0), (360.0, 0.0, 360.0))
+"""The same angles as people may have written them, 240 for -120 deg: sines and cosines differ in their last digits."""
+
+
+def scene_document(scene: Scene, length_unit: LengthUnit = "mm") -> dict[str, Any]:
+    """Return what a scene file with lengths in ``length_unit`` would hold: only dict, list, str, int, float and bool.
+
+    Poses have angles if these give the same quaternion again, else the quaternion. What was left out of a scene is left
+    out, but for names and poses. The ranges of adjustable numbers stay as they are.
+    """
+    return _Writer(scene, length_unit).document()
+
+
+def pose_angles(pose: Pose) -> list[float] | None:
+    """Return yaw, pitch and roll in degrees, with few decimals, that give the very same pose; None: there are none."""
+    angles = [math.degrees(angle) for angle in pose.euler_zyx]
+    for decimals, around in product(range(MOST_DECIMALS + 1), FULL_TURNS):
+        rounded = [round(angle + turn, decimals) for angle, turn in zip(angles, around, strict=True)]
+        again = Pose(euler_zyx=[math.radians(angle) for angle in rounded])
+        if np.array_equal(again.quaternion_wxyz, pose.quaternion_wxyz):
+            return [_plain(angle) for angle in rounded]
+    return None
+
+
+def _plain(value: float) -> float:
+    """Return a whole number as one."""
+    return int(value) if value == int(value) and abs(value) < 1e15 else value
+
+
+def _shortest(value: float, wanted: float, back: Callable[[float], float]) -> float:
+    """Return the number of fewest digits near ``value`` that ``back`` turns into ``wanted``."""
+    for digits in range(FEWEST_DIGITS, MOST_DIGITS + 1):
+        shown = float(f"{value:.{digits}g}")
+        if back(shown) == wanted:
+            return _plain(shown)
+    return value
+
+
+class _Writer:
+    def __init__(self, scene: Scene, unit: LengthUnit) -> None:
+        self.scene = scene
+        self.unit: LengthUnit = unit
+        self.metres = float(to_metres(1.0, unit))
+        self.friction_of = dict(scene.friction_of)
+
+    def document(self) -> dict[str, Any]:
+        scene = self.scene
+        found: dict[str, Any] = {"name": scene.name, "units": {"length": self.unit}}
+        found["object"] = self.object(scene.object)
+        found["cage"] = self.cage(scene.cage)
+        found["loads"] = [self.load(load) for load in scene.loads]
+        friction = {"coefficient": scene.friction_coefficient, "of": self.friction_of or None}
+        if given := _given(friction):
+            found["friction"] = given
+        found |= _given({"method": scene.method, "metric": scene.metric})
+        touch, band_rad = scene.tolerances.touch, scene.tolerances.grazing_band_rad
+        if touch != TOUCH_DEFAULT or band_rad != GRAZING_BAND_DEFAULT_RAD:
+            band_deg = _shortest(math.degrees(band_rad), band_rad, math.radians)
+            found["tolerances"] = {"touch": touch, "grazing_band_deg": band_deg}
+        if scene.adjustable:
+            found["adjustable"] = {
+                entry.name: {"key": entry.key, "range": [entry.low, entry.high]} for entry in scene.adjustable
+            }
+        return found
+
+    def object(self, held: Object) -> dict[str, Any]:
+        found = self.parts(held.part_paths, (*held.parts, *held.holes))
+        is_centroid = "_union_moments" in vars(held) and np.array_equal(
+            held._union_moments.centroid_m, held.center_of_gravity_m
+        )
+        if not is_centroid:
+            found["center_of_gravity"] = self.lengths(held.center_of_gravity_m)
+        if held.mass_kg is not None:
+            found["mass"] = _plain(held.mass_kg)
+        if held.inertia_kg_m2 is not None:
+            square = self.metres**2
+            found["inertia"] = [
+                [_shortest(value / square, value, lambda shown: shown * square) for value in row]
+                for row in held.inertia_kg_m2.tolist()
+            ]
+        found["pose"] = self.pose(held.pose_world_object)
+        return found
+
+    def cage(self, cage: Cage) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        points = [self.lengths(point) for point in cage.points_cage]
+        if cage.names == tuple(f"C{index + 1}" for index in range(len(points))):
+            found |= {"points": points} if points else {}
+        else:
+            found["points"] = dict(zip(cage.names, points, strict=True))
+        found |= self.parts(cage.shape_paths, (*cage.shapes, *cage.holes))
+        found["pose"] = self.pose(cage.pose_world_cage)
+        return found
+
+    def parts(self, paths: Sequence[tuple[Any, ...]], parts: Sequence[Shape]) -> dict[str, Any]:
+        """Return boxes and shapes in the lists and the order in which they were given; holes stand among shapes."""
+        listed = sorted(zip(paths, parts, strict=True), key=lambda given: given[0][:2])
+        shapes = [self.shape(part) for key in ("shapes", "holes") for path, part in listed if path[0] == key]
+        boxes = [self.box(part) for path, part in listed if path[0] == "boxes" and isinstance(part, Box)]
+        return _given({"boxes": boxes or None, "shapes": shapes or None})
+
+    def box(self, box: Box) -> dict[str, Any]:
+        return {"name": box.name, "size": self.lengths(box.size_m), **self.pose(box.pose_object_box, turn=False)}
+
+    def shape(self, shape: Shape) -> dict[str, Any]:
+        found: dict[str, Any] = {"name": shape.name, shape.kind: self.numbers(shape)}
+        found |= self.pose(shape.pose_body_shape, turn=False)
+        coefficient = self.friction_of.pop(str(shape.name), None)
+        return found | _given({"friction": coefficient})
+
+    def numbers(self, shape: Shape) -> dict[str, Any]:
+        """Return the numbers that make a shape."""
+        if isinstance(shape, Box):
+            return {"size": self.lengths(shape.size_m)}
+        if isinstance(shape, Convex):
+            vertices = [self.lengths(vertex) for vertex in shape.vertices_m]
+            return {"vertices": vertices, "radius": self.length(shape.radius_m)}
+        found: dict[str, Any] = {
+            key.removesuffix("_m"): self.length(value) for key, value in vars(shape).items() if key.endswith("_m")
+        }
+        if isinstance(shape, Hole):
+            if shape.chamfer is not None:
+                angle_rad = shape.chamfer.angle_rad
+                angle_deg = _shortest(math.degrees(angle_rad), angle_rad, math.radians)
+                found["chamfer"] = {"width": self.length(shape.chamfer.width_m), "angle_deg": angle_deg}
+            if shape.in_:
+                found["in"] = list(shape.in_)
+        return found
+
+    def pose(self, pose: Pose, *, turn: bool = True) -> dict[str, Any]:
+        """Return where something is and how it is turned; ``turn``: even if it is not."""
+        found: dict[str, Any] = {"position": self.lengths(pose.position_m)}
+        angles = pose_angles(pose)
+        if angles is None and not turn:
+            angles = [math.degrees(angle) for angle in pose.euler_zyx]  # parts have no quaternion in a file
+        if angles is None:
+            found["quat_wxyz"] = pose.quaternion_wxyz.tolist()
+        elif turn or any(angles):
+            found["euler_zyx_deg"] = angles
+        return found
+
+    def load(self, load: Load) -> dict[str, Any]:
+        gravity = None if load.gravity_world is None else _plain_list(load.gravity_world)
+        return _given(
+            {
+                "name": load.name,
+                "gravity": gravity,
+                "force": None if load.force is None else self.force(load.force),
+                "forces": [self.force(force) for force in load.forces] or None,
+                "moments": [self.moment(moment) for moment in load.moments] or None,
+                "springs": [self.spring(spring) for spring in load.springs] or None,
+            }
+        )
+
+    def force(self, force: Force) -> dict[str, Any]:
+        found = {"direction": _plain_list(force.direction), "at": self.lengths(force.at_object_m)}
+        return found | _given({"magnitude": force.magnitude_n, "follows": force.follows or None})
+
+    def moment(self, moment: Moment) -> dict[str, Any]:
+        found = {"direction": _plain_list(moment.direction), "magnitude": self.length(moment.magnitude_nm)}
+        return found | _given({"follows": moment.follows or None})
+
+    def spring(self, spring: Spring) -> dict[str, Any]:
+        wanted = spring.stiffness_n_per_m
+        return {
+            "at": self.lengths(spring.at_object_m),
+            "to": self.lengths(spring.to_world_m),
+            "stiffness": _shortest(wanted * self.metres, wanted, lambda shown: shown / self.metres),
+            "preload": _plain(spring.preload_n),
+        }
+
+    def length(self, length_m: float) -> float:
+        unit = self.unit
+        return _shortest(float(from_metres(length_m, unit)), length_m, lambda shown: float(to_metres(shown, unit)))
+
+    def lengths(self, lengths_m: ArrayLike) -> list[float]:
+        return [self.length(length_m) for length_m in np.asarray(lengths_m, dtype=np.float64).tolist()]
+
+
+def _plain_list(values: ArrayLike) -> list[float]:
+    return [_plain(value) for value in np.asarray(values, dtype=np.float64).tolist()]
+
+
+def _given(keys: dict[str, Any]) -> dict[str, Any]:
+    """Leave out what is None."""
+    return {key: value for key, value in keys.items() if value is not None}

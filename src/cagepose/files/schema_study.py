@@ -1,0 +1,162 @@
+"""The study file's shape: strict pydantic models, as for scene files."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, ConfigDict, Field, StringConstraints, model_validator
+
+from cagepose.files.schema_base import Mapping, Number, Positive, Vector, wrong
+
+MOST_RUNS = 2**30
+"""As many points as SciPy's Sobol sequence has."""
+DISTRIBUTIONS = ("uniform", "normal", "triangular", "grid", "steps")
+
+
+def _ordered(limits: list[float]) -> list[float]:
+    if sorted(limits) != limits or limits[0] == limits[-1]:
+        raise wrong(f"is {limits}; give the lower number first")
+    return limits
+
+
+def _distinct(values: list[float]) -> list[float]:
+    if len(set(values)) != len(values):
+        raise wrong("holds a number twice; give each once")
+    return values
+
+
+class NormalModel(Mapping):
+    """A normal distribution."""
+
+    sigma: Positive = Field(description="Standard deviation.", examples=[0.02])
+    mean: Number | None = Field(None, description="Left out: the number that stands in the scene.")
+    cut: Annotated[float, Field(gt=0.0, le=8.0)] | None = Field(
+        None, description="How many sigmas from the mean no value lies beyond; left out: none.", examples=[3]
+    )
+
+
+class StepsModel(Mapping):
+    """Values in equal steps."""
+
+    first: Number = Field(description="The first value.", examples=[-0.5])
+    last: Number = Field(description="The last value.", examples=[0.5])
+    count: Annotated[int, Field(ge=2, le=100_000)] = Field(description="How many, both included.", examples=[21])
+
+    @model_validator(mode="after")
+    def _first_below_last(self) -> StepsModel:
+        if self.first >= self.last:
+            raise wrong(f"run from {self.first!r} to {self.last!r}; give the lower number first")
+        return self
+
+
+class DistributionModel(Mapping):
+    """How one number varies: one of these keys."""
+
+    uniform: Annotated[list[Number], Field(min_length=2, max_length=2), AfterValidator(_ordered)] | None = Field(
+        None, description="All values between two are equally likely.", examples=[[-0.5, 0.5]]
+    )
+    normal: NormalModel | None = Field(None, description="A normal distribution.", examples=[{"sigma": 0.02}])
+    triangular: Annotated[list[Number], Field(min_length=3, max_length=3), AfterValidator(_ordered)] | None = Field(
+        None, description="Least, most likely and greatest value.", examples=[[0.05, 0.1, 0.2]]
+    )
+    grid: Annotated[list[Number], Field(min_length=1), AfterValidator(_distinct)] | None = Field(
+        None,
+        description="These values, equally likely; or each of them, where the sample is a grid.",
+        examples=[[0.2, 0.5]],
+    )
+    steps: StepsModel | None = Field(
+        None,
+        description="As grid, with values in equal steps.",
+        examples=[{"first": -0.5, "last": 0.5, "count": 21}],
+    )
+
+    @model_validator(mode="after")
+    def _one(self) -> DistributionModel:
+        given = [kind for kind in DISTRIBUTIONS if getattr(self, kind) is not None]
+        if len(given) != 1:
+            found = f"has both {given[0]} and {given[1]}" if given else "says nothing"
+            raise wrong(f"{found}; give one of: {', '.join(DISTRIBUTIONS)}")
+        return self
+
+    @property
+    def kind(self) -> str:
+        return next(kind for kind in DISTRIBUTIONS if getattr(self, kind) is not None)
+
+    @property
+    def middle(self) -> float | None:
+        """What stands for the nominal value where the scene has none; None: this does not say."""
+        if self.normal is not None:
+            return self.normal.mean
+        if self.steps is not None:
+            return (self.steps.first + self.steps.last) / 2.0
+        if self.uniform is not None:
+            return sum(self.uniform) / 2.0
+        values = self.triangular or self.grid or []
+        return values[len(values) // 2]
+
+
+class SampleModel(Mapping):
+    """Which values are run."""
+
+    method: Literal["sobol", "latin hypercube", "random", "grid"] = Field(
+        "sobol", description="How values are drawn; grid: every combination of the values of all.", examples=["sobol"]
+    )
+    runs: Annotated[int, Field(ge=1, le=MOST_RUNS)] | None = Field(
+        None,
+        description="How many runs; left out for a grid alone, which has as many as it has combinations.",
+        examples=[10_000],
+    )
+    seed: Annotated[int, Field(ge=0, le=2**63)] = Field(1, description="Another seed draws other values.")
+
+
+class WatchModel(Mapping):
+    """A point that is followed."""
+
+    point: Vector = Field(description="In the object's frame and the scene's unit.", examples=[[600, 0, 0]])
+    of: Literal["object"] = Field("object", description="What the point is fixed to.")
+
+
+class MapModel(Mapping):
+    """A capture map: two of the varied numbers, the others as in the scene."""
+
+    over: Annotated[list[str], Field(min_length=2, max_length=2)] = Field(
+        description="Two keys of vary.", examples=[["parameters.pitch", "parameters.yaw"]]
+    )
+    count: Annotated[int, Field(ge=2, le=1000)] = Field(60, description="Cells along each of the two.")
+
+
+def _column(name: str) -> str:
+    if not name.isidentifier() or name == "position":
+        raise wrong("is no name of columns; use letters, digits and _, a letter first, and another than position")
+    return name
+
+
+ColumnName = Annotated[str, StringConstraints(max_length=100), AfterValidator(_column)]
+
+
+class StudyModel(Mapping):
+    """Many runs of one scene, and what is asked of them."""
+
+    model_config = ConfigDict(title="cagepose study")
+
+    scene: Annotated[str, StringConstraints(min_length=1)] = Field(
+        description="The scene's file, beside this one.", examples=["scene.yaml"]
+    )
+    vary: dict[str, DistributionModel] = Field(
+        min_length=1,
+        description="Numbers of the scene by their keys; * stands for all in a list or mapping, each on its own.",
+        examples=[{"parameters.play": {"uniform": [0.2, 1.0]}}],
+    )
+    sample: SampleModel = Field(description="Which values are run.", examples=[{"runs": 10_000}])
+    watch: dict[ColumnName, WatchModel] | None = Field(
+        None, description="Points whose final places become columns.", examples=[{"tip": {"point": [600, 0, 0]}}]
+    )
+    accept: str | None = Field(
+        None,
+        description="Which runs are good: an expression of the columns; left out: those that end at rest.",
+        examples=["verdict == 'rests' and abs(pitch_deg) < 0.05"],
+    )
+    forces: bool | None = Field(
+        None, description="Whether each row holds the contact forces, which takes one run at a time; left out: no."
+    )
+    map: MapModel | None = Field(None, description="The capture map; left out: over the first two of vary.")

@@ -1,0 +1,257 @@
+"""Study files: text in, a `StudyFile` or every problem found out."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from copy import deepcopy
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from pydantic import ValidationError
+
+from cagepose.errors import FileProblem, Problem, SceneError, SceneFileError, key_path
+from cagepose.files.expression import Expression
+from cagepose.files.key_path import Path as KeyPath
+from cagepose.files.key_path import parse_key_path, resolved, set_value, value_at
+from cagepose.files.messages import Finding, schema_findings, shown
+from cagepose.files.parameters import expression_at
+from cagepose.files.points_file import POINTS_KEY
+from cagepose.files.read import read_text
+from cagepose.files.scene_edit import with_values
+from cagepose.files.scene_file import SceneFile, SceneText, read_scene_text
+from cagepose.files.schema_study import DistributionModel, StudyModel
+from cagepose.files.yaml_source import YamlSource, parse_yaml
+from cagepose.model.wording import few
+
+ALL = "*"
+STUDY_NAME, SCENE_NAME, POINTS_NAME = "study.yaml", "scene.yaml", "points.csv"
+"""Of the copies in a study's folder."""
+
+
+@dataclass(frozen=True)
+class VariedKey:
+    """One number of the scene that varies.
+
+    Attributes
+    ----------
+    key, path
+        Where it stands, as people write it and as a path: what ``*`` stood for is filled in.
+    distribution
+        How it varies.
+    nominal
+        What stands in the scene, or the distribution's middle.
+    """
+
+    key: str
+    path: KeyPath
+    distribution: DistributionModel
+    nominal: float
+
+    def __repr__(self) -> str:
+        return f"<VariedKey {self.key}: {self.distribution.kind}, nominal {self.nominal:.6g}>"
+
+
+@dataclass(frozen=True)
+class StudyFile:
+    """A study that can be run.
+
+    Attributes
+    ----------
+    text, model
+        As it was written, and checked.
+    scene_text, nominal
+        The scene's file, and the scene with each varied number at its nominal value.
+    varied
+        In the order of the file.
+    accept
+        None: left out.
+    """
+
+    text: str
+    model: StudyModel
+    scene_text: SceneText
+    nominal: SceneFile
+    varied: tuple[VariedKey, ...]
+    accept: Expression | None
+
+    def __repr__(self) -> str:
+        return f"<StudyFile of {self.nominal.scene.name!r}: {few(one.key for one in self.varied)} vary>"
+
+
+def read_study_file(path: str | os.PathLike[str]) -> StudyFile:
+    """Read a study file and the scene that it names.
+
+    Raises
+    ------
+    SceneFileError
+        Either cannot be used; lists every problem with its line and column.
+    """
+    source = os.fspath(path)
+    return parse_study(read_text(Path(source), source), source)
+
+
+def parse_study(text: str, source: str = "study.yaml") -> StudyFile:
+    """As `read_study_file`, from text; ``source`` stands for the file in messages, and its folder is where scenes are.
+
+    Raises
+    ------
+    SceneFileError
+        As `read_study_file`.
+    """
+    yaml = parse_yaml(text, source)
+    if yaml.problems:
+        raise SceneFileError(yaml.problems)
+    try:
+        model = StudyModel.model_validate(yaml.data)
+    except ValidationError as error:
+        raise _placed(yaml, schema_findings(error, yaml.data, StudyModel)) from None
+    scene_path = Path(source).parent / model.scene
+    scene_text = read_scene_text(scene_path)
+    scene_text.scene_file()  # its own problems first
+    problems: list[Problem] = []
+    varied = _varied_keys(model, scene_text.yaml.data, problems)
+    _check_sample(model, problems)
+    _check_map(model, varied, problems)
+    accept = _accept(model, problems)
+    if problems:
+        raise _placed(yaml, [Finding(problem, problem.path[0] == "vary") for problem in problems])
+    try:
+        nominal = scene_text.scene_with({one.path: one.nominal for one in varied})
+    except SceneError as error:
+        raise _placed(yaml, [_of_nominal(problem, varied) for problem in error.problems]) from None
+    return StudyFile(text, model, scene_text, nominal, varied, accept)
+
+
+def _placed(yaml: YamlSource, findings: list[Finding]) -> SceneFileError:
+    problems = list[FileProblem]()
+    for problem, about_key in findings:
+        mark = yaml.mark(problem.path, of_key=about_key)
+        problems.append(FileProblem(problem.path, problem.message, yaml.source, *(mark or (None, None))))
+    problems.sort(key=lambda problem: (problem.line or 0, problem.column or 0))
+    return SceneFileError(problems)
+
+
+def _of_nominal(problem: Problem, varied: tuple[VariedKey, ...]) -> Finding:
+    """Place what is wrong with the nominal scene at the varied number that it is about, if there is one."""
+    for one in varied:
+        if problem.path[: len(one.path)] == one.path:
+            return Finding(Problem(("vary", one.key), f"at its nominal value {one.nominal!r}: {problem.message}"), True)
+    return Finding(Problem(("vary",), f"with all numbers at their nominal values, {problem}"), True)
+
+
+def _varied_keys(model: StudyModel, data: object, problems: list[Problem]) -> tuple[VariedKey, ...]:
+    found: dict[KeyPath, VariedKey] = {}
+    for key, distribution in model.vary.items():
+        at = ("vary", key)
+        try:
+            paths = _filled_in(data, parse_key_path(key))
+            for path in paths:
+                if path in found:
+                    raise ValueError(f"stands for {key_path(path)}, which another key varies; keep one of the two")
+                nominal = _nominal(data, path, distribution)
+                found[path] = VariedKey(key_path(path), path, distribution, nominal)
+        except ValueError as error:
+            problems.append(Problem(at, str(error)))
+    return tuple(found.values())
+
+
+def _filled_in(data: object, path: KeyPath) -> list[KeyPath]:
+    """Return the paths that one with ``*`` stands for."""
+    if ALL not in path:
+        return [resolved(data, path)]
+    place = path.index(ALL)
+    before = resolved(data, path[:place])
+    here = value_at(data, before)
+    if not isinstance(here, (dict, list)) or not here:
+        raise ValueError(f"has a * at {key_path(before) or 'the scene'}, which holds no list; name what varies")
+    keys = list(here) if isinstance(here, dict) else range(len(here))
+    return [filled for key in keys for filled in _filled_in(data, (*before, key, *path[place + 1 :]))]
+
+
+def _nominal(data: object, path: KeyPath, distribution: DistributionModel) -> float:
+    if value_at(data, POINTS_KEY) is not None and path[:2] == ("cage", "points"):
+        raise ValueError("is a point of a file; write the points that vary into the scene")
+    given = value_at(data, path)
+    if expression_at(data, path) is not None:
+        raise ValueError(f"holds the expression {given!r}; vary the parameters that it is made of")
+    if given is None:
+        set_value(deepcopy(data), path, 0.0)  # says where there is no such place
+        if distribution.middle is None:
+            raise ValueError("is not in the scene, so the normal distribution needs its mean; give mean")
+        return distribution.middle
+    if isinstance(given, bool) or not isinstance(given, (int, float)):
+        raise ValueError(f"is {shown(given)}; vary a number of the scene")
+    return float(given)
+
+
+def _check_sample(model: StudyModel, problems: list[Problem]) -> None:
+    if model.sample.method != "grid":
+        if model.sample.runs is None:
+            problems.append(Problem(("sample",), "has no runs; add how many, for example runs: 10000"))
+        return
+    if model.sample.runs is not None:
+        problems.append(Problem(("sample", "runs"), "stands beside a grid, which is run as a whole; leave it out"))
+    for key, distribution in model.vary.items():
+        if distribution.kind not in ("grid", "steps"):
+            message = f"is {distribution.kind}, and the sample a grid; give grid or steps, or another sample.method"
+            problems.append(Problem(("vary", key), message))
+
+
+def _check_map(model: StudyModel, varied: tuple[VariedKey, ...], problems: list[Problem]) -> None:
+    known = [one.key for one in varied]
+    for index, key in enumerate(model.map.over if model.map else []):
+        if key not in known:
+            names = ", ".join(known[:10]) + (", ..." if len(known) > 10 else "")
+            problems.append(Problem(("map", "over", index), f"is {key!r}, which does not vary; use two of: {names}"))
+    if model.map and model.map.over[0] == model.map.over[1]:
+        problems.append(Problem(("map", "over", 1), "is the first once more; name another"))
+
+
+def _accept(model: StudyModel, problems: list[Problem]) -> Expression | None:
+    if model.accept is None:
+        return None
+    try:
+        return Expression(model.accept)
+    except ValueError as error:
+        problems.append(Problem(("accept",), str(error)))
+        return None
+
+
+def refused_at(key: str, study: StudyFile, source: str, message: str) -> SceneFileError:
+    """Return the error for the value of a key that is found wrong only where its study is made ready to run."""
+    return _placed(parse_yaml(study.text, source), [Finding(Problem((key,), message), False)])
+
+
+def copies(study: StudyFile) -> dict[str, str]:
+    """Return the study, its scene and the scene's points file as texts by their names in a folder of their own."""
+    found = {STUDY_NAME: with_values(study.text, {("scene",): SCENE_NAME}), SCENE_NAME: study.scene_text.text}
+    points = value_at(study.scene_text.yaml.data, POINTS_KEY)
+    if isinstance(points, str):
+        path = study.scene_text.folder / points
+        found[POINTS_NAME] = read_text(path, str(path), POINTS_KEY)
+        found[SCENE_NAME] = with_values(study.scene_text.text, {POINTS_KEY: POINTS_NAME})
+    return found
+
+
+def study_text(content: Mapping[str, object]) -> str:
+    """Return the text of a study that is given as plain data.
+
+    Raises
+    ------
+    SceneFileError
+        It is no plain data.
+    """
+    try:
+        return json.dumps(content, indent=1, default=_plain)
+    except (TypeError, ValueError) as error:
+        raise SceneFileError([FileProblem((), f"is no plain data ({error}); give numbers and text", "study")]) from None
+
+
+def _plain(value: object) -> object:
+    """Return an array as lists, and a number of NumPy's as Python's."""
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    raise TypeError(f"type {type(value).__name__}")

@@ -1,0 +1,77 @@
+"""What looks like a slip in a scene that can be run: said, and run all the same."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from cagepose.model.geometry import body_limits, object_size
+from cagepose.model.scene import Scene, millimetres
+from cagepose.model.wording import few
+
+GREATEST_FRICTION = 2.0
+"""Rubber on dry concrete has about 1."""
+APART = 0.1
+"""In sizes of the smaller of two parts: what joins parts that are nearer is often left out of a model on purpose."""
+OUTSIDE = 1.0
+"""In sizes of the object: a centre of gravity that is farther from it is hardly meant."""
+SMALLEST_M, LARGEST_M = 1e-4, 50.0
+"""Scenes beyond these sizes are mostly given in another unit than was meant."""
+
+
+def remarks(scene: Scene) -> Iterator[str]:
+    """Yield what a scene's author should look at once more."""
+    yield from _friction(scene)
+    yield from _pieces(scene)
+    yield from _center(scene)
+    if not SMALLEST_M <= scene.size_m <= LARGEST_M:
+        yield (
+            f"the scene is {millimetres(scene.size_m)} across; check the unit (units.length of a file, which is mm if"
+            " left out; metres in Python)"
+        )
+
+
+def _friction(scene: Scene) -> Iterator[str]:
+    given = {"friction": scene.friction_coefficient or 0.0}
+    given |= {f"friction of {name}": coefficient for name, coefficient in scene.friction_of.items()}
+    for name, coefficient in given.items():
+        if coefficient > GREATEST_FRICTION:
+            yield (
+                f"{name}: a coefficient of {coefficient:.6g} is more than dry surfaces have (rubber about 1); an angle"
+                " is given as angle_deg"
+            )
+
+
+def _pieces(scene: Scene) -> Iterator[str]:
+    """Parts of the object that lie apart from the first one and all that hangs together with it, by the boxes around
+    parts in the object's axes.
+    """
+    parts = scene.object.parts
+    limits = np.stack([body_limits([part]) for part in parts])
+    low, high = limits[:, 0], limits[:, 1]
+    sizes = np.linalg.norm(high - low, axis=1)
+    is_joined = np.zeros(len(parts), bool)
+    is_joined[0], reached = True, [0]
+    while reached:
+        part = reached.pop()
+        gaps = np.linalg.norm(np.maximum(np.maximum(low - high[part], low[part] - high), 0.0), axis=1)
+        near = ~is_joined & (gaps <= APART * np.minimum(sizes, sizes[part]))
+        is_joined |= near
+        reached += np.flatnonzero(near).tolist()
+    if not is_joined.all():
+        apart = [str(part.name) for part, joined in zip(parts, is_joined.tolist(), strict=True) if not joined]
+        verb = "lies" if len(apart) == 1 else "lie"
+        yield f"{few(apart)} {verb} apart from {parts[0].name}, and move with it as one body; check positions and sizes"
+
+
+def _center(scene: Scene) -> Iterator[str]:
+    held = scene.object
+    low, high = body_limits((*held.parts, *held.holes))
+    center = held.center_of_gravity_m
+    outside = float(np.linalg.norm(center - np.clip(center, low, high)))
+    if outside > OUTSIDE * object_size(held):
+        yield (
+            f"the centre of gravity lies {millimetres(outside)} outside the object; check center_of_gravity, which is"
+            " given in the object's frame"
+        )

@@ -1,0 +1,48 @@
+"""Numbers and counts as people read them: in `repr`, in tables, in messages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from cagepose.model.checks import FloatArray
+
+ROUNDING = 1e-12
+"""Of the greatest of some numbers: what is less is shown as 0."""
+
+
+def short(value: float, digits: int, noise: float) -> str:
+    """Return a number as people read it; below ``noise`` it is zero."""
+    return "0" if abs(value) < noise else f"{value:.{digits}g}"
+
+
+def coordinates(values: FloatArray, digits: int = 6) -> str:
+    """Return numbers in round brackets.
+
+    >>> coordinates(np.array([0.26, -0.0, 1e-19]))
+    '(0.26, 0, 0)'
+    """
+    noise = ROUNDING * float(np.abs(values).max(initial=0.0)) or ROUNDING
+    return f"({', '.join(short(value, digits, noise) for value in values.tolist())})"
+
+
+def counted(*numbers: tuple[int, str, str]) -> str:
+    """Return how many there are of what, each with its singular and its plural; of what there is none of, nothing.
+
+    >>> counted((1, "box", "boxes"), (0, "shape", "shapes"), (2, "hole", "holes"))
+    '1 box, 2 holes'
+    """
+    return ", ".join(f"{number} {one if number == 1 else many}" for number, one, many in numbers if number)
+
+
+def few(names: Iterable[str], most: int = 4) -> str:
+    """Return the first of some names, and how many more there are.
+
+    >>> few(["C1", "C2", "C3", "C4", "C5", "C6"])
+    'C1, C2, C3, C4 and 2 more'
+    """
+    all_names = list(names)
+    rest = len(all_names) - most
+    shown = ", ".join(all_names[:most])
+    return f"{shown} and {rest} more" if rest > 0 else shown

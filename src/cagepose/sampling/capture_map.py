@@ -1,0 +1,161 @@
+"""The capture map: from which values of two numbers the part comes to a good rest, the others as in the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.model.checks import FloatArray
+from cagepose.sampling.distribution import Distribution
+from cagepose.sampling.outcome import Outcomes
+from cagepose.sampling.row_columns import RowColumns
+from cagepose.sampling.runner import Runner
+
+COUNT = 60
+"""Cells along each side, where the study does not say."""
+LINES = 60
+"""At least so many lines of cells are run along each side, or all of them."""
+CORNERS = ((0, 0), (0, 1), (1, 0), (1, 1))
+"""Of a block, down and right."""
+
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class CaptureMap:
+    """A grid of runs.
+
+    Attributes
+    ----------
+    keys
+        Of the two numbers: across and up.
+    across, up
+        Their values at the middles of the cells, (n,) each.
+    verdicts, accepted
+        Of each cell, (n, n), rows up.
+    box
+        Least and greatest value of each of the two, in the largest box of cells about the nominal one that are all
+        good; None: the nominal one is not.
+    n_runs
+        How many cells were run; the others lie among cells that agree.
+    """
+
+    keys: tuple[str, str]
+    across: FloatArray
+    up: FloatArray
+    verdicts: NDArray[Any]
+    accepted: NDArray[np.bool_]
+    box: tuple[tuple[float, float], tuple[float, float]] | None
+    n_runs: int
+
+
+def capture_map(runner: Runner, columns: RowColumns, distributions: Sequence[Distribution]) -> CaptureMap | None:
+    """Return the map over the two numbers that the study names, or the first two; None: only one varies."""
+    study = runner.study
+    keys = [one.key for one in study.varied]
+    if len(keys) < 2:
+        return None
+    given = study.model.map
+    chosen = [keys.index(key) for key in given.over] if given else [0, 1]
+    count = given.count if given else COUNT
+    across, up = (np.linspace(distributions[one].low, distributions[one].high, count) for one in chosen)
+    nominal = np.array([one.nominal for one in study.varied])
+    kinds: dict[tuple[str, bool], int] = {}
+
+    def kinds_of(rows: Indices, places: Indices) -> Indices:
+        """Run cells; return the number of what happens in each, the same for the same verdict and acceptance."""
+        values = np.tile(nominal, (len(rows), 1))
+        values[:, chosen[0]], values[:, chosen[1]] = across[places], up[rows]
+        found = list[int]()
+
+        def told(outcomes: Outcomes, part: FloatArray) -> None:
+            accepted = columns.columns(part, outcomes)["accepted"].tolist()
+            for kind in zip(outcomes.verdict.tolist(), accepted, strict=True):
+                found.append(kinds.setdefault(kind, len(kinds)))
+
+        runner.run_in_parts(values, told)
+        return np.array(found, dtype=np.int64)
+
+    cells, n_runs = refined_map(count, kinds_of)
+    verdicts = np.array([verdict for verdict, _ in kinds])[cells]
+    good = np.array([accepted for _, accepted in kinds])[cells]
+    start = [int(np.abs(axis - nominal[one]).argmin()) for axis, one in zip((across, up), chosen, strict=True)]
+    around = largest_box(good, start[1], start[0])
+    box = None
+    if around is not None:
+        bottom, top, left, right = around
+        box = (float(across[left]), float(across[right])), (float(up[bottom]), float(up[top]))
+    return CaptureMap((keys[chosen[0]], keys[chosen[1]]), across, up, verdicts, good, box, n_runs)
+
+
+def refined_map(count: int, kinds_of: Callable[[Indices, Indices], Indices]) -> tuple[Indices, int]:
+    """Return what happens in each of count x count cells, (count, count), and how many of them were run.
+
+    ``kinds_of`` runs cells by their rows and columns and says what happens there. A coarse lattice is run first, of
+    `LINES` lines at least. Blocks of it whose corners differ are halved, and so are their neighbours, into which the
+    boundary may bulge, until single cells are left. All other blocks are as their corners. What is narrower than a
+    block of the first lattice, and lies within one, can be missed.
+    """
+    cells = np.full((count, count), -1)
+    stride = 1
+    while count > 2 * stride * LINES:
+        stride *= 2
+    n_blocks = -(-(count - 1) // stride)
+    is_active = np.ones((n_blocks, n_blocks), np.bool_)
+    n_runs = 0
+    while True:
+        lines = np.minimum(np.arange(len(is_active) + 1) * stride, count - 1)
+        is_corner = np.zeros((len(lines), len(lines)), np.bool_)
+        for down, right in CORNERS:
+            is_corner[down : len(lines) - 1 + down, right : len(lines) - 1 + right] |= is_active
+        rows, places = (lines[index] for index in np.nonzero(is_corner))
+        asked = np.unique(np.stack([rows, places])[:, cells[rows, places] < 0], axis=1)
+        n_runs += asked.shape[1]
+        cells[asked[0], asked[1]] = kinds_of(asked[0], asked[1])
+        if stride == 1:
+            return cells, n_runs
+        corners = cells[np.ix_(lines, lines)]
+        differs = is_active & (
+            (corners[:-1, :-1] != corners[1:, :-1])
+            | (corners[:-1, :-1] != corners[:-1, 1:])
+            | (corners[:-1, :-1] != corners[1:, 1:])
+        )
+        around = np.pad(differs, 1)
+        near = np.logical_or.reduce(
+            [around[i : i + len(differs), j : j + len(differs)] for i in range(3) for j in range(3)]
+        )
+        is_halved = is_active & near
+        for one, other in np.argwhere(is_active & ~is_halved).tolist():
+            block = cells[lines[one] : lines[one + 1] + 1, lines[other] : lines[other + 1] + 1]
+            block[block < 0] = cells[lines[one], lines[other]]
+        is_active = np.kron(is_halved, np.ones((2, 2), np.bool_))
+        stride //= 2
+
+
+def largest_box(good: NDArray[np.bool_], row: int, column: int) -> tuple[int, int, int, int] | None:
+    """Return the first and last row and the first and last column of the largest box of good cells about one cell.
+
+    None: that cell is not good.
+
+    >>> largest_box(np.array([[1, 1, 0], [1, 1, 1]], dtype=bool), 1, 1)
+    (0, 1, 0, 1)
+    """
+    if not good[row, column]:
+        return None
+    n_columns = good.shape[1]
+    # How far each row is good to the left and to the right of the column, counted in columns.
+    lefts = np.argmin(np.c_[good[:, column::-1], np.zeros(len(good), bool)], axis=1) - 1
+    rights = np.argmin(np.c_[good[:, column:], np.zeros(len(good), bool)], axis=1) - 1
+    lefts, rights = np.where(good[:, column], lefts, -n_columns), np.where(good[:, column], rights, -n_columns)
+    below = [np.minimum.accumulate(reach[row::-1]) for reach in (lefts, rights)]
+    above = [np.minimum.accumulate(reach[row:]) for reach in (lefts, rights)]
+    left = np.minimum.outer(below[0], above[0])
+    right = np.minimum.outer(below[1], above[1])
+    heights = np.add.outer(np.arange(len(below[0])), np.arange(len(above[0]))) + 1
+    areas = np.where(left >= 0, heights * (left + right + 1), 0)
+    down, up = np.unravel_index(int(areas.argmax()), areas.shape)
+    return row - int(down), row + int(up), column - int(left[down, up]), column + int(right[down, up])

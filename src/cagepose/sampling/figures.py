@@ -1,0 +1,151 @@
+"""The pictures of a study's report: what matters, derivatives, how quantities are spread, and the capture map."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.colors import ListedColormap, to_rgb
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch, Rectangle
+
+from cagepose.sampling.capture_map import CaptureMap
+from cagepose.sampling.distribution import Distribution
+from cagepose.sampling.findings import Findings
+from cagepose.sampling.sensitivity import ACCEPTED, Sensitivity
+from cagepose.sampling.statistics import BINS, Spread
+from cagepose.sampling.tolerances import ToleranceRow
+from cagepose.views.style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE_WIDTH_IN, PALE, PURPLE, SKY, VERMILLION, styled
+
+MOST_BARS = 12
+"""Of numbers that matter: the first so many."""
+VERDICT_COLOURS = {
+    "stable": GREEN,
+    "rests": GREEN,
+    "may rest": SKY,
+    "escapes": ORANGE,
+    "moves": PURPLE,
+    "refused": PALE,
+}
+"""All others are failures."""
+
+
+def draw(findings: Findings) -> dict[str, Figure]:
+    """Return the pictures by name, only those that there is something to show in."""
+    asked = _asked(findings)
+    known = [found for found in findings.sensitivities if found.missing is None and found.name in (ACCEPTED, *asked)]
+    rows = [row for row in findings.tolerances if row.name in asked and np.isfinite(row.derivatives).all()]
+    names = findings.results.columns.varied
+    pictures = {}
+    with styled():
+        if known:
+            pictures["sobol"] = _sobol_figure(known, names)
+        if any((row.derivatives != 0.0).any() for row in rows):
+            pictures["tornado"] = _tornado_figure(rows, names, findings.distributions)
+        resolution, all_spreads = findings.results.columns.resolution, findings.statistics.spreads
+        spreads = {
+            name: all_spreads[name]
+            for name in asked
+            if all_spreads[name].greatest - all_spreads[name].least > resolution[name]
+        }
+        if spreads:
+            pictures["spread"] = _spread_figure(spreads)
+        if findings.map is not None:
+            pictures["map"] = _map_figure(findings.map)
+    return pictures
+
+
+def _asked(findings: Findings) -> tuple[str, ...]:
+    """The watched quantities, or those of the pose where none is watched."""
+    quantities = findings.results.columns.quantities
+    return quantities[6:] or quantities
+
+
+def _panels(n_panels: int, height_in: float, columns: int) -> tuple[Figure, list]:  # type: ignore[type-arg]
+    n_columns = min(columns, n_panels)
+    n_rows = -(-n_panels // n_columns)
+    figure = Figure(figsize=(PAGE_WIDTH_IN, height_in * n_rows), layout="constrained")
+    panels = figure.subplots(n_rows, n_columns, squeeze=False).ravel()
+    for panel in panels[n_panels:]:
+        panel.set_axis_off()
+    return figure, list(panels[:n_panels])
+
+
+def _sobol_figure(known: Sequence[Sensitivity], names: Sequence[str]) -> Figure:
+    n_bars = min(len(names), MOST_BARS)
+    figure, panels = _panels(len(known), 0.7 + 0.28 * n_bars, 2)
+    for panel, found in zip(panels, known, strict=True):
+        order = np.argsort(-found.total, kind="stable")[:n_bars][::-1]
+        places = np.arange(n_bars)
+        looks = {"capsize": 2, "height": 0.36, "error_kw": {"elinewidth": 0.8}}
+        panel.barh(
+            places + 0.19, found.first[order], xerr=found.first_interval[order], color=BLUE, label="alone", **looks
+        )
+        panel.barh(
+            places - 0.19, found.total[order], xerr=found.total_interval[order], color=SKY, hatch="//",
+            label="with all others", **looks,
+        )  # fmt: skip
+        panel.set_yticks(places, [names[one] for one in order])
+        panel.set_xlim(left=min(0.0, panel.get_xlim()[0]))
+        panel.set_title(found.name)
+        panel.set_xlabel("share of the variance")
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=2)
+    return figure
+
+
+def _tornado_figure(
+    rows: Sequence[ToleranceRow], names: Sequence[str], distributions: Sequence[Distribution]
+) -> Figure:
+    n_bars = min(len(names), MOST_BARS)
+    reaches = np.array([(one.high - one.low) / 2.0 for one in distributions])
+    figure, panels = _panels(len(rows), 0.7 + 0.2 * n_bars, 2)
+    for panel, row in zip(panels, rows, strict=True):
+        changes = row.derivatives * reaches
+        order = np.argsort(-np.abs(changes), kind="stable")[:n_bars][::-1]
+        sizes = np.abs(changes[order])
+        panel.barh(np.arange(n_bars), 2.0 * sizes, left=-sizes, color=BLUE, height=0.6)
+        panel.axvline(0.0, color=BLACK, linewidth=0.8)
+        panel.set_yticks(np.arange(n_bars), [names[one] for one in order])
+        panel.set_title(row.name)
+        panel.set_xlabel("change from the middle to either end")
+    return figure
+
+
+def _spread_figure(spreads: dict[str, Spread]) -> Figure:
+    figure, panels = _panels(len(spreads), 1.7, 3)
+    for panel, (name, spread) in zip(panels, spreads.items(), strict=True):
+        counts = spread.counts.reshape(80, BINS // 80).sum(axis=1)
+        edges = np.linspace(spread.least, spread.greatest, 81)
+        panel.stairs(counts / counts.max(), edges, fill=True, color=BLUE, alpha=0.7)
+        panel.axvline(spread.mean, color=VERMILLION, linewidth=1.0)
+        panel.set_title(name)
+        panel.set_yticks([])
+    return figure
+
+
+def _map_figure(found: CaptureMap) -> Figure:
+    figure, (panel,) = _panels(1, 4.6, 1)
+    verdicts, codes = np.unique(found.verdicts, return_inverse=True)
+    colours = [VERDICT_COLOURS.get(str(verdict), VERMILLION) for verdict in verdicts]
+    shades = np.array([to_rgb(colour) for colour in colours])[codes.reshape(found.verdicts.shape)]
+    shades = np.where(found.accepted[..., None], shades, 0.55 + 0.45 * shades)  # what is not accepted is pale
+    half = [(axis[-1] - axis[0]) / (len(axis) - 1) / 2.0 for axis in (found.across, found.up)]
+    extent = (
+        found.across[0] - half[0], found.across[-1] + half[0], found.up[0] - half[1], found.up[-1] + half[1],
+    )  # fmt: skip
+    panel.imshow(shades, origin="lower", extent=extent, aspect="auto", interpolation="nearest")
+    if found.accepted.any() and not found.accepted.all():
+        panel.contour(found.across, found.up, found.accepted.astype(float), [0.5], colors=[BLACK], linewidths=1.0)
+    handles = [Patch(color=colour, label=str(verdict)) for verdict, colour in zip(verdicts, colours, strict=True)]
+    if found.box is not None:
+        (left, right), (bottom, top) = found.box
+        panel.add_patch(
+            Rectangle((left, bottom), right - left, top - bottom, fill=False, edgecolor=BLACK, linestyle="--")
+        )
+        handles.append(Patch(fill=False, edgecolor=BLACK, linestyle="--", label="largest box of accepted runs"))
+    handles.append(Patch(facecolor=ListedColormap([GREY])(0), alpha=0.25, label="pale: not accepted"))
+    panel.set_xlabel(found.keys[0])
+    panel.set_ylabel(found.keys[1])
+    figure.legend(handles=handles, loc="outside lower center", ncols=4)
+    return figure

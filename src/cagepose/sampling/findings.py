@@ -1,0 +1,185 @@
+"""What a study says, all of it: `Findings`, and the same as plain data for JSON."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import cagepose
+from cagepose.runs.methods import chosen_method
+from cagepose.sampling.capture_map import CaptureMap, capture_map
+from cagepose.sampling.chosen_runs import ChosenRun, chosen_runs
+from cagepose.sampling.contact_table import ContactTable, contact_table
+from cagepose.sampling.distribution import Distribution, distribution_of
+from cagepose.sampling.results import StudyResults
+from cagepose.sampling.runner import Runner
+from cagepose.sampling.sample import Sample
+from cagepose.sampling.sensitivity import Sensitivity, sensitivities
+from cagepose.sampling.statistics import Statistics, statistics_of, wilson
+from cagepose.sampling.tolerances import ToleranceRow, tolerance_rows
+
+
+@dataclass(frozen=True)
+class Findings:
+    """Everything that the report shows.
+
+    Attributes
+    ----------
+    results, n_planned, distributions
+        The rows, how many there will be, and how each number varies.
+    statistics, tolerances, contacts, chosen
+        What the rows say, and runs of their own beside them.
+    sensitivities, map
+        From designs of their own.
+    """
+
+    results: StudyResults
+    n_planned: int
+    distributions: tuple[Distribution, ...]
+    statistics: Statistics
+    tolerances: tuple[ToleranceRow, ...]
+    sensitivities: tuple[Sensitivity, ...]
+    map: CaptureMap | None
+    contacts: ContactTable
+    chosen: tuple[ChosenRun, ...]
+
+
+def findings_of(results: StudyResults, workers: int | None = None) -> Findings:
+    """Return what the rows of a study say, with the runs that this needs beside them; ``workers`` as for `Study.run`.
+
+    Raises
+    ------
+    StudyFolderError
+        The rows cannot be read, or there are none.
+    """
+    study, columns = results.study, results.columns
+    results.require_rows()
+    runner = Runner(study, workers)
+    distributions = tuple(distribution_of(one) for one in study.varied)
+    try:
+        statistics = statistics_of(results)
+        return Findings(
+            results,
+            Sample(study.model.sample, distributions).n_runs,
+            distributions,
+            statistics,
+            tuple(tolerance_rows(runner, columns, distributions, statistics.spreads)),
+            tuple(sensitivities(runner, columns, distributions, study.model.sample.seed)),
+            capture_map(runner, columns, distributions),
+            contact_table(results, runner, statistics),
+            tuple(chosen_runs(results, statistics)),
+        )
+    finally:
+        runner.close()
+
+
+def document(findings: Findings) -> dict[str, Any]:
+    """Return the findings as plain data: dict, list, str, int, finite float, bool and None."""
+    results, statistics = findings.results, findings.statistics
+    study = results.study
+    document: dict[str, Any] = {
+        "version": cagepose.__version__,
+        "scene": study.nominal.scene.name,
+        "method": chosen_method(study.nominal.scene).name,
+        "units": {"length": study.nominal.length_unit, "force": findings.contacts.unit},
+        "runs": statistics.n_runs,
+        "accept": study.model.accept,
+        "yield": _share(statistics.n_accepted, statistics.n_runs),
+        "verdicts": {name: _share(n, statistics.n_runs) for name, n in statistics.verdicts.most_common()},
+        "varied": [
+            {"key": one.key, "nominal": one.nominal, "low": spread.low, "high": spread.high, "sigma": spread.sigma}
+            for one, spread in zip(study.varied, findings.distributions, strict=True)
+        ],
+        "tolerances": [_tolerance(row, results) for row in findings.tolerances],
+        "sensitivities": [_sensitivity(found, results) for found in findings.sensitivities],
+        "contacts": {
+            "forces_of_runs": findings.contacts.n_runs,
+            "rows": [
+                {
+                    "name": row.name,
+                    "touches": row.share,
+                    "mean_force": row.mean_force,
+                    "greatest_force": row.greatest_force,
+                }
+                for row in findings.contacts.rows
+            ],
+        },
+        "map": None if findings.map is None else _map(findings.map),
+        "chosen_runs": [
+            {
+                "name": run.name,
+                "file": run.file,
+                "run": run.run,
+                "verdict": run.verdict,
+                "accepted": run.accepted,
+                "distance": run.distance,
+                "values": dict(zip(results.columns.varied, run.values.tolist(), strict=True)),
+            }
+            for run in findings.chosen
+        ],
+    }
+    plain: dict[str, Any] = _without_nan(document)
+    return plain
+
+
+def _share(n: int, n_runs: int) -> dict[str, Any]:
+    low, high = wilson(n, n_runs)
+    return {"runs": n, "share": n / max(n_runs, 1), "low": low, "high": high}
+
+
+def _tolerance(row: ToleranceRow, results: StudyResults) -> dict[str, Any]:
+    spread = row.spread
+    return {
+        "name": row.name,
+        "nominal": row.nominal,
+        "worst_case": list(row.worst),
+        "root_sum_square": list(row.root_sum_square),
+        "monte_carlo": {
+            "mean": spread.mean,
+            "sigma": spread.sigma,
+            "three_sigma": [spread.low, spread.high],
+            "range": [spread.least, spread.greatest],
+            "runs": spread.n,
+        },
+        "stays_within_worst_case": row.is_linear,
+        "derivatives": dict(zip(results.columns.varied, row.derivatives.tolist(), strict=True)),
+    }
+
+
+def _sensitivity(found: Sensitivity, results: StudyResults) -> dict[str, Any]:
+    numbers = (found.first, found.first_interval, found.total, found.total_interval)
+    rows = zip(results.columns.varied, *(array.tolist() for array in numbers), strict=False)
+    keys = ("key", "first", "first_interval", "total", "total_interval")
+    return {
+        "name": found.name,
+        "runs": found.n_runs,
+        "missing": found.missing,
+        "indices": [dict(zip(keys, row, strict=True)) for row in rows],
+    }
+
+
+def _map(found: CaptureMap) -> dict[str, Any]:
+    """A million cells are a few megabytes as numbers: which of the verdicts, and whether accepted, rows up."""
+    names, codes = np.unique(found.verdicts, return_inverse=True)
+    return {
+        "over": list(found.keys),
+        "runs": found.n_runs,
+        "across": found.across.tolist(),
+        "up": found.up.tolist(),
+        "verdicts": names.tolist(),
+        "verdict_cells": codes.reshape(found.verdicts.shape).tolist(),
+        "accepted_cells": found.accepted.astype(np.int64).tolist(),
+        "box": None if found.box is None else [list(side) for side in found.box],
+    }
+
+
+def _without_nan(value: Any) -> Any:
+    """JSON has no NaN and no infinite numbers: null stands for them."""
+    if isinstance(value, dict):
+        return {key: _without_nan(one) for key, one in value.items()}
+    if isinstance(value, list):
+        return [_without_nan(one) for one in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

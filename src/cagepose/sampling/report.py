@@ -1,0 +1,93 @@
+"""The report of a study: a page that stands alone, its numbers as JSON, its pictures, and chosen runs as scenes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from cagepose.files.write import MADE_BY, json_text, write_whole
+from cagepose.sampling.chosen_runs import write_scenes
+from cagepose.sampling.figures import draw
+from cagepose.sampling.findings import Findings, document
+from cagepose.sampling.results import StudyResults
+from cagepose.views.style import figure_bytes
+
+PAGE_NAME, NUMBERS_NAME = "report.html", "report.json"
+
+
+def write_report(findings: Findings) -> list[Path]:
+    """Write everything into the study's folder; return the files, the page first.
+
+    Raises
+    ------
+    OSError
+        A file cannot be written.
+    """
+    folder, numbers = findings.results.folder.path, document(findings)
+    pictures = {name: figure_bytes(figure, ".svg") for name, figure in draw(findings).items()}
+    contents = {f"{name}.svg": content for name, content in pictures.items()}
+    contents[NUMBERS_NAME] = numbers_text(numbers).encode()
+    contents[PAGE_NAME] = page_text(numbers, findings, pictures).encode()
+    for name, content in contents.items():
+        write_whole(folder / name, content)
+    return [*(folder / name for name in reversed(contents)), *write_scenes(findings.results, findings.chosen)]
+
+
+def numbers_text(numbers: dict[str, Any]) -> str:
+    """Return the numbers as JSON, the map's cells on one line."""
+    return json_text({key: value for key, value in numbers.items() if key != "map"}, map=numbers["map"])
+
+
+def kept_numbers(results: StudyResults) -> dict[str, Any] | None:
+    """Return the numbers of a report that was written of these rows; None: there is none, or of fewer rows."""
+    try:
+        numbers: dict[str, Any] = json.loads((results.folder.path / NUMBERS_NAME).read_text(encoding="utf-8"))
+        return numbers if numbers["runs"] == len(results) else None
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def page_text(numbers: dict[str, Any], findings: Findings, pictures: dict[str, bytes]) -> str:
+    """Return the page."""
+    templates = Environment(
+        loader=PackageLoader("cagepose.sampling"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    templates.filters |= {"number": shown_number, "percent": shown_share}
+    svgs = {name: Markup(_inner_svg(content)) for name, content in pictures.items()}
+    return templates.get_template("report.jinja").render(
+        made_by=MADE_BY, found=numbers, pictures=svgs, planned=findings.n_planned
+    )
+
+
+def _inner_svg(content: bytes) -> str:
+    """An SVG file without what stands before its first tag, to stand within a page."""
+    text = content.decode()
+    return text[text.index("<svg") :]
+
+
+def shown_number(value: float | None) -> str:
+    """Write a number as people read it.
+
+    >>> shown_number(0.12345649), shown_number(None), shown_number(-0.0)
+    ('0.12346', '-', '0')
+    """
+    return "-" if value is None else f"{value + 0.0:.5g}"
+
+
+def shown_share(value: float) -> str:
+    """Write a share: more digits near all and none.
+
+    >>> shown_share(0.5), shown_share(0.99973), shown_share(1.0)
+    ('50.0 %', '99.973 %', '100 %')
+    """
+    if value in (0.0, 1.0):
+        return f"{100.0 * value:.0f} %"
+    return f"{100.0 * value:.{1 if 0.01 <= value <= 0.99 else 3}f} %"

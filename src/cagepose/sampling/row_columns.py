@@ -1,0 +1,111 @@
+"""The columns of a study's table: `RowColumns`, from outcomes to what people ask for by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+from numpy.typing import NDArray
+
+from cagepose import __version__
+from cagepose.files.study_file import StudyFile
+from cagepose.files.units import from_metres, to_metres
+from cagepose.model.checks import FloatArray
+from cagepose.model.wording import few
+from cagepose.runs.run import AT_REST
+from cagepose.sampling.outcome import REFUSED, Outcomes
+
+SAME, SAME_DEG = 1e-8, 1e-6
+"""Of lengths, as a fraction of the scene's size; and of angles."""
+AXES, ANGLES = ("x", "y", "z"), ("yaw_deg", "pitch_deg", "roll_deg")
+
+
+class RowColumns:
+    """Names and makes the columns of one study.
+
+    Attributes
+    ----------
+    varied, quantities
+        Names of the varied numbers, and of what is measured of each run: the final pose and the watched points.
+    resolution
+        By quantity: what varies by less does not vary, but for rounding and the touch tolerance.
+    verdicts
+        Those of the verdicts, the last one first.
+    touching, forces
+        Those of the cage's points and shapes, by their names; no forces where the study asks for none.
+    """
+
+    def __init__(self, study: StudyFile) -> None:
+        self._study, scene = study, study.nominal.scene
+        self._watched = {
+            name: to_metres(watch.point, study.nominal.length_unit) for name, watch in (study.model.watch or {}).items()
+        }
+        elements = scene.cage.element_names
+        self.varied = tuple(one.key for one in study.varied)
+        watched = tuple(f"{name}_{axis}" for name in self._watched for axis in AXES)
+        lengths = float(from_metres(SAME * scene.size_m, study.nominal.length_unit))
+        self.quantities = (*(f"position_{axis}" for axis in AXES), *ANGLES, *watched)
+        self.resolution = {name: SAME_DEG if name in ANGLES else lengths for name in self.quantities}
+        self.verdicts = ("verdict", *(f"verdict_{load.name}" for load in scene.loads))
+        self.touching = {f"touching_{name}": name for name in elements}
+        self.forces = {f"force_{name}": name for name in elements} if study.model.forces else {}
+
+    def __repr__(self) -> str:
+        return f"<RowColumns: {few(self.varied)} vary; {few(self.quantities)} measured>"
+
+    def quantities_of(self, outcomes: Outcomes) -> dict[str, FloatArray]:
+        """Return what is measured, in the scene file's unit and degrees; NaN: no pose."""
+        unit = self._study.nominal.length_unit
+        found = dict(zip(self.quantities, self._places(outcomes, unit), strict=True))
+        return {name: column + 0.0 for name, column in found.items()}  # -0.0 becomes 0.0
+
+    def _places(self, outcomes: Outcomes, unit: Any) -> Iterator[FloatArray]:
+        yield from from_metres(outcomes.position_m, unit).T
+        yield from np.degrees(outcomes.euler_zyx).T
+        for point in self._watched.values():
+            yield from from_metres(outcomes.points_world_m(point), unit).T
+
+    def columns(self, values: FloatArray, outcomes: Outcomes) -> dict[str, NDArray[Any]]:
+        """Return all columns but ``run``, ``error`` and ``solve_us``."""
+        columns: dict[str, NDArray[Any]] = dict(zip(self.varied, values.T, strict=True))
+        columns["verdict"] = outcomes.verdict
+        columns |= zip(self.verdicts[1:], outcomes.phase_verdicts.T, strict=True)
+        columns |= self.quantities_of(outcomes)
+        columns |= zip(self.touching, outcomes.touching.T, strict=True)
+        if outcomes.forces is not None:
+            columns |= zip(self.forces, outcomes.forces.T, strict=True)
+        columns["accepted"] = self._accepted(columns)
+        return columns
+
+    def _accepted(self, columns: Mapping[str, NDArray[Any]]) -> NDArray[np.bool_]:
+        """Return which rows are good, (n,); none that was refused.
+
+        Raises
+        ------
+        ValueError
+            The expression has no truth value.
+        """
+        ran = columns["verdict"] != REFUSED
+        if self._study.accept is None:
+            at_rest: NDArray[np.bool_] = ran & np.isin(columns["verdict"], sorted(AT_REST))
+            return at_rest
+        found = np.asarray(self._study.accept.value(columns))
+        if found.dtype != np.bool_:
+            raise ValueError("is no comparison; write what is true of a good run, such as verdict == 'rests'")
+        accepted: NDArray[np.bool_] = ran & found
+        return accepted
+
+    def table(self, first: int, values: FloatArray, outcomes: Outcomes) -> pa.Table:
+        """Return rows as they are kept; what there is none of is null."""
+        arrays: dict[str, pa.Array] = {"run": pa.array(np.arange(first, first + len(values)))}
+        for name, column in self.columns(values, outcomes).items():
+            if column.dtype.kind == "U":
+                found = pa.array(column.astype(object), pa.string(), mask=column == "").dictionary_encode()
+            else:
+                found = pa.array(column, from_pandas=True)  # NaN is null
+            arrays[name] = found
+        arrays["error"] = pa.array(outcomes.errors, pa.string())
+        arrays["solve_us"] = pa.array(outcomes.solve_us)
+        return pa.table(arrays).replace_schema_metadata({"cagepose": __version__})

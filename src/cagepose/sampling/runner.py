@@ -1,0 +1,171 @@
+"""From rows of varied numbers to where the runs ended: `Runner`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from copy import deepcopy
+from dataclasses import fields
+from multiprocessing import get_context
+from typing import Any
+
+import numpy as np
+
+from cagepose.errors import Problem, SceneError
+from cagepose.files.key_path import set_value, value_at
+from cagepose.files.parameters import Expressions, evaluated
+from cagepose.files.study_file import StudyFile
+from cagepose.model.checks import FloatArray, is_finite
+from cagepose.runs.many import run_many
+from cagepose.runs.solve import run
+from cagepose.sampling.batch_columns import BatchColumns, Columns
+from cagepose.sampling.outcome import Outcomes, empty_outcomes, outcomes_of
+
+ROWS_OF_A_BATCH = 16_384
+"""Rows that are in memory at once, and those of one part of the table: a power of two, as Sobol sequences like it."""
+ROWS_ONE_BY_ONE = 1_024
+"""The same where scenes are built row by row: about a second of work."""
+ROWS_OF_A_TASK = 64
+
+
+class Runner:
+    """Runs rows of one study: all at once in the batch kernel if that can vary the numbers, else scene by scene.
+
+    A row's outcome is that of `cagepose.run` of its scene, to the last bit, either way.
+
+    Parameters
+    ----------
+    study
+        Of it.
+    workers
+        How many threads of the batch kernel, or processes that build scenes; None: a thread for each core, one process.
+
+    Attributes
+    ----------
+    is_batch
+        Whether the batch kernel can vary all numbers.
+    rows_of_a_part
+        How many rows are run at once.
+
+    Raises
+    ------
+    SceneError
+        ``workers`` is no number from 1 upwards.
+    """
+
+    def __init__(self, study: StudyFile, workers: int | None = None) -> None:
+        if workers is not None and not (is_finite(workers) and workers >= 1):
+            raise SceneError([Problem(("workers",), f"is {workers!r}; give 1 or more")])
+        self.study, self._workers = study, workers
+        self._with_forces = bool(study.model.forces)
+        nominal: Any = deepcopy(study.scene_text.yaml.data)
+        for one in study.varied:
+            set_value(nominal, one.path, one.nominal)
+        self._expressions = Expressions(nominal)
+        self._nominal, _ = evaluated(nominal)
+        self._batch = BatchColumns(self._nominal, study.nominal.length_unit)
+        probe = self._columns(np.array([[one.nominal for one in study.varied]]))
+        self.is_batch = not self._with_forces and all(map(self._batch.takes, probe))
+        self.rows_of_a_part = ROWS_OF_A_BATCH if self.is_batch else ROWS_ONE_BY_ONE
+        self._pool: ProcessPoolExecutor | None = None
+
+    def close(self) -> None:
+        """End the processes that were started."""
+        if self._pool is not None:
+            self._pool.shutdown(wait=False, cancel_futures=True)
+            self._pool = None
+
+    def run(self, values: FloatArray) -> Outcomes:
+        """Run rows of varied numbers, (n, n_varied), in the scene file's unit.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            Ctrl-C was pressed; nothing goes on.
+        """
+        if self.is_batch:
+            return self._run_batch(values)
+        if (self._workers or 1) == 1:
+            return self.run_one_by_one(values)
+        tasks = [values[first : first + ROWS_OF_A_TASK] for first in range(0, len(values), ROWS_OF_A_TASK)]
+        return _joined(list(self._processes().map(_run_task, tasks)))
+
+    def run_in_parts(self, values: FloatArray, told: Callable[[Outcomes, FloatArray], None]) -> None:
+        """Run rows as `run` does, so many at a time that memory does not grow with them."""
+        for first in range(0, len(values), self.rows_of_a_part):
+            rows = values[first : first + self.rows_of_a_part]
+            told(self.run(rows), rows)
+
+    def run_one_by_one(self, values: FloatArray, *, with_forces: bool | None = None) -> Outcomes:
+        """Build and run the scene of each row; with forces as the study says, if it is not said here."""
+        has_forces = self._with_forces if with_forces is None else with_forces
+        outcomes = empty_outcomes(self.study.nominal.scene, len(values), with_forces=has_forces)
+        self._write_one_by_one(values, range(len(values)), outcomes)
+        return outcomes
+
+    def _write_one_by_one(self, values: FloatArray, rows: Any, outcomes: Outcomes) -> None:
+        paths = [one.path for one in self.study.varied]
+        for row in rows:
+            try:
+                scene = self.study.scene_text.scene_with(dict(zip(paths, values[row].tolist(), strict=True))).scene
+                outcomes.write_run(row, run(scene))
+            except SceneError as error:
+                outcomes.write_refusal(row, str(error))
+
+    def _run_batch(self, values: FloatArray) -> Outcomes:
+        columns = self._columns(values)
+        usable = self._batch.usable(columns)
+        if not usable.any():
+            return self.run_one_by_one(values)
+        if not usable.all():  # the nominal scene in their place, until they are written below
+            columns = {path: np.where(usable, column, self._nominal_at(path)) for path, column in columns.items()}
+        scene = self.study.nominal.scene
+        outcomes = outcomes_of(run_many(scene, self._batch.variation(columns), threads=self._workers))
+        is_told = usable & (outcomes.phase_verdicts[:, 0] != "invalid")
+        if not is_told.all():
+            outcomes.clear(~is_told)
+            self._write_one_by_one(values, np.flatnonzero(~is_told).tolist(), outcomes)
+        return outcomes
+
+    def _nominal_at(self, path: Any) -> float:
+        return float(value_at(self._nominal, path))
+
+    def _columns(self, values: FloatArray) -> Columns:
+        """Return all numbers of the scene file that vary, and those whose expressions do."""
+        varied = {one.path: values[:, column] for column, one in enumerate(self.study.varied)}
+        parameters = {str(path[1]): column for path, column in varied.items() if path[0] == "parameters"}
+        of_expressions = self._expressions.values(parameters)
+        return {**varied, **{path: found for path, found in of_expressions.items() if isinstance(found, np.ndarray)}}
+
+    def _processes(self) -> ProcessPoolExecutor:
+        if self._pool is None:
+            self._pool = ProcessPoolExecutor(
+                self._workers or os.cpu_count(),
+                mp_context=get_context("spawn"),  # a fork of a process with threads can hang
+                initializer=_begin_process,
+                initargs=(self.study,),
+            )
+        return self._pool
+
+
+_RUNNERS: list[Runner] = []
+"""Of a process that builds scenes: its one."""
+
+
+def _begin_process(study: StudyFile) -> None:
+    import signal
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is heard by the process that started this one
+    _RUNNERS[:] = [Runner(study)]
+
+
+def _run_task(values: FloatArray) -> Outcomes:
+    return _RUNNERS[0].run_one_by_one(values)
+
+
+def _joined(parts: list[Outcomes]) -> Outcomes:
+    """One below the other."""
+    columns: Any = (tuple(getattr(part, field.name) for part in parts) for field in fields(Outcomes))
+    joined: Any = (None if column[0] is None else np.concatenate(column) for column in columns)
+    return Outcomes(*joined)

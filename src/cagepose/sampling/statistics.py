@@ -1,0 +1,124 @@
+"""What the rows of a study say of yield, spread and contacts, read part by part: memory does not grow with the rows."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from cagepose.model.checks import FloatArray
+from cagepose.sampling.results import StudyResults
+
+TAIL = 0.00135
+"""Share of a normal distribution that lies more than three standard deviations above its mean."""
+BINS = 20_000
+"""Of the range of a quantity: its quantiles are exact to that."""
+Z_95 = 1.959963984540054
+"""Standard deviations on both sides of the mean within which 95 % of a normal distribution lies."""
+
+
+@dataclass
+class Spread:
+    """How a quantity is spread over the runs that ended at a pose.
+
+    Attributes
+    ----------
+    n, mean, sigma, least, greatest
+        Of these runs.
+    low, high
+        Quantiles that `TAIL` of the runs lie below and above: plus and minus three sigmas of a normal distribution.
+    counts
+        Of runs in `BINS` equal parts of the range.
+    """
+
+    n: int = 0
+    mean: float = math.nan
+    sigma: float = math.nan
+    least: float = math.inf
+    greatest: float = -math.inf
+    low: float = math.nan
+    high: float = math.nan
+    counts: FloatArray = field(default_factory=lambda: np.zeros(BINS))
+
+    def add(self, values: FloatArray) -> None:
+        """Take in more runs: count, mean, sum of squares about the mean (in ``sigma``), limits (Chan et al. 1983)."""
+        if len(values) == 0:
+            return
+        n, mean, squares = len(values), float(values.mean()), float(((values - values.mean()) ** 2).sum())
+        if self.n:
+            apart, total = mean - self.mean, self.n + n
+            squares += self.sigma + apart**2 * self.n * n / total
+            mean, n = self.mean + apart * n / total, total
+        self.n, self.mean, self.sigma = n, mean, squares
+        self.least, self.greatest = min(self.least, float(values.min())), max(self.greatest, float(values.max()))
+
+    def quantile(self, share: float) -> float:
+        """Return what a share of the runs lies below."""
+        below = np.concatenate([[0.0], np.cumsum(self.counts)]) / max(self.n, 1)
+        return float(np.interp(share, below, np.linspace(self.least, self.greatest, BINS + 1)))
+
+
+@dataclass
+class Statistics:
+    """Of all rows.
+
+    Attributes
+    ----------
+    n_runs, n_accepted
+        How many rows, and how many of them are good.
+    verdicts
+        How many rows ended with each.
+    spreads
+        By name of the quantity.
+    n_touching
+        By name of a column of touching: in how many runs that point or shape touches at the end.
+    """
+
+    n_runs: int = 0
+    n_accepted: int = 0
+    verdicts: Counter[str] = field(default_factory=Counter)
+    spreads: dict[str, Spread] = field(default_factory=dict)
+    n_touching: Counter[str] = field(default_factory=Counter)
+
+
+def statistics_of(results: StudyResults) -> Statistics:
+    """Return what all rows say, reading them twice: the quantiles need the range first."""
+    columns = results.columns
+    found = Statistics(spreads={name: Spread() for name in columns.quantities})
+    for part in results.parts([*columns.quantities, *columns.touching, "verdict", "accepted"]):
+        found.n_runs += len(part["verdict"])
+        found.n_accepted += int(part["accepted"].sum())
+        names, counts = np.unique(part["verdict"], return_counts=True)
+        found.verdicts.update(dict(zip(names.tolist(), counts.tolist(), strict=True)))
+        for name, spread in found.spreads.items():
+            spread.add(part[name][~np.isnan(part[name])])
+        for name in columns.touching:
+            found.n_touching[name] += int(part[name].sum())
+    for spread in found.spreads.values():
+        spread.sigma = math.sqrt(spread.sigma / spread.n) if spread.n else math.nan
+    for part in results.parts(columns.quantities):
+        for name, spread in found.spreads.items():
+            if spread.n:
+                places = (part[name] - spread.least) / max(spread.greatest - spread.least, 1e-300) * BINS
+                inside = np.minimum(places[~np.isnan(places)].astype(np.int64), BINS - 1)
+                spread.counts += np.bincount(inside, minlength=BINS)
+    for spread in found.spreads.values():
+        spread.low, spread.high = (spread.quantile(TAIL), spread.quantile(1.0 - TAIL)) if spread.n else (math.nan,) * 2
+    return found
+
+
+def wilson(n_good: int, n_runs: int) -> tuple[float, float]:
+    """Return the interval in which the likelihood of a good run lies, with 95 % confidence (Wilson 1927).
+
+    >>> [round(limit, 4) for limit in wilson(0, 100)]
+    [0.0, 0.037]
+    """
+    if n_runs == 0:
+        return 0.0, 1.0
+    share, squared = n_good / n_runs, Z_95**2
+    middle = share + squared / (2.0 * n_runs)
+    half = Z_95 * math.sqrt(share * (1.0 - share) / n_runs + squared / (4.0 * n_runs**2))
+    whole = 1.0 + squared / n_runs
+    return max((middle - half) / whole, 0.0), min((middle + half) / whole, 1.0)

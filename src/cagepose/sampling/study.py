@@ -1,0 +1,156 @@
+"""The friendly class: `Study`, a scene with numbers that vary, to be run many times."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from cagepose.errors import Problem, SceneError
+from cagepose.files.study_file import StudyFile, parse_study, read_study_file, refused_at, study_text
+from cagepose.model.wording import few
+from cagepose.sampling.results import StudyResults
+from cagepose.sampling.runner import Runner
+from cagepose.views.extra import require_study
+
+Progress = Callable[[int, int, bool], None]
+"""Called with how many rows are done, how many there are, and whether the last of them were run now."""
+
+
+class Study:
+    """Many runs of one scene, with what a study file holds as arguments; see the page on studies.
+
+    Parameters
+    ----------
+    scene
+        The scene's file.
+    vary
+        By key of the scene, how the number varies: ``{"parameters.play": {"uniform": [0.2, 1.0]}}``.
+    sample
+        ``{"method": "sobol", "runs": 10_000, "seed": 1}``.
+    watch, accept, forces, map
+        As in a study file.
+
+    Raises
+    ------
+    SceneError
+        No such scene, or what is asked for cannot be; lists every problem found.
+    MissingExtraError
+        The extra ``study`` is not installed.
+    """
+
+    def __init__(
+        self,
+        scene: str | os.PathLike[str],
+        vary: Mapping[str, Any],
+        sample: Mapping[str, Any],
+        *,
+        watch: Mapping[str, Any] | None = None,
+        accept: str | None = None,
+        forces: bool | None = None,
+        map: Mapping[str, Any] | None = None,
+    ) -> None:
+        content = {"scene": _file_name(scene), "vary": vary, "sample": sample}
+        given = {"watch": watch, "accept": accept, "forces": forces, "map": map}
+        text = study_text({**content, **{key: value for key, value in given.items() if value is not None}})
+        self._begin(parse_study(text, "study"), "study")
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Study:
+        """Read a study file.
+
+        Raises
+        ------
+        SceneFileError
+            It cannot be used; lists every problem with its line and column.
+        """
+        study = cls.__new__(cls)
+        study._begin(read_study_file(path), os.fspath(path))
+        return study
+
+    def _begin(self, file: StudyFile, source: str) -> None:
+        require_study()
+        from cagepose.sampling.distribution import distribution_of  # the class itself can be imported without the extra
+        from cagepose.sampling.row_columns import RowColumns
+        from cagepose.sampling.sample import Sample
+
+        self._file, self._columns = file, RowColumns(file)
+        try:
+            self._sample = Sample(file.model.sample, [distribution_of(one) for one in file.varied])
+        except ValueError as error:
+            raise refused_at("sample", file, source, str(error)) from None
+        nominal = np.array([[one.nominal for one in file.varied]])
+        outcomes = Runner(file).run_one_by_one(nominal)
+        if outcomes.errors[0] is not None:
+            raise refused_at("scene", file, source, f"cannot be run: {outcomes.errors[0]}")
+        try:
+            self._columns.columns(nominal, outcomes)
+        except ValueError as error:
+            raise refused_at("accept", file, source, str(error)) from None
+
+    def __repr__(self) -> str:
+        varied = few(one.key for one in self._file.varied)
+        return f"<Study of {self._file.nominal.scene.name!r}: {len(self)} runs, {varied} vary>"
+
+    def __len__(self) -> int:
+        """How many runs it has."""
+        return self._sample.n_runs
+
+    def run(
+        self,
+        folder: str | os.PathLike[str],
+        *,
+        resume: bool = False,
+        workers: int | None = None,
+        progress: Progress | None = None,
+    ) -> StudyResults:
+        """Run all rows into a folder, part by part, and return what is there.
+
+        Parameters
+        ----------
+        folder
+            Made if it is not there.
+        resume
+            Whether to go on with a folder that holds this study already.
+        workers
+            Threads, or processes where scenes are built row by row; None: a thread for each core, or one process. A
+            script that asks for more processes needs ``if __name__ == "__main__":``.
+        progress
+            Called after each part.
+
+        Raises
+        ------
+        SceneError
+            ``workers`` is no number from 1 upwards.
+        StudyFolderError
+            The folder holds something else.
+        OSError
+            It cannot be written.
+        KeyboardInterrupt
+            Ctrl-C was pressed; all parts that are there are whole.
+        """
+        from cagepose.sampling.folder import StudyFolder
+
+        kept, runner, n_runs = StudyFolder(folder), Runner(self._file, workers), len(self)
+        kept.begin(self._file, resume=resume)
+        try:
+            for first in range(0, n_runs, runner.rows_of_a_part):
+                last = min(first + runner.rows_of_a_part, n_runs)
+                is_missing = not kept.has(first, last)
+                if is_missing:
+                    values = self._sample.values(first, last)
+                    kept.write(first, last, self._columns.table(first, values, runner.run(values)))
+                if progress is not None:
+                    progress(last, n_runs, is_missing)
+        finally:
+            runner.close()
+        return StudyResults(folder)
+
+
+def _file_name(scene: object) -> str:
+    if isinstance(scene, str | os.PathLike):
+        return os.fspath(scene)
+    message = f"is of type {type(scene).__name__}; give the name of a scene file: cagepose.save_scene writes one"
+    raise SceneError([Problem(("scene",), message)])

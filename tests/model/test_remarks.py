@@ -1,0 +1,87 @@
+"""What is remarked of a scene that can be run, and what is not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import cagepose
+from cagepose import Box, Cage, Force, Load, Object, Pose, Scene
+from cagepose.model.remarks import remarks
+
+SCENES = sorted((Path(__file__).resolve().parents[2] / "scenes").glob("*.yaml"))
+DOWN = Load("weight", gravity=(0, 0, -1))
+POINTS = [(0.004, 0.004, 0), (-0.004, 0.004, 0), (0, -0.004, 0)]
+
+
+def scene(*boxes: Box, scale: float = 1.0, **options: object) -> Scene:
+    parts = boxes or (Box((0.01 * scale,) * 3, name="cube"),)
+    center = options.pop("center", None)
+    held = Object(parts, center, pose=Pose((0, 0, 0.007 * scale)))
+    points = [[scale * value for value in point] for point in POINTS]
+    return Scene(held, Cage(points), options.pop("loads", [DOWN]), **options)
+
+
+def box(x: float, name: str) -> Box:
+    return Box((0.01, 0.01, 0.01), Pose((x, 0, 0)), name)
+
+
+@pytest.mark.parametrize("path", SCENES, ids=[path.stem for path in SCENES])
+def test_of_our_scenes_there_is_nothing_to_remark(path: Path) -> None:
+    assert list(remarks(cagepose.load_scene(path))) == []
+
+
+REMARKED = {
+    "friction above what there is": (
+        scene(friction_coefficient=3.0),
+        "friction: a coefficient of 3 is more than dry surfaces have (rubber about 1); an angle is given as angle_deg",
+    ),
+    "friction of one point": (
+        scene(friction_of={"C1": 20}),
+        "friction of C1: a coefficient of 20 is more than dry surfaces have (rubber about 1); an angle is given as"
+        " angle_deg",
+    ),
+    "boxes apart": (
+        scene(box(0, "base"), box(0.01, "next"), box(0.04, "far"), box(0.05, "farther")),
+        "far, farther lie apart from base, and move with it as one body; check positions and sizes",
+    ),
+    "a centre of gravity far outside": (
+        scene(center=(1, 0, 0)),
+        "the centre of gravity lies 995 mm outside the object; check center_of_gravity, which is given in the object's"
+        " frame",
+    ),
+    "millimetres in the place of metres": (
+        scene(scale=10_000.0),
+        "the scene is 173205 mm across; check the unit (units.length of a file, which is mm if left out; metres in"
+        " Python)",
+    ),
+    "metres in the place of millimetres": (
+        scene(scale=0.001),
+        "the scene is 0.0173205 mm across; check the unit (units.length of a file, which is mm if left out; metres in"
+        " Python)",
+    ),
+}
+
+
+@pytest.mark.parametrize(("given", "told"), REMARKED.values(), ids=REMARKED)
+def test_a_likely_slip_is_remarked_and_run_all_the_same(given: Scene, told: str) -> None:
+    assert list(remarks(given)) == [told]
+    assert told in cagepose.run(given).warnings
+    assert told in cagepose.run(scene() if given.friction_of else given, "stepwise").warnings or given.friction_of
+
+
+def test_what_is_unusual_and_right_is_not_remarked() -> None:
+    for given in (
+        scene(friction_coefficient=2.0),
+        scene(box(0, "base"), box(0.011, "a hair apart")),
+        scene(center=(0, 0, 0.02)),
+        scene(box(0, "one"), box(0.02, "two"), box(0.01, "between")),
+    ):
+        assert list(remarks(given)) == []
+
+
+def test_a_weight_that_a_later_phase_drops_is_told() -> None:
+    push = Load("push", force=Force((0, 0, -1), (0, 0, 0)))
+    (told,) = [warning for warning in cagepose.run(scene(loads=[DOWN, push])).warnings if "weight" in warning]
+    assert told == "push: the weight of the phase before no longer acts (give gravity in this phase to keep it)"

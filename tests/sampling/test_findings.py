@@ -1,0 +1,263 @@
+"""What the report says, against closed forms, SciPy, and counting by hand."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from cagepose import Study, StudyResults, load_scene, run
+from cagepose.sampling.capture_map import largest_box, refined_map
+from cagepose.sampling.sensitivity import _indices
+from cagepose.sampling.statistics import Spread, statistics_of, wilson
+from our_studies import RunStudy
+
+PEG = """\
+name: peg
+units: {length: m}
+object:
+  boxes: [{size: [1, 1, 1], position: [0, 0, 0]}]
+  pose: {position: [0.0, 0.02, 3]}
+cage:
+  points: [[0.4, 0.4, 0], [0.4, -0.4, 0], [-0.4, -0.4, 0], [-0.4, 0.4, 0]]
+  pose: {position: [0, 0, 0]}
+loads: [{name: weight, gravity: [0, 0, -1]}]
+"""
+"""A cube falls straight down onto four points: its height afterwards is theirs and a half, to rounding."""
+HEIGHTS = {"cage.pose.position[2]": {"normal": {"sigma": 0.1}}, "object.pose.position[0]": {"uniform": [-0.05, 0.05]}}
+
+
+@pytest.fixture
+def peg(tmp_path: Path) -> Path:
+    path = tmp_path / "peg.yaml"
+    path.write_text(PEG, encoding="utf-8")
+    return path
+
+
+def test_the_tilt_of_a_rail_with_normal_gaps_has_the_distribution_of_the_closed_form(
+    run_study: RunStudy, scene_with: Callable[..., Path]
+) -> None:
+    """Under its weight the plate, b thick, tilts between rollers a apart in pairs l apart until a cos t - l sin t = b,
+    that is cos t - k sin t = c with k = l/a and c = b/a. The gap at a tilt is so (b + l sin t) / cos t, which grows
+    with the tilt: of normal gaps the tilts have this distribution. The overhanging end sinks: a positive pitch.
+    """
+    rollers = [f"cage.points[{point}][2]=={'-' if point % 2 == 0 else ''}gap/2" for point in range(8)]
+    level = ["cage.pose.euler_zyx_deg=[0, 0, 0]", "object.pose.euler_zyx_deg=[0, 0, 0]"]
+    scene = scene_with("parameters={gap: 2}", *rollers, *level, "loads=[{name: weight, gravity: [0, 0, -1]}]")
+    vary = {"parameters.gap": {"normal": {"sigma": 0.05}}}
+    frame = run_study(vary, 3000, scene=scene, method="random", seed=11).to_frame()
+    assert (frame["verdict"] == "rests").all()
+    thick, apart = 1.0, 183.0
+
+    def share_below(tilt_deg: np.ndarray) -> np.ndarray:
+        tilt = np.radians(tilt_deg)
+        return stats.norm.cdf((thick + apart * np.sin(tilt)) / np.cos(tilt), 2.0, 0.05)
+
+    assert stats.kstest(frame["pitch_deg"], share_below).pvalue > 0.01
+    gaps = frame["parameters.gap"].to_numpy()
+    tilts = np.arctan2(gaps, apart) - np.arcsin(thick / np.hypot(gaps, apart))
+    assert frame["pitch_deg"].to_numpy() == pytest.approx(np.degrees(tilts), abs=1e-6)
+    quantiles = run_study(vary, 3000, scene=scene, folder="sobol").to_frame()["pitch_deg"].quantile([0.1, 0.5, 0.9])
+    assert share_below(quantiles.to_numpy()) == pytest.approx([0.1, 0.5, 0.9], abs=2e-3)
+
+
+def test_statistics_are_those_of_all_rows(run_study: RunStudy, peg: Path) -> None:
+    results = run_study(HEIGHTS, 5000, scene=peg, accept="position.z < 0.55")
+    found, frame = statistics_of(results), results.to_frame()
+    spread, heights = found.spreads["position_z"], frame["position_z"]
+    assert (found.n_runs, found.n_accepted) == (5000, int((heights < 0.55).sum()))
+    assert dict(found.verdicts) == frame["verdict"].value_counts().to_dict()
+    assert (spread.least, spread.greatest) == (heights.min(), heights.max())
+    assert (spread.mean, spread.sigma) == pytest.approx((heights.mean(), heights.std(ddof=0)), rel=1e-12)
+    for share in (0.01, 0.1, 0.5, 0.99):
+        assert spread.quantile(share) == pytest.approx(heights.quantile(share), abs=1e-3)
+    assert heights.quantile(0.0008) < spread.low < heights.quantile(0.002)
+    assert found.n_touching["touching_C1"] == int(frame["touching_C1"].sum())
+
+
+def test_joined_spreads_are_those_of_all_at_once() -> None:
+    rng = np.random.default_rng(1)
+    values, spread = 1e6 + rng.normal(size=3000), Spread()
+    for part in np.split(values, [1, 1, 500, 2999]):
+        spread.add(part)
+    assert (spread.n, spread.least, spread.greatest) == (3000, values.min(), values.max())
+    assert spread.mean == pytest.approx(values.mean(), rel=1e-15)
+    assert math.sqrt(spread.sigma / spread.n) == pytest.approx(values.std(), rel=1e-9)
+
+
+def test_the_interval_of_the_yield_is_wilsons() -> None:
+    for n_good, n_runs in ((0, 10), (3, 10), (10, 10), (499, 1000)):
+        expected = stats.binomtest(n_good, n_runs).proportion_ci(0.95, method="wilson")
+        assert wilson(n_good, n_runs) == pytest.approx((expected.low, expected.high), abs=1e-12)
+    assert wilson(0, 0) == (0.0, 1.0)
+
+
+def test_the_true_yield_lies_in_its_interval_for_about_95_of_100_seeds(tmp_path: Path, peg: Path) -> None:
+    """The cube rests lower than 0.55 m with the likelihood of a normal variable below half a sigma."""
+    true_yield, n_inside = stats.norm.cdf(0.5), 0
+    for seed in range(100):
+        study = Study(peg, HEIGHTS, {"method": "random", "runs": 400, "seed": seed}, accept="position.z < 0.55")
+        found = statistics_of(study.run(tmp_path / f"seed-{seed}"))
+        low, high = wilson(found.n_accepted, found.n_runs)
+        n_inside += low <= true_yield <= high
+    assert 90 <= n_inside <= 99
+
+
+def test_a_linear_case_has_the_tolerances_and_indices_of_theory(run_study: RunStudy, peg: Path) -> None:
+    """The height is half an edge more than the sum of two numbers with sigmas of 0.1 and 0.2: indices of 1/5 and 4/5,
+    worst cases of three sigmas each, and their root sum square.
+    """
+    text = PEG.replace(
+        "position: [0, 0, 0]}\nloads", 'position: [0, 0, "=a + b"]}\nparameters: {a: 0.0, b: 0.0}\nloads'
+    )
+    peg.write_text(text, encoding="utf-8")
+    vary = {"parameters.a": {"normal": {"sigma": 0.1, "cut": 3}}, "parameters.b": {"normal": {"sigma": 0.2, "cut": 3}}}
+    numbers = run_study(vary, 20_000, scene=peg).report()
+    (row,) = (row for row in numbers["tolerances"] if row["name"] == "position_z")
+    assert row["nominal"] == pytest.approx(0.5)
+    assert list(row["derivatives"].values()) == pytest.approx([1.0, 1.0], abs=1e-9)
+    assert row["worst_case"] == pytest.approx([0.5 - 0.9, 0.5 + 0.9])
+    assert row["root_sum_square"] == pytest.approx([0.5 - 0.3 * math.sqrt(5.0), 0.5 + 0.3 * math.sqrt(5.0)])
+    assert row["monte_carlo"]["three_sigma"] == pytest.approx(row["root_sum_square"], abs=0.05)
+    assert row["stays_within_worst_case"]
+    (found,) = (one for one in numbers["sensitivities"] if one["name"] == "position_z")
+    for index, expected in zip(found["indices"], (0.2, 0.8), strict=True):
+        assert index["first"] == pytest.approx(expected, abs=0.02)
+        assert index["total"] == pytest.approx(expected, abs=0.02)
+        assert abs(index["first"] - expected) < index["first_interval"]
+    assert next(one for one in numbers["sensitivities"] if one["name"] == "position_x")["missing"] is not None
+
+
+def test_blocks_of_a_design_in_which_a_run_has_no_pose_are_left_out() -> None:
+    problem = {"num_vars": 1, "names": ["a"], "bounds": [[0.0, 1.0]]}
+    rng = np.random.default_rng(2)
+    measured = rng.normal(size=300)
+    without = measured.reshape(-1, 3)[1:].ravel().copy()
+    measured[1] = np.nan
+    found, expected = _indices("q", measured, problem, 1, 0.0), _indices("q", without, problem, 1, 0.0)
+    assert (found.n_runs, found.first.tolist()) == (297, expected.first.tolist())
+    measured[:200] = np.nan
+    assert "too many" in (_indices("q", measured, problem, 1, 0.0).missing or "")
+
+
+def test_the_largest_box_is_that_of_trying_all() -> None:
+    rng = np.random.default_rng(7)
+    for _ in range(60):
+        shape = tuple(rng.integers(1, 7, 2))
+        good = rng.random(shape) < 0.75
+        row, column = int(rng.integers(shape[0])), int(rng.integers(shape[1]))
+        areas = {
+            (bottom, top, left, right): (top - bottom + 1) * (right - left + 1)
+            for bottom in range(row + 1)
+            for top in range(row, shape[0])
+            for left in range(column + 1)
+            for right in range(column, shape[1])
+            if good[bottom : top + 1, left : right + 1].all()
+        }
+        found = largest_box(good, row, column)
+        assert (found is None) == (not good[row, column])
+        if found is not None:
+            assert areas[found] == max(areas.values())
+
+
+def _look_up(whole: np.ndarray, times_asked: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    np.add.at(times_asked, (rows, columns), 1)
+    return whole[rows, columns]
+
+
+def test_a_refined_map_is_the_whole_grid_by_few_runs() -> None:
+    """Rings, wedges and steps in random places, none of them narrower than a block of the first lattice."""
+    rng = np.random.default_rng(8)
+    for count in (2, 3, 61, 130, 500, 1000):
+        for _ in range(3):
+            x, y = np.meshgrid(np.linspace(-1, 1, count), np.linspace(-1, 1, count))
+            a, b, c, d = rng.uniform(-0.5, 0.5, 4)
+            radius = np.hypot(x - a, y - b)
+            whole = (radius < 0.7).astype(int) + 2 * (radius < 0.4) + 4 * (y > c + 2.0 * d * x + 0.2 * np.sin(5.0 * x))
+            times_asked = np.zeros(whole.shape, int)
+            found, n_runs = refined_map(count, partial(_look_up, whole, times_asked))
+            assert np.array_equal(found, whole)
+            assert n_runs == times_asked.sum()
+            assert times_asked.max() == 1
+            assert n_runs <= (0.1 * count**2 if count == 1000 else count**2)
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_the_capture_map_says_what_each_of_its_runs_does(run_study: RunStudy, tmp_path: Path) -> None:
+    keys = ["cage.pose.euler_zyx_deg[1]", "cage.points[0][2]"]
+    vary = {
+        "friction.coefficient": {"uniform": [0.0, 0.2]},
+        keys[0]: {"uniform": [-0.3, 0.5]},
+        keys[1]: {"uniform": [-1.2, -0.3]},
+    }
+    accept = "verdict == 'rests' and abs(pitch_deg) < 0.3"
+    numbers = run_study(vary, 50, map={"over": keys, "count": 12}, accept=accept).report()
+    found = numbers["map"]
+    assert found["over"] == keys
+    assert found["verdicts"] == ["refused", "rests"]
+    study = StudyResults(tmp_path / "out").study
+    for up in (0, 5, 11):
+        for across in (0, 6, 11):
+            numbers_there = {keys[0]: found["across"][across], keys[1]: found["up"][up], "friction.coefficient": 0.1}
+            paths = {one.path: numbers_there[one.key] for one in study.varied}
+            if found["verdicts"][found["verdict_cells"][up][across]] == "refused":
+                assert not found["accepted_cells"][up][across]
+                continue
+            ended = run(study.scene_text.scene_with(paths).scene)
+            pitch = math.degrees(ended.pose.euler_zyx[1])
+            assert found["accepted_cells"][up][across] == (ended.verdict == "rests" and abs(pitch) < 0.3)
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_chosen_runs_are_scenes_that_run_as_their_rows_do(run_study: RunStudy, tmp_path: Path) -> None:
+    vary = {"cage.points.*[2]": {"normal": {"sigma": 0.02}}, "friction.coefficient": {"uniform": [0, 0.2]}}
+    results = run_study(vary, 300, accept="verdict == 'rests' and abs(pitch_deg) < 0.215")
+    numbers = results.report()
+    rows = {row["run"]: row for row in results.table().to_pylist()}
+    assert [one["name"] for one in numbers["chosen_runs"]] == ["worst 1", "worst 2", "worst 3", "typical"]
+    assert [one["accepted"] for one in numbers["chosen_runs"]] == [False, False, False, True]
+    for one in numbers["chosen_runs"]:
+        row, ended = rows[one["run"]], run(load_scene(tmp_path / "out" / one["file"]))
+        assert (ended.verdict, row["verdict"]) == (one["verdict"], one["verdict"])
+        assert math.degrees(ended.pose.euler_zyx[1]) == row["pitch_deg"]
+        assert one["values"] == {key: row[key] for key in results.columns.varied}
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_contacts_say_how_often_and_how_much(run_study: RunStudy) -> None:
+    vary = {f"cage.pose.euler_zyx_deg[{axis}]": {"uniform": [-0.1, 0.1]} for axis in range(3)}
+    with_forces = run_study(vary, 120, forces=True)
+    frame = with_forces.to_frame()
+    found = {row["name"]: row for row in with_forces.report()["contacts"]["rows"]}
+    asked_again = run_study(vary, 120, folder="again").report()["contacts"]
+    assert asked_again["forces_of_runs"] == 120
+    assert {row["name"]: row for row in asked_again["rows"]} == found
+    for name, row in found.items():
+        forces = frame[f"force_{name}"]
+        assert row["touches"] == pytest.approx(frame[f"touching_{name}"].mean())
+        if (forces > 0.0).any():
+            assert row["mean_force"] == pytest.approx(forces[forces > 0.0].mean())
+            assert row["greatest_force"] == forces.max()
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_the_page_stands_alone_and_holds_the_numbers(run_study: RunStudy, tmp_path: Path) -> None:
+    vary = {"cage.pose.euler_zyx_deg[1]": {"uniform": [-0.4, 0.4]}, "friction.coefficient": {"grid": [0.0, 0.1]}}
+    results = run_study(vary, 200, accept="pitch_deg < 0.1 and 'x' != '<b>'", watch={"tip": {"point": [600, 0, 0]}})
+    numbers = results.report()
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert not re.findall(r'(?:src|href)="(?!#|data:|worst|typical)', page)
+    assert "<script" not in page
+    assert "&lt;b&gt;" in page
+    assert page.count("<svg") == 4
+    for text in ("Yield", "Tolerances", "What matters", "Capture map", "Contacts", "worst-1.yaml", "tip_z"):
+        assert text in page
+    assert json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8")) == numbers
+    assert StudyResults(tmp_path / "out").study.model.accept is not None

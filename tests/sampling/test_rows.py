@@ -1,0 +1,288 @@
+"""A row is `cagepose.run` of the scene that it describes, whatever varies and whoever ran it."""
+
+from __future__ import annotations
+
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from cagepose import SceneFileError, StudyFolderError, StudyResults, run
+from cagepose.files.document import run_document
+from cagepose.files.scene_edit import setting
+from cagepose.files.scene_file import read_scene_text
+from cagepose.sampling import runner
+from cagepose.sampling.runner import Runner
+from our_scenes import SCENES
+from our_studies import RAIL, RunStudy
+
+NEWTONS = ["object.mass=3", "loads[1].gravity=[0,0,-9.81]", "loads[0].gravity=[0,0,-9.81]"]
+ANGLES = {f"cage.pose.euler_zyx_deg[{axis}]": {"uniform": [-0.4, 0.4]} for axis in range(3)}
+PUSH = {
+    "loads[1].force.direction[1]": {"normal": {"sigma": 0.1}},
+    "loads[1].force.at[1]": {"grid": [-20, 0, 20]},
+}
+BATCHED: dict[str, dict[str, Any]] = {
+    "the cage": {**ANGLES, "cage.pose.position[2]": {"uniform": [-0.3, 0.3]}},
+    "the start": {
+        "object.pose.euler_zyx_deg[1]": {"uniform": [0, 0.4]},
+        "object.pose.position[0]": {"uniform": [-2, 2]},
+    },
+    "all points": {"cage.points.*[2]": {"normal": {"sigma": 0.02, "cut": 3}}, **PUSH},
+    "friction": {"friction.coefficient": {"uniform": [-0.05, 0.3]}, "cage.points[0][2]": {"uniform": [-1.2, -0.4]}},
+}
+BUILT: dict[str, dict[str, Any]] = {
+    "a size": {"object.boxes[0].size[2]": {"uniform": [0.9, 2.2]}, **PUSH},
+    "gravity": {"loads[0].gravity[1]": {"uniform": [-0.5, 0.5]}, "object.center_of_gravity[0]": {"uniform": [-90, 90]}},
+    "an angle of friction": {"friction.angle_deg": {"uniform": [-1, 20]}, **ANGLES},
+    "a tolerance": {"tolerances.touch": {"uniform": [1e-12, 1e-9]}, **ANGLES},
+}
+
+
+def compare_with_runs(results: StudyResults, method: str | None = None) -> dict[str, int]:
+    """Run each row's scene by itself, as a user would from the row; return how many ended how."""
+    found: dict[str, int] = {}
+    scene_text = results.study.scene_text
+    for row in results.table().to_pylist():
+        settings = [setting(one.key, row[one.key]) for one in results.study.varied]
+        found[row["verdict"]] = found.get(row["verdict"], 0) + 1
+        if row["verdict"] == "refused":
+            assert (row["position_x"], row["accepted"]) == (None, False)
+            with pytest.raises(SceneFileError) as caught:
+                scene_text.scene_file(settings)
+            assert all(problem.message in row["error"] for problem in caught.value.problems)
+            continue
+        scene_file = scene_text.scene_file(settings)
+        document = run_document(run(scene_file.scene, method), scene_file.length_unit)
+        assert (row["verdict"], row["error"]) == (document["verdict"], None)
+        assert [row[f"position_{axis}"] for axis in "xyz"] == document["pose"]["position"]
+        assert [row[f"{angle}_deg"] for angle in ("yaw", "pitch", "roll")] == document["pose"]["euler_zyx_deg"]
+        reached = {phase["name"]: phase["verdict"] for phase in document["phases"]}
+        phases = [load.name for load in scene_file.scene.loads]
+        assert {name: row[f"verdict_{name}"] for name in phases} == {**dict.fromkeys(phases), **reached}
+        touching = {f"touching_{contact['point']}" for contact in document["phases"][-1]["contacts"]}
+        assert {name for name, value in row.items() if name.startswith("touching_") and value} == touching
+        assert row["accepted"] == (row["verdict"] in ("stable", "rests", "may rest"))
+    return found
+
+
+@pytest.mark.parametrize("varied", BATCHED, ids=list(BATCHED))
+@pytest.mark.parametrize("method", ["quasistatic", "stepwise"])
+def test_a_row_of_the_batch_is_the_run_of_its_scene(
+    run_study: RunStudy, scene_with: Callable[..., Path], varied: str, method: str
+) -> None:
+    results = run_study(BATCHED[varied], 60, scene=scene_with(f"method={method}"))
+    assert Runner(results.study).is_batch
+    found = compare_with_runs(results)
+    assert sum(found.values()) == 60
+    if varied == "friction":
+        assert found["refused"] > 5  # negative friction, or a point inside the rail
+
+
+@pytest.mark.parametrize("varied", BUILT, ids=list(BUILT))
+def test_a_row_whose_scene_is_built_is_the_run_of_its_scene(run_study: RunStudy, varied: str) -> None:
+    results = run_study(BUILT[varied], 25)
+    assert not Runner(results.study).is_batch
+    compare_with_runs(results)
+
+
+@pytest.mark.parametrize("path", SCENES, ids=[path.stem for path in SCENES])
+def test_rows_of_every_scene_are_its_runs(run_study: RunStudy, path: Path) -> None:
+    data: Any = read_scene_text(path).yaml.data
+    vary: dict[str, Any] = {"friction.coefficient": {"uniform": [0, 0.2]}}
+    if data["cage"].get("points"):
+        vary["cage.points.*[2]"] = {"normal": {"sigma": 0.01}}
+    if data["object"].get("mass"):
+        vary["object.mass"] = {"uniform": [0.1, 1.0]}
+    results = run_study(vary, 12, scene=path)
+    assert Runner(results.study).is_batch == ("object.mass" not in vary)
+    compare_with_runs(results)
+
+
+def test_a_force_in_newtons_varies_in_the_batch(run_study: RunStudy, scene_with: Callable[..., Path]) -> None:
+    vary = {"loads[1].force.magnitude": {"uniform": [-1, 60]}, **PUSH}
+    results = run_study(vary, 60, scene=scene_with(*NEWTONS, "loads[1].force.magnitude=10"))
+    assert Runner(results.study).is_batch
+    assert set(compare_with_runs(results)) == {"rests", "refused"}
+
+
+def test_a_parameter_reaches_the_batch_by_expressions(run_study: RunStudy, scene_with: Callable[..., Path]) -> None:
+    scene = scene_with(
+        "parameters={play: 1, pitch: 0.1}",
+        "cage.points[1][2]==play",
+        "cage.points[0][2]==-play**1.1",
+        "cage.pose.euler_zyx_deg[1]==pitch",
+        "object.pose.euler_zyx_deg[1]==pitch",
+    )
+    vary = {"parameters.play": {"uniform": [0.4, 1.5]}, "parameters.pitch": {"uniform": [-0.3, 0.3]}}
+    results = run_study(vary, 60, scene=scene)
+    assert Runner(results.study).is_batch
+    assert set(compare_with_runs(results)) >= {"rests", "refused"}
+
+
+def test_forces_of_a_row_are_those_of_the_run(run_study: RunStudy) -> None:
+    results = run_study(ANGLES, 20, forces=True)
+    for row in results.table().to_pylist():
+        if row["verdict"] == "refused":
+            assert row["force_C1"] is None
+            continue
+        scene = results.study.scene_text.scene_file([setting(key, row[key]) for key in ANGLES]).scene
+        expected = dict.fromkeys(scene.cage.names, 0.0)
+        for contact in run(scene).contacts:
+            assert contact.force_normal_n is not None
+            expected[contact.point] += contact.force_normal_n
+        assert {name: row[f"force_{name}"] for name in expected} == expected
+
+
+def test_a_watched_point_is_where_the_pose_takes_it(run_study: RunStudy) -> None:
+    results = run_study(ANGLES, 20, watch={"tip": {"point": [600, 5, -3]}}, accept="tip.z > 0 and verdict != 'refused'")
+    for row in results.table().to_pylist():
+        if row["verdict"] != "refused":
+            scene = results.study.scene_text.scene_file([setting(key, row[key]) for key in ANGLES]).scene
+            tip = run(scene).pose.transform([0.6, 0.005, -0.003]) * 1000.0
+            assert [row[f"tip_{axis}"] for axis in "xyz"] == pytest.approx(tip, abs=1e-9)
+            assert row["accepted"] == (row["tip_z"] > 0.0)
+
+
+def rows_of(results: StudyResults) -> list[dict[str, Any]]:
+    """All that must not depend on who ran it: everything but the time."""
+    names = [name for name in results.table().column_names if name != "solve_us"]
+    return results.table(names).to_pylist()
+
+
+def test_the_table_is_the_same_for_one_and_two_threads_or_processes(run_study: RunStudy) -> None:
+    for kind, runs, vary in (("batch", 2000, ANGLES), ("built", 150, BUILT["a size"])):
+        one = run_study(vary, runs, workers=1, folder=f"{kind}-1")
+        two = run_study(vary, runs, workers=2, folder=f"{kind}-2")
+        assert Runner(one.study).is_batch == (kind == "batch")
+        assert rows_of(one) == rows_of(two)
+
+
+def test_a_study_goes_on_where_parts_are_missing(
+    run_study: RunStudy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(runner, "ROWS_ONE_BY_ONE", 64)
+    vary, runs = BUILT["a size"], 2 * 64 + 10
+    whole = run_study(vary, runs, folder="whole")
+    again = run_study(vary, runs, folder="again")
+    first, second, _ = again.folder.parts()
+    kept = first.stat().st_mtime_ns
+    second.unlink()
+    (second.parent / f".{second.name}.123.part").write_bytes(b"cut sho")  # what kill -9 leaves
+    (tmp_path / "again" / ".study.yaml.123.part").write_bytes(b"sce")
+    resumed = run_study(vary, runs, folder="again", resume=True)
+    assert rows_of(resumed) == rows_of(whole)
+    assert first.stat().st_mtime_ns == kept
+    assert not list((tmp_path / "again").rglob("*.part"))
+    assert rows_of(run_study(vary, runs, folder="again", resume=True)) == rows_of(whole)  # all is done
+    assert rows_of(run_study(vary, runs, folder="new", resume=True)) == rows_of(whole)  # nothing was begun
+
+
+KILLED = """
+import sys
+from cagepose import Study
+from cagepose.sampling import runner
+runner.ROWS_OF_A_BATCH = 256
+print("begun", flush=True)
+Study.load(sys.argv[1]).run(sys.argv[2], resume=True, workers=1)
+"""
+
+
+def test_after_five_kills_at_random_moments_the_table_is_the_same(tmp_path: Path) -> None:
+    """Real processes and kill -9: each leaves whole parts alone, and what goes on needs no more than --resume."""
+    study = tmp_path / "study.yaml"
+    study.write_text(
+        f"scene: {RAIL}\nvary:\n  cage.pose.euler_zyx_deg[1]: {{uniform: [-0.4, 0.4]}}\n"
+        "  friction.coefficient: {uniform: [0, 0.3]}\nsample: {runs: 4000}\n",
+        encoding="utf-8",
+    )
+    rng, n_parts = np.random.default_rng(3), []
+    command = [sys.executable, "-c", KILLED, str(study)]
+    for _ in range(5):
+        with subprocess.Popen([*command, str(tmp_path / "killed")], stdout=subprocess.PIPE) as process:
+            assert process.stdout is not None
+            process.stdout.readline()
+            time.sleep(rng.uniform(0.1, 0.5))
+            os.kill(process.pid, signal.SIGKILL)
+        parts = list((tmp_path / "killed").glob("parts/*.parquet"))
+        assert all(pq.read_table(part).num_rows > 0 for part in parts)
+        n_parts.append(len(parts))
+    assert n_parts == sorted(n_parts)
+    for folder in ("killed", "whole"):
+        subprocess.run([*command, str(tmp_path / folder)], check=True, stdout=subprocess.PIPE)
+    killed, whole = StudyResults(tmp_path / "killed"), StudyResults(tmp_path / "whole")
+    assert len(whole) == 4000
+    assert rows_of(killed) == rows_of(whole)
+
+
+def test_a_folder_of_something_else_is_refused_and_left_alone(run_study: RunStudy, tmp_path: Path) -> None:
+    one = run_study(ANGLES, 10)
+    before = rows_of(one)
+    with pytest.raises(StudyFolderError, match="holds this study already; add --resume"):
+        run_study(ANGLES, 10)
+    for resume in (False, True):
+        with pytest.raises(StudyFolderError, match=r"holds another study: its study\.yaml differs"):
+            run_study(ANGLES, 11, resume=resume)
+    assert rows_of(StudyResults(tmp_path / "out")) == before
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "letter.txt").write_text("dear", encoding="utf-8")
+    with pytest.raises(StudyFolderError, match="holds something else than a study"):
+        run_study(ANGLES, 10, folder="mine")
+    with pytest.raises(StudyFolderError, match="is not a folder"):
+        run_study(ANGLES, 10, folder="mine/letter.txt")
+    with pytest.raises(StudyFolderError, match="holds no study"):
+        StudyResults(tmp_path / "mine")
+
+
+def test_a_scene_that_has_changed_since_is_another_study(run_study: RunStudy, scene_with: Callable[..., Path]) -> None:
+    scene = scene_with()
+    run_study(ANGLES, 10, scene=scene)
+    scene.write_text(scene.read_text(encoding="utf-8").replace("1200, 4, 1]", "1200, 4, 1.1]"), encoding="utf-8")
+    with pytest.raises(StudyFolderError, match=r"its scene\.yaml differs"):
+        run_study(ANGLES, 10, scene=scene, resume=True)
+
+
+def test_damaged_parts_and_those_of_another_version_are_named(run_study: RunStudy) -> None:
+    (part,) = run_study(ANGLES, 10).folder.parts()
+    table = pq.read_table(part)
+    pq.write_table(table.replace_schema_metadata({"cagepose": "0.0.1"}), part)
+    with pytest.raises(StudyFolderError, match=r"holds rows of cagepose 0\.0\.1, and this is"):
+        run_study(ANGLES, 10, resume=True)
+    part.write_bytes(b"PAR1 nothing")
+    with pytest.raises(StudyFolderError, match=r"cannot be read .*; remove it and add --resume"):
+        run_study(ANGLES, 10, resume=True)
+
+
+def test_points_of_a_file_go_with_the_study(run_study: RunStudy, scene_with: Callable[..., Path]) -> None:
+    points = read_scene_text(RAIL).scene_file().scene.cage.points_cage * 1000.0
+    scene = scene_with("cage.points={file: rollers.csv}")
+    text = "\n".join(",".join(map(repr, row)) for row in points.tolist())
+    (scene.parent / "rollers.csv").write_text(text, encoding="utf-8")
+    results = run_study({"cage.pose.euler_zyx_deg[1]": {"uniform": [0, 0.4]}}, 10, scene=scene)
+    (scene.parent / "rollers.csv").unlink()
+    compare_with_runs(StudyResults(results.folder.path))
+    (scene.parent / "rollers.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(SceneFileError, match="is a point of a file; write the points that vary into the scene"):
+        run_study({"cage.points[0][1]": {"uniform": [0, 1]}}, 10, scene=scene, folder="other")
+
+
+def test_rows_come_as_a_data_frame(run_study: RunStudy, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runner, "ROWS_OF_A_BATCH", 512)
+    results = run_study({**ANGLES, "cage.pose.position[2]": {"uniform": [-2, 2]}}, 1100)
+    assert len(results.folder.parts()) == 3
+    frame = results.to_frame()
+    assert frame["run"].tolist() == list(range(1100))
+    refused = frame[frame["verdict"] == "refused"]
+    assert len(refused) > 100
+    assert refused["pitch_deg"].isna().all()
+    assert not refused["accepted"].any()
+    assert math.isclose(frame["cage.pose.euler_zyx_deg[0]"].mean(), 0.0, abs_tol=5e-3)
