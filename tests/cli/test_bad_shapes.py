@@ -228,7 +228,9 @@ def test_other_words_lead_to_ours(command: Callable[..., Any], in_folder: Path, 
 def test_a_hole_that_no_method_runs_is_told_by_name(
     command: Callable[..., Any], in_folder: Path, hole: str, says: str | None
 ) -> None:
-    wedge = "{name: wedge, convex: {vertices: [[-9, -9, 5], [9, -9, 5], [-9, 9, 5], [9, 9, 5], [-9, -9, -5], [-9, 9, -5]]}}"
+    wedge = (
+        "{name: wedge, convex: {vertices: [[-9, -9, 5], [9, -9, 5], [-9, 9, 5], [9, 9, 5], [-9, -9, -5], [-9, 9, -5]]}}"
+    )
     text = SCENE.format("sphere: {radius: 5}, position: [0, 0, 30]", f"{wedge[1:-1]}}}\n    - {{{hole}")
     (in_folder / "scene.yaml").write_text(text)
     for asked in ("check", "run"):
@@ -237,9 +239,7 @@ def test_a_hole_that_no_method_runs_is_told_by_name(
         assert (says or "") in answer.err
 
 
-def test_a_part_that_starts_in_a_plate_beside_its_hole_is_refused(
-    command: Callable[..., Any], in_folder: Path
-) -> None:
+def test_a_part_that_starts_in_a_plate_beside_its_hole_is_refused(command: Callable[..., Any], in_folder: Path) -> None:
     hole = "hole: {radius: 6, depth: 9, in: [plate]}, position: [0, 0, 5]"
     plate = "name: plate, box: {size: [90, 90, 10]}"
     for across, code in ((0.5, 0), (1.5, 2)):

@@ -100,7 +100,9 @@ def test_a_ball_lies_on_the_rim_of_a_hole(radius: float) -> None:
 
 
 @pytest.mark.parametrize("direction_deg", [0.0, 22.5, 31.0, 45.0, 137.0])
-@pytest.mark.parametrize(("share", "verdict"), [(0.999, "rests"), (0.9999999, "rests"), (1.00001, "tips"), (1.001, "tips")])
+@pytest.mark.parametrize(
+    ("share", "verdict"), [(0.999, "rests"), (0.9999999, "rests"), (1.00001, "tips"), (1.001, "tips")]
+)
 def test_a_standing_cylinder_tips_where_its_weight_leaves_the_rim(
     direction_deg: float, share: float, verdict: str
 ) -> None:
@@ -130,7 +132,7 @@ def test_what_stands_on_a_slope_tips_at_the_angle_of_its_rim(shape, share: float
 
 
 def first_touch(pin, e: float, hole: Hole) -> float:
-    """How deep the lowest point of a pin is in a hole when it touches first, as it goes straight down beside the axis."""
+    """How deep the lowest point of a pin is in a hole when it touches first, going straight down beside the axis."""
     held = Object(shapes=pin, pose=Pose((e, 0.0, 0.2)))
     result = end_of(held, [block(), hole], [Load("in", forces=[Force(DOWN, (0.0, 0.0, 0.0))])])
     return result.phases[0].events[0].motion.distance_m - 0.2

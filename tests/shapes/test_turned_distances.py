@@ -32,7 +32,7 @@ def separation_along(one: Circles, other: Circles, normal: np.ndarray) -> float:
 
 
 def tip_is_at_rim(one: Circles, other: Circles, touch_m: float) -> bool:
-    """Whether a tip of either is nearest to a sharp rim of the other: as two sharp corners, they do not touch, but pass."""
+    """Whether a tip of either is at a sharp rim of the other: like two sharp corners, they do not touch, but pass."""
     for body, beside in ((one, other), (other, one)):
         for tip in body.centers[body.radii == 0.0]:
             for center, axis, radius in zip(beside.centers, beside.axes, beside.radii, strict=True):

@@ -17,7 +17,6 @@ from cagepose.model.box import Box
 from cagepose.model.cage import Cage
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.load import Force, Load, Moment, Spring
-from cagepose.model.naming import names_of
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Adjustable, Scene

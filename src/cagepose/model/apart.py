@@ -1,4 +1,4 @@
-"""Whether two convex shapes share no volume: shown by a plane between them; and whether parts with holes do, by samples."""
+"""Whether two convex shapes share no volume, shown by a plane between them; and parts with holes, by samples."""
 
 from __future__ import annotations
 

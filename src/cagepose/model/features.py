@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -126,7 +127,7 @@ class _Features:
     def add_rim(
         self, pose: Pose, height: float, radius: float, out: FloatArray, taper: float, end_taper: float = 1.0
     ) -> None:
-        """Add a rim about the shape's z axis: the ends of its arcs, and the arcs. The radius of a hole is below zero."""
+        """Add a rim about the shape's z axis: the ends of its arcs, and the arcs. A hole's radius is below 0."""
         angles = math.pi / ARCS * np.arange(2 * ARCS)
         outward = np.stack([np.cos(angles), np.sin(angles), np.zeros(2 * ARCS)], axis=1)
         arcs_from = len(self.others if radius < 0.0 else self.ends) + (0 if radius < 0.0 else ARCS)
@@ -233,9 +234,9 @@ def _hole_features(hole: Hole, solids: Sequence[Shape]) -> _Features:
         made.pierce(hole)
         made.least_length_m = min(hole.radius_m, depth)
     heights = [(-depth, hole.radius_m), *hole.rims[1:]]
-    for (low, radius), (high, other) in zip(heights, heights[1:], strict=False):
+    for (low, radius), (high, other) in pairwise(heights):
         made.add_side(pose, (low, -radius), (high, -other))
-    slants = [math.atan2(other - radius, high - low) for (low, radius), (high, other) in zip(heights, heights[1:], strict=False)]
+    slants = [math.atan2(other - radius, high - low) for (low, radius), (high, other) in pairwise(heights)]
     for index, (height, radius) in enumerate(heights[1:]):
         end_taper = math.sin(slants[index + 1]) if index + 1 < len(slants) else 1.0
         made.add_rim(pose, height, -radius, UP, math.sin(slants[index]), end_taper)

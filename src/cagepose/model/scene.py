@@ -28,7 +28,6 @@ from cagepose.model.checks import (
 from cagepose.model.geometry import object_seams, scene_geometry, scene_size
 from cagepose.model.load import Load
 from cagepose.model.methods import METHODS, Metric
-from cagepose.model.naming import names_of
 from cagepose.model.parts import Object
 from cagepose.model.shapes import Shape
 from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
@@ -356,8 +355,8 @@ def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: 
         path: tuple[Key, ...] = ("points", cage.names[other]) if is_point else cage.shape_paths[other - n_points][:2]
         problems.add(
             ("cage", *path),
-            f"starts {millimetres(-gaps[one, other])} inside {part} ({held.element_names[one]}); move it out or move the"
-            " object's start pose",
+            f"starts {millimetres(-gaps[one, other])} inside {part} ({held.element_names[one]}); move it out or move"
+            " the object's start pose",
         )
 
 

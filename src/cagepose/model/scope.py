@@ -10,6 +10,7 @@ from cagepose.model.parts import Object
 from cagepose.model.scene import Scene
 from cagepose.model.shapes import Shape
 
+
 def unknown_shapes(scene: Scene) -> list[Problem]:
     """Return a problem for each hole that no method runs."""
     found = []

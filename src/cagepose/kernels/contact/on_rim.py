@@ -2,8 +2,8 @@
 
 Of a cylinder that stands on a floor, or of a ball in a round hole, eight contacts are listed. If they do not hold the
 load, the motion that begins goes in deepest at some point of the rim, in closed form; this is added, and the question
-asked again, until no point goes in: the exchange method of semi-infinite programs. The points close in on the two between
-which the rim carries, halving the angle each time.
+asked again, until no point goes in: the exchange method of semi-infinite programs. The points close in on the two
+between which the rim carries, halving the angle each time.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
 
 @kernel
 def add_on_rims(contacts: ContactSet, frame: Frame, y: FloatArray) -> bool:
-    """Append the point of a flat rim that a motion y goes in fastest at; False: there is none that counts, or no room."""
+    """Append the point of a flat rim that a motion y goes in fastest at; False: none counts, or there is no room."""
     if len(contacts.bends) == 0:
         return False
     velocity, spin = twist_of(y, frame)

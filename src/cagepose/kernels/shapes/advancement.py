@@ -24,8 +24,7 @@ from cagepose.kernels.shapes.along_motion import (
 from cagepose.kernels.shapes.features import EDGE, FACE, RIM, VERTEX, Feature, Shapes
 from cagepose.kernels.shapes.meeting import Meeting, meeting
 from cagepose.kernels.shapes.motion import Motion, velocity_at
-from cagepose.kernels.shapes.rims import distance_at, foot_on, middle_of_arc, nearest_on_edge, reach_of_arc
-
+from cagepose.kernels.shapes.rims import distance_at, foot_on, middle_of_arc, reach_of_arc
 
 ADVANCES = 6000
 """Steps for one pair of features; only where they graze each other more than some tens are taken."""
@@ -93,7 +92,7 @@ def lines_apart(one: Feature, other: Feature) -> float:
             return dot(vector_from(from_rim.direction), across) - from_rim.radius
         if from_rim.kind == VERTEX:
             return norm(minus(foot.point, vector_from(from_rim.point))) - from_rim.radius
-        return distance_at(rim, from_rim, foot.point)
+        return distance_at(from_rim, foot.point)
     return 0.0
 
 

@@ -197,7 +197,7 @@ def can_touch(a: Shapes, i: int, b: Shapes, j: int) -> bool:
         return is_end(a.features[i]) or is_end(b.features[j])
     if one == EDGE and other == EDGE:
         return min(a.features[i].radius, b.features[j].radius) >= 0.0
-    if (one == EDGE or one == RIM) and (other == EDGE or other == RIM):
+    if one in (EDGE, RIM) and other in (EDGE, RIM):
         return is_bar(a.features[i]) or is_bar(b.features[j])
     return a.features[i].radius + b.features[j].radius != 0.0
 

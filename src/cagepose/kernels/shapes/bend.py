@@ -3,16 +3,17 @@
 With h_A and h_B the support functions of two convex bodies, their gap is the greatest over all unit normals n of
 -h_A(n) - h_B(-n). So its second derivative follows from how the places of contact move when the normal turns: by C_A
 and C_B, the radii of curvature of the two, across the normal. A vertex has zero, a plane infinite ones, an edge one of
-each, a rim of radius r about the axis c has r / |n x c| along its tangent, and a radius adds itself. With v the velocity
-of the object's material at the contact, and m = n x w for its angular velocity w, in the pose (x + t, exp(w) R),
+each, a rim of radius r about the axis c has r / |n x c| along its tangent, and a radius adds itself. With v the
+velocity of the object's material at the contact, and m = n x w for its angular velocity w, in the pose
+(x + t, exp(w) R),
 
     gap'' = -n . (w x (w x a)) + v K v + 2 v L m - m P m,
     K = 1/(C_A + C_B),  L = K C_A,  P = C_A K C_B,
 
 where a is the arm from the reference point. All three have limits where radii are infinite: where C_A is finite
-P = C_A - C_A K C_A, where C_B is L = 1 - K C_B and P = C_B - C_B K C_B. What of the gap is open counts to C_B. A face of
-the object over a point of the cage has K = 0, L = 1 across the normal and P = 0: what a pair of features has beyond that
-is its bend.
+P = C_A - C_A K C_A, where C_B is L = 1 - K C_B and P = C_B - C_B K C_B. What of the gap is open counts to C_B. A face
+of the object over a point of the cage has K = 0, L = 1 across the normal and P = 0: what a pair of features has beyond
+that is its bend.
 """
 
 from __future__ import annotations
@@ -121,8 +122,8 @@ def across(normal: Vector, factor: float) -> Matrix:
 
 
 class Side(NamedTuple):
-    """Radii of curvature of one body across the normal: ``radius`` in all directions, ``arc`` more along the unit vector
-    ``tangent``, and none that is finite along ``line``, if it is an edge.
+    """Radii of curvature of one body across the normal: ``radius`` in all directions, ``arc`` more along the unit
+    vector ``tangent``, and none that is finite along ``line``, if it is an edge.
     """
 
     radius: float

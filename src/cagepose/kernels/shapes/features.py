@@ -43,11 +43,11 @@ class Feature:
     toward
         Of a rim: unit vector that its arc's middle, or the vertex, has as the outward normal along the flat end.
     length
-        Of an edge, metres; radius of a rim, below zero that of a hole. A vertex at the end of arcs has that of their rim.
+        Of an edge, metres; radius of a rim, below zero that of a hole. A vertex at the end of arcs has that of them.
     radius
         Added on all sides, metres; below zero: of a hole.
     taper
-        Outward normals of an edge make this sine with the plane across it: its radius shrinks by as much for each metre.
+        Outward normals of an edge make this sine with the plane across it: its radius shrinks by as much a metre.
         Of a rim: that of the round side below it, as seen along its own direction.
     end_taper
         Of a rim: that of what is above it, 1: a flat end.

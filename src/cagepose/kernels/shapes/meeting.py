@@ -65,8 +65,8 @@ def apart() -> Meeting:
 
 @kernel
 def farthest_beyond(shapes: Shapes, i: int, normal: Vector, core: Vector) -> float:
-    """Return how far a direction is beyond the outward normals of a vertex, an edge or, at a point of its core, a rim, a
-    sine; -inf: all are.
+    """Return how far a direction is beyond the outward normals of a vertex, an edge or, at a point of its core, a rim,
+    a sine; -inf: all are.
     """
     feature = shapes.features[i]
     if feature.kind == RIM:
@@ -170,7 +170,7 @@ def is_turned(
 
 @kernel
 def tapered_edges(one: Feature, other: Feature, start: Vector, crossed: Vector, sine: float) -> Meeting:
-    """Two edges that cross, whose radii change along them: with tapers s and s' the normal has n . u = s, n . w = -s'."""
+    """Two edges that cross, whose radii change along them: for tapers s and s' the normal has n.u = s, n.w = -s'."""
     u, w = vector_from(one.direction), vector_from(other.direction)
     cosine, square = dot(u, w), sine * sine
     along, other_along = (one.taper + other.taper * cosine) / square, (-other.taper - one.taper * cosine) / square

@@ -14,16 +14,27 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
-from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled, transposed_times, vector_from
+from cagepose.kernels.algebra.vector import (
+    Vector,
+    cross,
+    dot,
+    minus,
+    norm,
+    plus,
+    row,
+    scaled,
+    transposed_times,
+    vector_from,
+)
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.along_motion import can_touch, distance_from
 from cagepose.kernels.shapes.bend import bends_by, curvatures
 from cagepose.kernels.shapes.body import PlacedBody, place_asked, rotation_of
+from cagepose.kernels.shapes.covered import covers, is_in_another
 from cagepose.kernels.shapes.features import (
     EDGE,
     FACE,
     HOLE,
-    PIERCED,
     RIM,
     SOLID,
     VERTEX,
@@ -32,10 +43,9 @@ from cagepose.kernels.shapes.features import (
     beyond_fence,
     height_of_end,
     is_end,
-    out_of_fence,
 )
-from cagepose.kernels.shapes.meeting import Meeting, both_reach, farthest_beyond, meeting, reaches, toward_vertex
-from cagepose.kernels.shapes.rims import middle_of_arc, nearest_on_edge, reach_of_arc
+from cagepose.kernels.shapes.meeting import Meeting, both_reach, farthest_beyond, meeting, toward_vertex
+from cagepose.kernels.shapes.rims import middle_of_arc, reach_of_arc
 
 ROOM_FOR_PAIR, MOST_ROOM = 128, 4096
 """Meetings that there is memory for: of each pair of parts, and of all."""
@@ -45,8 +55,6 @@ SAME_PLACE = 4.0
 """In touch tolerances: meetings nearer to each other are at one place."""
 DEEPEST = 0.05
 """Of the shortest edge or least radius: features of parts with holes that are deeper in each other do not touch."""
-PROBE, PROBE_MARGIN = 3.0, 1.5
-"""In touch tolerances, as in `cagepose.kernels.collision.contacts`."""
 
 
 class Touching:
@@ -363,78 +371,6 @@ def move_touching(one: Touching, to: Touching) -> None:
 
 
 @kernel
-def depth_in_part(shapes: Shapes, which: int, point: Vector) -> float:
-    """Return how deep a point is in a part, metres; below zero: how far from it."""
-    beyond, nearest, has_faces = -math.inf, math.inf, shapes.parts[which].first_face < shapes.parts[which].last
-    for i in range(shapes.parts[which].first, shapes.parts[which].last):
-        feature = shapes.features[i]
-        if feature.kind == EDGE and feature.radius < 0.0:
-            continue
-        if feature.kind == EDGE and feature.first_fence == feature.last_fence and has_faces:  # a round side
-            on_axis = nearest_on_edge(feature, point)
-            beyond = max(beyond, on_axis.away - on_axis.radius)
-            continue
-        if feature.kind != FACE:
-            nearest = min(nearest, distance_from(shapes, i, point))
-            continue
-        height = dot(vector_from(feature.direction), minus(point, vector_from(feature.point)))
-        beyond = max(beyond, height)
-        if height > 0.0 and reaches(shapes, i, vector_from(feature.direction), point, 0.0, 0.0):
-            nearest = min(nearest, height)
-    radius = shapes.features[shapes.parts[which].first].radius
-    return radius - beyond if -math.inf < beyond <= 0.0 else radius - nearest
-
-
-@kernel
-def is_within_wall(wall: Feature, point: Vector) -> bool:
-    """Whether a point lies within a wall of a hole, at the heights of its rims or between them."""
-    along, seen = vector_from(wall.direction), minus(point, vector_from(wall.point))
-    height, far = dot(along, seen), wall.radius - wall.taper * wall.length
-    first, last = wall.radius * wall.taper, wall.length + far * wall.taper
-    if height < first or height > last:
-        return False
-    radius = wall.radius + (far - wall.radius) * (height - first) / (last - first)
-    side = norm(minus(seen, scaled(along, height)))
-    return side < -radius * math.sqrt(1.0 - wall.taper * wall.taper)
-
-
-@kernel
-def is_in_hole(shapes: Shapes, which: int, point: Vector) -> bool:
-    """Whether a point lies within the walls of a hole."""
-    for i in range(shapes.parts[which].first, shapes.parts[which].last):
-        wall = shapes.features[i]
-        if wall.kind == EDGE and wall.radius < 0.0 and is_within_wall(wall, point):
-            return True
-    return False
-
-
-@kernel
-def covers(shapes: Shapes, which: int, i: int, place: Vector, normal: Vector, touch_m: float) -> bool:
-    """Whether another part of a body covers a place of a part's feature, with this outward normal."""
-    feature = shapes.features[i]
-    probe = plus(place, scaled(normal, PROBE * touch_m))
-    if feature.kind == FACE:
-        direction, seen = vector_from(feature.direction), minus(place, vector_from(feature.point))
-        seen = minus(seen, scaled(direction, dot(direction, seen)))
-        for f in range(feature.first_fence, feature.last_fence):
-            beyond = beyond_fence(shapes.fences[f], seen)
-            if beyond > -touch_m:
-                probe = minus(probe, scaled(out_of_fence(shapes.fences[f], seen), beyond + PROBE * touch_m))
-    in_hole = False
-    for another in range(len(shapes.parts)):
-        in_hole = in_hole or (shapes.parts[another].kind != SOLID and is_in_hole(shapes, another, probe))
-    for another in range(len(shapes.parts)):
-        part = shapes.parts[another]
-        if another == which or part.kind == HOLE or (in_hole and part.kind == PIERCED):
-            continue
-        if norm(minus(probe, vector_from(part.middle))) > part.reach:
-            continue
-        if depth_in_part(shapes, another, probe) > PROBE_MARGIN * touch_m:
-            return True
-    return False
-
-
-@kernel
 def faces_from_ball(shapes: Shapes, which: int, middle: Vector, reach: float) -> float:
     """Return how far a ball is beyond the faces of a part; -inf: it has none."""
     farthest = -math.inf
@@ -504,18 +440,6 @@ def find_meetings(
         touching = found.rows[at]
         place, normal = vector_from(touching.place), vector_from(touching.normal)
         there = plus(place, scaled(normal, touching.gap))
-        touching.is_hidden = is_in_another(own, held, body, touching, place, normal, touch_m) or covers(
-            cage, touching.cage_part, touching.cage_feature, there, scaled(normal, -1.0), touch_m
-        )
-
-
-@kernel
-def is_in_another(
-    own: Shapes, held: Shapes, body: PlacedBody, touching: Touching, place: Vector, normal: Vector, touch_m: float
-) -> bool:
-    """Whether another part of the object covers a place of it: those that may are placed first."""
-    for another in range(len(own.parts)):
-        part = held.parts[another]
-        if norm(minus(place, vector_from(part.middle))) <= part.reach + SAME_PLACE * PROBE * touch_m:
-            place_asked(own, another, body)
-    return covers(held, touching.part, touching.feature, place, normal, touch_m)
+        touching.is_hidden = is_in_another(
+            own, body, touching.part, touching.feature, place, normal, touch_m
+        ) or covers(cage, touching.cage_part, touching.cage_feature, there, scaled(normal, -1.0), touch_m)

@@ -1,7 +1,7 @@
 """Round rims: where on an arc another feature is nearest, equation (2.13).
 
-A rim is a row of vertices without end: what meets it meets one of them, the foot. Of a face it is the lowest point, of a
-vertex the point in its direction, both in closed form. Of an edge or another rim it is where the way to the nearest
+A rim is a row of vertices without end: what meets it meets one of them, the foot. Of a face it is the lowest point, of
+a vertex the point in its direction, both in closed form. Of an edge or another rim it is where the way to the nearest
 point there has no part along the tangent: a root of one function of one angle.
 """
 
@@ -122,7 +122,7 @@ def rise(rim: Feature, other: Feature, angle: float) -> float:
 
 
 @kernel
-def distance_at(rim: Feature, other: Feature, point: Vector) -> float:
+def distance_at(other: Feature, point: Vector) -> float:
     """Return how far a point of a rim is from an edge's side or another rim."""
     if other.kind == EDGE:
         nearest = nearest_on_edge(other, point)
@@ -145,14 +145,14 @@ def foot_on(rim: Feature, other: Feature) -> Foot:
         after = rise(rim, other, low + width)
         if before < 0.0 <= after:
             found = on_rim(rim, root_of_rise(rim, other, low, low + width, before, after), True)
-            distance = distance_at(rim, other, found.point)
+            distance = distance_at(other, found.point)
             if distance < least:
                 best, least = found, distance
         before = after
     if best.is_within:
         return best
     last = on_rim(rim, SEARCHED, False)
-    return best if distance_at(rim, other, best.point) < distance_at(rim, other, last.point) else last
+    return best if distance_at(other, best.point) < distance_at(other, last.point) else last
 
 
 @kernel

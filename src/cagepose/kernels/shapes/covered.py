@@ -1,0 +1,113 @@
+"""Whether another part of the same body covers a place of a part: there, nothing touches it."""
+
+from __future__ import annotations
+
+import math
+
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.along_motion import distance_from
+from cagepose.kernels.shapes.body import PlacedBody, place_asked
+from cagepose.kernels.shapes.features import (
+    EDGE,
+    FACE,
+    HOLE,
+    PIERCED,
+    SOLID,
+    Feature,
+    Shapes,
+    beyond_fence,
+    out_of_fence,
+)
+from cagepose.kernels.shapes.meeting import reaches
+from cagepose.kernels.shapes.rims import nearest_on_edge
+
+PROBE, PROBE_MARGIN = 3.0, 1.5
+"""In touch tolerances, as in `cagepose.kernels.collision.contacts`."""
+BESIDE = 4.0 * PROBE
+"""In touch tolerances: how near to a place a part must be to cover it."""
+
+
+@kernel
+def depth_in_part(shapes: Shapes, which: int, point: Vector) -> float:
+    """Return how deep a point is in a part, metres; below zero: how far from it."""
+    beyond, nearest, has_faces = -math.inf, math.inf, shapes.parts[which].first_face < shapes.parts[which].last
+    for i in range(shapes.parts[which].first, shapes.parts[which].last):
+        feature = shapes.features[i]
+        if feature.kind == EDGE and feature.radius < 0.0:
+            continue
+        if feature.kind == EDGE and feature.first_fence == feature.last_fence and has_faces:  # a round side
+            on_axis = nearest_on_edge(feature, point)
+            beyond = max(beyond, on_axis.away - on_axis.radius)
+            continue
+        if feature.kind != FACE:
+            nearest = min(nearest, distance_from(shapes, i, point))
+            continue
+        height = dot(vector_from(feature.direction), minus(point, vector_from(feature.point)))
+        beyond = max(beyond, height)
+        if height > 0.0 and reaches(shapes, i, vector_from(feature.direction), point, 0.0, 0.0):
+            nearest = min(nearest, height)
+    radius = shapes.features[shapes.parts[which].first].radius
+    return radius - beyond if -math.inf < beyond <= 0.0 else radius - nearest
+
+
+@kernel
+def is_within_wall(wall: Feature, point: Vector) -> bool:
+    """Whether a point lies within a wall of a hole, at the heights of its rims or between them."""
+    along, seen = vector_from(wall.direction), minus(point, vector_from(wall.point))
+    height, far = dot(along, seen), wall.radius - wall.taper * wall.length
+    first, last = wall.radius * wall.taper, wall.length + far * wall.taper
+    if height < first or height > last:
+        return False
+    radius = wall.radius + (far - wall.radius) * (height - first) / (last - first)
+    side = norm(minus(seen, scaled(along, height)))
+    return side < -radius * math.sqrt(1.0 - wall.taper * wall.taper)
+
+
+@kernel
+def is_in_hole(shapes: Shapes, which: int, point: Vector) -> bool:
+    """Whether a point lies within the walls of a hole."""
+    for i in range(shapes.parts[which].first, shapes.parts[which].last):
+        wall = shapes.features[i]
+        if wall.kind == EDGE and wall.radius < 0.0 and is_within_wall(wall, point):
+            return True
+    return False
+
+
+@kernel
+def covers(shapes: Shapes, which: int, i: int, place: Vector, normal: Vector, touch_m: float) -> bool:
+    """Whether another part of a body covers a place of a part's feature, with this outward normal."""
+    feature = shapes.features[i]
+    probe = plus(place, scaled(normal, PROBE * touch_m))
+    if feature.kind == FACE:
+        direction, seen = vector_from(feature.direction), minus(place, vector_from(feature.point))
+        seen = minus(seen, scaled(direction, dot(direction, seen)))
+        for f in range(feature.first_fence, feature.last_fence):
+            beyond = beyond_fence(shapes.fences[f], seen)
+            if beyond > -touch_m:
+                probe = minus(probe, scaled(out_of_fence(shapes.fences[f], seen), beyond + PROBE * touch_m))
+    in_hole = False
+    for another in range(len(shapes.parts)):
+        in_hole = in_hole or (shapes.parts[another].kind != SOLID and is_in_hole(shapes, another, probe))
+    for another in range(len(shapes.parts)):
+        part = shapes.parts[another]
+        if another == which or part.kind == HOLE or (in_hole and part.kind == PIERCED):
+            continue
+        if norm(minus(probe, vector_from(part.middle))) > part.reach:
+            continue
+        if depth_in_part(shapes, another, probe) > PROBE_MARGIN * touch_m:
+            return True
+    return False
+
+
+@kernel
+def is_in_another(
+    own: Shapes, body: PlacedBody, which: int, i: int, place: Vector, normal: Vector, touch_m: float
+) -> bool:
+    """Whether another part of the object covers a place of feature i of a part: those that may are placed first."""
+    held = body.world
+    for another in range(len(own.parts)):
+        part = held.parts[another]
+        if norm(minus(place, vector_from(part.middle))) <= part.reach + BESIDE * touch_m:
+            place_asked(own, another, body)
+    return covers(held, which, i, place, normal, touch_m)
