@@ -51,15 +51,19 @@ def are_in_each_other(
     """Return whether samples on the surface of either part lie in the other one, and in none of its holes; a part may
     touch the other one. ``pose_other_one`` is that of the first part's body in the frame of the second one's.
     """
-    return _is_in(one, other, pose_other_one, other_holes) or _is_in(other, one, pose_other_one.inverse(), holes)
+    one_in_other = _is_in(one, other, pose_other_one, holes, other_holes)
+    return one_in_other or _is_in(other, one, pose_other_one.inverse(), other_holes, holes)
 
 
-def _is_in(one: Shape, other: Shape, pose_other_one: Pose, other_holes: Sequence[Hole]) -> bool:
+def _is_in(one: Shape, other: Shape, pose_other_one: Pose, holes: Sequence[Hole], other_holes: Sequence[Hole]) -> bool:
     mesh = shape_mesh(one, SAMPLED)
     points = np.concatenate([mesh.vertices_m, mesh.vertices_m[mesh.triangles].mean(axis=1)])
     middle = points.mean(axis=0)
-    seen = pose_other_one.transform(middle + (1.0 - SHRUNK) * (points - middle))
+    points = middle + (1.0 - SHRUNK) * (points - middle)
+    seen = pose_other_one.transform(points)
     held = other.holds(seen)
+    for hole in holes:
+        held &= ~hole.holds(points)
     for hole in other_holes:
         held &= ~hole.holds(seen)
     return bool(held.any())

@@ -144,15 +144,23 @@ class _Features:
             self.add(RIM, pose, height * UP, out, radius, tapers=(taper, end_taper), toward=away)
 
     def add_side(self, pose: Pose, low: tuple[float, float], high: tuple[float, float]) -> None:
-        """Add the side between two heights with their radii, those of a hole below zero."""
+        """Add the side between two heights with their radii, those of a hole below zero; a slanted one in sectors."""
         (start, radius), (end, other) = low, high
         angle = math.atan2(radius - other, end - start)
         sine, cosine = math.sin(angle), math.cos(angle)
         start, end = start - radius * sine / cosine, end - other * sine / cosine
         if abs(other) > abs(radius):  # from the wide end on, as the narrow one may be a tip
             start, end, radius, sine = end, start, other, -sine
-        along = math.copysign(1.0, end - start) * UP
-        self.add(EDGE, pose, start * UP, along, abs(end - start), radius / cosine, tapers=(sine, 1.0))
+        along, length = math.copysign(1.0, end - start) * UP, abs(end - start)
+        if radius > 0.0 or sine == 0.0:
+            self.add(EDGE, pose, start * UP, along, length, radius / cosine, tapers=(sine, 1.0))
+            return
+        turns = 2.0 * math.pi * np.arange(8) / 8.0
+        ways = np.stack([np.cos(turns), np.sin(turns), np.zeros(8)], axis=1)
+        for middle in range(0, 8, 2):  # sectors, as what goes along one side of the wall meets the other one
+            fences = [(ways[(middle + beyond) % 8], 0.0, 0.0) for beyond in (3, 5)]
+            edge = (EDGE, pose, start * UP, along, length, radius / cosine, (sine, 1.0))
+            self.add(*edge, toward=ways[middle], fences=fences)
 
     def pierce(self, hole: Hole) -> None:
         """Cut a hole out of the faces that it runs through."""

@@ -114,7 +114,7 @@ def tensions_at_zero(spring: Spring, positions_m: FloatArray, quaternions: Float
 
 
 def cage_middle(scene: Scene) -> FloatArray:
-    """Return the middle of the cage's points and shapes in the world, (3,), metres."""
+    """Return the middle of the cage's points, shapes and holes in the world, (3,), metres."""
     cage, pose = scene.cage, scene.cage.pose_world_cage
     found: FloatArray = cage_middles(cage, cage.points_cage[None], pose.position_m[None], pose.quaternion_wxyz[None])[0]
     return found
@@ -127,8 +127,8 @@ def cage_middles(cage: Cage, points_cage_m: FloatArray, positions_m: FloatArray,
     Number by number, as below.
     """
     places = points_cage_m
-    if cage.shapes:
-        shapes = np.array([[shape.nodes_body().mean(axis=0) for shape in cage.shapes]])
+    if cage.shapes or cage.holes:
+        shapes = np.array([[shape.nodes_body().mean(axis=0) for shape in (*cage.shapes, *cage.holes)]])
         places = np.concatenate([places, np.repeat(shapes, len(places), axis=0)], axis=1)
     middles = places.cumsum(axis=1)[:, -1] / places.shape[1]
     found: FloatArray = positions_m + np.stack(_turned(quaternions, *middles.T), axis=1)

@@ -165,7 +165,9 @@ class SceneDrawing:
     ) -> None:
         """Draw the cage's points, and the places where its shapes touch, with their names."""
         names = self.scene.cage.element_names
-        middles = [body.mean(axis=0) for body in self.bodies]
+        cage = self.scene.cage
+        mouths = [cage.pose_world_cage.transform(hole.pose_body_shape.position_m) for hole in cage.holes]
+        middles = [body.mean(axis=0) for body in self.bodies] + [self._shown(mouth) for mouth in mouths]
         labels: list[tuple[FloatArray, list[str], bool]] = []
         chosen: dict[str, list[FloatArray]] = {look: [] for look in POINT_LOOKS}
         for name, place in zip(names, [*self.points, *middles], strict=True):

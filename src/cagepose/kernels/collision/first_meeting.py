@@ -208,7 +208,7 @@ def first_of_features(
     curved = are_curved(held, i, cage, j)
     if curved:
         now = approach(held, i, cage, j, motion, 0.0)
-        if abs(now.gap) <= touch_m and lie_flat(held.features[i], cage.features[j], slack):  # its vertices touch
+        if abs(now.gap) <= touch_m and lie_flat(held.features[i], cage.features[j], touch_m):  # its vertices touch
             return math.inf, math.inf
         if now.gap > 0.0 and surely_clear(now, now.gap) >= until:
             return math.inf, math.inf

@@ -13,7 +13,7 @@ import math
 from typing import NamedTuple
 
 from cagepose.kernels.algebra.pose import Quaternion, turned_by
-from cagepose.kernels.algebra.vector import Vector, minus, norm, scaled, vector_from
+from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, scaled, vector_from
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactSet, find_contacts, stays_on_face
 from cagepose.kernels.contact.curvature import write_curvature
@@ -38,7 +38,7 @@ from cagepose.kernels.quasistatic.implicit_step import (
     keep_along_faces,
     rho_against_circulation,
 )
-from cagepose.kernels.quasistatic.projection import ON_FACE, keep_stopped
+from cagepose.kernels.quasistatic.projection import GAP, ON_FACE, constrain_features, keep_stopped
 from cagepose.kernels.quasistatic.pushing_out import allow_depths, constrain_contacts, pushed_out
 from cagepose.kernels.quasistatic.rest_on_the_way import first_rest, is_held_on_the_way
 from cagepose.kernels.quasistatic.setting import Setting
@@ -163,14 +163,45 @@ def gap_left(contacts: ContactSet) -> float:
 
 
 @kernel
+def is_under_rim(contacts: ContactSet, i: int, touch_m: float) -> bool:
+    """Whether a contact is of a rim that a face lies on, to the touch tolerance."""
+    if contacts.rows[i].feature < 0:
+        return False
+    rim, normal = contacts.bends[i].on_rim, vector_from(contacts.rows[i].directions[0])
+    if rim.length == 0.0 or rim.is_on_ball:
+        return False
+    return abs(rim.length) * norm(cross(vector_from(rim.axis), normal)) <= touch_m
+
+
+@kernel
+def gap_under_rims(contacts: ContactSet, touch_m: float) -> float:
+    """Return the greatest distance, to either side, of a rim that lies flat from what it lies on.
+
+    A face is on all of a rim with its full digits or not at all: tilted by the touch tolerance it is a slope.
+    """
+    greatest = 0.0
+    for i in range(contacts.used[0] if len(contacts.bends) > 0 else 0):
+        if is_under_rim(contacts, i, touch_m):
+            greatest = max(greatest, abs(contacts.rows[i].gap))
+    return greatest
+
+
+@kernel
 def refined(
-    setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace
+    setting: Setting, position: Vector, quaternion: Quaternion, is_rest: bool, work: QuasistaticWorkspace
 ) -> tuple[Vector, Quaternion]:
-    """Close the gaps, within the touch tolerance, of the contacts that carry (5.12)."""
-    for i in range(work.contacts.used[0]):
-        work.contacts.states[i].is_sticking = False
+    """Close the gaps, within the touch tolerance, of the contacts that carry (5.12); or, before a rest, under rims."""
+    contacts, constraints = work.contacts, work.path.constraints
+    for i in range(contacts.used[0]):
+        contacts.states[i].is_sticking = False
     allow_depths(work.placement, setting.tolerances, work.path)
-    constrain_contacts(setting.geometry, work.placement, work.contacts, math.inf, work.path.constraints)
+    if is_rest:
+        constrain_contacts(setting.geometry, work.placement, contacts, math.inf, constraints)
+    else:
+        constraints.scratch[0].used = 0
+        for i in range(contacts.used[0]):
+            if is_under_rim(contacts, i, setting.tolerances.touch_m):
+                constrain_features(constraints, contacts.rows[i].feature, contacts.rows[i].cage_feature, GAP, 0.0)
     done, new_position, new_quaternion = pushed_out(setting, work.placement, position, quaternion, work.path)
     if done:
         return new_position, new_quaternion
@@ -271,9 +302,10 @@ def next_step(
         code = impending_motion(setting, frame, work) if fits else UNSOLVED
         keep_stopped(solver.stopped, position, frame, work.path.constraints)
         is_rest = code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
-        if not is_rest or n_refined == REFINEMENTS or gap_left(work.contacts) <= ON_FACE * setting.size_m:
+        left = gap_left(work.contacts) if is_rest else gap_under_rims(work.contacts, setting.tolerances.touch_m)
+        if n_refined == REFINEMENTS or left <= ON_FACE * setting.size_m:
             break
-        position, quaternion = refined(setting, position, quaternion, work)
+        position, quaternion = refined(setting, position, quaternion, is_rest, work)
         fits = find_placed_contacts(setting, position, quaternion, work)
         n_refined += 1
     here = State(position, quaternion, state.turn_step_rad, state.n_still, n_refined)

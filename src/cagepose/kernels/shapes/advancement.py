@@ -65,6 +65,12 @@ def are_curved(a: Shapes, i: int, b: Shapes, j: int) -> bool:
 
 
 @kernel
+def keeps_radius(feature: Feature) -> bool:
+    """Whether a feature is its core and no more than its radius around it: not so a hole, or the side of a cone."""
+    return feature.radius >= 0.0 and (feature.kind != EDGE or feature.taper == 0.0)
+
+
+@kernel
 def ball_around(feature: Feature) -> tuple[Vector, float]:
     """Return middle and radius of a ball around the core of a vertex, an edge or an arc."""
     if feature.kind == RIM:
@@ -118,7 +124,7 @@ def approach(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, level: fl
     way, spread = velocity_at(motion, middle), motion.rate * reach
     fastest, along = norm(way) + spread, vector_from(wide.direction)
     apart = 0.0
-    if wide.taper == 0.0 and wide.radius >= 0.0:
+    if keeps_radius(small) and keeps_radius(wide):
         apart = distance_from(b, j, middle) if first else distance_from(moved, i, middle)
         apart -= reach + small.radius + wide.radius
     gap = gap_of(one, other, meeting(moved, i, b, j), level)

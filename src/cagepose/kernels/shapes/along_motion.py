@@ -267,7 +267,7 @@ def place_moved(a: Shapes, i: int, motion: Motion, amount: float, moved: Shapes)
     """Write a feature as it is after an amount."""
     feature, so_far = a.features[i], turned_by_amount(motion, amount)
     point, toward = moved_point(motion, vector_from(feature.point), so_far), vector_from(feature.toward)
-    if feature.kind == RIM:
+    if feature.kind == RIM or feature.kind == EDGE:
         toward = turned(motion, toward, so_far)
     direction = turned(motion, vector_from(feature.direction), so_far)
     write_feature(feature, point, direction, toward, moved.features[i])

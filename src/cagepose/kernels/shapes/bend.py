@@ -28,6 +28,8 @@ from cagepose.kernels.shapes.features import EDGE, FACE, RIM, VERTEX, Feature, S
 from cagepose.kernels.shapes.meeting import Meeting
 from cagepose.kernels.shapes.rims import HALF_ARC, outward_at
 
+FLAT = 1e-9
+"""Sine between a rim's axis and the normal: less, it is straight as an edge along its tangent."""
 NOTHING: Matrix = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
@@ -147,6 +149,8 @@ def side_at(shapes: Shapes, i: int, normal: Vector, core: Vector) -> Side:
     if feature.kind == RIM:
         tangent = cross(vector_from(feature.direction), outward_at(feature, core))
         across = norm(cross(vector_from(feature.direction), normal))
+        if across <= FLAT:  # what bends along the normal's plane alone is straight across it
+            return Side(feature.radius, 0.0, none, True, tangent)
         return Side(feature.radius, feature.length / across, tangent, False, none)
     return Side(feature.radius, 0.0, none, False, none)
 

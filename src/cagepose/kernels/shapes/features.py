@@ -41,7 +41,8 @@ class Feature:
         Unit vector along an edge, outward normal of a face; of a rim that of the flat end that it bounds.
         A vertex at the end of arcs has that of their rim.
     toward
-        Of a rim: unit vector that its arc's middle, or the vertex, has as the outward normal along the flat end.
+        Of a rim: unit vector that its arc's middle, or the vertex, has as the outward normal along the flat end. Of a
+        sector of a hole's slanted wall: the same in its middle.
     length
         Of an edge, metres; radius of a rim, below zero that of a hole. A vertex at the end of arcs has that of them.
     radius

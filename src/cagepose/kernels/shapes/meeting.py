@@ -32,8 +32,8 @@ into each other by the touch tolerance; those of a greater one by where they are
 
 TIP = 1e-9
 """Of the radius of a rim that touches the side of a cone: where this has a smaller one, it is at its tip."""
-SIDEWAYS = 0.7
-"""Cosine between two axes that have a direction across both."""
+CENTRED = 1e-10
+"""Of radii: nearer to the axis of a slanted wall, a ball touches it all around, in the middle of each sector."""
 ROUNDING = 1e-13
 """Of the radius of a rim: what is nearer to it is told by its fences which way is out."""
 
@@ -202,23 +202,23 @@ def round_ones(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
         others, other_radius, side = nearest.place, nearest.radius, math.copysign(1.0, other.radius)
     between = minus(others, core)
     distance = side * norm(between)
-    if distance != 0.0:
-        normal = scaled(between, 1.0 / distance)
-    elif side < 0.0:  # on the axis of a hole, as far from its wall on all sides
-        hole = one if one.radius < 0.0 else other
-        normal = off_axis(hole, 1.0 if one.radius < 0.0 else -1.0)
+    if abs(distance) <= CENTRED * max(abs(radius), abs(other_radius)):
+        if one.kind == EDGE and one.taper != 0.0 and side < 0.0:
+            normal = middle_of_wall(one)
+        elif other.kind == EDGE and other.taper != 0.0 and side < 0.0:
+            normal = scaled(middle_of_wall(other), -1.0)
+        else:
+            return apart()
     else:
-        return apart()
+        normal = scaled(between, 1.0 / distance)
     return Meeting(True, distance - radius - other_radius, normal, plus(core, scaled(normal, radius)))
 
 
 @kernel
-def off_axis(hole: Feature, side: float) -> Vector:
-    """Return an outward normal of the wall of a hole, or its opposite."""
-    along = vector_from(hole.direction)
-    across = cross(along, (1.0, 0.0, 0.0) if abs(along[0]) < SIDEWAYS else (0.0, 1.0, 0.0))
-    wall = scaled(across, math.sqrt(1.0 - hole.taper * hole.taper) / norm(across))
-    return scaled(plus(wall, scaled(along, hole.taper)), side)
+def middle_of_wall(wall: Feature) -> Vector:
+    """Return the outward normal in the middle of a sector of a hole's slanted wall."""
+    toward = scaled(vector_from(wall.toward), math.sqrt(1.0 - wall.taper * wall.taper))
+    return plus(toward, scaled(vector_from(wall.direction), wall.taper))
 
 
 @kernel

@@ -182,15 +182,17 @@ def ends_near(shapes: Shapes, i: int, core: Vector, reach: float) -> bool:
 
 
 @kernel
-def lie_flat(one: Feature, other: Feature, slack: float) -> bool:
-    """Whether a face or a ball lies on all of a rim, to a sine: then the rim's vertices tell all that is to be told."""
+def lie_flat(one: Feature, other: Feature, touch_m: float) -> bool:
+    """Whether a face or a ball lies on all of a rim, to the touch tolerance: then the rim's vertices tell all."""
     rim, on_rim = (one, other) if one.kind == RIM else (other, one)
     axis, way = vector_from(rim.direction), vector_from(on_rim.direction)
     if rim.kind != RIM or (on_rim.kind != FACE and on_rim.kind != VERTEX):
         return False
+    away = 1.0
     if on_rim.kind == VERTEX:
         way = minus(vector_from(on_rim.point), vector_from(rim.point))
-    return norm(cross(axis, way)) <= slack * norm(way)
+        away = math.hypot(rim.length, norm(way))
+    return abs(rim.length) * norm(cross(axis, way)) <= touch_m * away
 
 
 @kernel
@@ -241,7 +243,7 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
                 nearest = min(nearest, met.gap) if deepest == -math.inf else nearest
                 continue
             least_gap = on_far_side(max(separation, at_least_m), touch_m) if deepest == -math.inf else deepest
-            if met.gap < least_gap or lie_flat(a.features[i], b.features[j], slack):
+            if met.gap < least_gap or lie_flat(a.features[i], b.features[j], touch_m):
                 continue
             if deepest > -math.inf and met.gap < -SAME_PLACE * touch_m and one_ends(a, i, b, j, met):
                 continue

@@ -88,7 +88,8 @@ class _Maker:
         self.size = float(from_metres(self.scene.size_m, self.unit))
         held = self.scene.object
         nearest = nearest_on_object(held, held.pose_world_object, self.scene.cage)
-        play_m = float(np.median(np.linalg.norm(nearest.places_world - nearest.feet_world, axis=1)))
+        gaps = np.linalg.norm(nearest.places_world - nearest.feet_world, axis=1)
+        play_m = float(np.median(gaps)) if len(gaps) else 0.0
         self.play = float(from_metres(max(play_m, LEAST_PLAY * self.scene.size_m), self.unit))
 
     def controls(self) -> list[Control]:

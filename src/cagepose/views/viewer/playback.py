@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from cagepose.files.units import LengthUnit
 from cagepose.model.checks import FloatArray
-from cagepose.model.naming import names_of
 from cagepose.model.pose import Pose
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
 from cagepose.studies.acts import Act, acts_of
@@ -185,10 +184,11 @@ class _Camera:
     def _touches(self, pose: Pose, names: tuple[str, ...]) -> Touches:
         """Return what touches of what has these names."""
         elements, scene = self._indices(names), self.run.scene
-        part_names = names_of(scene.object.parts)
+        part_names, n_solid = scene.object.element_names, len(scene.cage.names) + len(scene.cage.shapes)
         found = None if self.finder is None else self.finder.at(pose)
         is_asked = np.isin([] if found is None else found.elements, elements)
         left = np.setdiff1d(elements, found.elements) if found is not None else elements
+        left = left[left < n_solid]  # a hole has no place but where it touches
         nearest = nearest_on_object(scene.object, pose, scene.cage, left.tolist())
         parts, places, normals = nearest.parts, nearest.places_world, nearest.normals_world
         if found is not None:

@@ -39,12 +39,12 @@ class Nearest(NamedTuple):
 
 def nearest_on_object(held: Object, pose: Pose, cage: Cage, elements: Sequence[int] | None = None) -> Nearest:
     """Return what is nearest of the object, at ``pose``, to elements of the cage: its points and shapes, by index,
-    points first. Left out: all.
+    points first, and no holes. Left out: all.
 
     Of a point inside boxes, the place is on the nearest face of the box in which it lies deepest.
     """
     points = cage.points_world()
-    chosen = np.arange(len(cage.element_names)) if elements is None else np.array(elements, dtype=np.int64)
+    chosen = np.arange(len(points) + len(cage.shapes)) if elements is None else np.array(elements, dtype=np.int64)
     feet, places, normals = np.zeros((3, len(chosen), 3))
     found = Nearest(feet, places, normals, np.zeros(len(chosen), dtype=np.int64))
     is_point = chosen < len(points)
