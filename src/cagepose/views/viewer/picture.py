@@ -57,7 +57,7 @@ class PictureMaker:
         self.shifts = stage.shifts(exaggeration)
         self.body_poses = [
             Pose(shift) @ scene.cage.pose_world_cage @ shape.pose_body_shape
-            for shift, shape in zip(self.shifts[len(self.points) :], scene.cage.shapes, strict=True)
+            for shift, shape in zip(self.shifts[len(self.points) :], scene.cage.shapes, strict=False)
         ]
         sin_a, cos_a, sin_e, cos_e = math.sin(AZIMUTH), math.cos(AZIMUTH), math.sin(ELEVATION), math.cos(ELEVATION)
         back = np.array([cos_a * cos_e, sin_a * cos_e, sin_e])
@@ -99,7 +99,7 @@ class PictureMaker:
         last = self.shown.shots[-1].touches
         if last.forces_object is not None:
             places.append(self._places(last) - self.arrow_per_force * last.forces_object @ ends[-1].rotation.T)
-        for body, shift in zip(self.stage.bodies_world, self.shifts[len(self.points) :], strict=True):
+        for body, shift in zip(self.stage.bodies_world, self.shifts[len(self.points) :], strict=False):
             places.append(self.stage.place(body + shift))
         seen = np.concatenate([*places, self.points]) @ self.axes.T
         low, high = seen.min(axis=0), seen.max(axis=0)

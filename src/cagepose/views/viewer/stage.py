@@ -55,7 +55,8 @@ class Stage:
         self.center_object_m = held.center_of_gravity_m
         self.reference = shown.shots[0].pose_world_object
         nearest = nearest_on_object(held, self.reference, scene.cage)
-        self.gaps_world: FloatArray = nearest.places_world - nearest.feet_world
+        still = np.zeros((len(scene.cage.holes), 3))  # a hole stays where it is
+        self.gaps_world: FloatArray = np.concatenate([nearest.places_world - nearest.feet_world, still])
         ends = (self.reference, shown.shots[-1].pose_world_object)
         everything = np.concatenate([shown.points_world, *(pose.transform(outer_points(held)) for pose in ends)])
         bodies = [scene.cage.pose_world_cage.transform(vertices_of([shape])) for shape in scene.cage.shapes]
@@ -83,7 +84,7 @@ class Stage:
         return Pose(center - turned.transform(self.center_object_m), turned.quaternion_wxyz)
 
     def shifts(self, exaggeration: float) -> FloatArray:
-        """Return how far each of the cage's points and shapes is moved from its place, (n, 3), metres."""
+        """Return how far each of the cage's points, shapes and holes is moved from its place, (n, 3), metres."""
         lengths = np.linalg.norm(self.gaps_world, axis=1, keepdims=True)
         most = MOST_ADDED * self.size_m / np.maximum(lengths, np.finfo(np.float64).tiny)
         moved: FloatArray = np.minimum(exaggeration - 1.0, most) * self.gaps_world
