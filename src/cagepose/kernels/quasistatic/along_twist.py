@@ -75,21 +75,28 @@ def straightened(velocity: Vector, spin: Vector, reach_m: float, terms: float) -
 
 
 @kernel
+def turn_of_normals(contacts: ContactSet, velocity: Vector, spin: Vector) -> float:
+    """Return how fast the normals of round shapes that slide or roll turn: the greatest |K v + L m|."""
+    fastest = 0.0
+    for i in range(contacts.used[0] if len(contacts.bends) > 0 else 0):
+        contact = contacts.rows[i]
+        if contact.feature >= 0 and stays_on_face(contacts, i):
+            way = plus(velocity, cross(spin, vector_from(contact.arm)))
+            bend, rolls = contacts.bends[i], cross(vector_from(contact.directions[0]), spin)
+            turn = plus(times(matrix_from(bend.relative), way), times(matrix_from(bend.share), rolls))
+            fastest = max(fastest, norm(turn))
+    return fastest
+
+
+@kernel
 def longest_step(
     contacts: ContactSet, velocity: Vector, spin: Vector, slides: bool, turn_step_rad: float, size_m: float
 ) -> float:
     """Return how much of a twist keeps its direction: its turn, that of the normals of round shapes that slide, and how
     far sliding contacts leave their faces, stay small (5.11).
     """
-    amount = math.inf
-    for i in range(contacts.used[0] if len(contacts.bends) > 0 else 0):
-        contact = contacts.rows[i]
-        if contact.feature >= 0 and stays_on_face(contacts, i):
-            way = plus(velocity, cross(spin, vector_from(contact.arm)))
-            turns = norm(times(matrix_from(contacts.bends[i].relative), way))
-            if turns > 0.0 and turns * amount > turn_step_rad:
-                amount = turn_step_rad / turns
-    rate = norm(spin)
+    turns, rate = turn_of_normals(contacts, velocity, spin), norm(spin)
+    amount = turn_step_rad / turns if turns > 0.0 else math.inf
     if rate == 0.0:
         return amount
     amount = min(amount, turn_step_rad / rate)

@@ -156,15 +156,21 @@ def deepest_meeting(placement: Placement, work: StepWorkspace) -> int:
         return UNKNOWN_DEEP
     for one in range(meetings.gaps.shape[0]):
         for other in range(meetings.gaps.shape[1]):
-            if -meetings.gaps[one, other] - work.allowed_shapes[one, other] > worst:
-                found, worst = UNKNOWN_DEEP, -meetings.gaps[one, other] - work.allowed_shapes[one, other]
-    worst = 0.0
-    for at in range(meetings.used[0]):
+            if excess_of(meetings.gaps[one, other], one, other, work) > 0.0:
+                found = UNKNOWN_DEEP
+    for at in range(meetings.used[0] if found == UNKNOWN_DEEP else 0):
         row = meetings.rows[at]
-        excess = -row.gap - work.allowed_shapes[row.part, row.cage_part]
-        if excess > worst and not row.is_hidden:
+        excess = excess_of(row.gap, row.part, row.cage_part, work)
+        is_deep = excess_of(meetings.gaps[row.part, row.cage_part], row.part, row.cage_part, work) > 0.0
+        if is_deep and excess > worst and not row.is_hidden:
             found, worst = at, excess
     return found
+
+
+@kernel
+def excess_of(gap_m: float, one: int, other: int, work: StepWorkspace) -> float:
+    """Return how much deeper a gap of two parts is than it may be."""
+    return -gap_m - work.allowed_shapes[one, other]
 
 
 @kernel

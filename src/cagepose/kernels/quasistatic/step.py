@@ -30,7 +30,7 @@ from cagepose.kernels.contact.metric import Frame, frame_at, twist_of
 from cagepose.kernels.contact.onset import find_sticking, onset
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import ESCAPES, LET_GO, NONE, PLAIN, RESTS, SCREW, STALLED, TRAVEL, StepRecord
-from cagepose.kernels.quasistatic.along_twist import Twist, furthest_step, longest_step, straightened
+from cagepose.kernels.quasistatic.along_twist import Twist, furthest_step, longest_step, straightened, turn_of_normals
 from cagepose.kernels.quasistatic.flight import nothing_ahead
 from cagepose.kernels.quasistatic.implicit_step import (
     curvature_along,
@@ -52,6 +52,9 @@ nothing is ahead."""
 
 STIFF = 0.25
 """Curvature times step above which the explicit step would no longer follow the path: then it is made implicit."""
+ROUND, LONGER = 4.0, 6
+"""Where normals turn so many times faster than the object, the explicit step is short because of them: how often an
+implicit one, which turns them less, is made longer."""
 STILL = 1e-14
 """In sizes of the scene: a shorter step is no progress."""
 STILL_STEPS = 6
@@ -137,18 +140,28 @@ def next_twist(
     )
     if end < math.inf:
         write_curvature(contacts, load, position, quaternion, frame, False, scratch.stiff.curvature)
-        rho = max(keep_along_faces(contacts, scratch.solver.locked, scratch.stiff), 1.0 / end)
+        least_rho = keep_along_faces(contacts, scratch.solver.locked, scratch.stiff)
         if has_circulation(load):
             write_circulation(load, position, quaternion, frame, scratch.stiff.circulation)
-            rho = max(rho, rho_against_circulation(scratch.stiff))
+            least_rho = max(least_rho, rho_against_circulation(scratch.stiff))
+        rho = max(least_rho, 1.0 / end)
         is_stiff = abs(curvature_along(scratch.stiff.curvature, y)) * end > STIFF
-        if is_stiff and implicit_step(contacts, work.turned, friction, rho, scratch.stiff, scratch.solver):
+        turns = turn_of_normals(contacts, velocity, spin)
+        is_round = turns * end > STIFF * turn_step_rad and turns > ROUND * norm(spin)
+        for _ in range(LONGER if is_round else 1):
+            if not (is_stiff or is_round) or not implicit_step(
+                contacts, work.turned, friction, rho, scratch.stiff, scratch.solver
+            ):
+                break
             velocity, spin = twist_of(scratch.stiff.delta, frame)
-            end = min(
-                1.0,
+            longest = min(
                 longest_step(contacts, velocity, spin, carries, turn_step_rad, size_m),
                 longest_pull(load, position, quaternion, velocity, spin, turn_step_rad, size_m),
             )
+            end = min(1.0, longest)
+            if longest < 2.0 or rho <= least_rho:
+                break
+            rho = max(rho / longest, least_rho)
     return Twist(velocity, spin, end)
 
 

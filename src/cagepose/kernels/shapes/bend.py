@@ -10,10 +10,10 @@ velocity of the object's material at the contact, and m = n x w for its angular 
     gap'' = -n . (w x (w x a)) + v K v + 2 v L m - m P m,
     K = 1/(C_A + C_B),  L = K C_A,  P = C_A K C_B,
 
-where a is the arm from the reference point. All three have limits where radii are infinite: where C_A is finite
-P = C_A - C_A K C_A, where C_B is L = 1 - K C_B and P = C_B - C_B K C_B. What of the gap is open counts to C_B. A face
-of the object over a point of the cage has K = 0, L = 1 across the normal and P = 0: what a pair of features has beyond
-that is its bend.
+where a is the arm from the reference point. The normal turns by -(K v + L m). All three have limits where radii are
+infinite: where C_A is finite P = C_A - C_A K C_A, where C_B is L = 1 - K C_B and P = C_B - C_B K C_B. What of the gap
+is open counts to C_B. A face of the object over a point of the cage has K = 0, L = 1 across the normal and P = 0: what
+a pair of features has beyond that is its bend.
 """
 
 from __future__ import annotations
@@ -68,8 +68,8 @@ class Bend:
     ----------
     sliding
         Second derivative of their gap, (6, 6), metres.
-    relative
-        K, (3, 3): how the normal turns as they slide, radians for each metre.
+    relative, share
+        K and L, (3, 3): how the normal turns as they slide, radians for each metre, and as they roll.
     parallel
         P, (3, 3): how far the place where they touch moves as they roll, metres for each radian.
     has_twin, twin_sliding, twin_parallel
@@ -81,6 +81,7 @@ class Bend:
 
     sliding: Annotated[FloatArray, 6, 6]
     relative: Annotated[FloatArray, 3, 3]
+    share: Annotated[FloatArray, 3, 3]
     parallel: Annotated[FloatArray, 3, 3]
     has_twin: bool
     twin_sliding: Annotated[FloatArray, 6, 6]
@@ -232,6 +233,7 @@ def write_bend(found: Curvatures, normal: Vector, arm: Vector, axes: Matrix, rad
     out.has_twin = False
     write_sliding(found, normal, arm, axes, radii, out.sliding)
     write_rows(found.relative, out.relative)
+    write_rows(found.share, out.share)
     write_rows(found.parallel, out.parallel)
 
 

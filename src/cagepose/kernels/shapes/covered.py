@@ -1,4 +1,6 @@
-"""Whether another part of the same body covers a place of a part: there, nothing touches it."""
+"""Which places are in the material of a body: what another of its parts covers touches nothing, and what is deep in
+a wall of a hole is so only if there is material.
+"""
 
 from __future__ import annotations
 
@@ -86,28 +88,32 @@ def covers(shapes: Shapes, which: int, i: int, place: Vector, normal: Vector, to
             beyond = beyond_fence(shapes.fences[f], seen)
             if beyond > -touch_m:
                 probe = minus(probe, scaled(out_of_fence(shapes.fences[f], seen), beyond + PROBE * touch_m))
+    return is_in_parts(shapes, which, probe, PROBE_MARGIN * touch_m)
+
+
+@kernel
+def is_in_parts(shapes: Shapes, but: int, point: Vector, least_m: float) -> bool:
+    """Whether a point is deeper than ``least_m`` in a part of a body, of which holes count as open; ``but`` is not
+    asked.
+    """
     in_hole = False
-    for another in range(len(shapes.parts)):
-        in_hole = in_hole or (shapes.parts[another].kind != SOLID and is_in_hole(shapes, another, probe))
-    for another in range(len(shapes.parts)):
-        part = shapes.parts[another]
-        if another == which or part.kind == HOLE or (in_hole and part.kind == PIERCED):
+    for which in range(len(shapes.parts)):
+        in_hole = in_hole or (shapes.parts[which].kind != SOLID and is_in_hole(shapes, which, point))
+    for which in range(len(shapes.parts)):
+        part = shapes.parts[which]
+        if which == but or part.kind == HOLE or (in_hole and part.kind == PIERCED):
             continue
-        if norm(minus(probe, vector_from(part.middle))) > part.reach:
+        if norm(minus(point, vector_from(part.middle))) > part.reach:
             continue
-        if depth_in_part(shapes, another, probe) > PROBE_MARGIN * touch_m:
+        if depth_in_part(shapes, which, point) > least_m:
             return True
     return False
 
 
 @kernel
-def is_in_another(
-    own: Shapes, body: PlacedBody, which: int, i: int, place: Vector, normal: Vector, touch_m: float
-) -> bool:
-    """Whether another part of the object covers a place of feature i of a part: those that may are placed first."""
-    held = body.world
-    for another in range(len(own.parts)):
-        part = held.parts[another]
+def place_around(own: Shapes, body: PlacedBody, place: Vector, touch_m: float) -> None:
+    """Place all parts of the object that may hold a place."""
+    for which in range(len(own.parts)):
+        part = body.world.parts[which]
         if norm(minus(place, vector_from(part.middle))) <= part.reach + BESIDE * touch_m:
-            place_asked(own, another, body)
-    return covers(held, which, i, place, normal, touch_m)
+            place_asked(own, which, body)

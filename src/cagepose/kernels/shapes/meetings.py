@@ -30,9 +30,8 @@ from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.along_motion import can_touch, distance_from
 from cagepose.kernels.shapes.bend import bends_by, curvatures
 from cagepose.kernels.shapes.body import PlacedBody, place_asked, rotation_of
-from cagepose.kernels.shapes.covered import covers, is_in_another
+from cagepose.kernels.shapes.covered import covers, is_in_parts, place_around
 from cagepose.kernels.shapes.features import (
-    EDGE,
     FACE,
     HOLE,
     RIM,
@@ -40,7 +39,6 @@ from cagepose.kernels.shapes.features import (
     VERTEX,
     Feature,
     Shapes,
-    beyond_fence,
     height_of_end,
     is_end,
 )
@@ -161,27 +159,6 @@ def deepest_gap(a: Shapes, one: int, b: Shapes, other: int) -> float:
 
 
 @kernel
-def one_ends(a: Shapes, i: int, b: Shapes, j: int, met: Meeting) -> bool:
-    """Whether one of two features that are in each other ends nearer than they are deep: then others meet there."""
-    core = minus(met.place, scaled(met.normal, a.features[i].radius))
-    there = plus(met.place, scaled(met.normal, met.gap + b.features[j].radius))
-    return ends_near(a, i, core, -2.0 * met.gap) or ends_near(b, j, there, -2.0 * met.gap)
-
-
-@kernel
-def ends_near(shapes: Shapes, i: int, core: Vector, reach: float) -> bool:
-    feature = shapes.features[i]
-    seen = minus(core, vector_from(feature.point))
-    if feature.kind == EDGE:
-        along = dot(vector_from(feature.direction), seen) / (1.0 - feature.taper * feature.taper)
-        return along < reach or along > feature.length - reach
-    ends = False
-    for f in range(feature.first_fence, feature.last_fence):
-        ends = ends or (feature.kind == FACE and beyond_fence(shapes.fences[f], seen) > -reach)
-    return ends
-
-
-@kernel
 def lie_flat(one: Feature, other: Feature, touch_m: float) -> bool:
     """Whether a face or a ball lies on all of a rim, to the touch tolerance: then the rim's vertices tell all."""
     rim, on_rim = (one, other) if one.kind == RIM else (other, one)
@@ -218,8 +195,8 @@ def is_arc_far(rim: Feature, shapes: Shapes, i: int, touch_m: float) -> bool:
 
 @kernel
 def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, touch_m: float, found: Meetings) -> float:
-    """Append the meetings of two parts; return how far apart they are at least, below zero how deep in each other; NaN:
-    there is no room.
+    """Append the meetings of two parts; return how far apart they are at least, below zero how deep in each other (not
+    of parts with holes: see `find_meetings`); NaN: there is no room.
 
     They are known to be ``at_least_m`` apart, metres.
     """
@@ -245,8 +222,6 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
             least_gap = on_far_side(max(separation, at_least_m), touch_m) if deepest == -math.inf else deepest
             if met.gap < least_gap or lie_flat(a.features[i], b.features[j], touch_m):
                 continue
-            if deepest > -math.inf and met.gap < -SAME_PLACE * touch_m and one_ends(a, i, b, j, met):
-                continue
             if found.used[0] == len(found.rows):
                 found.used[0] = first
                 return math.nan
@@ -256,18 +231,17 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
                 found.used[0] += 1
             else:
                 note_twin(a, b, found.rows[told], found.rows[found.used[0]])
-    if deepest == -math.inf:
-        keep_nearest(found, first, on_far_side(max(separation, at_least_m), touch_m))
+    if deepest > -math.inf:
+        return max(at_least_m, 0.0)
+    keep_nearest(found, first, on_far_side(max(separation, at_least_m), touch_m))
     for at in range(first, found.used[0]):
         nearest = min(nearest, found.rows[at].gap)
-    if deepest > -math.inf:
-        return nearest if nearest < math.inf else max(at_least_m, 0.0)
     radii = a.features[a.parts[one].first].radius + b.features[b.parts[other].first].radius
     if (nearest == math.inf or touch_m < -separation - radii < math.inf) and max(separation, at_least_m) <= touch_m:
         separation = max(separation, apart_by_rims(a, one, b, other, slack))
     if nearest == math.inf or touch_m < -separation - radii < math.inf:  # of cores: what reaches does so by the slack
         return max(separation, at_least_m)
-    return nearest
+    return max(separation, nearest)  # at an edge, one of the faces may be deep
 
 
 @kernel
@@ -440,8 +414,24 @@ def find_meetings(
             found.gaps[one, other] = gap
     for at in range(found.used[0]):
         touching = found.rows[at]
-        place, normal = vector_from(touching.place), vector_from(touching.normal)
-        there = plus(place, scaled(normal, touching.gap))
-        touching.is_hidden = is_in_another(
-            own, body, touching.part, touching.feature, place, normal, touch_m
-        ) or covers(cage, touching.cage_part, touching.cage_feature, there, scaled(normal, -1.0), touch_m)
+        touching.is_hidden = is_hidden(own, body, cage, touching, touch_m)
+        if not touching.is_hidden and deepest_gap(held, touching.part, cage, touching.cage_part) > -math.inf:
+            gap = found.gaps[touching.part, touching.cage_part]
+            found.gaps[touching.part, touching.cage_part] = min(gap, touching.gap)
+
+
+@kernel
+def is_hidden(own: Shapes, body: PlacedBody, cage: Shapes, one: Touching, touch_m: float) -> bool:
+    """Whether another part of one of the bodies covers the place of a meeting; or it is deep in a wall of a hole, or in
+    a face beside one, where there is no material: beyond the corner between them.
+    """
+    place, normal = vector_from(one.place), vector_from(one.normal)
+    there, held, least_m = plus(place, scaled(normal, one.gap)), body.world, SAME_PLACE * touch_m
+    place_around(own, body, place, touch_m)
+    if covers(held, one.part, one.feature, place, normal, touch_m):
+        return True
+    if covers(cage, one.cage_part, one.cage_feature, there, scaled(normal, -1.0), touch_m):
+        return True
+    if one.gap >= -least_m or deepest_gap(held, one.part, cage, one.cage_part) == -math.inf:
+        return False
+    return not (is_in_parts(cage, -1, place, least_m) or is_in_parts(held, -1, there, least_m))
