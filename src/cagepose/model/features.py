@@ -114,13 +114,14 @@ class _Features:
         length: float = 0.0,
         radius: float = 0.0,
         tapers: tuple[float, float] = (0.0, 1.0),
+        is_second: bool = False,
         toward: FloatArray = NO_DIRECTION,
         fences: Iterable[tuple[FloatArray, float, float]] = (),
     ) -> None:
         """Add a feature that is given in the frame of its shape."""
         turn = pose.rotation
-        numbers = [kind, pose.transform(point), turn @ direction, turn @ toward, length, radius, *tapers, []]
-        of_end = kind == VERTEX or (kind == RIM and length > 0.0)
+        numbers = [kind, pose.transform(point), turn @ direction, turn @ toward, length, radius, *tapers, is_second, []]
+        of_end = kind == VERTEX or (kind == RIM and length > 0.0 and not is_second)
         of_kind = self.ends if of_end else self.faces if kind == FACE and self.kind != HOLE else self.others
         of_kind.append((numbers, [(turn @ along, bound, circle) for along, bound, circle in fences]))
 
@@ -140,8 +141,9 @@ class _Features:
             fences = [(direction, 0.0, 0.0) for direction in (along, -along, above, below)]
             self.add(VERTEX, pose, height * UP + radius * away, out, radius, toward=away, fences=fences)
             self.ends[-1][0][-1] = [arcs_from + arc for arc in arcs]
-        for away in outward[::2]:
-            self.add(RIM, pose, height * UP, out, radius, tapers=(taper, end_taper), toward=away)
+        for is_second in (False, True):
+            for away in outward[::2]:
+                self.add(RIM, pose, height * UP, out, radius, 0.0, (taper, end_taper), is_second, away)
 
     def add_side(self, pose: Pose, low: tuple[float, float], high: tuple[float, float]) -> None:
         """Add the side between two heights with their radii, those of a hole below zero; a slanted one in sectors."""

@@ -9,7 +9,13 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, vector_from
 from cagepose.kernels.collision.geometry import Geometry, Placement
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.advancement import approach, are_curved, first_curved_touch, surely_clear
+from cagepose.kernels.shapes.advancement import (
+    approach,
+    are_curved,
+    first_curved_touch,
+    is_far_from_arc,
+    surely_clear,
+)
 from cagepose.kernels.shapes.along_motion import ahead, can_touch, clear_step, first_touch, safe_step
 from cagepose.kernels.shapes.body import place_asked
 from cagepose.kernels.shapes.features import EDGE, HOLE, SOLID, Shapes, is_end
@@ -207,15 +213,14 @@ def first_of_features(
         return math.inf, math.inf
     curved = are_curved(held, i, cage, j)
     if curved:
+        if is_far_from_arc(held, i, cage, j, touch_m + speed * until):
+            return math.inf, math.inf
         now = approach(held, i, cage, j, motion, 0.0)
         if abs(now.gap) <= touch_m and lie_flat(held.features[i], cage.features[j], touch_m):  # its vertices touch
             return math.inf, math.inf
         if now.gap > 0.0 and surely_clear(now, now.gap) >= until:
             return math.inf, math.inf
-    elif (
-        safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until
-        or clear_step(held, i, cage, j, motion, 0.0, moved) >= until
-    ):
+    elif surely_apart(held, i, cage, j, motion, until, moved):
         return math.inf, math.inf
     met = meeting(held, i, cage, j)
     touches = met.is_one and abs(met.gap) <= touch_m

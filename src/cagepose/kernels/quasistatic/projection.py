@@ -218,8 +218,8 @@ def projected(
         worst = 0.0
         for i in range(work.used):
             lacks = lack(geometry, rows[i], position, quaternion, moved)
-            if lacks.value == math.inf:
-                return False, position, quaternion
+            if lacks.value == math.inf:  # the features have left each other
+                continue
             write_scaled_wrench(lacks.direction, cross(lacks.arm, lacks.direction), frame, work.column)
             place = work.basis.used
             if append_column(work.basis, work.column, i, 0.0):

@@ -24,7 +24,7 @@ from cagepose.kernels.shapes.along_motion import (
 from cagepose.kernels.shapes.features import EDGE, FACE, RIM, VERTEX, Feature, Shapes
 from cagepose.kernels.shapes.meeting import Meeting, meeting
 from cagepose.kernels.shapes.motion import Motion, velocity_at
-from cagepose.kernels.shapes.rims import distance_at, foot_on, middle_of_arc, reach_of_arc
+from cagepose.kernels.shapes.rims import distance_at, feet_on, foot_on, middle_of_arc, reach_of_arc
 
 ADVANCES = 6000
 """Steps for one pair of features; only where they graze each other more than some tens are taken."""
@@ -71,6 +71,29 @@ def keeps_radius(feature: Feature) -> bool:
 
 
 @kernel
+def is_far_from_arc(a: Shapes, i: int, b: Shapes, j: int, within_m: float) -> bool:
+    """Whether one of two features is an arc that the other one is surely farther from than ``within_m``: most are.
+
+    Of faces this is not asked: their normals tell how far apart parts are.
+    """
+    if a.features[i].kind == FACE or b.features[j].kind == FACE:
+        return False
+    if b.features[j].kind == RIM and is_arc_far(b.features[j], a, i, within_m):
+        return True
+    return a.features[i].kind == RIM and is_arc_far(a.features[i], b, j, within_m)
+
+
+@kernel
+def is_arc_far(rim: Feature, shapes: Shapes, i: int, within_m: float) -> bool:
+    other, middle, away = shapes.features[i], middle_of_arc(rim), -math.inf
+    if other.kind != VERTEX:
+        away = distance_at(other, middle)
+    if keeps_radius(other):
+        away = max(away, distance_from(shapes, i, middle) - other.radius)
+    return away - reach_of_arc(rim) > within_m
+
+
+@kernel
 def ball_around(feature: Feature) -> tuple[Vector, float]:
     """Return middle and radius of a ball around the core of a vertex, an edge or an arc."""
     if feature.kind == RIM:
@@ -92,13 +115,13 @@ def lines_apart(one: Feature, other: Feature) -> float:
     """Return how far apart two features are, of planes and lines without end, where they do not meet."""
     if one.kind == RIM or other.kind == RIM:
         rim, from_rim = (one, other) if one.kind == RIM else (other, one)
+        if from_rim.kind == EDGE or from_rim.kind == RIM:
+            return feet_on(rim, from_rim).least
         foot = foot_on(rim, from_rim)
         if from_rim.kind == FACE:
             across = minus(foot.point, vector_from(from_rim.point))
             return dot(vector_from(from_rim.direction), across) - from_rim.radius
-        if from_rim.kind == VERTEX:
-            return norm(minus(foot.point, vector_from(from_rim.point))) - from_rim.radius
-        return distance_at(from_rim, foot.point)
+        return norm(minus(foot.point, vector_from(from_rim.point))) - from_rim.radius
     return 0.0
 
 

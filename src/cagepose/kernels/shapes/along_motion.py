@@ -197,9 +197,12 @@ def can_touch(a: Shapes, i: int, b: Shapes, j: int) -> bool:
         return is_end(a.features[i]) or is_end(b.features[j])
     if one == EDGE and other == EDGE:
         return min(a.features[i].radius, b.features[j].radius) >= 0.0
+    if one == RIM and b.features[j].is_second:  # the place on the first one's arc tells that on the other
+        return False
     if one in (EDGE, RIM) and other in (EDGE, RIM):
         return is_bar(a.features[i]) or is_bar(b.features[j])
-    return a.features[i].radius + b.features[j].radius != 0.0
+    is_second = a.features[i].is_second or b.features[j].is_second
+    return a.features[i].radius + b.features[j].radius != 0.0 and not is_second
 
 
 @kernel

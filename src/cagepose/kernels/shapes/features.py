@@ -20,8 +20,8 @@ from cagepose.kernels.algebra.vector import Matrix, Vector, dot, minus, norm, pl
 from cagepose.kernels.native.kernel import kernel
 
 VERTEX, EDGE, FACE, RIM = 0, 1, 2, 3
-"""Kinds of features. A round rim is a row of arcs, each a feature, with a vertex at each of its ends: as a vertex it
-touches what lies flat on it."""
+"""Kinds of features. A round rim is a row of arcs with a vertex at each of their ends: as a vertex it touches what
+lies flat on it. An edge or another rim may be nearest to an arc at two places: so each arc is two features."""
 SOLID, PIERCED, HOLE = 0, 1, 2
 """Kinds of parts: convex; convex but for its holes; the walls and rims of a hole that other parts have."""
 INSIDE, OUTSIDE = 1.0, -1.0
@@ -52,6 +52,9 @@ class Feature:
         Of a rim: that of the round side below it, as seen along its own direction.
     end_taper
         Of a rim: that of what is above it, 1: a flat end.
+    is_second
+        Of a rim: whether the last place on its arc where another feature is nearest counts, if there is more than one;
+        else it is the first one.
     arc_before, arc_after
         Of a vertex at the end of arcs: these features.
     first_fence, last_fence
@@ -66,6 +69,7 @@ class Feature:
     radius: float
     taper: float
     end_taper: float
+    is_second: bool
     arc_before: int
     arc_after: int
     first_fence: int
@@ -150,7 +154,7 @@ def is_bar(feature: Feature) -> bool:
 @kernel
 def is_end(feature: Feature) -> bool:
     """Whether a part may end in a feature, along some direction: it is a vertex, or the rim of a bar."""
-    return feature.kind == VERTEX or (feature.kind == RIM and is_bar(feature))
+    return feature.kind == VERTEX or (feature.kind == RIM and is_bar(feature) and not feature.is_second)
 
 
 @kernel
@@ -179,7 +183,7 @@ def write_feature(feature: Feature, point: Vector, direction: Vector, toward: Ve
     """Write a feature with another place and other directions."""
     out.kind, out.length, out.radius, out.taper = feature.kind, feature.length, feature.radius, feature.taper
     out.end_taper, out.first_fence, out.last_fence = feature.end_taper, feature.first_fence, feature.last_fence
-    out.arc_before, out.arc_after = feature.arc_before, feature.arc_after
+    out.is_second, out.arc_before, out.arc_after = feature.is_second, feature.arc_before, feature.arc_after
     for k in range(3):
         out.point[k], out.direction[k], out.toward[k] = point[k], direction[k], toward[k]
 

@@ -27,11 +27,13 @@ from cagepose.kernels.algebra.vector import (
     vector_from,
 )
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.along_motion import can_touch, distance_from
+from cagepose.kernels.shapes.advancement import is_far_from_arc
+from cagepose.kernels.shapes.along_motion import can_touch
 from cagepose.kernels.shapes.bend import bends_by, curvatures
 from cagepose.kernels.shapes.body import PlacedBody, place_asked, rotation_of
 from cagepose.kernels.shapes.covered import covers, is_in_parts, place_around
 from cagepose.kernels.shapes.features import (
+    EDGE,
     FACE,
     HOLE,
     RIM,
@@ -43,7 +45,7 @@ from cagepose.kernels.shapes.features import (
     is_end,
 )
 from cagepose.kernels.shapes.meeting import Meeting, both_reach, farthest_beyond, meeting, toward_vertex
-from cagepose.kernels.shapes.rims import middle_of_arc, reach_of_arc
+from cagepose.kernels.shapes.rims import distance_at, end_of_arc
 
 ROOM_FOR_PAIR, MOST_ROOM = 128, 4096
 """Meetings that there is memory for: of each pair of parts, and of all."""
@@ -160,37 +162,20 @@ def deepest_gap(a: Shapes, one: int, b: Shapes, other: int) -> float:
 
 @kernel
 def lie_flat(one: Feature, other: Feature, touch_m: float) -> bool:
-    """Whether a face or a ball lies on all of a rim, to the touch tolerance: then the rim's vertices tell all."""
+    """Whether a face, a ball or a round side lies on all of an arc of a rim, to the touch tolerance: then the rim's
+    vertices tell all.
+    """
     rim, on_rim = (one, other) if one.kind == RIM else (other, one)
-    axis, way = vector_from(rim.direction), vector_from(on_rim.direction)
-    if rim.kind != RIM or (on_rim.kind != FACE and on_rim.kind != VERTEX):
+    if rim.kind != RIM or on_rim.kind == RIM:
         return False
-    away = 1.0
+    if on_rim.kind == EDGE:
+        ends = end_of_arc(rim, -1.0), end_of_arc(rim, 1.0)
+        return max(abs(distance_at(on_rim, ends[0])), abs(distance_at(on_rim, ends[1]))) <= touch_m
+    axis, way, away = vector_from(rim.direction), vector_from(on_rim.direction), 1.0
     if on_rim.kind == VERTEX:
         way = minus(vector_from(on_rim.point), vector_from(rim.point))
         away = math.hypot(rim.length, norm(way))
     return abs(rim.length) * norm(cross(axis, way)) <= touch_m * away
-
-
-@kernel
-def is_far_from_arc(a: Shapes, i: int, b: Shapes, j: int, touch_m: float) -> bool:
-    """Whether one of two features is an arc that surely does not touch the other one: most do not.
-
-    Faces are always asked for the direction in which the parts are apart.
-    """
-    if a.features[i].kind == FACE or b.features[j].kind == FACE:
-        return False
-    if b.features[j].kind == RIM:
-        return is_arc_far(b.features[j], a, i, touch_m)
-    return a.features[i].kind == RIM and is_arc_far(a.features[i], b, j, touch_m)
-
-
-@kernel
-def is_arc_far(rim: Feature, shapes: Shapes, i: int, touch_m: float) -> bool:
-    other = shapes.features[i]
-    if other.radius < 0.0 or other.taper != 0.0:
-        return False
-    return distance_from(shapes, i, middle_of_arc(rim)) - reach_of_arc(rim) - other.radius > touch_m
 
 
 @kernel

@@ -30,12 +30,12 @@ REACH = 2.0 * math.sin(0.5 * SEARCHED)
 
 
 class Foot(NamedTuple):
-    """The point of an arc that is nearest to another feature.
+    """A point of an arc that another feature is nearest to.
 
     Attributes
     ----------
     is_within
-        Whether it is nearest among its neighbours, too; else it is an end of the arc.
+        Whether it is nearest among its neighbours, too; else there is no such point.
     point
         In the world.
     tangent
@@ -138,21 +138,48 @@ def foot_on(rim: Feature, other: Feature) -> Foot:
     if other.kind == VERTEX:
         way = minus(vector_from(other.point), vector_from(rim.point))
         return farthest_along(rim, scaled(way, math.copysign(1.0, rim.length)))
-    best, least, before = on_rim(rim, -SEARCHED, False), math.inf, rise(rim, other, -SEARCHED)
+    feet = feet_on(rim, other)
+    if rim.is_second:
+        return on_rim(rim, feet.last, feet.count > 1)
+    return on_rim(rim, feet.first, feet.count > 0)
+
+
+class Feet(NamedTuple):
+    """Where on an arc an edge or another rim is nearest.
+
+    Attributes
+    ----------
+    count
+        How many places were found.
+    first, last
+        Their least and greatest angle from the arc's middle; the middle: there is none.
+    least
+        How far the other feature is from the arc, metres.
+    """
+
+    count: int
+    first: float
+    last: float
+    least: float
+
+
+@kernel
+def feet_on(rim: Feature, other: Feature) -> Feet:
+    """Find where an edge or another rim, both in the world, is nearest to an arc of a rim."""
+    count, first, last, before = 0, 0.0, 0.0, rise(rim, other, -SEARCHED)
+    ends = on_rim(rim, -SEARCHED, False).point, on_rim(rim, SEARCHED, False).point
+    least = min(distance_at(other, ends[0]), distance_at(other, ends[1]))
     width = 2.0 * SEARCHED / SECTIONS
     for section in range(SECTIONS):
         low = -SEARCHED + section * width
         after = rise(rim, other, low + width)
         if before < 0.0 <= after:
-            found = on_rim(rim, root_of_rise(rim, other, low, low + width, before, after), True)
-            distance = distance_at(other, found.point)
-            if distance < least:
-                best, least = found, distance
+            last = root_of_rise(rim, other, low, low + width, before, after)
+            first = last if count == 0 else first
+            least = min(least, distance_at(other, on_rim(rim, last, True).point))
+            count += 1
         before = after
-    if best.is_within:
-        return best
-    last = on_rim(rim, SEARCHED, False)
-    return best if distance_at(other, best.point) < distance_at(other, last.point) else last
+    return Feet(count, first, last, least)
 
 
 @kernel
@@ -193,6 +220,12 @@ def beyond_normals(rim: Feature, point: Vector, normal: Vector) -> float:
 @kernel
 def middle_of_arc(rim: Feature) -> Vector:
     return plus(vector_from(rim.point), scaled(vector_from(rim.toward), rim.length))
+
+
+@kernel
+def end_of_arc(rim: Feature, side: float) -> Vector:
+    """Return the end of an arc before (side -1) or after its middle."""
+    return on_rim(rim, side * HALF_ARC, True).point
 
 
 @kernel
