@@ -176,6 +176,13 @@ def lack(
 
 
 @kernel
+def is_second(geometry: Geometry, constraint: PositionConstraint) -> bool:
+    """Whether a constraint is about the second place on an arc of a rim where another feature is nearest."""
+    held, cage = geometry.held.features, geometry.cage.features
+    return held[constraint.feature].is_second or cage[constraint.cage_feature].is_second
+
+
+@kernel
 def keep_stopped(stopped: PassiveSet, position: Vector, frame: Frame, constraints: Constraints) -> None:
     """Let no projection move along what contacts without play stop: their gaps do not show it, to first order."""
     work = constraints.scratch[0]
@@ -218,8 +225,10 @@ def projected(
         worst = 0.0
         for i in range(work.used):
             lacks = lack(geometry, rows[i], position, quaternion, moved)
-            if lacks.value == math.inf:  # the features have left each other
+            if lacks.value == math.inf and is_second(geometry, rows[i]):  # it has met the first one, which counts
                 continue
+            if lacks.value == math.inf:
+                return False, position, quaternion
             write_scaled_wrench(lacks.direction, cross(lacks.arm, lacks.direction), frame, work.column)
             place = work.basis.used
             if append_column(work.basis, work.column, i, 0.0):

@@ -37,6 +37,8 @@ class Approach(NamedTuple):
 
     Attributes
     ----------
+    has_foot
+        Whether there is a place on the arc, if one of them is one, that the other one is nearest to.
     gap
         No more than how far apart they are, of planes and lines without end; below zero: about how deep in each other,
         metres.
@@ -46,6 +48,7 @@ class Approach(NamedTuple):
         How far apart they are as far as they reach, or less, and a speed that no point of the smaller one exceeds.
     """
 
+    has_foot: bool
     gap: float
     speed: float
     growth: float
@@ -150,15 +153,16 @@ def approach(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, level: fl
     if keeps_radius(small) and keeps_radius(wide):
         apart = distance_from(b, j, middle) if first else distance_from(moved, i, middle)
         apart -= reach + small.radius + wide.radius
-    gap = gap_of(one, other, meeting(moved, i, b, j), level)
+    met = meeting(moved, i, b, j)
+    gap, has_foot = gap_of(one, other, met, level), met.is_one or (one.kind != RIM and other.kind != RIM)
     if wide.kind == FACE:
         spread *= norm(cross(motion.axis, along))
-        return Approach(gap, abs(dot(way, along)) + spread, motion.rate * fastest, apart, fastest)
+        return Approach(has_foot, gap, abs(dot(way, along)) + spread, motion.rate * fastest, apart, fastest)
     if wide.kind != EDGE:
-        return Approach(gap, fastest, 0.0, apart, fastest)
+        return Approach(has_foot, gap, fastest, 0.0, apart, fastest)
     rise = dot(way, along)
     across = norm(minus(way, scaled(along, rise)))
-    return Approach(gap, across + abs(wide.taper * rise) + spread, motion.rate * fastest, apart, fastest)
+    return Approach(has_foot, gap, across + abs(wide.taper * rise) + spread, motion.rate * fastest, apart, fastest)
 
 
 @kernel
@@ -211,6 +215,8 @@ def first_curved_touch(
         if level > 0.0 and now.gap > level:
             level = 0.0
         value = now.gap + level
+        if level == 0.0 and not now.has_foot and value <= slack_m:  # what comes there has met the next arc before
+            return math.inf
         if 0.0 <= value <= slack_m:
             root = root_of_gap(a, i, b, j, motion, amount, level, moved)
             if amount <= root <= end and touches_after(a, i, b, j, motion, root, level, slack, slack_m, moved):

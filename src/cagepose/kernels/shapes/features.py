@@ -9,14 +9,13 @@ A hole is a bar of negative radius: what lies a radius against the outward norma
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
-from cagepose.kernels.algebra.vector import Matrix, Vector, dot, minus, norm, plus, scaled, times, vector_from
+from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, minus, norm, plus, scaled, times, vector_from
 from cagepose.kernels.native.kernel import kernel
 
 VERTEX, EDGE, FACE, RIM = 0, 1, 2, 3
@@ -162,8 +161,7 @@ def height_of_end(feature: Feature, origin: Vector, normal: Vector) -> float:
     """Return how far a vertex, or the rim that an arc belongs to, leads along a unit normal, as seen from a place."""
     height = dot(minus(vector_from(feature.point), origin), normal) + feature.radius
     if feature.kind == RIM:
-        along = dot(vector_from(feature.direction), normal)
-        height += feature.length * math.sqrt(max(0.0, 1.0 - along * along))
+        height += feature.length * norm(cross(vector_from(feature.direction), normal))
     return height
 
 
