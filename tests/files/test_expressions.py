@@ -50,6 +50,30 @@ def test_a_parameter_changes_all_that_hangs_on_it() -> None:
     assert parse_scene(SCENE, "s.yaml", ["object.mass==half/2"]).object.mass_kg == 2.0
 
 
+def test_a_number_may_be_an_expression_whatever_its_key_or_its_parameter_is_called() -> None:
+    """``length`` is a unit in one place and a number in others; ``in`` holds names, and may be the name of a point."""
+    text = """\
+name: named like text
+units: {length: mm}
+parameters: {name: 6, length: "=2*name", file: "=length/3"}
+object:
+  shapes: [{cylinder: {radius: "=file", length: "=length"}}, {hole: {radius: 1, depth: "=name", in: [cylinder1]},
+    position: [0, 0, "=length/2"]}]
+  pose: {position: [0, 0, 20]}
+cage: {points: {in: ["=name", 0, 0], key: [0, "=length", 0]}}
+loads: [{name: weight, gravity: [0, 0, -1]}]
+"""
+    scene = parse_scene(text)
+    (cylinder,), (hole,) = scene.object.shapes, scene.object.holes
+    assert (cylinder.radius_m, cylinder.length_m, hole.depth_m) == (0.004, 0.012, 0.006)
+    assert scene.cage.points_cage.tolist() == [[0.006, 0.0, 0.0], [0.0, 0.012, 0.0]]
+    (problem,) = problems_of(text.replace("length: mm", "length: =mm"))
+    assert problem.startswith("s.yaml:2:17: units.length: is text '=mm'; use one of")
+    (problem,) = problems_of(text.replace("[cylinder1]", '["=cylinder1"]'))
+    assert "object.shapes[1].hole.in" in problem
+    assert "=cylinder1" in problem
+
+
 REFUSED = [
     ('=open("x")', "calls open, which no expression may"),
     ('=__import__("os")', "calls __import__, which no expression may"),
