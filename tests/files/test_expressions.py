@@ -147,7 +147,7 @@ def test_a_setting_that_is_wrong_is_named() -> None:
 def test_an_array_of_values_has_the_bits_of_each_value_by_itself() -> None:
     """Random formulas of random numbers, one by one and all at once."""
     rng = random.Random(4)
-    values = np.random.default_rng(4).uniform(-3.0, 3.0, 500)
+    values = np.append(np.random.default_rng(4).uniform(-3.0, 3.0, 500), (0.0, -0.0, 1.0))
 
     def formula(depth: int) -> str:
         if depth == 0:
@@ -171,6 +171,23 @@ def test_an_array_of_values_has_the_bits_of_each_value_by_itself() -> None:
                 assert not math.isfinite(found)
             else:
                 assert found == alone or (math.isnan(alone) and math.isnan(found))
+
+
+@pytest.mark.parametrize(
+    "text", ["min(1/a, 5)", "max(-3, 1/a)", "1/(1/a)", "min(a**0.5, 2)", "((-1 - a*a)**0.5)**0", "max((1/a)**2, 1)"]
+)
+def test_what_is_no_number_by_itself_is_none_among_others(text: str) -> None:
+    """Not even where a function or an operator would make a number of it again, as of infinity."""
+    expression, values = Expression(text), np.array([-1.0, 0.0, 0.5])
+    assert np.array_equal(expression.value({"a": values}), [by_itself(expression, a) for a in values], equal_nan=True)
+
+
+def by_itself(expression: Expression, a: float) -> float:
+    try:
+        found = expression.value({"a": float(a)})
+    except ValueError:
+        return math.nan
+    return found if isinstance(found, float) else math.nan
 
 
 def test_comparisons_answer_for_all_rows() -> None:
