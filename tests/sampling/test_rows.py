@@ -52,6 +52,7 @@ def compare_with_runs(results: StudyResults, method: str | None = None) -> dict[
     """Run each row's scene by itself, as a user would from the row; return how many ended how."""
     found: dict[str, int] = {}
     scene_text = results.study.scene_text
+    assert results.table().column_names == list(results.columns.names)
     for row in results.table().to_pylist():
         settings = [setting(one.key, row[one.key]) for one in results.study.varied]
         found[row["verdict"]] = found.get(row["verdict"], 0) + 1

@@ -171,6 +171,20 @@ def test_a_scene_that_is_wrong_is_told_in_its_own_place() -> None:
         Study.load("study.yaml")
 
 
+@pytest.mark.parametrize(
+    ("name", "column"),
+    [("verdict", "verdict_x"), ("force", "force_x"), ("touching", "touching_x"), ("touching_y", "touching_y_x")],
+)
+@pytest.mark.usefixtures("study")
+def test_a_watched_point_whose_column_is_another_one_is_refused(name: str, column: str) -> None:
+    points = "{x: [4, 4, 0], y: [4, -4, 0], y_x: [-4, -4, 0], z: [-4, 4, 0]}"
+    text = SCENE.replace(SCENE[SCENE.index("[[4, 4") : SCENE.index("\nloads")], points)
+    Path("scene.yaml").write_text(text.replace("name: gravity", "name: x"), encoding="utf-8")
+    vary, watch = {"object.mass": {"uniform": [1, 2]}}, {name: {"point": [0, 0, 0]}}
+    with pytest.raises(SceneFileError, match=f"watch: gives the column {column} a second meaning; rename the point"):
+        Study("scene.yaml", vary, {"runs": 8}, watch=watch, forces=True)
+
+
 @pytest.mark.usefixtures("study")
 def test_a_study_in_python_is_checked_as_its_file_is() -> None:
     with pytest.raises(SceneFileError, match=r"vary\.parameters\.side\.uniform: is .11.0, 9.0.; give the lower"):

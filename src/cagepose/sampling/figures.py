@@ -57,8 +57,8 @@ def draw(findings: Findings) -> dict[str, Figure]:
 
 def _asked(findings: Findings) -> tuple[str, ...]:
     """The watched quantities, or those of the pose where none is watched."""
-    quantities = findings.results.columns.quantities
-    return quantities[6:] or quantities
+    columns = findings.results.columns
+    return columns.watched or columns.quantities
 
 
 def _panels(n_panels: int, height_in: float, columns: int) -> tuple[Figure, list]:  # type: ignore[type-arg]

@@ -29,6 +29,8 @@ class RowColumns:
     ----------
     varied, quantities
         Names of the varied numbers, and of what is measured of each run: the final pose and the watched points.
+    watched
+        Those of the quantities that belong to watched points.
     resolution
         By quantity: what varies by less does not vary, but for rounding and the touch tolerance.
     verdicts
@@ -44,9 +46,9 @@ class RowColumns:
         }
         elements = scene.cage.element_names
         self.varied = tuple(one.key for one in study.varied)
-        watched = tuple(f"{name}_{axis}" for name in self._watched for axis in AXES)
+        self.watched = tuple(f"{name}_{axis}" for name in self._watched for axis in AXES)
         lengths = float(from_metres(SAME * scene.size_m, study.nominal.length_unit))
-        self.quantities = (*(f"position_{axis}" for axis in AXES), *ANGLES, *watched)
+        self.quantities = (*(f"position_{axis}" for axis in AXES), *ANGLES, *self.watched)
         self.resolution = {name: SAME_DEG if name in ANGLES else lengths for name in self.quantities}
         self.verdicts = ("verdict", *(f"verdict_{load.name}" for load in scene.loads))
         self.touching = {f"touching_{name}": name for name in elements}
@@ -54,6 +56,12 @@ class RowColumns:
 
     def __repr__(self) -> str:
         return f"<RowColumns: {few(self.varied)} vary; {few(self.quantities)} measured>"
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of all columns, in their order."""
+        measured = (*self.verdicts, *self.quantities, *self.touching, *self.forces)
+        return ("run", *self.varied, *measured, "accepted", "error", "solve_us")
 
     def quantities_of(self, outcomes: Outcomes) -> dict[str, FloatArray]:
         """Return what is measured, in the scene file's unit and degrees; NaN: no pose."""
