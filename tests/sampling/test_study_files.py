@@ -220,10 +220,10 @@ def test_what_stands_in_the_place_of_an_argument_is_refused_by_its_name(tmp_path
         with pytest.raises(SceneError) as caught:
             Study(**{**good, name: value})
         assert told in str(caught.value)
-    for workers in (0, -1, "2", True):
+    for workers in (0, -1, "2", True, 2.0, 1.5):
         with pytest.raises(SceneError) as caught:
             Study(**good).run(tmp_path / "out", workers=workers)
-        assert str(caught.value) == f"workers: is {workers!r}; give 1 or more"
+        assert str(caught.value) == f"workers: is {workers!r}; give a whole number from 1 upwards"
     assert not (tmp_path / "out").exists()
 
 

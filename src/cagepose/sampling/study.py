@@ -127,7 +127,7 @@ class Study:
         Raises
         ------
         SceneError
-            ``workers`` is no number from 1 upwards.
+            ``workers`` is no whole number from 1 upwards.
         StudyFolderError
             The folder holds something else.
         OSError
