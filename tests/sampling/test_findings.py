@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from cagepose import Study, StudyResults, load_scene, run
+from cagepose import SceneFileError, Study, StudyResults, load_scene, run
 from cagepose.sampling.capture_map import largest_box, refined_map
 from cagepose.sampling.sensitivity import _indices
 from cagepose.sampling.statistics import Spread, statistics_of, wilson
@@ -213,6 +213,37 @@ def test_the_capture_map_says_what_each_of_its_runs_does(run_study: RunStudy, tm
             ended = run(study.scene_text.scene_with(paths).scene)
             pitch = math.degrees(ended.pose.euler_zyx[1])
             assert found["accepted_cells"][up][across] == (ended.verdict == "rests" and abs(pitch) < 0.3)
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_a_number_with_one_value_has_no_side_of_the_map(run_study: RunStudy, peg: Path) -> None:
+    one, *others = {"cage.pose.position[1]": {"grid": [0.1]}, **HEIGHTS}.items()
+    numbers = run_study(dict([one, *others]), 20, scene=peg).report()
+    assert numbers["map"]["over"] == [key for key, _ in others]
+    assert run_study(dict([one, others[0]]), 20, scene=peg, folder="two").report()["map"] is None
+    with pytest.raises(SceneFileError, match=r"map\.over\[0\]: is .*, which does not vary; use two of: cage"):
+        Study(peg, dict([one, *others]), {"runs": 8}, map={"over": [one[0], others[0][0]]})
+
+
+@pytest.mark.usefixtures("small_designs")
+@pytest.mark.parametrize("low", [-0.1, 0.1])
+def test_a_box_of_permitted_values_is_about_nominal_ones_that_are_on_the_map(
+    run_study: RunStudy, peg: Path, low: float
+) -> None:
+    vary = {"cage.pose.position[2]": {"uniform": [low, 0.2]}, "cage.pose.position[0]": {"uniform": [-0.1, 0.1]}}
+    found = run_study(vary, 20, scene=peg).report()["map"]
+    assert sum(map(sum, found["accepted_cells"])) == found["runs"] == 64
+    assert found["box"] == ([[low, 0.2], [-0.1, 0.1]] if low < 0.0 else None)
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_a_report_of_one_number_and_one_quantity_has_room_for_its_pictures(
+    run_study: RunStudy, peg: Path, tmp_path: Path
+) -> None:
+    """Or matplotlib warns, which is an error here."""
+    watch = {"top": {"point": [0, 0, 0.5]}}
+    run_study({"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}}, 20, scene=peg, watch=watch).report()
+    assert {path.stem for path in tmp_path.glob("out/*.svg")} == {"sobol", "tornado", "spread"}
 
 
 @pytest.mark.usefixtures("small_designs")

@@ -66,7 +66,7 @@ def _matters(found: dict[str, Any]) -> Table | None:
 
 def _box(found: dict[str, Any]) -> str:
     if found["box"] is None:
-        return "capture map: the nominal run is not accepted"
+        return "capture map: the nominal values are not accepted, or not on the map"
     sides = [f"{key} {_number(a)} to {_number(b)}" for key, (a, b) in zip(found["over"], found["box"], strict=True)]
     return f"largest box of accepted runs: {', '.join(sides)}"
 

@@ -19,6 +19,8 @@ from cagepose.views.style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE_WIDTH_IN
 
 MOST_BARS = 12
 """Of numbers that matter: the first so many."""
+LEAST_HEIGHT_IN = 1.7
+"""Of a picture: room for a panel of one bar between its title and the legend."""
 VERDICT_COLOURS = {
     "stable": GREEN,
     "rests": GREEN,
@@ -64,7 +66,8 @@ def _asked(findings: Findings) -> tuple[str, ...]:
 def _panels(n_panels: int, height_in: float, columns: int) -> tuple[Figure, list]:  # type: ignore[type-arg]
     n_columns = min(columns, n_panels)
     n_rows = -(-n_panels // n_columns)
-    figure = Figure(figsize=(PAGE_WIDTH_IN, height_in * n_rows), layout="constrained")
+    height_in = max(height_in * n_rows, LEAST_HEIGHT_IN)
+    figure = Figure(figsize=(PAGE_WIDTH_IN, height_in), layout="constrained")
     panels = figure.subplots(n_rows, n_columns, squeeze=False).ravel()
     for panel in panels[n_panels:]:
         panel.set_axis_off()
