@@ -135,6 +135,18 @@ def test_a_linear_case_has_the_tolerances_and_indices_of_theory(run_study: RunSt
     assert next(one for one in numbers["sensitivities"] if one["name"] == "position_x")["missing"] is not None
 
 
+@pytest.mark.usefixtures("small_designs")
+def test_no_row_leaves_a_worst_case_that_is_not_known(run_study: RunStudy, peg: Path, tmp_path: Path) -> None:
+    """The cube starts on its points: a step upwards of these would be into it."""
+    peg.write_text(PEG.replace("0.02, 3]", "0.02, 0.5]"), encoding="utf-8")
+    vary = {"cage.pose.position[2]": {"uniform": [-0.2, -0.1]}}
+    numbers = run_study(vary, 20, scene=peg).report()
+    (row,) = (row for row in numbers["tolerances"] if row["name"] == "position_z")
+    assert (row["nominal"], row["worst_case"], row["stays_within_worst_case"]) == (0.5, [None, None], None)
+    assert row["monte_carlo"]["runs"] == 20
+    assert 'class="leaves"' not in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
 def test_blocks_of_a_design_in_which_a_run_has_no_pose_are_left_out() -> None:
     problem = {"num_vars": 1, "names": ["a"], "bounds": [[0.0, 1.0]]}
     rng = np.random.default_rng(2)

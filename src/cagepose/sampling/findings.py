@@ -144,7 +144,7 @@ def _tolerance(row: ToleranceRow, results: StudyResults) -> dict[str, Any]:
             "range": [spread.least, spread.greatest],
             "runs": spread.n,
         },
-        "stays_within_worst_case": row.is_linear,
+        "stays_within_worst_case": row.stays_within_worst,
         "derivatives": dict(zip(results.columns.varied, row.derivatives.tolist(), strict=True)),
     }
 
