@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cagepose import load_scene, run
+from cagepose import Cage, Cylinder, Force, Hole, Load, Object, Pose, Scene, load_scene, run
 from cagepose.files.write import MADE_BY
 from cagepose.views.viewer.film import END_MS, SHOTS_PER_MOTION, gif_bytes, png_bytes
-from cagepose.views.viewer.picture import SIZE, PictureMaker
+from cagepose.views.viewer.picture import FEW_NAMES, SIZE, PictureMaker
 from cagepose.views.viewer.playback import playback
 from cagepose.views.viewer.raster import BACKGROUND, Raster
 from cagepose.views.viewer.stage import Stage
+from our_scenes import SCENES as OUR_SCENES
 
 SCENES = Path(__file__).resolve().parents[3] / "scenes"
 
@@ -83,6 +84,26 @@ def test_a_picture_of_any_scene_is_ours_and_the_same_each_time():
         with Image.open(io.BytesIO(content)) as picture:
             assert picture.size == SIZE
     assert png_bytes(shown) == content
+
+
+@pytest.mark.parametrize("path", OUR_SCENES, ids=[path.stem for path in OUR_SCENES])
+def test_the_start_of_any_scene_can_be_drawn(path: Path):
+    """Where most of the cage touches nothing yet, and has its names all the same."""
+    shown = playback(run(load_scene(path)))
+    maker = PictureMaker(Stage(shown), 5)
+    maker.picture(shown.shots[0])
+    names = set(shown.run.scene.cage.element_names)
+    assert len(names) > FEW_NAMES or names <= {label.text for label in maker.labels}
+
+
+def test_a_hole_that_stands_alone_has_its_name_at_its_mouth():
+    peg = Object(shapes=[Cylinder(0.004, 0.03)], pose=Pose((0.0005, 0.0, 0.005)))
+    cage = Cage(holes=[Hole(0.005, 0.02)], pose=Pose((0.0, 0.0, 0.001)))
+    shown = playback(run(Scene(peg, cage, [Load("push", force=Force((1, 0, 0), (0, 0, 0)))])))
+    maker = PictureMaker(Stage(shown), 1)
+    maker.picture(shown.shots[0])
+    assert "hole1" in [label.text for label in maker.labels]
+    assert maker.stage.middles_world.tolist() == [[0.0, 0.0, 0.001]]
 
 
 def test_a_film_has_all_shots_rests_where_events_end_and_does_not_stand_still():
