@@ -70,6 +70,7 @@ class _Writer:
             "reach": held.reach_m * WINDOW / stage.size_m,
             "names": list(run.scene.cage.element_names),
             "points": [_numbers(point) for point in stage.place(self.shown.points_world)],
+            "mouths": [_numbers(mouth) for mouth in stage.place(stage.middles_world[len(stage.bodies_world) :])],
             "gaps": [_numbers(gap / stage.size_m) for gap in stage.gaps_world],
             **self._solids(),
             "greatestForce": self._greatest_force(),

@@ -122,6 +122,11 @@ class Drawing {
     return times(1 / places.length, places.reduce(add));
   }
 
+  // Where a shape or a hole of the cage that touches nothing has its name.
+  namedPlace(index, bodies) {
+    return index < bodies.length ? this.middle(bodies[index]) : this.stage.data.mouths[index - bodies.length];
+  }
+
   boxes(pose, name, color) {
     for (const box of this.stage.data.boxes) this.painter.draw(name, placed(composed(pose, { p: box.position, q: box.quaternion }), box.size), color);
   }
@@ -163,7 +168,7 @@ class Drawing {
       for (const mark of marks) this.ball(mark, look === "free" ? 0.7 * BALL : BALL, COLORS[look]);
       const counts = look === "reached" || (look === "touching" && (touching.size <= FEW_NAMES || pressing.has(index)));
       if (!counts && !this.allNames) return;
-      labels.push([marks[0] ?? this.middle(bodies[index - this.stage.data.points.length]), name, look === "free" ? "#777" : "#000"]);
+      labels.push([marks[0] ?? this.namedPlace(index - this.stage.data.points.length, bodies), name, look === "free" ? "#777" : "#000"]);
     });
   }
 
