@@ -31,6 +31,7 @@ cage:
 loads: [{name: weight, gravity: [0, 0, -1]}]
 """
 """A cube falls straight down onto four points: its height afterwards is theirs and a half, to rounding."""
+RISES = {"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}}
 HEIGHTS = {"cage.pose.position[2]": {"normal": {"sigma": 0.1}}, "object.pose.position[0]": {"uniform": [-0.05, 0.05]}}
 
 
@@ -80,6 +81,23 @@ def test_statistics_are_those_of_all_rows(run_study: RunStudy, peg: Path) -> Non
         assert spread.quantile(share) == pytest.approx(heights.quantile(share), abs=1e-3)
     assert heights.quantile(0.0008) < spread.three_sigma[0] < heights.quantile(0.002)
     assert found.n_touching["touching_C1"] == int(frame["touching_C1"].sum())
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_where_a_part_goes_that_does_not_come_to_rest_is_no_tolerance(run_study: RunStudy, peg: Path) -> None:
+    """Beyond its points the cube tips over; how far it is then is in its row alone."""
+    results = run_study({"object.pose.position[0]": {"uniform": [-0.1, 0.9]}, **RISES}, 200, scene=peg)
+    frame, numbers = results.to_frame(), results.report()
+    rests, others = frame[frame["verdict"] == "rests"], frame[frame["verdict"] == "escapes"]
+    assert len(rests) > 50 < len(others)
+    for row in numbers["tolerances"]:
+        found, values = row["monte_carlo"], rests[row["name"]]
+        assert (found["runs"], found["range"]) == (len(rests), [values.min(), values.max()])
+    assert others["pitch_deg"].notna().all()
+    assert abs(others["pitch_deg"]).min() > abs(rests["pitch_deg"]).max()
+    missing = {one["name"]: one["missing"] for one in numbers["sensitivities"]}
+    assert missing["accepted"] is None
+    assert "too many runs of the design do not come to rest" in missing["position_x"]
 
 
 def test_joined_spreads_are_those_of_all_at_once() -> None:

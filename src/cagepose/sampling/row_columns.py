@@ -14,8 +14,7 @@ from cagepose.files.study_file import StudyFile
 from cagepose.files.units import from_metres, to_metres
 from cagepose.model.checks import FloatArray
 from cagepose.model.wording import few
-from cagepose.runs.run import AT_REST
-from cagepose.sampling.outcome import REFUSED, Outcomes
+from cagepose.sampling.outcome import REFUSED, Outcomes, at_rest
 
 SAME, SAME_DEG = 1e-8, 1e-6
 """Of lengths, as a fraction of the scene's size; and of angles."""
@@ -64,7 +63,12 @@ class RowColumns:
         return ("run", *self.varied, *measured, "accepted", "error", "solve_us")
 
     def quantities_of(self, outcomes: Outcomes) -> dict[str, FloatArray]:
-        """Return what is measured, in the scene file's unit and degrees; NaN: no pose."""
+        """Return what is measured of runs that came to rest, in the scene file's unit and degrees; NaN: it did not."""
+        rests = at_rest(outcomes.verdict)
+        return {name: np.where(rests, column, np.nan) for name, column in self._measured(outcomes).items()}
+
+    def _measured(self, outcomes: Outcomes) -> dict[str, FloatArray]:
+        """Return the same of all runs that ended at a pose, wherever they were on their way."""
         unit = self._study.nominal.length_unit
         found = dict(zip(self.quantities, self._places(outcomes, unit), strict=True))
         return {name: column + 0.0 for name, column in found.items()}  # -0.0 becomes 0.0
@@ -80,7 +84,7 @@ class RowColumns:
         columns: dict[str, NDArray[Any]] = dict(zip(self.varied, values.T, strict=True))
         columns["verdict"] = outcomes.verdict
         columns |= zip(self.verdicts[1:], outcomes.phase_verdicts.T, strict=True)
-        columns |= self.quantities_of(outcomes)
+        columns |= self._measured(outcomes)
         columns |= zip(self.touching, outcomes.touching.T, strict=True)
         if outcomes.forces is not None:
             columns |= zip(self.forces, outcomes.forces.T, strict=True)
@@ -95,14 +99,12 @@ class RowColumns:
         ValueError
             The expression has no truth value.
         """
-        ran = columns["verdict"] != REFUSED
         if self._study.accept is None:
-            at_rest: NDArray[np.bool_] = ran & np.isin(columns["verdict"], sorted(AT_REST))
-            return at_rest
+            return at_rest(columns["verdict"])
         found = np.asarray(self._study.accept.value(columns))
         if found.dtype != np.bool_:
             raise ValueError("is no comparison; write what is true of a good run, such as verdict == 'rests'")
-        accepted: NDArray[np.bool_] = ran & found
+        accepted: NDArray[np.bool_] = (columns["verdict"] != REFUSED) & found
         return accepted
 
     def table(self, first: int, values: FloatArray, outcomes: Outcomes) -> pa.Table:

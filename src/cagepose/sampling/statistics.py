@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cagepose.model.checks import FloatArray
+from cagepose.sampling.outcome import at_rest
 from cagepose.sampling.results import StudyResults
 
 TAIL = 0.00135
@@ -21,7 +22,7 @@ Z_95 = 1.959963984540054
 
 @dataclass
 class Spread:
-    """How a quantity is spread over the runs that ended at a pose.
+    """How a quantity is spread over the runs that came to rest.
 
     Attributes
     ----------
@@ -110,12 +111,12 @@ def statistics_of(results: StudyResults) -> Statistics:
         names, counts = np.unique(part["verdict"], return_counts=True)
         found.verdicts.update(dict(zip(names.tolist(), counts.tolist(), strict=True)))
         for name, spread in found.spreads.items():
-            spread.add(part[name][~np.isnan(part[name])])
+            spread.add(part[name][at_rest(part["verdict"])])
         for name in columns.touching:
             found.n_touching[name] += int(part[name].sum())
-    for part in results.parts(columns.quantities):
+    for part in results.parts([*columns.quantities, "verdict"]):
         for name, spread in found.spreads.items():
-            spread.count(part[name][~np.isnan(part[name])])
+            spread.count(part[name][at_rest(part["verdict"])])
     return found
 
 

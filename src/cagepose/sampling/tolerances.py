@@ -25,9 +25,9 @@ class ToleranceRow:
     Attributes
     ----------
     name, nominal
-        Its value with all numbers at their nominal values; NaN: that run ends at no pose.
+        Its value with all numbers at their nominal values; NaN: that run does not come to rest.
     derivatives
-        By each varied number, (n_varied,), from the nominal run; NaN where a run beside it ends at no pose.
+        By each varied number, (n_varied,), from the nominal run; NaN where a run beside it does not come to rest.
     worst
         Least and greatest value if the quantity were linear and each number at its worst end.
     root_sum_square
