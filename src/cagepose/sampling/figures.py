@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from matplotlib.colors import ListedColormap, to_rgb
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
@@ -147,7 +147,7 @@ def _map_figure(found: CaptureMap) -> Figure:
             Rectangle((left, bottom), right - left, top - bottom, fill=False, edgecolor=BLACK, linestyle="--")
         )
         handles.append(Patch(fill=False, edgecolor=BLACK, linestyle="--", label="largest box of accepted runs"))
-    handles.append(Patch(facecolor=ListedColormap([GREY])(0), alpha=0.25, label="pale: not accepted"))
+    handles.append(Patch(facecolor=GREY, alpha=0.25, label="pale: not accepted"))
     panel.set_xlabel(found.keys[0])
     panel.set_ylabel(found.keys[1])
     figure.legend(handles=handles, loc="outside lower center", ncols=4)
