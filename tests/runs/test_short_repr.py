@@ -93,4 +93,3 @@ def test_results_say_how_it_ended() -> None:
     assert repr(first.events[1].motion) == "<Motion: turn 0.00546434 rad about (0, 1, 0)>"
     assert repr(run.phases[1]) == "<PhaseRun 'push': rests; 6 events, 9 contacts>"
     assert repr(run.contacts[-1]) == "<Contact of 'C13' with 'rack': normal force 1>"
-    assert dir(cagepose) == sorted(cagepose.__all__)

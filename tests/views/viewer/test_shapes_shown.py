@@ -29,10 +29,6 @@ BLOCK = Box((0.05, 0.05, 0.03), Pose((0.0, 0.0, -0.015)), "block")
 SCENES = [ball_on_table, ball_on_points, bar_between_bars, block_on_balls]
 
 
-def shown_on(picture: Image.Image, place: np.ndarray) -> np.ndarray:
-    return np.asarray(picture, dtype=float)[int(place[1]), int(place[0])]
-
-
 @pytest.mark.parametrize("scene", SCENES)
 def test_everything_that_touches_is_in_the_picture_and_marked(scene: Callable[[], Scene]) -> None:
     film = playback(run(scene()))
