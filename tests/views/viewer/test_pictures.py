@@ -96,14 +96,20 @@ def test_the_start_of_any_scene_can_be_drawn(path: Path):
     assert len(names) > FEW_NAMES or names <= {label.text for label in maker.labels}
 
 
-def test_a_hole_that_stands_alone_has_its_name_at_its_mouth():
+def test_a_hole_that_stands_alone_is_drawn_and_has_its_name_at_its_mouth():
     peg = Object(shapes=[Cylinder(0.004, 0.03)], pose=Pose((0.0005, 0.0, 0.005)))
     cage = Cage(holes=[Hole(0.005, 0.02)], pose=Pose((0.0, 0.0, 0.001)))
     shown = playback(run(Scene(peg, cage, [Load("push", force=Force((1, 0, 0), (0, 0, 0)))])))
     maker = PictureMaker(Stage(shown), 1)
-    maker.picture(shown.shots[0])
+    picture = np.asarray(maker.picture(shown.shots[0]), dtype=float)
     assert "hole1" in [label.text for label in maker.labels]
     assert maker.stage.middles_world.tolist() == [[0.0, 0.0, 0.001]]
+    turns = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
+    bottom = np.column_stack([0.005 * np.cos(turns), 0.005 * np.sin(turns), np.full(32, -0.019)])  # the peg is above
+    places = (maker._pixels(maker.stage.place(bottom))[:, :2] / 2.0).astype(int)
+    assert ((places > 0) & (places < SIZE)).all()
+    around = [picture[y - 2 : y + 3, x - 2 : x + 3] for x, y in places.tolist()]
+    assert sum(bool((patch < 200.0).any()) for patch in around) >= 14  # of the half that is in front
 
 
 def test_a_film_has_all_shots_rests_where_events_end_and_does_not_stand_still():

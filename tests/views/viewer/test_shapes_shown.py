@@ -183,6 +183,24 @@ def test_the_page_names_a_hole_that_nothing_touches_yet(opened, around: dict) ->
     assert "hole1" in {name["text"] for name in state(page)["written"]}
 
 
+def test_the_page_has_the_outlines_of_holes_on_both_sides() -> None:
+    plate = Object(
+        [Box((0.02, 0.02, 0.004), name="plate")],
+        holes=[Hole(0.003, 0.004, in_=["plate"], pose_body_shape=Pose((0.0, 0.0, 0.002)))],
+        pose=Pose((0.0, 0.0, 0.03)),
+    )
+    cage = Cage(
+        shapes=[Sphere(0.001, Pose((0.0, 0.008, 0.02)))],
+        holes=[Hole(0.003, 0.004, pose_body_shape=Pose((0.0, 0.0, -0.01)))],
+    )
+    film = playback(run(Scene(plate, cage, [WEIGHT])))
+    data, stage = page_data(film), Stage(film)
+    ((held,), (around,)) = data["holes"], data["cageHoles"]
+    assert held["mesh"] == around["mesh"]  # of the same kind and size
+    assert held["position"] == pytest.approx([0.0, 0.0, 0.002 / stage.size_m], abs=1e-9)
+    assert around["position"] == pytest.approx(stage.place(np.array((0.0, 0.0, -0.01))).tolist(), abs=1e-9)
+
+
 @pytest.mark.parametrize("scene", [ball_on_points, block_on_balls])
 def test_the_page_draws_an_object_as_large_as_the_picture_does(opened, scene: Callable[[], Scene]) -> None:
     film = playback(run(scene()))

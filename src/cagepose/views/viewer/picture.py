@@ -60,6 +60,7 @@ class PictureMaker:
             Pose(shift) @ scene.cage.pose_world_cage @ shape.pose_body_shape
             for shift, shape in zip(self.body_shifts, scene.cage.shapes, strict=True)
         ]
+        self.hole_poses = [scene.cage.pose_world_cage @ hole.pose_body_shape for hole in scene.cage.holes]
         sin_a, cos_a, sin_e, cos_e = math.sin(AZIMUTH), math.cos(AZIMUTH), math.sin(ELEVATION), math.cos(ELEVATION)
         back = np.array([cos_a * cos_e, sin_a * cos_e, sin_e])
         right = np.array([-sin_a, cos_a, 0.0])
@@ -102,6 +103,8 @@ class PictureMaker:
             places.append(self._places(last) - self.arrow_per_force * last.forces_object @ ends[-1].rotation.T)
         for body, shift in zip(self.stage.bodies_world, self.body_shifts, strict=True):
             places.append(self.stage.place(body + shift))
+        for hole, pose in zip(self.shown.run.scene.cage.holes, self.hole_poses, strict=True):
+            places.append(self.stage.place(pose.transform(solid_of(hole).mesh.vertices_m)))
         seen = np.concatenate([*places, self.points]) @ self.axes.T
         low, high = seen.min(axis=0), seen.max(axis=0)
         self.middle = (low + high) / 2.0
@@ -256,6 +259,10 @@ class PictureMaker:
         for shape in scene.object.shapes:
             faces = self._solid(shape, pose @ shape.pose_body_shape, BLUE)
             drawn.append((float(faces[0][..., 2].mean()), (*faces, SKY, SEE_THROUGH)))
+        for hole in scene.object.holes:  # of which the surface of a part shows nothing
+            self._solid(hole, pose @ hole.pose_body_shape, BLUE)
+        for hole, hole_pose in zip(scene.cage.holes, self.hole_poses, strict=True):
+            self._solid(hole, hole_pose, BROWN)
         for index, body in enumerate(scene.cage.shapes):
             depth = float(self._pixels(self._middle(index))[2])
             drawn.append((depth, (*self._solid(body, self.body_poses[index], BROWN), SAND, BODY_OPACITY)))
