@@ -212,6 +212,15 @@ def test_check_says_what_a_scene_of_shapes_holds(command: Callable[..., Any], in
     ]
 
 
+def test_check_counts_holes_and_those_that_stand_alone(command: Callable[..., Any], in_folder: Path) -> None:
+    held = "capsule: {radius: 2, length: 10}, position: [0, 0, 10]"
+    (in_folder / "scene.yaml").write_text(SCENE.format(held, "hole: {radius: 5, depth: 10}"))
+    answer = command("check", "scene.yaml")
+    assert (answer.code, answer.err) == (0, "")
+    assert answer.out.splitlines()[0] == "round: 1 shape, 1 cage hole, 1 load (gravity), method quasistatic"
+    assert answer.out.splitlines()[2].startswith("cage 10 x 10 x 10 mm: ")
+
+
 @pytest.mark.parametrize(("word", "meant"), [("roller", "capsule"), ("Ball", "sphere"), ("wall", "box")])
 def test_other_words_lead_to_ours(command: Callable[..., Any], in_folder: Path, word: str, meant: str) -> None:
     (in_folder / "scene.yaml").write_text(SCENE.format(f"{word}: {{radius: 3}}", FLOOR))

@@ -190,9 +190,11 @@ def test_none_leaves_out_and_keywords_still_change() -> None:
         ("friction.coefficient", -1, "friction.coefficient: is -1; give a number from 0 upwards"),
         ("object.boxes[0].size[0]", 0.0, "object.boxes[0].size[0]: is 0; give a number above 0"),
         ("cage.points.C1", [0, 0], "cage.points[0]: has 2 values; give 3"),
+        ("cage.pose", Pose(), "cage.pose: is of type Pose; give keys with values"),
+        (5, 2, "5 is no key; write one as in a scene file, such as 'object.mass'"),
     ],
 )
-def test_what_cannot_be_is_told_at_its_key(key: str, value: object, message: str) -> None:
+def test_what_cannot_be_is_told_at_its_key(key: object, value: object, message: str) -> None:
     with pytest.raises(SceneError) as caught:
-        RAIL.changed(key, value)
+        RAIL.changed(key, value)  # type: ignore[arg-type]
     assert message in str(caught.value)

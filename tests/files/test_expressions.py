@@ -50,6 +50,30 @@ def test_a_parameter_changes_all_that_hangs_on_it() -> None:
     assert parse_scene(SCENE, "s.yaml", ["object.mass==half/2"]).object.mass_kg == 2.0
 
 
+def test_a_number_may_be_an_expression_whatever_its_key_or_its_parameter_is_called() -> None:
+    """``length`` is a unit in one place and a number in others; ``in`` holds names, and may be the name of a point."""
+    text = """\
+name: named like text
+units: {length: mm}
+parameters: {name: 6, length: "=2*name", file: "=length/3"}
+object:
+  shapes: [{cylinder: {radius: "=file", length: "=length"}}, {hole: {radius: 1, depth: "=name", in: [cylinder1]},
+    position: [0, 0, "=length/2"]}]
+  pose: {position: [0, 0, 20]}
+cage: {points: {in: ["=name", 0, 0], key: [0, "=length", 0]}}
+loads: [{name: weight, gravity: [0, 0, -1]}]
+"""
+    scene = parse_scene(text)
+    (cylinder,), (hole,) = scene.object.shapes, scene.object.holes
+    assert (cylinder.radius_m, cylinder.length_m, hole.depth_m) == (0.004, 0.012, 0.006)
+    assert scene.cage.points_cage.tolist() == [[0.006, 0.0, 0.0], [0.0, 0.012, 0.0]]
+    (problem,) = problems_of(text.replace("length: mm", "length: =mm"))
+    assert problem.startswith("s.yaml:2:17: units.length: is text '=mm'; use one of")
+    (problem,) = problems_of(text.replace("[cylinder1]", '["=cylinder1"]'))
+    assert "object.shapes[1].hole.in" in problem
+    assert "=cylinder1" in problem
+
+
 REFUSED = [
     ('=open("x")', "calls open, which no expression may"),
     ('=__import__("os")', "calls __import__, which no expression may"),
@@ -123,7 +147,7 @@ def test_a_setting_that_is_wrong_is_named() -> None:
 def test_an_array_of_values_has_the_bits_of_each_value_by_itself() -> None:
     """Random formulas of random numbers, one by one and all at once."""
     rng = random.Random(4)
-    values = np.random.default_rng(4).uniform(-3.0, 3.0, 500)
+    values = np.append(np.random.default_rng(4).uniform(-3.0, 3.0, 500), (0.0, -0.0, 1.0))
 
     def formula(depth: int) -> str:
         if depth == 0:
@@ -147,6 +171,23 @@ def test_an_array_of_values_has_the_bits_of_each_value_by_itself() -> None:
                 assert not math.isfinite(found)
             else:
                 assert found == alone or (math.isnan(alone) and math.isnan(found))
+
+
+@pytest.mark.parametrize(
+    "text", ["min(1/a, 5)", "max(-3, 1/a)", "1/(1/a)", "min(a**0.5, 2)", "((-1 - a*a)**0.5)**0", "max((1/a)**2, 1)"]
+)
+def test_what_is_no_number_by_itself_is_none_among_others(text: str) -> None:
+    """Not even where a function or an operator would make a number of it again, as of infinity."""
+    expression, values = Expression(text), np.array([-1.0, 0.0, 0.5])
+    assert np.array_equal(expression.value({"a": values}), [by_itself(expression, a) for a in values], equal_nan=True)
+
+
+def by_itself(expression: Expression, a: float) -> float:
+    try:
+        found = expression.value({"a": float(a)})
+    except ValueError:
+        return math.nan
+    return found if isinstance(found, float) else math.nan
 
 
 def test_comparisons_answer_for_all_rows() -> None:

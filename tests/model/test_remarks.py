@@ -68,7 +68,8 @@ REMARKED = {
 def test_a_likely_slip_is_remarked_and_run_all_the_same(given: Scene, told: str) -> None:
     assert list(remarks(given)) == [told]
     assert told in cagepose.run(given).warnings
-    assert told in cagepose.run(scene() if given.friction_of else given, "stepwise").warnings or given.friction_of
+    if not given.friction_of:  # which the stepwise method does not run
+        assert told in cagepose.run(given, "stepwise").warnings
 
 
 def test_what_is_unusual_and_right_is_not_remarked() -> None:

@@ -70,6 +70,11 @@ SHOWN = {
     ),
     "<Object: 2 boxes, 0.5 kg>": cagepose.Object([cagepose.Box((1, 1, 1))] * 2, mass_kg=0.5),
     "<Cage: 1 point, 1 shape>": cagepose.Cage([(0, 0, 0)], shapes=[cagepose.Sphere(1.0)]),
+    "<Scene 'scene': 1 shape in a cage of 1 hole, load weight>": cagepose.Scene(
+        cagepose.Object(shapes=[cagepose.Sphere(0.1)], pose=cagepose.Pose((0, 0, 1))),
+        cagepose.Cage(holes=[cagepose.Hole(0.2, 0.3)]),
+        [cagepose.Load("weight", gravity=(0, 0, -1))],
+    ),
     "<Variation of friction_coefficient (3,)>": cagepose.Variation(friction_coefficient=[0, 1, 2]),
 }
 
@@ -88,4 +93,3 @@ def test_results_say_how_it_ended() -> None:
     assert repr(first.events[1].motion) == "<Motion: turn 0.00546434 rad about (0, 1, 0)>"
     assert repr(run.phases[1]) == "<PhaseRun 'push': rests; 6 events, 9 contacts>"
     assert repr(run.contacts[-1]) == "<Contact of 'C13' with 'rack': normal force 1>"
-    assert dir(cagepose) == sorted(cagepose.__all__)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from cagepose import Study, StudyResults, load_scene, run
+from cagepose import SceneFileError, Study, StudyResults, load_scene, run
 from cagepose.sampling.capture_map import largest_box, refined_map
 from cagepose.sampling.sensitivity import _indices
 from cagepose.sampling.statistics import Spread, statistics_of, wilson
@@ -31,6 +31,7 @@ cage:
 loads: [{name: weight, gravity: [0, 0, -1]}]
 """
 """A cube falls straight down onto four points: its height afterwards is theirs and a half, to rounding."""
+RISES = {"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}}
 HEIGHTS = {"cage.pose.position[2]": {"normal": {"sigma": 0.1}}, "object.pose.position[0]": {"uniform": [-0.05, 0.05]}}
 
 
@@ -78,8 +79,25 @@ def test_statistics_are_those_of_all_rows(run_study: RunStudy, peg: Path) -> Non
     assert (spread.mean, spread.sigma) == pytest.approx((heights.mean(), heights.std(ddof=0)), rel=1e-12)
     for share in (0.01, 0.1, 0.5, 0.99):
         assert spread.quantile(share) == pytest.approx(heights.quantile(share), abs=1e-3)
-    assert heights.quantile(0.0008) < spread.low < heights.quantile(0.002)
+    assert heights.quantile(0.0008) < spread.three_sigma[0] < heights.quantile(0.002)
     assert found.n_touching["touching_C1"] == int(frame["touching_C1"].sum())
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_where_a_part_goes_that_does_not_come_to_rest_is_no_tolerance(run_study: RunStudy, peg: Path) -> None:
+    """Beyond its points the cube tips over; how far it is then is in its row alone."""
+    results = run_study({"object.pose.position[0]": {"uniform": [-0.1, 0.9]}, **RISES}, 200, scene=peg)
+    frame, numbers = results.to_frame(), results.report()
+    rests, others = frame[frame["verdict"] == "rests"], frame[frame["verdict"] == "escapes"]
+    assert len(rests) > 50 < len(others)
+    for row in numbers["tolerances"]:
+        found, values = row["monte_carlo"], rests[row["name"]]
+        assert (found["runs"], found["range"]) == (len(rests), [values.min(), values.max()])
+    assert others["pitch_deg"].notna().all()
+    assert abs(others["pitch_deg"]).min() > abs(rests["pitch_deg"]).max()
+    missing = {one["name"]: one["missing"] for one in numbers["sensitivities"]}
+    assert missing["accepted"] is None
+    assert "too many runs of the design do not come to rest" in missing["position_x"]
 
 
 def test_joined_spreads_are_those_of_all_at_once() -> None:
@@ -89,7 +107,7 @@ def test_joined_spreads_are_those_of_all_at_once() -> None:
         spread.add(part)
     assert (spread.n, spread.least, spread.greatest) == (3000, values.min(), values.max())
     assert spread.mean == pytest.approx(values.mean(), rel=1e-15)
-    assert math.sqrt(spread.sigma / spread.n) == pytest.approx(values.std(), rel=1e-9)
+    assert spread.sigma == pytest.approx(values.std(), rel=1e-9)
 
 
 def test_the_interval_of_the_yield_is_wilsons() -> None:
@@ -133,6 +151,18 @@ def test_a_linear_case_has_the_tolerances_and_indices_of_theory(run_study: RunSt
         assert index["total"] == pytest.approx(expected, abs=0.02)
         assert abs(index["first"] - expected) < index["first_interval"]
     assert next(one for one in numbers["sensitivities"] if one["name"] == "position_x")["missing"] is not None
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_no_row_leaves_a_worst_case_that_is_not_known(run_study: RunStudy, peg: Path, tmp_path: Path) -> None:
+    """The cube starts on its points: a step upwards of these would be into it."""
+    peg.write_text(PEG.replace("0.02, 3]", "0.02, 0.5]"), encoding="utf-8")
+    vary = {"cage.pose.position[2]": {"uniform": [-0.2, -0.1]}}
+    numbers = run_study(vary, 20, scene=peg).report()
+    (row,) = (row for row in numbers["tolerances"] if row["name"] == "position_z")
+    assert (row["nominal"], row["worst_case"], row["stays_within_worst_case"]) == (0.5, [None, None], None)
+    assert row["monte_carlo"]["runs"] == 20
+    assert 'class="leaves"' not in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
 
 
 def test_blocks_of_a_design_in_which_a_run_has_no_pose_are_left_out() -> None:
@@ -213,6 +243,37 @@ def test_the_capture_map_says_what_each_of_its_runs_does(run_study: RunStudy, tm
             ended = run(study.scene_text.scene_with(paths).scene)
             pitch = math.degrees(ended.pose.euler_zyx[1])
             assert found["accepted_cells"][up][across] == (ended.verdict == "rests" and abs(pitch) < 0.3)
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_a_number_with_one_value_has_no_side_of_the_map(run_study: RunStudy, peg: Path) -> None:
+    one, *others = {"cage.pose.position[1]": {"grid": [0.1]}, **HEIGHTS}.items()
+    numbers = run_study(dict([one, *others]), 20, scene=peg).report()
+    assert numbers["map"]["over"] == [key for key, _ in others]
+    assert run_study(dict([one, others[0]]), 20, scene=peg, folder="two").report()["map"] is None
+    with pytest.raises(SceneFileError, match=r"map\.over\[0\]: is .*, which does not vary; use two of: cage"):
+        Study(peg, dict([one, *others]), {"runs": 8}, map={"over": [one[0], others[0][0]]})
+
+
+@pytest.mark.usefixtures("small_designs")
+@pytest.mark.parametrize("low", [-0.1, 0.1])
+def test_a_box_of_permitted_values_is_about_nominal_ones_that_are_on_the_map(
+    run_study: RunStudy, peg: Path, low: float
+) -> None:
+    vary = {"cage.pose.position[2]": {"uniform": [low, 0.2]}, "cage.pose.position[0]": {"uniform": [-0.1, 0.1]}}
+    found = run_study(vary, 20, scene=peg).report()["map"]
+    assert sum(map(sum, found["accepted_cells"])) == found["runs"] == 64
+    assert found["box"] == ([[low, 0.2], [-0.1, 0.1]] if low < 0.0 else None)
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_a_report_of_one_number_and_one_quantity_has_room_for_its_pictures(
+    run_study: RunStudy, peg: Path, tmp_path: Path
+) -> None:
+    """Or matplotlib warns, which is an error here."""
+    watch = {"top": {"point": [0, 0, 0.5]}}
+    run_study({"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}}, 20, scene=peg, watch=watch).report()
+    assert {path.stem for path in tmp_path.glob("out/*.svg")} == {"sobol", "tornado", "spread"}
 
 
 @pytest.mark.usefixtures("small_designs")

@@ -52,6 +52,7 @@ def compare_with_runs(results: StudyResults, method: str | None = None) -> dict[
     """Run each row's scene by itself, as a user would from the row; return how many ended how."""
     found: dict[str, int] = {}
     scene_text = results.study.scene_text
+    assert results.table().column_names == list(results.columns.names)
     for row in results.table().to_pylist():
         settings = [setting(one.key, row[one.key]) for one in results.study.varied]
         found[row["verdict"]] = found.get(row["verdict"], 0) + 1
@@ -127,6 +128,17 @@ def test_a_parameter_reaches_the_batch_by_expressions(run_study: RunStudy, scene
     results = run_study(vary, 60, scene=scene)
     assert Runner(results.study).is_batch
     assert set(compare_with_runs(results)) >= {"rests", "refused"}
+
+
+@pytest.mark.parametrize("text", ["min(0.001/a, 5)/100", "min(a**0.5, 0.001)"])
+def test_a_row_whose_expression_comes_to_no_number_is_refused(
+    run_study: RunStudy, scene_with: Callable[..., Path], text: str
+) -> None:
+    scene = scene_with("parameters={a: 1}", f"cage.pose.position[0]=={text}")
+    vary = {"parameters.a": {"steps": {"first": -1, "last": 1, "count": 5}}}
+    results = run_study(vary, scene=scene, method="grid")
+    assert Runner(results.study).is_batch
+    assert set(compare_with_runs(results)) == {"rests", "refused"}
 
 
 def test_forces_of_a_row_are_those_of_the_run(run_study: RunStudy) -> None:

@@ -17,6 +17,7 @@ import pytest
 from cagepose import MissingExtraError, Study, StudyResults
 from cagepose.cli.app import main
 from cagepose.files import write
+from cagepose.model.wording import percent
 from cagepose.sampling import folder as folder_module
 from our_studies import RAIL
 
@@ -53,7 +54,7 @@ def test_a_study_prints_what_its_page_says_and_show_says_it_again(
     assert err.splitlines()[-1].startswith("cagepose: 300 runs in ")
     numbers = json.loads(Path("out/report.json").read_text(encoding="utf-8"))
     share = numbers["yield"]["share"]
-    assert f"yield {100.0 * share:.2f} %" in out
+    assert f"yield {percent(share)}, between" in out
     assert "what matters for accepted" in out
     assert "largest box of accepted runs: cage.pose.euler_zyx_deg[1]" in out
     n_beside = len(list(Path("out").glob("*.*"))) - len(["report.html", "study.yaml", "scene.yaml"])

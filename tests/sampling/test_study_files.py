@@ -171,6 +171,20 @@ def test_a_scene_that_is_wrong_is_told_in_its_own_place() -> None:
         Study.load("study.yaml")
 
 
+@pytest.mark.parametrize(
+    ("name", "column"),
+    [("verdict", "verdict_x"), ("force", "force_x"), ("touching", "touching_x"), ("touching_y", "touching_y_x")],
+)
+@pytest.mark.usefixtures("study")
+def test_a_watched_point_whose_column_is_another_one_is_refused(name: str, column: str) -> None:
+    points = "{x: [4, 4, 0], y: [4, -4, 0], y_x: [-4, -4, 0], z: [-4, 4, 0]}"
+    text = SCENE.replace(SCENE[SCENE.index("[[4, 4") : SCENE.index("\nloads")], points)
+    Path("scene.yaml").write_text(text.replace("name: gravity", "name: x"), encoding="utf-8")
+    vary, watch = {"object.mass": {"uniform": [1, 2]}}, {name: {"point": [0, 0, 0]}}
+    with pytest.raises(SceneFileError, match=f"watch: gives the column {column} a second meaning; rename the point"):
+        Study("scene.yaml", vary, {"runs": 8}, watch=watch, forces=True)
+
+
 @pytest.mark.usefixtures("study")
 def test_a_study_in_python_is_checked_as_its_file_is() -> None:
     with pytest.raises(SceneFileError, match=r"vary\.parameters\.side\.uniform: is .11.0, 9.0.; give the lower"):
@@ -206,10 +220,10 @@ def test_what_stands_in_the_place_of_an_argument_is_refused_by_its_name(tmp_path
         with pytest.raises(SceneError) as caught:
             Study(**{**good, name: value})
         assert told in str(caught.value)
-    for workers in (0, -1, "2", True):
+    for workers in (0, -1, "2", True, 2.0, 1.5):
         with pytest.raises(SceneError) as caught:
             Study(**good).run(tmp_path / "out", workers=workers)
-        assert str(caught.value) == f"workers: is {workers!r}; give 1 or more"
+        assert str(caught.value) == f"workers: is {workers!r}; give a whole number from 1 upwards"
     assert not (tmp_path / "out").exists()
 
 

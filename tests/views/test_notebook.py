@@ -26,7 +26,7 @@ def test_every_scene_and_run_has_a_picture_that_holds_all_of_it(path: Path) -> N
         assert [mark.findtext(f"{SVG}title") for mark in circles] == list(scene.cage.names)
         assert all(0 <= float(mark.attrib["cx"]) <= 360 and 0 <= float(mark.attrib["cy"]) <= 240 for mark in circles)
         lines = [mark.attrib["d"] for mark in svg.iter(f"{SVG}path")]
-        assert len(lines) >= len(scene.object.parts) + len(scene.cage.shapes)
+        assert len(lines) >= len((*scene.object.parts, *scene.object.holes, *scene.cage.shapes, *scene.cage.holes))
         assert all(lines)
     assert "verdict" in run._repr_html_()
 

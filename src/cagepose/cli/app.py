@@ -124,7 +124,7 @@ def _dispatch(tokens: list[str]) -> int:
     try:
         code = app(tokens, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
-        if tokens[0].endswith((".yaml", ".yml", ".json")):
+        if _is_scene_name(tokens[0]):
             sys.stderr.write(f"cagepose: {tokens[0]} is no command; did you mean: cagepose run {tokens[0]}\n")
             return BAD_INPUT
         help_command = f"cagepose {tokens[0]} --help" if tokens[0] in COMMANDS else "cagepose --help"
@@ -136,12 +136,18 @@ def _dispatch(tokens: list[str]) -> int:
     return int(code or 0)  # help returns None
 
 
+def _is_scene_name(token: str) -> bool:
+    from cagepose.files.read import SCENE_SUFFIXES
+
+    return token.endswith(SCENE_SUFFIXES)
+
+
 def _usage_message(error: CycloptsError) -> str:
     from cyclopts import UnusedCliTokensError
 
     if isinstance(error, UnusedCliTokensError):
         unused = error.unused_tokens or []
-        if unused and unused[0].endswith((".yaml", ".yml", ".json")):
+        if unused and _is_scene_name(unused[0]):
             return f"one scene at a time, and {' '.join(unused)} is left over; run the command once for each."
         return f"too many arguments: {' '.join(unused)}; each change needs its own --set."
     return " ".join(str(error).split())

@@ -27,13 +27,20 @@ def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int
     size = float(from_metres(found.size_m, unit))
     touch = float(from_metres(found.touch_m, unit))
     held, cage = found.object, found.cage
+    counts = counted(
+        (len(held.boxes), "box", "boxes"),
+        (len(held.shapes), "shape", "shapes"),
+        (len(held.holes), "hole", "holes"),
+        (len(cage.names), "cage point", "cage points"),
+        (len(cage.shapes), "cage shape", "cage shapes"),
+        (len(cage.holes), "cage hole", "cage holes"),
+        (len(found.loads), "load", "loads"),
+    )
     sys.stdout.write(
-        f"{found.name}: {counted((len(held.boxes), 'box', 'boxes'), (len(held.shapes), 'shape', 'shapes'))},"
-        f" {counted((len(cage.names), 'cage point', 'cage points'), (len(cage.shapes), 'cage shape', 'cage shapes'))},"
-        f" {counted((len(found.loads), 'load', 'loads'))} ({', '.join(load.name for load in found.loads)}),"
+        f"{found.name}: {counts} ({', '.join(load.name for load in found.loads)}),"
         f" method {chosen_method(found).name}\n"
         f"object {_extent(body_limits(held.parts), unit)}\n"
-        f"cage {_extent(body_limits(cage.shapes, cage.points_cage), unit)}\n"
+        f"cage {_extent(body_limits((*cage.shapes, *cage.holes), cage.points_cage), unit)}\n"
         f"size {size:.6g} {unit}, touch tolerance {touch:.3g} {unit}; no problems found\n"
     )
     for remark in remarks(found):

@@ -8,6 +8,7 @@ from rich.table import Table
 
 from cagepose.cli.console import print_all
 from cagepose.cli.styles import plain_table
+from cagepose.model.wording import number_or_dash, percent
 
 MOST_ROWS = 8
 """Of numbers that matter; the page shows more."""
@@ -18,7 +19,7 @@ def print_study(found: dict[str, Any]) -> None:
     share = found["yield"]
     parts: list[Any] = [
         f"{found['scene']}: {found['runs']:,} runs ({found['method']})",
-        f"yield {_percent(share['share'])}, between {_percent(share['low'])} and {_percent(share['high'])} (95 %)",
+        f"yield {percent(share['share'])}, between {percent(share['low'])} and {percent(share['high'])} (95 %)",
         "",
         _verdicts(found),
         "",
@@ -35,8 +36,8 @@ def print_study(found: dict[str, Any]) -> None:
 def _verdicts(found: dict[str, Any]) -> Table:
     table = plain_table("verdict", "runs", "share", "95 % interval")
     for name, share in found["verdicts"].items():
-        limits = f"{_percent(share['low'])} to {_percent(share['high'])}"
-        table.add_row(name, f"{share['runs']:,}", _percent(share["share"]), limits)
+        limits = f"{percent(share['low'])} to {percent(share['high'])}"
+        table.add_row(name, f"{share['runs']:,}", percent(share["share"]), limits)
     return table
 
 
@@ -45,7 +46,7 @@ def _tolerances(found: dict[str, Any]) -> Table:
     for row in found["tolerances"]:
         runs = row["monte_carlo"]
         pairs = (row["worst_case"], row["root_sum_square"], runs["three_sigma"], runs["range"])
-        table.add_row(row["name"], _number(row["nominal"]), *(f"{_number(a)} to {_number(b)}" for a, b in pairs))
+        table.add_row(row["name"], number_or_dash(row["nominal"]), *(_range(*pair) for pair in pairs))
     return table
 
 
@@ -66,14 +67,10 @@ def _matters(found: dict[str, Any]) -> Table | None:
 
 def _box(found: dict[str, Any]) -> str:
     if found["box"] is None:
-        return "capture map: the nominal run is not accepted"
-    sides = [f"{key} {_number(a)} to {_number(b)}" for key, (a, b) in zip(found["over"], found["box"], strict=True)]
+        return "capture map: the nominal values are not accepted, or not on the map"
+    sides = [f"{key} {_range(*side)}" for key, side in zip(found["over"], found["box"], strict=True)]
     return f"largest box of accepted runs: {', '.join(sides)}"
 
 
-def _percent(share: float) -> str:
-    return f"{100.0 * share:.2f} %"
-
-
-def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value + 0.0:.5g}"
+def _range(low: float | None, high: float | None) -> str:
+    return f"{number_or_dash(low)} to {number_or_dash(high)}"

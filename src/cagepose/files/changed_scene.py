@@ -36,6 +36,8 @@ def changed_scene(scene: Scene, changes: Mapping[str, object]) -> Scene:
     problems = []
     for key, value in changes.items():
         try:
+            if not isinstance(key, str):
+                raise ValueError(f"{key!r} is no key; write one as in a scene file, such as 'object.mass'")
             path = resolved(data, _by_index(scene, data, parse_key_path(key)))
             if path[0] == "parameters":
                 problems.append(Problem(path, NO_PARAMETERS))

@@ -2,7 +2,7 @@
 
 simpleeval walks the parsed text; of what it can do we leave in names, numbers, text, arithmetic, comparisons, ``and``,
 ``or``, ``not``, and three functions. Names may stand for arrays, so that one walk answers for all rows of a table, each
-row with the bits that it has by itself.
+row with the bits that it has by itself, and NaN where it has none: by itself that is an error.
 """
 
 from __future__ import annotations
@@ -85,9 +85,18 @@ def _short(text: str) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
+def _is_array(*values: Any) -> bool:
+    return any(isinstance(value, np.ndarray) for value in values)
+
+
+def _quotient(one: Any, other: Any) -> Any:
+    """As Python, to which nothing divided by zero is a number: of arrays NaN stands for it, not infinity."""
+    return np.where(np.equal(other, 0.0), np.nan, one / other) if _is_array(one, other) else one / other
+
+
 def _power(base: Any, exponent: Any) -> Any:
     """Python's power of each element: NumPy's may differ in the last digit."""
-    if not isinstance(base, np.ndarray) and not isinstance(exponent, np.ndarray):
+    if not _is_array(base, exponent):
         return base**exponent
     bases, exponents = np.broadcast_arrays(base, exponent)
     return np.array([_real_power(one, two) for one, two in zip(bases.tolist(), exponents.tolist(), strict=True)])
@@ -98,26 +107,23 @@ def _real_power(base: float, exponent: float) -> float:
         found = base**exponent
     except (ZeroDivisionError, OverflowError):
         return np.nan
-    return found if isinstance(found, float) else np.nan
-
-
-def _is_array(*values: Any) -> bool:
-    return any(isinstance(value, np.ndarray) for value in values)
+    is_known = base == base and exponent == exponent  # NaN to the power of 0 is 1
+    return found if is_known and isinstance(found, float) else np.nan
 
 
 def _least(*values: Any) -> Any:
-    return reduce(np.fmin, values) if _is_array(*values) else min(*values)
+    return reduce(np.minimum, values) if _is_array(*values) else min(*values)
 
 
 def _greatest(*values: Any) -> Any:
-    return reduce(np.fmax, values) if _is_array(*values) else max(*values)
+    return reduce(np.maximum, values) if _is_array(*values) else max(*values)
 
 
 _OPERATORS: dict[type, Callable[..., Any]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
     ast.Mult: operator.mul,
-    ast.Div: operator.truediv,
+    ast.Div: _quotient,
     ast.Pow: _power,
     ast.UAdd: operator.pos,
     ast.USub: operator.neg,

@@ -60,8 +60,8 @@ def schema_findings(error: ValidationError, data: object, model: type[BaseModel]
 def shown(value: object) -> str:
     """Name a value the way a reader of the file would.
 
-    >>> shown(True), shown("ten"), shown([1, 2]), shown(None)
-    ('true', "text 'ten'", 'a list', 'empty')
+    >>> shown(True), shown("ten"), shown([1, 2]), shown(None), shown(object())
+    ('true', "text 'ten'", 'a list', 'empty', 'of type object')
     """
     match value:
         case None:
@@ -74,8 +74,10 @@ def shown(value: object) -> str:
             return f"text {_cut(value)!r}"
         case list():
             return "a list"
-        case _:
+        case dict():
             return "keys with values"
+        case _:  # of a change in Python
+            return f"of type {type(value).__name__}"
 
 
 def _file_path(location: tuple[Key, ...]) -> Path:

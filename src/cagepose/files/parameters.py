@@ -13,8 +13,10 @@ from cagepose.files.key_path import Path, set_value, value_at
 if TYPE_CHECKING:
     from cagepose.files.expression import Expression
 
-TEXT_KEYS = {"name", "file", "key", "method", "metric", "length"}
-"""What stands at these is text, and no expression, whatever it begins with."""
+TEXT_KEYS = {"name", "file", "key", "method", "metric"}
+"""What stands at these is text, and no expression, whatever it begins with; but a parameter may have such a name."""
+LENGTH_UNIT, NAMES_OF_PARTS = ("units", "length"), ("hole", "in")
+"""Text, too, of keys that elsewhere hold numbers; the latter with an index behind it, or without."""
 RESERVED = {"abs", "min", "max"}
 
 
@@ -134,7 +136,10 @@ def _texts(here: object, path: Path) -> Iterator[tuple[Path, str]]:
 
 
 def _is_expression(text: str, path: Path) -> bool:
-    return text.startswith("=") and path[-1:] != () and path[-1] not in TEXT_KEYS and "in" not in path[-2:]
+    if not text.startswith("=") or not path:
+        return False
+    is_text = path[-1] in TEXT_KEYS or path == LENGTH_UNIT or NAMES_OF_PARTS in (path[-2:], path[-3:-1])
+    return path[0] == "parameters" or not is_text
 
 
 def _kind(value: object) -> str:

@@ -17,7 +17,7 @@ from cagepose.files.read import looks_like_run
 from cagepose.files.record import from_record, record_of
 from cagepose.files.units import LENGTH_UNITS, LengthUnit
 from cagepose.files.write import check_can_write, json_text, write_whole
-from cagepose.model.checks import expect
+from cagepose.model.checks import expect, expect_choice
 from cagepose.runs.run import Run
 from cagepose.studies.certificate import Certificate
 from cagepose.studies.certify import certificate
@@ -40,10 +40,13 @@ def save_run(
 
     Raises
     ------
+    SceneError
+        It is no run, or an unknown unit.
     OSError
         The file cannot be written.
     """
     expect(run, Run, "run")
+    expect_choice(length_unit, LENGTH_UNITS, "length_unit")
     check_can_save(path)
     content = {**run_document(run, length_unit, margins), "exact": record_of(run)}
     n_phases = len(run.phases)

@@ -11,9 +11,9 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from cagepose.files.key_path import parse_key_path, resolved, value_at
 from cagepose.files.scene_document import scene_document
-from cagepose.files.units import LengthUnit
+from cagepose.files.units import LENGTH_UNITS, LengthUnit
 from cagepose.files.write import MADE_BY, check_can_write, is_made_by_us, write_whole
-from cagepose.model.checks import expect
+from cagepose.model.checks import expect, expect_choice
 from cagepose.model.scene import Scene
 
 LINE = 110
@@ -23,18 +23,20 @@ LINE = 110
 def save_scene(scene: Scene, path: str | os.PathLike[str], length_unit: LengthUnit = "mm") -> None:
     """Write a scene file from which `load_scene` reads the same scene, whole or not at all.
 
-    Numbers are as short as that allows; a scene holds no parameters, but what its expressions came to. The ranges of
-    adjustable numbers are written as they are: give the unit of the file that they come from. Those whose key leads to
-    no number of the file, such as a parameter, are left out.
+    Numbers are as short as that allows; a scene holds no parameters, but what its expressions came to. Not each number
+    of metres is one of millimetres or inches: lengths that were given in another unit may differ in their last digit.
+    The ranges of adjustable numbers are written as they are: give the unit of the file that they come from. Those whose
+    key leads to no number of the file, such as a parameter, are left out.
 
     Raises
     ------
     SceneError
-        It is no scene.
+        It is no scene, or an unknown unit.
     OSError
         The file cannot be written, or holds something else than a scene that was saved.
     """
     expect(scene, Scene, "scene")
+    expect_choice(length_unit, LENGTH_UNITS, "length_unit")
     check_can_write(path, is_made_by_us, "a scene that cagepose saved")
     yaml = YAML()
     yaml.width = 4096  # no line is broken

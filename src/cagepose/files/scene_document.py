@@ -1,4 +1,8 @@
-"""A `Scene` as the data of a scene file, from which the same scene is read again, to the last bit of each number."""
+"""A `Scene` as the data of a scene file, from which the same scene is read again.
+
+In the unit that its lengths were given in, that is to the last bit of each number, but for the angles of parts that
+were given as quaternions.
+"""
 
 from __future__ import annotations
 

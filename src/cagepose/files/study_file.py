@@ -201,11 +201,11 @@ def _check_sample(model: StudyModel, problems: list[Problem]) -> None:
 
 
 def _check_map(model: StudyModel, varied: tuple[VariedKey, ...], problems: list[Problem]) -> None:
-    known = [one.key for one in varied]
+    known = [one.key for one in varied if one.distribution.grid is None or len(one.distribution.grid) > 1]
     for index, key in enumerate(model.map.over if model.map else []):
         if key not in known:
-            names = ", ".join(known[:10]) + (", ..." if len(known) > 10 else "")
-            problems.append(Problem(("map", "over", index), f"is {key!r}, which does not vary; use two of: {names}"))
+            message = f"is {key!r}, which does not vary; use two of: {few(known, 10) or 'none'}"
+            problems.append(Problem(("map", "over", index), message))
     if model.map and model.map.over[0] == model.map.over[1]:
         problems.append(Problem(("map", "over", 1), "is the first once more; name another"))
 

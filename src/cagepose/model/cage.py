@@ -98,8 +98,12 @@ class Cage:
         object.__setattr__(self, "shape_paths", paths)
 
     def __repr__(self) -> str:
+        return f"<Cage: {self._contents}>"
+
+    @property
+    def _contents(self) -> str:
         points, shapes = (len(self.names), "point", "points"), (len(self.shapes), "shape", "shapes")
-        return f"<Cage: {counted(points, shapes, (len(self.holes), 'hole', 'holes'))}>"
+        return counted(points, shapes, (len(self.holes), "hole", "holes"))
 
     @cached_property
     def element_names(self) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from numbers import Real
+from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
@@ -161,11 +161,34 @@ def expect(value: object, kind: type, key: str) -> None:
     SceneError
         It is one.
     """
-    if isinstance(value, kind):
-        return
     problems = ProblemList()
     check_kind(value, kind, (key,), problems)
     problems.raise_if_any()
+
+
+def expect_choice(value: object, known: Sequence[str], key: str) -> None:
+    """Refuse a value that is none of some words.
+
+    Raises
+    ------
+    SceneError
+        It is none.
+    """
+    problems = ProblemList()
+    check_choice(value, known, key, problems)
+    problems.raise_if_any()
+
+
+def expect_count(value: object, key: str) -> None:
+    """Refuse what is no whole number from 1 upwards.
+
+    Raises
+    ------
+    SceneError
+        It is none.
+    """
+    if isinstance(value, bool) or not isinstance(value, Integral) or value < 1:
+        raise SceneError([Problem((key,), f"is {value!r}; give a whole number from 1 upwards")])
 
 
 def number_found(value: object) -> str:

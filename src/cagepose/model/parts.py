@@ -116,9 +116,13 @@ class Object:
         object.__setattr__(self, "pose_world_object", pose)
 
     def __repr__(self) -> str:
-        boxes, shapes = (len(self.boxes), "box", "boxes"), (len(self.shapes), "shape", "shapes")
         mass = "" if self.mass_kg is None else f", {self.mass_kg:.6g} kg"
-        return f"<Object: {counted(boxes, shapes, (len(self.holes), 'hole', 'holes'))}{mass}>"
+        return f"<Object: {self._contents}{mass}>"
+
+    @property
+    def _contents(self) -> str:
+        boxes, shapes = (len(self.boxes), "box", "boxes"), (len(self.shapes), "shape", "shapes")
+        return counted(boxes, shapes, (len(self.holes), "hole", "holes"))
 
     @cached_property
     def parts(self) -> tuple[Box | AnyShape, ...]:

@@ -31,7 +31,7 @@ from cagepose.model.methods import METHODS, Metric
 from cagepose.model.parts import Object
 from cagepose.model.shapes import Shape
 from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
-from cagepose.model.wording import counted, few
+from cagepose.model.wording import few
 
 FARTHEST_START = 1e4
 """In sizes of the scene. The rounding of a position 1e4 sizes away is about 2e-12 of the size, near the resolution."""
@@ -181,11 +181,8 @@ class Scene:
             _set_field(self, field, value)
 
     def __repr__(self) -> str:
-        held, cage = self.object, self.cage
-        parts = counted((len(held.boxes), "box", "boxes"), (len(held.shapes), "shape", "shapes"))
-        holders = counted((len(cage.names), "point", "points"), (len(cage.shapes), "shape", "shapes"))
         loads = f"{'load' if len(self.loads) == 1 else 'loads'} {few(load.name for load in self.loads)}"
-        return f"<Scene {self.name!r}: {parts} in a cage of {holders}, {loads}>"
+        return f"<Scene {self.name!r}: {self.object._contents} in a cage of {self.cage._contents}, {loads}>"
 
     def _repr_html_(self) -> str:
         """What a notebook shows: a picture."""

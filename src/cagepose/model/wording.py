@@ -17,6 +17,26 @@ def short(value: float, digits: int, noise: float) -> str:
     return "0" if abs(value) < noise else f"{value:.{digits}g}"
 
 
+def number_or_dash(value: float | None) -> str:
+    """Return a number as people read it; a dash where there is none.
+
+    >>> number_or_dash(0.12345649), number_or_dash(None), number_or_dash(-0.0)
+    ('0.12346', '-', '0')
+    """
+    return "-" if value is None else f"{value + 0.0:.5g}"
+
+
+def percent(share: float) -> str:
+    """Return a share: more digits near all and none.
+
+    >>> percent(0.5), percent(0.99973), percent(1.0)
+    ('50.00 %', '99.973 %', '100 %')
+    """
+    if share in (0.0, 1.0):
+        return f"{100.0 * share:.0f} %"
+    return f"{100.0 * share:.{2 if 0.01 <= share <= 0.99 else 3}f} %"
+
+
 def coordinates(values: FloatArray, digits: int = 6) -> str:
     """Return numbers in round brackets.
 

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markdown_it import MarkdownIt
 from markupsafe import Markup
 
@@ -25,6 +24,7 @@ from cagepose.paper.figures import FIGURES, Picture, draw_pictures
 from cagepose.paper.range_study import RangeStudy
 from cagepose.paper.reproduction import Reproduction
 from cagepose.paper.tables import end_rows, planar_rows
+from cagepose.views.templates import environment
 
 Form = Literal["html", "markdown"]
 NAMES: dict[Form, str] = {"html": "report.html", "markdown": "report.md"}
@@ -35,14 +35,9 @@ TITLE = "The paper, reproduced"
 
 def report_text(form: Form, reproduction: Reproduction, pictures: Mapping[str, Picture]) -> str:
     """Return the whole report: as Markdown that names the files of its pictures, or as a page that holds them."""
-    templates = Environment(
-        loader=PackageLoader("cagepose.paper"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        finalize=_escaped_for_markdown if form == "markdown" else None,
-    )
+    templates = environment("cagepose.paper")
+    if form == "markdown":
+        templates.finalize = _escaped_for_markdown
     templates.globals |= {"title": TITLE, "made_by": MADE_BY}
     text = templates.get_template("report.jinja").render(form=f"{form}.jinja", **_content(reproduction))
     text = re.sub(r"\n{3,}", "\n\n", text).strip() + "\n"

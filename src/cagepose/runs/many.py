@@ -18,7 +18,7 @@ from cagepose.kernels.algebra.pose import write_euler_zyx
 from cagepose.kernels.outcome.endings import INVALID, NOT_RUN
 from cagepose.kernels.outcome.trace import RESTS, VERDICT_NAMES
 from cagepose.kernels.stability.proof import OTHER_ONSET, TOO_MANY_CHOICES, UNIQUENESS_NOT_SHOWN
-from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, finite_array, is_finite
+from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, expect_count, finite_array
 from cagepose.model.pose import placed
 from cagepose.model.scene import Scene
 from cagepose.runs.batch import Batch
@@ -167,8 +167,8 @@ def run_many(
         raise SceneError([Problem(("scenes",), "is empty; give at least one scene")])
     if variation is not None and not isinstance(scenes, Scene):
         raise SceneError([Problem(("variation",), f"is of one scene, and {len(all_scenes)} are given; give one scene")])
-    if threads is not None and not (is_finite(threads) and threads >= 1):
-        raise SceneError([Problem(("threads",), f"is {threads!r}; give 1 or more")])
+    if threads is not None:
+        expect_count(threads, "threads")
     methods = [chosen_method(scene, method) for scene in all_scenes]
     batches = [
         Batch(scene, chosen, variation or Variation()) for scene, chosen in zip(all_scenes, methods, strict=True)

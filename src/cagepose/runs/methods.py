@@ -13,7 +13,7 @@ from cagepose.kernels.quasistatic import run as quasistatic_kernels
 from cagepose.kernels.quasistatic.step import RULE_NAMES
 from cagepose.kernels.quasistatic.workspace import empty_quasistatic_workspace
 from cagepose.kernels.stepwise import run as stepwise_kernels
-from cagepose.model.checks import ProblemList, check_choice, expect
+from cagepose.model.checks import expect, expect_choice
 from cagepose.model.load import Load
 from cagepose.model.methods import DEFAULT_FRICTION, DEFAULT_METHOD, METHODS
 from cagepose.model.scene import Scene
@@ -114,9 +114,7 @@ def chosen_method(scene: Scene, method: str | None = None) -> Method:
     expect(scene, Scene, "scene")
     name = scene.method or DEFAULT_METHOD
     if method is not None:
-        wrong = ProblemList()
-        check_choice(method, METHODS, "method", wrong)
-        wrong.raise_if_any()
+        expect_choice(method, METHODS, "method")
         name = method
     chosen = REGISTRY[name]
     if scene.has_other_shapes:

@@ -39,7 +39,7 @@ class CaptureMap:
         Of each cell, (n, n), rows up.
     box
         Least and greatest value of each of the two, in the largest box of cells about the nominal one that are all
-        good; None: the nominal one is not.
+        good; None: the nominal one is not, or is not on the map.
     n_runs
         How many cells were run; the others lie among cells that agree.
     """
@@ -54,13 +54,16 @@ class CaptureMap:
 
 
 def capture_map(runner: Runner, columns: RowColumns, distributions: Sequence[Distribution]) -> CaptureMap | None:
-    """Return the map over the two numbers that the study names, or the first two; None: only one varies."""
+    """Return the map over the two numbers that the study names, or the first two that have more than one value; None:
+    there are no two.
+    """
     study = runner.study
     keys = [one.key for one in study.varied]
-    if len(keys) < 2:
-        return None
     given = study.model.map
-    chosen = [keys.index(key) for key in given.over] if given else [0, 1]
+    moving = [index for index, one in enumerate(distributions) if one.low < one.high]
+    chosen = [keys.index(key) for key in given.over] if given else moving[:2]
+    if len(chosen) < 2:
+        return None
     count = given.count if given else COUNT
     across, up = (np.linspace(distributions[one].low, distributions[one].high, count) for one in chosen)
     nominal = np.array([one.nominal for one in study.varied])
@@ -83,8 +86,10 @@ def capture_map(runner: Runner, columns: RowColumns, distributions: Sequence[Dis
     cells, n_runs = refined_map(count, kinds_of)
     verdicts = np.array([verdict for verdict, _ in kinds])[cells]
     good = np.array([accepted for _, accepted in kinds])[cells]
-    start = [int(np.abs(axis - nominal[one]).argmin()) for axis, one in zip((across, up), chosen, strict=True)]
-    around = largest_box(good, start[1], start[0])
+    starts = [(axis, nominal[one]) for axis, one in zip((across, up), chosen, strict=True)]
+    column, row = (int(np.abs(axis - value).argmin()) for axis, value in starts)
+    is_on_map = all(axis[0] <= value <= axis[-1] for axis, value in starts)
+    around = largest_box(good, row, column) if is_on_map else None
     box = None
     if around is not None:
         bottom, top, left, right = around

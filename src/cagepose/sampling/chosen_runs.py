@@ -13,7 +13,7 @@ from cagepose.files.scene_edit import with_values
 from cagepose.files.study_file import SCENE_NAME
 from cagepose.files.write import write_whole
 from cagepose.model.checks import FloatArray
-from cagepose.runs.run import AT_REST
+from cagepose.sampling.outcome import REFUSED, at_rest
 from cagepose.sampling.results import StudyResults
 from cagepose.sampling.statistics import Statistics
 
@@ -31,7 +31,8 @@ class ChosenRun:
     run, verdict, accepted
         Its number, and how it ended.
     distance
-        How far its quantities are from their means, in standard deviations (root mean square).
+        How far its quantities are from their means over the runs that came to rest, in standard deviations (root mean
+        square).
     values
         Of the varied numbers, (n_varied,).
     """
@@ -61,8 +62,8 @@ def chosen_runs(results: StudyResults, statistics: Statistics) -> list[ChosenRun
             spread = statistics.spreads[name]
             distances += ((part[name] - spread.mean) / spread.sigma) ** 2
         distances = np.sqrt(distances / max(len(used), 1))
-        ranks = np.where(np.isin(part["verdict"], sorted(AT_REST)), np.where(part["accepted"], 0, 1), 2)
-        ran = np.flatnonzero(part["verdict"] != "refused")
+        ranks = np.where(at_rest(part["verdict"]), np.where(part["accepted"], 0, 1), 2)
+        ran = np.flatnonzero(part["verdict"] != REFUSED)
         order = ran[np.lexsort((part["run"][ran], -distances[ran], -ranks[ran]))]
         nearest = ran[np.lexsort((part["run"][ran], distances[ran], ranks[ran]))]
         for chosen, rows, sign in ((worst, order[:WORST], -1), (typical, nearest[:1], 1)):

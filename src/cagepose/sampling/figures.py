@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from matplotlib.colors import ListedColormap, to_rgb
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
@@ -19,6 +19,8 @@ from cagepose.views.style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE_WIDTH_IN
 
 MOST_BARS = 12
 """Of numbers that matter: the first so many."""
+LEAST_HEIGHT_IN = 1.7
+"""Of a picture: room for a panel of one bar between its title and the legend."""
 VERDICT_COLOURS = {
     "stable": GREEN,
     "rests": GREEN,
@@ -57,14 +59,15 @@ def draw(findings: Findings) -> dict[str, Figure]:
 
 def _asked(findings: Findings) -> tuple[str, ...]:
     """The watched quantities, or those of the pose where none is watched."""
-    quantities = findings.results.columns.quantities
-    return quantities[6:] or quantities
+    columns = findings.results.columns
+    return columns.watched or columns.quantities
 
 
 def _panels(n_panels: int, height_in: float, columns: int) -> tuple[Figure, list]:  # type: ignore[type-arg]
     n_columns = min(columns, n_panels)
     n_rows = -(-n_panels // n_columns)
-    figure = Figure(figsize=(PAGE_WIDTH_IN, height_in * n_rows), layout="constrained")
+    height_in = max(height_in * n_rows, LEAST_HEIGHT_IN)
+    figure = Figure(figsize=(PAGE_WIDTH_IN, height_in), layout="constrained")
     panels = figure.subplots(n_rows, n_columns, squeeze=False).ravel()
     for panel in panels[n_panels:]:
         panel.set_axis_off()
@@ -144,7 +147,7 @@ def _map_figure(found: CaptureMap) -> Figure:
             Rectangle((left, bottom), right - left, top - bottom, fill=False, edgecolor=BLACK, linestyle="--")
         )
         handles.append(Patch(fill=False, edgecolor=BLACK, linestyle="--", label="largest box of accepted runs"))
-    handles.append(Patch(facecolor=ListedColormap([GREY])(0), alpha=0.25, label="pale: not accepted"))
+    handles.append(Patch(facecolor=GREY, alpha=0.25, label="pale: not accepted"))
     panel.set_xlabel(found.keys[0])
     panel.set_ylabel(found.keys[1])
     figure.legend(handles=handles, loc="outside lower center", ncols=4)

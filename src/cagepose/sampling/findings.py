@@ -140,19 +140,20 @@ def _tolerance(row: ToleranceRow, results: StudyResults) -> dict[str, Any]:
         "monte_carlo": {
             "mean": spread.mean,
             "sigma": spread.sigma,
-            "three_sigma": [spread.low, spread.high],
+            "three_sigma": list(spread.three_sigma),
             "range": [spread.least, spread.greatest],
             "runs": spread.n,
         },
-        "stays_within_worst_case": row.is_linear,
+        "stays_within_worst_case": row.stays_within_worst,
         "derivatives": dict(zip(results.columns.varied, row.derivatives.tolist(), strict=True)),
     }
 
 
 def _sensitivity(found: Sensitivity, results: StudyResults) -> dict[str, Any]:
     numbers = (found.first, found.first_interval, found.total, found.total_interval)
-    rows = zip(results.columns.varied, *(array.tolist() for array in numbers), strict=False)
     keys = ("key", "first", "first_interval", "total", "total_interval")
+    varied = results.columns.varied if found.missing is None else ()
+    rows = zip(varied, *(array.tolist() for array in numbers), strict=True)
     return {
         "name": found.name,
         "runs": found.n_runs,

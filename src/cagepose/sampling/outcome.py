@@ -12,7 +12,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.pose import placed
 from cagepose.model.scene import Scene
 from cagepose.runs.many import Runs
-from cagepose.runs.run import Run
+from cagepose.runs.run import AT_REST, Run
 
 REFUSED = "refused"
 """Verdict of a row whose scene cannot be right."""
@@ -86,6 +86,11 @@ class Outcomes:
         """Write that the scene of a row cannot be run."""
         self.phase_verdicts[row], self.phase_verdicts[row, 0] = "", REFUSED
         self.errors[row] = message
+
+
+def at_rest(verdicts: NDArray[Any]) -> NDArray[np.bool_]:
+    """Return which verdicts, (n,), are those of runs that came to rest: (n,)."""
+    return np.isin(verdicts, sorted(AT_REST))
 
 
 def empty_outcomes(scene: Scene, n_runs: int, *, with_forces: bool) -> Outcomes:

@@ -6,15 +6,16 @@ import json
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from cagepose.files.write import MADE_BY, json_text, write_whole
+from cagepose.model.wording import number_or_dash, percent
 from cagepose.sampling.chosen_runs import write_scenes
 from cagepose.sampling.figures import draw
 from cagepose.sampling.findings import Findings, document
 from cagepose.sampling.results import StudyResults
 from cagepose.views.style import figure_bytes
+from cagepose.views.templates import environment
 
 PAGE_NAME, NUMBERS_NAME = "report.html", "report.json"
 
@@ -53,14 +54,8 @@ def kept_numbers(results: StudyResults) -> dict[str, Any] | None:
 
 def page_text(numbers: dict[str, Any], findings: Findings, pictures: dict[str, bytes]) -> str:
     """Return the page."""
-    templates = Environment(
-        loader=PackageLoader("cagepose.sampling"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    templates.filters |= {"number": shown_number, "percent": shown_share}
+    templates = environment("cagepose.sampling")
+    templates.filters |= {"number": number_or_dash, "percent": percent}
     svgs = {name: Markup(_inner_svg(content)) for name, content in pictures.items()}
     return templates.get_template("report.jinja").render(
         made_by=MADE_BY, found=numbers, pictures=svgs, planned=findings.n_planned
@@ -71,23 +66,3 @@ def _inner_svg(content: bytes) -> str:
     """An SVG file without what stands before its first tag, to stand within a page."""
     text = content.decode()
     return text[text.index("<svg") :]
-
-
-def shown_number(value: float | None) -> str:
-    """Write a number as people read it.
-
-    >>> shown_number(0.12345649), shown_number(None), shown_number(-0.0)
-    ('0.12346', '-', '0')
-    """
-    return "-" if value is None else f"{value + 0.0:.5g}"
-
-
-def shown_share(value: float) -> str:
-    """Write a share: more digits near all and none.
-
-    >>> shown_share(0.5), shown_share(0.99973), shown_share(1.0)
-    ('50.0 %', '99.973 %', '100 %')
-    """
-    if value in (0.0, 1.0):
-        return f"{100.0 * value:.0f} %"
-    return f"{100.0 * value:.{1 if 0.01 <= value <= 0.99 else 3}f} %"

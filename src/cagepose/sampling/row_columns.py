@@ -14,8 +14,7 @@ from cagepose.files.study_file import StudyFile
 from cagepose.files.units import from_metres, to_metres
 from cagepose.model.checks import FloatArray
 from cagepose.model.wording import few
-from cagepose.runs.run import AT_REST
-from cagepose.sampling.outcome import REFUSED, Outcomes
+from cagepose.sampling.outcome import REFUSED, Outcomes, at_rest
 
 SAME, SAME_DEG = 1e-8, 1e-6
 """Of lengths, as a fraction of the scene's size; and of angles."""
@@ -29,6 +28,8 @@ class RowColumns:
     ----------
     varied, quantities
         Names of the varied numbers, and of what is measured of each run: the final pose and the watched points.
+    watched
+        Those of the quantities that belong to watched points.
     resolution
         By quantity: what varies by less does not vary, but for rounding and the touch tolerance.
     verdicts
@@ -44,9 +45,9 @@ class RowColumns:
         }
         elements = scene.cage.element_names
         self.varied = tuple(one.key for one in study.varied)
-        watched = tuple(f"{name}_{axis}" for name in self._watched for axis in AXES)
+        self.watched = tuple(f"{name}_{axis}" for name in self._watched for axis in AXES)
         lengths = float(from_metres(SAME * scene.size_m, study.nominal.length_unit))
-        self.quantities = (*(f"position_{axis}" for axis in AXES), *ANGLES, *watched)
+        self.quantities = (*(f"position_{axis}" for axis in AXES), *ANGLES, *self.watched)
         self.resolution = {name: SAME_DEG if name in ANGLES else lengths for name in self.quantities}
         self.verdicts = ("verdict", *(f"verdict_{load.name}" for load in scene.loads))
         self.touching = {f"touching_{name}": name for name in elements}
@@ -55,8 +56,19 @@ class RowColumns:
     def __repr__(self) -> str:
         return f"<RowColumns: {few(self.varied)} vary; {few(self.quantities)} measured>"
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of all columns, in their order."""
+        measured = (*self.verdicts, *self.quantities, *self.touching, *self.forces)
+        return ("run", *self.varied, *measured, "accepted", "error", "solve_us")
+
     def quantities_of(self, outcomes: Outcomes) -> dict[str, FloatArray]:
-        """Return what is measured, in the scene file's unit and degrees; NaN: no pose."""
+        """Return what is measured of runs that came to rest, in the scene file's unit and degrees; NaN: it did not."""
+        rests = at_rest(outcomes.verdict)
+        return {name: np.where(rests, column, np.nan) for name, column in self._measured(outcomes).items()}
+
+    def _measured(self, outcomes: Outcomes) -> dict[str, FloatArray]:
+        """Return the same of all runs that ended at a pose, wherever they were on their way."""
         unit = self._study.nominal.length_unit
         found = dict(zip(self.quantities, self._places(outcomes, unit), strict=True))
         return {name: column + 0.0 for name, column in found.items()}  # -0.0 becomes 0.0
@@ -72,7 +84,7 @@ class RowColumns:
         columns: dict[str, NDArray[Any]] = dict(zip(self.varied, values.T, strict=True))
         columns["verdict"] = outcomes.verdict
         columns |= zip(self.verdicts[1:], outcomes.phase_verdicts.T, strict=True)
-        columns |= self.quantities_of(outcomes)
+        columns |= self._measured(outcomes)
         columns |= zip(self.touching, outcomes.touching.T, strict=True)
         if outcomes.forces is not None:
             columns |= zip(self.forces, outcomes.forces.T, strict=True)
@@ -87,14 +99,12 @@ class RowColumns:
         ValueError
             The expression has no truth value.
         """
-        ran = columns["verdict"] != REFUSED
         if self._study.accept is None:
-            at_rest: NDArray[np.bool_] = ran & np.isin(columns["verdict"], sorted(AT_REST))
-            return at_rest
+            return at_rest(columns["verdict"])
         found = np.asarray(self._study.accept.value(columns))
         if found.dtype != np.bool_:
             raise ValueError("is no comparison; write what is true of a good run, such as verdict == 'rests'")
-        accepted: NDArray[np.bool_] = ran & found
+        accepted: NDArray[np.bool_] = (columns["verdict"] != REFUSED) & found
         return accepted
 
     def table(self, first: int, values: FloatArray, outcomes: Outcomes) -> pa.Table:

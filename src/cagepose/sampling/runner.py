@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from copy import deepcopy
@@ -12,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.errors import Problem, SceneError
+from cagepose.errors import SceneError
 from cagepose.files.key_path import set_value, value_at
 from cagepose.files.parameters import Expressions, evaluated
 from cagepose.files.study_file import StudyFile
-from cagepose.model.checks import FloatArray, is_finite
+from cagepose.model.checks import FloatArray, expect_count
 from cagepose.runs.many import run_many
 from cagepose.runs.solve import run
 from cagepose.sampling.batch_columns import BatchColumns, Columns
@@ -51,12 +50,12 @@ class Runner:
     Raises
     ------
     SceneError
-        ``workers`` is no number from 1 upwards.
+        ``workers`` is no whole number from 1 upwards.
     """
 
     def __init__(self, study: StudyFile, workers: int | None = None) -> None:
-        if workers is not None and not (is_finite(workers) and workers >= 1):
-            raise SceneError([Problem(("workers",), f"is {workers!r}; give 1 or more")])
+        if workers is not None:
+            expect_count(workers, "workers")
         self.study, self._workers = study, workers
         self._with_forces = bool(study.model.forces)
         nominal: Any = deepcopy(study.scene_text.yaml.data)
@@ -141,7 +140,7 @@ class Runner:
     def _processes(self) -> ProcessPoolExecutor:
         if self._pool is None:
             self._pool = ProcessPoolExecutor(
-                self._workers or os.cpu_count(),
+                self._workers,
                 mp_context=get_context("spawn"),  # a fork of a process with threads can hang
                 initializer=_begin_process,
                 initargs=(self.study,),

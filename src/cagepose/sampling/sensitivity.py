@@ -21,7 +21,7 @@ BASE = 1024
 """Rows of the design for each varied number, and two more."""
 BASE_ONE_BY_ONE = 256
 LEAST_WHOLE = 0.5
-"""Of the design's blocks: a block in which a run ends at no pose says nothing of poses, and is left out."""
+"""Of the design's blocks: a block in which a run does not come to rest says nothing of poses, and is left out."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def _indices(name: str, measured: FloatArray, problem: dict[str, Any], seed: int
     whole = blocks[~np.isnan(blocks).any(axis=1)]
     measured = whole.ravel()
     if len(whole) < LEAST_WHOLE * len(blocks):
-        missing = "ends at no pose in too many runs of the design"
+        missing = "is not known, as too many runs of the design do not come to rest"
     elif np.ptp(measured) <= resolution:
         missing = "is the same in all of them"
     if missing is not None:

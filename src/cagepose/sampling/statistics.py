@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cagepose.model.checks import FloatArray
+from cagepose.sampling.outcome import at_rest
 from cagepose.sampling.results import StudyResults
 
 TAIL = 0.00135
@@ -21,38 +22,55 @@ Z_95 = 1.959963984540054
 
 @dataclass
 class Spread:
-    """How a quantity is spread over the runs that ended at a pose.
+    """How a quantity is spread over the runs that came to rest.
 
     Attributes
     ----------
-    n, mean, sigma, least, greatest
+    n, mean, least, greatest
         Of these runs.
-    low, high
-        Quantiles that `TAIL` of the runs lie below and above: plus and minus three sigmas of a normal distribution.
+    squares
+        Sum of the squares of the distances from the mean.
     counts
         Of runs in `BINS` equal parts of the range.
     """
 
     n: int = 0
     mean: float = math.nan
-    sigma: float = math.nan
     least: float = math.inf
     greatest: float = -math.inf
-    low: float = math.nan
-    high: float = math.nan
+    squares: float = 0.0
     counts: FloatArray = field(default_factory=lambda: np.zeros(BINS))
 
     def add(self, values: FloatArray) -> None:
-        """Take in more runs: count, mean, sum of squares about the mean (in ``sigma``), limits (Chan et al. 1983)."""
+        """Take in more runs: all but ``counts``, which needs the range first (Chan et al. 1983)."""
         if len(values) == 0:
             return
         n, mean, squares = len(values), float(values.mean()), float(((values - values.mean()) ** 2).sum())
         if self.n:
             apart, total = mean - self.mean, self.n + n
-            squares += self.sigma + apart**2 * self.n * n / total
+            squares += self.squares + apart**2 * self.n * n / total
             mean, n = self.mean + apart * n / total, total
-        self.n, self.mean, self.sigma = n, mean, squares
+        self.n, self.mean, self.squares = n, mean, squares
         self.least, self.greatest = min(self.least, float(values.min())), max(self.greatest, float(values.max()))
+
+    def count(self, values: FloatArray) -> None:
+        """Count runs, all of which were taken in before, by equal parts of the range."""
+        if len(values) == 0:
+            return
+        places = (values - self.least) / max(self.greatest - self.least, 1e-300) * BINS
+        self.counts += np.bincount(np.minimum(places.astype(np.int64), BINS - 1), minlength=BINS)
+
+    @property
+    def sigma(self) -> float:
+        """The standard deviation; NaN: of no runs."""
+        return math.sqrt(self.squares / self.n) if self.n else math.nan
+
+    @property
+    def three_sigma(self) -> tuple[float, float]:
+        """Quantiles that `TAIL` of the runs lie below and above, as beyond three sigmas of a normal distribution; NaN:
+        of no runs.
+        """
+        return (self.quantile(TAIL), self.quantile(1.0 - TAIL)) if self.n else (math.nan, math.nan)
 
     def quantile(self, share: float) -> float:
         """Return what a share of the runs lies below."""
@@ -93,19 +111,12 @@ def statistics_of(results: StudyResults) -> Statistics:
         names, counts = np.unique(part["verdict"], return_counts=True)
         found.verdicts.update(dict(zip(names.tolist(), counts.tolist(), strict=True)))
         for name, spread in found.spreads.items():
-            spread.add(part[name][~np.isnan(part[name])])
+            spread.add(part[name][at_rest(part["verdict"])])
         for name in columns.touching:
             found.n_touching[name] += int(part[name].sum())
-    for spread in found.spreads.values():
-        spread.sigma = math.sqrt(spread.sigma / spread.n) if spread.n else math.nan
-    for part in results.parts(columns.quantities):
+    for part in results.parts([*columns.quantities, "verdict"]):
         for name, spread in found.spreads.items():
-            if spread.n:
-                places = (part[name] - spread.least) / max(spread.greatest - spread.least, 1e-300) * BINS
-                inside = np.minimum(places[~np.isnan(places)].astype(np.int64), BINS - 1)
-                spread.counts += np.bincount(inside, minlength=BINS)
-    for spread in found.spreads.values():
-        spread.low, spread.high = (spread.quantile(TAIL), spread.quantile(1.0 - TAIL)) if spread.n else (math.nan,) * 2
+            spread.count(part[name][at_rest(part["verdict"])])
     return found
 
 

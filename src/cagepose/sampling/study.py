@@ -10,6 +10,7 @@ import numpy as np
 
 from cagepose.errors import Problem, SceneError
 from cagepose.files.study_file import StudyFile, parse_study, read_study_file, refused_at, study_text
+from cagepose.model.checks import duplicates
 from cagepose.model.wording import few
 from cagepose.sampling.results import StudyResults
 from cagepose.sampling.runner import Runner
@@ -77,6 +78,9 @@ class Study:
         from cagepose.sampling.sample import Sample
 
         self._file, self._columns = file, RowColumns(file)
+        for name in duplicates(self._columns.names):
+            message = f"gives the column {name} a second meaning; rename the point that is watched"
+            raise refused_at("watch", file, source, message)
         try:
             self._sample = Sample(file.model.sample, [distribution_of(one) for one in file.varied])
         except ValueError as error:
@@ -123,7 +127,7 @@ class Study:
         Raises
         ------
         SceneError
-            ``workers`` is no number from 1 upwards.
+            ``workers`` is no whole number from 1 upwards.
         StudyFolderError
             The folder holds something else.
         OSError

@@ -25,17 +25,17 @@ class ToleranceRow:
     Attributes
     ----------
     name, nominal
-        Its value with all numbers at their nominal values; NaN: that run ends at no pose.
+        Its value with all numbers at their nominal values; NaN: that run does not come to rest.
     derivatives
-        By each varied number, (n_varied,), from the nominal run; NaN where a run beside it ends at no pose.
+        By each varied number, (n_varied,), from the nominal run; NaN where a run beside it does not come to rest.
     worst
         Least and greatest value if the quantity were linear and each number at its worst end.
     root_sum_square
         The same with the changes by half of each number's width added as squares, about its middle.
     spread
         What the runs say.
-    is_linear
-        Whether the runs stay within the worst case, as they would if it were.
+    stays_within_worst
+        Whether the runs stay within the worst case, as they would if it were linear; None: one of the two is not known.
     """
 
     name: str
@@ -46,9 +46,12 @@ class ToleranceRow:
     spread: Spread
 
     @property
-    def is_linear(self) -> bool:
-        slack = 0.01 * (self.worst[1] - self.worst[0])
-        return self.spread.least >= self.worst[0] - slack and self.spread.greatest <= self.worst[1] + slack
+    def stays_within_worst(self) -> bool | None:
+        low, high = self.worst
+        if math.isnan(low) or not self.spread.n:
+            return None
+        slack = 0.01 * (high - low)
+        return self.spread.least >= low - slack and self.spread.greatest <= high + slack
 
 
 def tolerance_rows(

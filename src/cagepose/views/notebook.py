@@ -62,7 +62,8 @@ class _Picture:
         outer = outer_points(scene.object)
         needed = np.concatenate([pose.transform(outer) for pose in poses] + [scene.cage.points_world()])
         self.bodies = [
-            (shape, cut_off(self._in_cage(shape), needed, scene.object.reach_m)) for shape in scene.cage.shapes
+            (shape, cut_off(self._in_cage(shape), needed, scene.object.reach_m))
+            for shape in (*scene.cage.shapes, *scene.cage.holes)
         ]
         seen = np.concatenate([needed, *(vertices for _, vertices in self.bodies)]) @ self.axes.T
         low, high = seen.min(axis=0), seen.max(axis=0)
@@ -76,7 +77,7 @@ class _Picture:
 
     def draw_object(self, pose: Pose, ink: str) -> None:
         held: Object = self.scene.object
-        for part in held.parts:
+        for part in (*held.parts, *held.holes):
             placed = pose @ part.pose_body_shape
             self._draw_solid(part, placed.transform(solid_of(part).mesh.vertices_m), placed, ink)
 

@@ -61,7 +61,8 @@ class SceneDrawing:
         needed = np.concatenate([cage.points_world(), *(pose.transform(outer_points(held)) for pose in poses)])
         bodies = [cage.pose_world_cage.transform(vertices_of([shape])) for shape in cage.shapes]
         self.bodies = [self._shown(cut_off(body, needed, held.reach_m)) for body in bodies]
-        everything = np.concatenate([self._shown(needed), *self.bodies])
+        holes = self._shown(cage.pose_world_cage.transform(vertices_of(cage.holes)))
+        everything = np.concatenate([self._shown(needed), *self.bodies, holes])
         self.low, self.high = everything.min(axis=0), everything.max(axis=0)
         self.extents = np.maximum(self.high - self.low, 1e-9 * (self.high - self.low).max())
         self.aspect = np.maximum(self.extents, SLIMMEST * self.extents.max())
@@ -123,7 +124,7 @@ class SceneDrawing:
         return self._shown(pose.transform(np.concatenate([np.zeros((0, 3)), *corners]))).reshape(-1, 8, 3)
 
     def _draw_object(self, panel: Axes3D, solids: SolidDrawing, pose: Pose) -> None:
-        """Draw the object at a pose, and the bodies of the cage."""
+        """Draw the object at a pose, and the bodies of the cage; of holes the outlines."""
         held, cage = self.scene.object, self.scene.cage
         solids.draw(((shape, cage.pose_world_cage) for shape in cage.shapes), SAND, BROWN, BODY_OPACITY)
         faces = [corners[list(face)] for corners in self._boxes(pose) for face in _FACES]
@@ -132,6 +133,8 @@ class SceneDrawing:
                 Poly3DCollection(faces, facecolors=SKY, edgecolors=BLUE, linewidths=0.5, alpha=0.22, zorder=1)
             )
         solids.draw(((shape, pose) for shape in held.shapes), SKY, BLUE, SHAPE_OPACITY)
+        solids.draw_outline(((hole, cage.pose_world_cage) for hole in cage.holes), {"colors": BROWN, "linewidths": 0.5})
+        solids.draw_outline(((hole, pose) for hole in held.holes), {"colors": BLUE, "linewidths": 0.5})
         center = self._shown(pose.transform(held.center_of_gravity_m))
         panel.plot(*center[:, None], marker="D", color=BLUE, markersize=4.0, linestyle="none", zorder=5)
 

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cagepose import load_scene, run
+from cagepose import Cage, Cylinder, Force, Hole, Load, Object, Pose, Scene, load_scene, run
 from cagepose.files.write import MADE_BY
 from cagepose.views.viewer.film import END_MS, SHOTS_PER_MOTION, gif_bytes, png_bytes
-from cagepose.views.viewer.picture import SIZE, PictureMaker
+from cagepose.views.viewer.picture import FEW_NAMES, SIZE, PictureMaker
 from cagepose.views.viewer.playback import playback
 from cagepose.views.viewer.raster import BACKGROUND, Raster
 from cagepose.views.viewer.stage import Stage
+from our_scenes import SCENES as OUR_SCENES
 
 SCENES = Path(__file__).resolve().parents[3] / "scenes"
 
@@ -83,6 +84,32 @@ def test_a_picture_of_any_scene_is_ours_and_the_same_each_time():
         with Image.open(io.BytesIO(content)) as picture:
             assert picture.size == SIZE
     assert png_bytes(shown) == content
+
+
+@pytest.mark.parametrize("path", OUR_SCENES, ids=[path.stem for path in OUR_SCENES])
+def test_the_start_of_any_scene_can_be_drawn(path: Path):
+    """Where most of the cage touches nothing yet, and has its names all the same."""
+    shown = playback(run(load_scene(path)))
+    maker = PictureMaker(Stage(shown), 5)
+    maker.picture(shown.shots[0])
+    names = set(shown.run.scene.cage.element_names)
+    assert len(names) > FEW_NAMES or names <= {label.text for label in maker.labels}
+
+
+def test_a_hole_that_stands_alone_is_drawn_and_has_its_name_at_its_mouth():
+    peg = Object(shapes=[Cylinder(0.004, 0.03)], pose=Pose((0.0005, 0.0, 0.005)))
+    cage = Cage(holes=[Hole(0.005, 0.02)], pose=Pose((0.0, 0.0, 0.001)))
+    shown = playback(run(Scene(peg, cage, [Load("push", force=Force((1, 0, 0), (0, 0, 0)))])))
+    maker = PictureMaker(Stage(shown), 1)
+    picture = np.asarray(maker.picture(shown.shots[0]), dtype=float)
+    assert "hole1" in [label.text for label in maker.labels]
+    assert maker.stage.middles_world.tolist() == [[0.0, 0.0, 0.001]]
+    turns = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
+    bottom = np.column_stack([0.005 * np.cos(turns), 0.005 * np.sin(turns), np.full(32, -0.019)])  # the peg is above
+    places = (maker._pixels(maker.stage.place(bottom))[:, :2] / 2.0).astype(int)
+    assert ((places > 0) & (places < SIZE)).all()
+    around = [picture[y - 2 : y + 3, x - 2 : x + 3] for x, y in places.tolist()]
+    assert sum(bool((patch < 200.0).any()) for patch in around) >= 14  # of the half that is in front
 
 
 def test_a_film_has_all_shots_rests_where_events_end_and_does_not_stand_still():

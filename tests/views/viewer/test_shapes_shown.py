@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cagepose import Box, Cage, Object, Pose, Scene, run
+from cagepose import Box, Cage, Cylinder, Force, Hole, Load, Object, Pose, Scene, run
 from cagepose.files.scene_file import read_scene_text
 from cagepose.model.shapes import Capsule, Sphere
 from cagepose.views.viewer.page import page
@@ -25,11 +25,8 @@ from cagepose.views.viewer.what_if import WhatIf
 from driving import set_range, state, wait_until
 from shaped_scenes import WEIGHT, ball_on_points, ball_on_table, bar_between_bars, block_on_balls
 
+BLOCK = Box((0.05, 0.05, 0.03), Pose((0.0, 0.0, -0.015)), "block")
 SCENES = [ball_on_table, ball_on_points, bar_between_bars, block_on_balls]
-
-
-def shown_on(picture: Image.Image, place: np.ndarray) -> np.ndarray:
-    return np.asarray(picture, dtype=float)[int(place[1]), int(place[0])]
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -174,6 +171,34 @@ def test_the_page_shows_shapes_and_contacts_where_pictures_do(opened, scene: Cal
     assert {contact.point for contact in film.run.contacts} <= names
     lines = page.locator("#forces tr:has(td)").all_inner_texts()
     assert any(f"{contact.point} on {contact.box}" in line for line in lines for contact in film.run.contacts)
+
+
+@pytest.mark.parametrize(
+    "around", [{"shapes": [BLOCK], "holes": [Hole(0.005, 0.02, in_=["block"])]}, {"holes": [Hole(0.005, 0.02)]}]
+)
+def test_the_page_names_a_hole_that_nothing_touches_yet(opened, around: dict) -> None:
+    peg = Object(shapes=[Cylinder(0.004, 0.03)], pose=Pose((0.0005, 0.0, 0.005)))
+    page = opened(playback(run(Scene(peg, Cage(**around), [Load("push", force=Force((1, 0, 0), (0, 0, 0)))]))))
+    set_range(page, "time", 0)
+    assert "hole1" in {name["text"] for name in state(page)["written"]}
+
+
+def test_the_page_has_the_outlines_of_holes_on_both_sides() -> None:
+    plate = Object(
+        [Box((0.02, 0.02, 0.004), name="plate")],
+        holes=[Hole(0.003, 0.004, in_=["plate"], pose_body_shape=Pose((0.0, 0.0, 0.002)))],
+        pose=Pose((0.0, 0.0, 0.03)),
+    )
+    cage = Cage(
+        shapes=[Sphere(0.001, Pose((0.0, 0.008, 0.02)))],
+        holes=[Hole(0.003, 0.004, pose_body_shape=Pose((0.0, 0.0, -0.01)))],
+    )
+    film = playback(run(Scene(plate, cage, [WEIGHT])))
+    data, stage = page_data(film), Stage(film)
+    ((held,), (around,)) = data["holes"], data["cageHoles"]
+    assert held["mesh"] == around["mesh"]  # of the same kind and size
+    assert held["position"] == pytest.approx([0.0, 0.0, 0.002 / stage.size_m], abs=1e-9)
+    assert around["position"] == pytest.approx(stage.place(np.array((0.0, 0.0, -0.01))).tolist(), abs=1e-9)
 
 
 @pytest.mark.parametrize("scene", [ball_on_points, block_on_balls])

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 from cagepose.files.units import from_metres
 from cagepose.files.words import LengthWords
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
+from cagepose.model.shapes import Shape
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.run import AT_REST, FAILURES
 from cagepose.studies.acts import Act
@@ -85,23 +87,26 @@ class _Writer:
         }
 
     def _solids(self) -> dict[str, Any]:
-        """The shapes of the object in its frame, and those of the cage in the world, by the indices of their meshes:
-        shapes of the same kind and size have the same one.
+        """The shapes and holes of the object in its frame, and those of the cage in the world, by the indices of their
+        meshes: shapes of the same kind and size have the same one.
         """
         scene, meshes = self.run.scene, dict[Solid, int]()
         bodies: dict[str, list[dict[str, Any]]] = {}
-        for key, shapes, pose in (
-            ("shapes", scene.object.shapes, Pose()),
+        kinds: tuple[tuple[str, Sequence[Shape], Pose | None], ...] = (
+            ("shapes", scene.object.shapes, None),
+            ("holes", scene.object.holes, None),
             ("bodies", scene.cage.shapes, scene.cage.pose_world_cage),
-        ):
+            ("cageHoles", scene.cage.holes, scene.cage.pose_world_cage),
+        )
+        for key, shapes, pose in kinds:
             bodies[key] = []
             for shape in shapes:
-                placed = pose @ shape.pose_body_shape
-                position = placed.position_m / self.stage.size_m
+                placed = shape.pose_body_shape if pose is None else pose @ shape.pose_body_shape
+                in_object = placed.position_m / self.stage.size_m
                 bodies[key].append(
                     {
                         "mesh": meshes.setdefault(solid_of(shape), len(meshes)),
-                        "position": _numbers(position if key == "shapes" else self.stage.place(placed.position_m)),
+                        "position": _numbers(in_object if pose is None else self.stage.place(placed.position_m)),
                         "quaternion": _numbers(placed.quaternion_wxyz),
                     }
                 )

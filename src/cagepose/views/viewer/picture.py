@@ -55,10 +55,12 @@ class PictureMaker:
         self.corners_object = np.concatenate([np.zeros((0, 3)), *(box.corners_object() for box in scene.object.boxes)])
         self.points = stage.place(stage.points(exaggeration))
         self.shifts = stage.shifts(exaggeration)
+        self.body_shifts = self.shifts[len(self.points) : len(self.points) + len(scene.cage.shapes)]
         self.body_poses = [
             Pose(shift) @ scene.cage.pose_world_cage @ shape.pose_body_shape
-            for shift, shape in zip(self.shifts[len(self.points) :], scene.cage.shapes, strict=False)
+            for shift, shape in zip(self.body_shifts, scene.cage.shapes, strict=True)
         ]
+        self.hole_poses = [scene.cage.pose_world_cage @ hole.pose_body_shape for hole in scene.cage.holes]
         sin_a, cos_a, sin_e, cos_e = math.sin(AZIMUTH), math.cos(AZIMUTH), math.sin(ELEVATION), math.cos(ELEVATION)
         back = np.array([cos_a * cos_e, sin_a * cos_e, sin_e])
         right = np.array([-sin_a, cos_a, 0.0])
@@ -99,8 +101,10 @@ class PictureMaker:
         last = self.shown.shots[-1].touches
         if last.forces_object is not None:
             places.append(self._places(last) - self.arrow_per_force * last.forces_object @ ends[-1].rotation.T)
-        for body, shift in zip(self.stage.bodies_world, self.shifts[len(self.points) :], strict=False):
+        for body, shift in zip(self.stage.bodies_world, self.body_shifts, strict=True):
             places.append(self.stage.place(body + shift))
+        for hole, pose in zip(self.shown.run.scene.cage.holes, self.hole_poses, strict=True):
+            places.append(self.stage.place(pose.transform(solid_of(hole).mesh.vertices_m)))
         seen = np.concatenate([*places, self.points]) @ self.axes.T
         low, high = seen.min(axis=0), seen.max(axis=0)
         self.middle = (low + high) / 2.0
@@ -170,7 +174,9 @@ class PictureMaker:
                 self._name(self._named_place(index, marks), name, is_loud=color != DARK)
 
     def _named_place(self, index: int, marks: FloatArray) -> FloatArray:
-        """Return where an element of the cage has its name: a shape that touches where it does, else in its middle."""
+        """Return where an element of the cage has its name: a shape or a hole that touches where it does, else in its
+        middle or at its mouth.
+        """
         if index < len(self.points):
             return np.asarray(self.points[index])
         if len(marks):
@@ -253,6 +259,10 @@ class PictureMaker:
         for shape in scene.object.shapes:
             faces = self._solid(shape, pose @ shape.pose_body_shape, BLUE)
             drawn.append((float(faces[0][..., 2].mean()), (*faces, SKY, SEE_THROUGH)))
+        for hole in scene.object.holes:  # of which the surface of a part shows nothing
+            self._solid(hole, pose @ hole.pose_body_shape, BLUE)
+        for hole, hole_pose in zip(scene.cage.holes, self.hole_poses, strict=True):
+            self._solid(hole, hole_pose, BROWN)
         for index, body in enumerate(scene.cage.shapes):
             depth = float(self._pixels(self._middle(index))[2])
             drawn.append((depth, (*self._solid(body, self.body_poses[index], BROWN), SAND, BODY_OPACITY)))
@@ -263,8 +273,8 @@ class PictureMaker:
                 self.raster.triangles(corners, lit, color, opacity)
 
     def _middle(self, body: int) -> FloatArray:
-        """Return the middle of what is shown of a shape of the cage, (3,)."""
-        return self.stage.place(self.stage.bodies_world[body].mean(axis=0) + self.shifts[len(self.points) + body])
+        """Return the middle of what is shown of a shape of the cage, or the mouth of a hole behind these, (3,)."""
+        return self.stage.place(self.stage.middles_world[body] + self.shifts[len(self.points) + body])
 
     def _solid(self, shape: Shape, pose: Pose, ink: Color) -> tuple[FloatArray, FloatArray]:
         """Draw the outline of a shape; return the triangles that face the viewer, and how bright their corners are."""

@@ -45,6 +45,8 @@ class Stage:
         there, (n, 3), metres.
     bodies_world
         Points whose hull is that of each shape of the cage, as far as they are shown: tuples of (n, 3), metres.
+    middles_world
+        Of each of these, and the mouth of each hole of the cage, (n, 3), metres.
     radius
         A sphere about the origin that holds the cage and the object at the start and the end, in drawing units.
     """
@@ -62,6 +64,8 @@ class Stage:
         bodies = [scene.cage.pose_world_cage.transform(vertices_of([shape])) for shape in scene.cage.shapes]
         self.bodies_world = tuple(cut_off(body, everything, held.reach_m) for body in bodies)
         everything = np.concatenate([everything, *self.bodies_world])
+        mouths = [scene.cage.pose_world_cage.transform(hole.pose_body_shape.position_m) for hole in scene.cage.holes]
+        self.middles_world = np.array([*(body.mean(axis=0) for body in self.bodies_world), *mouths]).reshape(-1, 3)
         self.middle_world: FloatArray = (everything.min(axis=0) + everything.max(axis=0)) / 2.0
         radius_m = float(np.linalg.norm(everything - self.middle_world, axis=1).max())
         # Of a ball on a large table the scene's size is that of the table, of which little is shown.

@@ -100,12 +100,16 @@ class Drawing {
     const needed = [...corners, ...rounded, ...tails, ...pressing, ...stage.data.points.map((_, index) => stage.point(index, k))];
     const [low, high] = [Math.min, Math.max].map((pick) => [0, 1, 2].map((axis) => needed.reduce((best, place) => pick(best, place[axis]), needed[0][axis])));
     this.cutOff = (place) => place.map((value, axis) => Math.max(low[axis] - stage.data.reach, Math.min(high[axis] + stage.data.reach, value)));
-    return [...needed, ...this.bodies(k).flatMap((body) => this.vertices(body).map(this.cutOff))];
+    return [...needed, ...this.cageHoles().flatMap((hole) => this.vertices(hole)), ...this.bodies(k).flatMap((body) => this.vertices(body).map(this.cutOff))];
   }
 
-  // The shapes of the object at a pose, and those of the cage.
-  placedSolids(pose) {
-    return this.stage.data.shapes.map(({ mesh, position, quaternion }) => ({ mesh, pose: composed(pose, { p: position, q: quaternion }) }));
+  // The shapes of the object at a pose, or its holes; those of the cage; and its holes, which stay where they are.
+  placedSolids(pose, solids = this.stage.data.shapes) {
+    return solids.map(({ mesh, position, quaternion }) => ({ mesh, pose: composed(pose, { p: position, q: quaternion }) }));
+  }
+
+  cageHoles() {
+    return this.stage.data.cageHoles.map(({ mesh, position, quaternion }) => ({ mesh, pose: { p: position, q: quaternion } }));
   }
 
   bodies(k) {
@@ -122,6 +126,11 @@ class Drawing {
     return times(1 / places.length, places.reduce(add));
   }
 
+  // Where a shape or a hole of the cage that touches nothing has its name.
+  namedPlace(index, bodies) {
+    return index < bodies.length ? this.middle(bodies[index]) : this.stage.data.cageHoles[index - bodies.length].position;
+  }
+
   boxes(pose, name, color) {
     for (const box of this.stage.data.boxes) this.painter.draw(name, placed(composed(pose, { p: box.position, q: box.quaternion }), box.size), color);
   }
@@ -133,8 +142,8 @@ class Drawing {
     this.boxes(start, "edges", COLORS.ghost);
     this.boxes(pose, "edges", COLORS.edge);
     for (const { mesh, pose: placed } of this.placedSolids(start)) this.painter.drawOutline(mesh, placed, COLORS.ghost);
-    for (const { mesh, pose: placed } of shapes) this.painter.drawOutline(mesh, placed, COLORS.edge);
-    for (const { mesh, pose: placed } of bodies) this.painter.drawOutline(mesh, placed, COLORS.bodyEdge);
+    for (const { mesh, pose: placed } of [...shapes, ...this.placedSolids(pose, this.stage.data.holes)]) this.painter.drawOutline(mesh, placed, COLORS.edge);
+    for (const { mesh, pose: placed } of [...bodies, ...this.cageHoles()]) this.painter.drawOutline(mesh, placed, COLORS.bodyEdge);
     this.ball(carried(pose, this.stage.data.center), BALL, COLORS.center);
     this.painter.seeThrough();
     const depth = (place) => dot(place, this.painter.toViewer);
@@ -163,7 +172,7 @@ class Drawing {
       for (const mark of marks) this.ball(mark, look === "free" ? 0.7 * BALL : BALL, COLORS[look]);
       const counts = look === "reached" || (look === "touching" && (touching.size <= FEW_NAMES || pressing.has(index)));
       if (!counts && !this.allNames) return;
-      labels.push([marks[0] ?? this.middle(bodies[index - this.stage.data.points.length]), name, look === "free" ? "#777" : "#000"]);
+      labels.push([marks[0] ?? this.namedPlace(index - this.stage.data.points.length, bodies), name, look === "free" ? "#777" : "#000"]);
     });
   }
 
