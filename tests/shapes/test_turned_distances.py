@@ -23,15 +23,31 @@ from shapes.test_distances import GAPS, RESOLUTION, TOUCH, WITHIN, geometry_of, 
 from shapes.turned_bodies import Circles, circles_of, overlap, placed_at, random_turned
 
 N_PARTS = 80
-MANY_TO_ONE_WRONG = 400
-"""Known: of 40,000 random pairs 45 are told wrong, sharp rims that are in each other by less than a touch tolerance
-(they are told to be deep), and 2 of 1,301 in and over holes."""
+MANY_TO_ONE_WRONG = 800
+"""Known: of 8,000 random pairs 8 are told wrong, most of them sharp rims that are in each other by less than a touch
+tolerance and are told to be deep."""
 
 
 def separation_along(one: Circles, other: Circles, normal: np.ndarray) -> float:
     """Return how far apart two bodies are between planes across a unit normal of the first."""
     between = float(other.end_along(-normal) @ normal - one.end_along(normal) @ normal)
     return between - one.radius - other.radius
+
+
+def greatest_separation(one: Circles, other: Circles) -> float:
+    """Return how far apart two bodies are at most between two parallel planes, near the best of many directions."""
+    random = np.random.default_rng(0)
+    ways = np.concatenate([np.eye(3), -np.eye(3), random.normal(size=(4000, 3))])
+    best = max((way / np.linalg.norm(way) for way in ways), key=lambda normal: separation_along(one, other, normal))
+    found, spread = separation_along(one, other, best), 0.1
+    while spread > 1e-14:
+        spread *= 0.7
+        near = best + spread * random.normal(size=(60, 3))
+        near /= np.linalg.norm(near, axis=1)[:, None]
+        values = [separation_along(one, other, normal) for normal in near]
+        if max(values) > found:
+            best, found = near[int(np.argmax(values))], max(values)
+    return found
 
 
 def tip_is_at_rim(one: Circles, other: Circles, touch_m: float) -> bool:
@@ -68,6 +84,8 @@ class Check:
             self.seen["touching"] += 1
             rows = meetings.rows[: meetings.used[0]]
             least = max([away, *(separation_along(one, other, row["normal"]) for row in rows)])
+            if found > least + RESOLUTION * size:
+                least = max(least, greatest_separation(one, other))
             self.worst["too far"] = max(self.worst["too far"], (found - least) / size)
             self.worst["too near"] = max(self.worst["too near"], (away - found) / touch_m)
             if not found <= least + RESOLUTION * size or not found >= away - WITHIN * touch_m:
