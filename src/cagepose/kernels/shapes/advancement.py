@@ -15,16 +15,16 @@ from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plu
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.along_motion import (
     BEHIND,
-    FARTHER,
     LEAST_STEP,
     distance_from,
+    gone_on,
     place_moved,
     touches_after,
 )
 from cagepose.kernels.shapes.features import EDGE, FACE, RIM, VERTEX, Feature, Shapes
 from cagepose.kernels.shapes.meeting import Meeting, meeting
 from cagepose.kernels.shapes.motion import Motion, velocity_at
-from cagepose.kernels.shapes.rims import distance_at, feet_on, foot_on, middle_of_arc, reach_of_arc
+from cagepose.kernels.shapes.rims import distance_at, distance_from_arc, foot_on, middle_of_arc, reach_of_arc
 
 ADVANCES = 6000
 """Steps for one pair of features; only where they graze each other more than some tens are taken."""
@@ -119,7 +119,7 @@ def lines_apart(one: Feature, other: Feature) -> float:
     if one.kind == RIM or other.kind == RIM:
         rim, from_rim = (one, other) if one.kind == RIM else (other, one)
         if from_rim.kind == EDGE or from_rim.kind == RIM:
-            return feet_on(rim, from_rim).least
+            return distance_from_arc(rim, from_rim)
         foot = foot_on(rim, from_rim)
         if from_rim.kind == FACE:
             across = minus(foot.point, vector_from(from_rim.point))
@@ -217,21 +217,21 @@ def first_curved_touch(
         value = now.gap + level
         if level == 0.0 and not now.has_foot and value <= slack_m:  # what comes there has met the next arc before
             return math.inf
+        is_past = value < 0.0
         if 0.0 <= value <= slack_m:
             root = root_of_gap(a, i, b, j, motion, amount, level, moved)
-            if amount <= root <= end and touches_after(a, i, b, j, motion, root, level, slack, slack_m, moved):
-                return root
+            if amount <= root <= end:
+                if touches_after(a, i, b, j, motion, root, level, slack, slack_m, moved):
+                    return root
+                is_past = True
         step = surely_clear(now, abs(value))
+        if step <= LEAST_STEP * end and touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
+            return amount
+        if is_past and now.fastest > 0.0:  # a root that is no contact: on so short a way none is hidden that counts
+            step = max(step, slack_m / now.fastest)
         if step >= end - amount:
             return math.inf
-        if step > LEAST_STEP * end:
-            amount += step
-            behind = BEHIND * end
-        elif touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
-            return amount
-        else:
-            amount += behind
-            behind *= FARTHER
-            if amount >= end:
-                return math.inf
+        amount, behind = gone_on(amount, step, end, behind)
+        if amount >= end:
+            return math.inf
     return amount if touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved) else math.inf

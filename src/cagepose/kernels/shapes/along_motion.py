@@ -300,6 +300,16 @@ def touches_after(
 
 
 @kernel
+def gone_on(amount: float, step: float, end: float, behind: float) -> tuple[float, float]:
+    """Return where a search for a contact goes on, and how far behind the next root: a step ahead; or, where that is no
+    progress, behind a root that is no contact, farther each time.
+    """
+    if step > LEAST_STEP * end:
+        return amount + step, BEHIND * end
+    return amount + behind, FARTHER * behind
+
+
+@kernel
 def first_touch(
     a: Shapes,
     i: int,
@@ -355,14 +365,9 @@ def first_touch(
                 return math.inf
         if step >= rest:
             return math.inf
-        if step > LEAST_STEP * end:
-            amount += step
-            behind = BEHIND * end
-        elif touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
+        if step <= LEAST_STEP * end and touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
             return amount
-        else:
-            amount += behind
-            behind *= FARTHER
-            if amount >= end:
-                return math.inf
+        amount, behind = gone_on(amount, step, end, behind)
+        if amount >= end:
+            return math.inf
     return amount if touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved) else math.inf

@@ -153,22 +153,17 @@ class Feet(NamedTuple):
         How many places were found.
     first, last
         Their least and greatest angle from the arc's middle; the middle: there is none.
-    least
-        How far the other feature is from the arc, metres.
     """
 
     count: int
     first: float
     last: float
-    least: float
 
 
 @kernel
 def feet_on(rim: Feature, other: Feature) -> Feet:
     """Find where an edge or another rim, both in the world, is nearest to an arc of a rim."""
     count, first, last, before = 0, 0.0, 0.0, rise(rim, other, -SEARCHED)
-    ends = on_rim(rim, -SEARCHED, False).point, on_rim(rim, SEARCHED, False).point
-    least = min(distance_at(other, ends[0]), distance_at(other, ends[1]))
     width = 2.0 * SEARCHED / SECTIONS
     for section in range(SECTIONS):
         low = -SEARCHED + section * width
@@ -176,10 +171,17 @@ def feet_on(rim: Feature, other: Feature) -> Feet:
         if before < 0.0 <= after:
             last = root_of_rise(rim, other, low, low + width, before, after)
             first = last if count == 0 else first
-            least = min(least, distance_at(other, on_rim(rim, last, True).point))
             count += 1
         before = after
-    return Feet(count, first, last, least)
+    return Feet(count, first, last)
+
+
+@kernel
+def distance_from_arc(rim: Feature, other: Feature) -> float:
+    """Return how far an edge or another rim is from an arc that has one foot of it, or none."""
+    ends = on_rim(rim, -SEARCHED, False).point, on_rim(rim, SEARCHED, False).point
+    least, feet = min(distance_at(other, ends[0]), distance_at(other, ends[1])), feet_on(rim, other)
+    return least if feet.count == 0 else min(least, distance_at(other, on_rim(rim, feet.first, True).point))
 
 
 @kernel
