@@ -170,7 +170,8 @@ def deepest_meeting(placement: Placement, work: StepWorkspace) -> int:
 @kernel
 def excess_of(gap_m: float, one: int, other: int, work: StepWorkspace) -> float:
     """Return how much deeper a gap of two parts is than it may be."""
-    return -gap_m - work.allowed_shapes[one, other]
+    allowed_m: float = work.allowed_shapes[one, other]
+    return -gap_m - allowed_m
 
 
 @kernel

@@ -140,8 +140,8 @@ def foot_on(rim: Feature, other: Feature) -> Foot:
         return farthest_along(rim, scaled(way, math.copysign(1.0, rim.length)))
     feet = feet_on(rim, other)
     if rim.is_second:
-        return on_rim(rim, feet.last, feet.count > 1)
-    return on_rim(rim, feet.first, feet.count > 0)
+        return on_rim(rim, feet.last, feet.n_feet > 1)
+    return on_rim(rim, feet.first, feet.n_feet > 0)
 
 
 class Feet(NamedTuple):
@@ -149,13 +149,13 @@ class Feet(NamedTuple):
 
     Attributes
     ----------
-    count
+    n_feet
         How many places were found.
     first, last
         Their least and greatest angle from the arc's middle; the middle: there is none.
     """
 
-    count: int
+    n_feet: int
     first: float
     last: float
 
@@ -163,17 +163,17 @@ class Feet(NamedTuple):
 @kernel
 def feet_on(rim: Feature, other: Feature) -> Feet:
     """Find where an edge or another rim, both in the world, is nearest to an arc of a rim."""
-    count, first, last, before = 0, 0.0, 0.0, rise(rim, other, -SEARCHED)
+    n_feet, first, last, before = 0, 0.0, 0.0, rise(rim, other, -SEARCHED)
     width = 2.0 * SEARCHED / SECTIONS
     for section in range(SECTIONS):
         low = -SEARCHED + section * width
         after = rise(rim, other, low + width)
         if before < 0.0 <= after:
             last = root_of_rise(rim, other, low, low + width, before, after)
-            first = last if count == 0 else first
-            count += 1
+            first = last if n_feet == 0 else first
+            n_feet += 1
         before = after
-    return Feet(count, first, last)
+    return Feet(n_feet, first, last)
 
 
 @kernel
@@ -181,7 +181,7 @@ def distance_from_arc(rim: Feature, other: Feature) -> float:
     """Return how far an edge or another rim is from an arc that has one foot of it, or none."""
     ends = on_rim(rim, -SEARCHED, False).point, on_rim(rim, SEARCHED, False).point
     least, feet = min(distance_at(other, ends[0]), distance_at(other, ends[1])), feet_on(rim, other)
-    return least if feet.count == 0 else min(least, distance_at(other, on_rim(rim, feet.first, True).point))
+    return least if feet.n_feet == 0 else min(least, distance_at(other, on_rim(rim, feet.first, True).point))
 
 
 @kernel
