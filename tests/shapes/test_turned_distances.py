@@ -226,8 +226,7 @@ def test_gaps_in_and_over_holes(cases, say):
             wrong.append(f"{told}: {part} at {pose}, {cage}")
     say(f"distances of {n_seen} parts in and over holes: {len(wrong)} wrong")
     assert n_seen > n_cases // 4
-    most = 0 if n_cases == 60 else n_seen // MANY_TO_ONE_WRONG + 1
-    assert len(wrong) <= most, "\n".join([f"{len(wrong)} of {n_seen} wrong", *wrong[:5]])
+    assert not wrong, "\n".join([f"{len(wrong)} of {n_seen} wrong", *wrong[:5]])
 
 
 LONE, BLIND = [Hole(0.5, 1.0)], [Box((8.0, 8.0, 2.0), Pose((0, 0, -1)), name="plate"), Hole(0.5, 1.0, in_=("plate",))]

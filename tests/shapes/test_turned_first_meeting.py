@@ -34,9 +34,9 @@ def first():
     return as_machine_code(first_meeting)
 
 
-KNOWN_WRONG = 0.04
-"""Share: in 442 random motions seven were up to 350 touch tolerances early or late, or told so by an oracle that is
-loose where parts touch at the start."""
+KNOWN_WRONG = 0.01
+"""Share: three of 300 random motions are early or late, or told so by an oracle that is loose where parts touch at the
+start."""
 
 
 def fastest(motion: Motion, middle: np.ndarray, reach: float) -> float:
@@ -125,8 +125,7 @@ def test_random_motions_in_and_over_holes(first, cases, say):
         if told:
             wrong.append(f"{told}: {part} at {pose}, {cage}, {motion} to {end}")
     say(f"first contact of {sum(seen.values())} motions in and over holes: {seen}, {len(wrong)} wrong")
-    most = 0 if n_cases == 16 else n_cases * KNOWN_WRONG
-    assert len(wrong) <= most, "\n".join([f"{len(wrong)} of {n_cases} wrong", *wrong[:5]])
+    assert not wrong, "\n".join([f"{len(wrong)} of {n_cases} wrong", *wrong[:5]])
 
 
 def first_amount(first, part: Shape, cage: list[Shape], pose: Pose, motion: Motion, end: float) -> float:
