@@ -4,18 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from cagepose import Cage, Object, Pose, Run, Scene, SceneError, run
+from cagepose import Cage, Object, Pose, Scene, SceneError, run
 from cagepose.model.shapes import Convex
-from cagepose.runs.load_scaling import scaled_load
-from quasistatic.paths import RESTS, VERDICTS, distance, path_of, potential
+from quasistatic.paths import RESTS, distance
 from random_scenes import random_scene
+from shapes.asked_runs import Asked
 from shapes.convex_bodies import Body, body_of, gap
 from shapes.shape_scenes import random_problem, scene_of
-
-DEEP = 4.0
-"""Touch tolerances."""
-POSES = 40
-"""Of a path, about so many are asked how deep parts are."""
 
 
 def bodies_of(scene: Scene) -> tuple[list[Body], list[Body]]:
@@ -34,46 +29,18 @@ def least_gap(held: list[Body], around: list[Body], pose: Pose) -> float:
     return least
 
 
-def imbalance(scene: Scene, result: Run) -> float:
-    """What is left of the forces and moments at the end, of the load."""
-    phase, load = result.phases[-1], scene.loads[-1]
-    weighed, about = scaled_load(scene, load), phase.pose.transform(scene.object.center_of_gravity_m)
-    force, moment = np.array(weighed.gravity, dtype=float), np.zeros(3)
-    total = np.linalg.norm(force)
-    for push, each in zip(load.pushes, weighed.forces, strict=True):
-        force, total = force + each, total + np.linalg.norm(each)
-        moment = moment + np.cross(phase.pose.transform(push.at_object_m) - about, each)
-    for contact in phase.contacts:
-        carried = contact.force_tangential_n - contact.force_normal_n * contact.normal_world
-        force, moment = force + carried, moment + np.cross(contact.place_world - about, carried)
-    return max(float(np.linalg.norm(force)), float(np.linalg.norm(moment)) / scene.size_m) / float(total)
-
-
 def test_nothing_goes_deep_or_up_and_rests_are_balanced(cases, say):
-    rng, verdicts = np.random.default_rng(30), dict.fromkeys(sorted(VERDICTS), 0)
-    n_scenes, deepest, highest, least_balanced = cases(40, 200), 0.0, 0.0, 0.0
-    for number in range(n_scenes):
+    rng, asked = np.random.default_rng(30), Asked()
+    for number in range(cases(40, 200)):
         scene = scene_of(*random_problem(rng))
-        result = run(scene, method="quasistatic")
-        phase, (held, around) = result.phases[-1], bodies_of(scene)
-        path = path_of(phase)
-        every = max(1, len(path) // POSES)
-        depth = max(-least_gap(held, around, pose) for pose in (*path[::every], path[-1])) / scene.touch_m
-        assert depth < DEEP, f"scene {number}: {depth} touch tolerances deep"
-        heights = [potential(scene, scene.loads[0], pose) for pose in path]
-        rise = float(np.max(np.diff(heights), initial=0.0))
-        assert rise < 1e-12, f"scene {number}: its potential rises by {rise}"
-        if phase.verdict in RESTS:
-            left = imbalance(scene, result)
-            assert left < 1e-8, f"scene {number}: {left} of the load is not balanced"
-            least_balanced = max(least_balanced, left)
-        deepest, highest = max(deepest, depth), max(highest, rise)
-        verdicts[phase.verdict] += 1
-    assert verdicts["stalled"] + verdicts["limit"] <= 0.05 * n_scenes, verdicts
-    say(
-        f"{n_scenes} runs of rounded parts: {verdicts}; at most {deepest:.1e} touch tolerances deep, {highest:.1e} up,"
-        f" {least_balanced:.1e} of the load not balanced"
-    )
+        held, around = bodies_of(scene)
+
+        def depth_at(pose: Pose, held=held, around=around) -> float:
+            return -least_gap(held, around, pose)
+
+        asked.ask(number, scene, run(scene, method="quasistatic"), depth_at)
+    say(f"runs of rounded parts: {asked}")
+    asked.check()
 
 
 def test_scenes_in_other_lengths_end_alike(cases, say):
