@@ -45,6 +45,10 @@ COMMANDS = {
         "cagepose.cli.study_command:study_command",
         "Run a scene many times with numbers that vary: yield, tolerances, what matters.",
     ),
+    "export": (
+        "cagepose.cli.export_command:export_command",
+        "Write a scene and its final poses for other programs: MJCF, URDF, STL, CSV.",
+    ),
     "reproduce": (
         "cagepose.cli.reproduce_command:reproduce_command",
         "Run the paper's cases and write a report of its numbers beside ours.",

@@ -1,0 +1,38 @@
+"""What no format of bodies holds, kept as JSON in a place of our own in the file: loads, names of points, method.
+
+Lengths are metres. `cagepose import` reads it back.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from cagepose.exchange.solids import Assembly
+from cagepose.files.scene_document import scene_document
+
+VERSION = 1
+KEPT = ("name", "loads", "method", "metric", "tolerances")
+"""Keys of the scene file that stand in the note as they are."""
+
+
+def beside_text(assembly: Assembly, *, with_friction: bool = False) -> str:
+    """Return the note; ``with_friction``: that of the scene too, where the format has none."""
+    scene = assembly.scene
+    document = scene_document(scene, "m")
+    note: dict[str, Any] = {"version": VERSION, **{key: document[key] for key in KEPT if key in document}}
+    if with_friction:
+        note["friction"] = {"coefficient": scene.friction_coefficient, "of": scene.friction_of}
+    note["points"] = list(scene.cage.names)
+    note["has_mass"] = scene.object.mass_kg is not None
+    note["has_inertia"] = scene.object.inertia_kg_m2 is not None
+    return json.dumps(note)
+
+
+def read_beside(text: str) -> dict[str, Any] | None:
+    """Return what `beside_text` wrote; None: it is something else."""
+    try:
+        found = json.loads(text)
+    except ValueError:
+        return None
+    return found if isinstance(found, dict) and found.get("version") == VERSION else None

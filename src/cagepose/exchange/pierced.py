@@ -1,0 +1,88 @@
+"""A convex part with round holes as convex pieces: wedges around each hole, and what is below its bottom.
+
+Each wedge is the part cut by planes: two through the hole's axis, one along the hole's wall, and one above and below.
+The walls touch the hole from outside, so that what is round meets them where it would meet the hole.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from cagepose.errors import MissingExtraError
+from cagepose.model.checks import FloatArray, unit_rows
+from cagepose.model.hole import Hole
+from cagepose.model.shapes import Convex, Shape
+from cagepose.model.surface import shape_mesh
+
+AROUND = 64
+"""Flat sides that stand for something round."""
+NOTHING = 1e-9
+"""A piece that is less than this share of its part's volume is rounding."""
+
+
+def pierced_pieces(part: Shape, holes: Sequence[Hole]) -> list[Convex]:
+    """Return convex pieces (in the body's frame) that are a convex part without its parallel holes.
+
+    Raises
+    ------
+    MissingExtraError
+        manifold3d is not installed.
+    """
+    try:
+        import manifold3d
+    except ImportError as error:
+        raise MissingExtraError(
+            "parts with holes need manifold3d to be cut into pieces, which is not installed; install the files extra:"
+            " pip install 'cagepose[files]'"
+        ) from error
+    origin = part.nodes_body().mean(axis=0)
+    unit_m = 2.0 ** float(np.frexp(part.farthest_m(origin))[1])
+    mesh = shape_mesh(part, AROUND)
+    whole = manifold3d.Manifold(
+        manifold3d.Mesh64((mesh.vertices_m - origin) / unit_m, mesh.triangles.astype(np.uint64))
+    )
+
+    def cut(body: Any, outwards: FloatArray, point: FloatArray) -> Any:
+        """Keep what lies on the side of a plane that ``outwards`` points to."""
+        return body.trim_by_plane(outwards.tolist(), float(outwards @ (point - origin)) / unit_m)
+
+    pieces = []
+    for hole in holes:
+        cell = whole
+        for other in holes:
+            if other is not hole:
+                one, two = hole.pose_body_shape.position_m, other.pose_body_shape.position_m
+                axis = hole.pose_body_shape.rotation[:, 2]
+                across = (one - two) - ((one - two) @ axis) * axis
+                cell = cut(cell, unit_rows(across[None])[0], (one + two) / 2.0)
+        pieces += _around(cell, hole, cut)
+    least = NOTHING * whole.volume()
+    return [
+        Convex(piece.to_mesh64().vert_properties[:, :3] * unit_m + origin) for piece in pieces if piece.volume() > least
+    ]
+
+
+def _around(cell: Any, hole: Hole, cut: Any) -> list[Any]:
+    """Return the pieces of a cell around its hole."""
+    place, turn = hole.pose_body_shape, hole.pose_body_shape.rotation
+    axis = turn[:, 2]
+    pieces = [cut(cell, -axis, place.transform((0.0, 0.0, hole.rims[0][0])))]
+    for side in range(AROUND):
+        angle, half = 2.0 * math.pi * side / AROUND, math.pi / AROUND
+        wedge = cell
+        for along, sign in ((angle - half, 1.0), (angle + half, -1.0)):
+            beside = turn @ (-sign * math.sin(along), sign * math.cos(along), 0.0)
+            wedge = cut(wedge, beside, place.position_m)
+        out = np.array((math.cos(angle), math.sin(angle), 0.0))
+        for (low, low_radius), (high, high_radius) in pairwise(hole.rims):
+            wall = unit_rows(np.array([out * (high - low) - (0.0, 0.0, high_radius - low_radius)]))[0]
+            piece = cut(wedge, turn @ wall, place.transform(low_radius * out + (0.0, 0.0, low)))
+            piece = cut(piece, axis, place.transform((0.0, 0.0, low)))
+            is_mouth = high == hole.rims[-1][0]
+            pieces.append(piece if is_mouth else cut(piece, -axis, place.transform((0.0, 0.0, high))))
+    return pieces
