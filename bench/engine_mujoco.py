@@ -9,41 +9,23 @@ import numpy as np
 
 from bench.peer_body import SPHERE_RADIUS_MM, PeerBody
 from bench.rail_case import FloatArray
+from cagepose.exchange import mujoco_settings as exchange
 
 
 @dataclass(frozen=True)
-class MujocoSettings:
+class MujocoSettings(exchange.MujocoSettings):
     """What was tuned (`bench.tune`); lengths in mm, mass 1.
 
     Attributes
     ----------
-    step_s, window_steps
-        Time step, and steps in a window of the settle rule.
     loads
         Size of the load in each phase, as an acceleration in mm/s^2: the rest pose does not depend on it.
-    damping_per_s
-        Drag on all freedoms, for each unit of mass and of inertia.
-    time_constant_steps, impedance
-        MuJoCo's solref (time constant in steps, damping ratio 1) and solimp (all of d0, dmax).
     friction
         0: contacts without friction (condim 1); above: condim 3.
-    solver, iterations, cone, integrator
-        As MuJoCo names them.
     """
 
-    step_s: float = 0.014
-    window_steps: int = 10
     loads: tuple[float, float] = (400.0, 400.0)
-    damping_per_s: float = 0.5
-    time_constant_steps: float = 2.0
-    damping_ratio: float = 1.0
-    impedance: float = 0.99
     friction: float = 0.1
-    solver: str = "Newton"
-    iterations: int = 100
-    tolerance: float = 1e-16
-    cone: str = "pyramidal"
-    integrator: str = "Euler"
 
 
 class MujocoStepper:
@@ -73,17 +55,8 @@ class MujocoStepper:
 
 def _model(body: PeerBody, settings: MujocoSettings) -> mujoco.MjModel:
     spec = mujoco.MjSpec()
-    spec.option.timestep = settings.step_s
-    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET  # a run that blows up must not start anew
-    spec.option.gravity = [0.0, 0.0, 0.0]
-    spec.option.solver = getattr(mujoco.mjtSolver, f"mjSOL_{settings.solver.upper()}")
-    spec.option.iterations = settings.iterations
-    spec.option.tolerance = settings.tolerance
-    spec.option.cone = getattr(mujoco.mjtCone, f"mjCONE_{settings.cone.upper()}")
-    spec.option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{settings.integrator.upper()}")
+    settings.set_options(spec.option)
     spec.compiler.balanceinertia = False
-    reference = [settings.time_constant_steps * settings.step_s, settings.damping_ratio]
-    impedance = [settings.impedance, settings.impedance, 0.001, 0.5, 2.0]
     held = spec.worldbody.add_body(name="object", pos=body.start_mm, quat=_quaternion(body.start_rotation))
     held.explicitinertial = True
     held.mass = 1.0
@@ -116,8 +89,8 @@ def _model(body: PeerBody, settings: MujocoSettings) -> mujoco.MjModel:
             geomname2=f"box{box}",
             condim=3 if settings.friction > 0.0 else 1,
             friction=[settings.friction, settings.friction, 0.0, 0.0, 0.0],
-            solref=reference,
-            solimp=impedance,
+            solref=settings.reference,
+            solimp=settings.impedances,
         )
     model = spec.compile()
     model.dof_damping[:3] = settings.damping_per_s

@@ -11,9 +11,10 @@ from bench.peer_body import SPHERE_RADIUS_MM, peer_body
 from bench.peers import TIME_STEPPERS, load_time_stepper
 from bench.rail_case import PLAY_M, Answer, rail_scenes, tilt_error
 from bench.rows import Row
-from bench.settle import QUIET_PART_OF_PLAY, QUIET_WINDOWS, NotSettledError, run_to_rest
+from bench.settle import QUIET_PART_OF_PLAY, NotSettledError, run_to_rest
 from bench.timing import median_cpu_s, median_s
 from cagepose import Scene
+from cagepose.exchange.settle import QUIET_WINDOWS
 from cagepose.model.methods import METHODS
 
 BUDGET_S = 0.4

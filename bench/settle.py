@@ -8,11 +8,10 @@ import numpy as np
 
 from bench.peer_body import PeerBody, PeerLoad
 from bench.rail_case import Answer, FloatArray
+from cagepose.exchange.settle import windows_until_quiet
 
 QUIET_PART_OF_PLAY = 1e-4
 """A window is quiet if no corner moved by more than this part of the play."""
-QUIET_WINDOWS = 4
-"""So many quiet windows in a row: settled."""
 WINDOW_LIMIT = 4000
 
 
@@ -53,27 +52,27 @@ def run_to_rest(stepper: TimeStepper, body: PeerBody, play_mm: float) -> Answer:
 
 
 def settle(stepper: TimeStepper, phase: int, load: PeerLoad, corners_mm: FloatArray, play_mm: float) -> int:
-    """Advance until `QUIET_WINDOWS` in a row were quiet; return how many windows it took.
+    """Advance until the body is at rest (`windows_until_quiet`); return how many windows it took.
 
     Raises
     ------
     NotSettledError
         As its docstring says.
     """
-    position, rotation = stepper.pose()
-    before = position + corners_mm @ rotation.T
-    quiet = 0
-    for window in range(WINDOW_LIMIT):
-        arm = rotation @ load.arm_mm
+
+    def places() -> FloatArray:
+        position, rotation = stepper.pose()
+        return position + corners_mm @ rotation.T
+
+    def advance() -> FloatArray:
+        arm = stepper.pose()[1] @ load.arm_mm
         stepper.push(phase, np.cross(arm, load.direction), load.direction)
         stepper.advance()
-        position, rotation = stepper.pose()
-        after = position + corners_mm @ rotation.T
-        moved_mm = float(np.linalg.norm(after - before, axis=1).max())
-        if not np.isfinite(moved_mm):
-            raise NotSettledError(f"the pose of phase {phase + 1} is no longer a number")
-        quiet = quiet + 1 if moved_mm < QUIET_PART_OF_PLAY * play_mm else 0
-        if quiet == QUIET_WINDOWS:
-            return window + 1
-        before = after
-    raise NotSettledError(f"phase {phase + 1} still moves after {WINDOW_LIMIT} windows")
+        return places()
+
+    settled = windows_until_quiet(advance, places(), QUIET_PART_OF_PLAY * play_mm, WINDOW_LIMIT)
+    if not np.isfinite(settled.moved):
+        raise NotSettledError(f"the pose of phase {phase + 1} is no longer a number")
+    if not settled.is_quiet:
+        raise NotSettledError(f"phase {phase + 1} still moves after {WINDOW_LIMIT} windows")
+    return settled.windows

@@ -49,6 +49,10 @@ COMMANDS = {
         "cagepose.cli.export_command:export_command",
         "Write a scene and its final poses for other programs: MJCF, URDF, STL, CSV.",
     ),
+    "crosscheck": (
+        "cagepose.cli.crosscheck_command:crosscheck_command",
+        "Run a scene in MuJoCo, too: do the two end at the same poses, and if not, why?",
+    ),
     "reproduce": (
         "cagepose.cli.reproduce_command:reproduce_command",
         "Run the paper's cases and write a report of its numbers beside ours.",

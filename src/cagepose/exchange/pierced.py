@@ -13,14 +13,16 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.errors import MissingExtraError
+from cagepose.exchange.extra import manifold3d
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.hole import Hole
 from cagepose.model.shapes import Convex, Shape
 from cagepose.model.surface import shape_mesh
 
-AROUND = 64
+AROUND = 128
 """Flat sides that stand for something round."""
+OUTSIDE = 512
+"""Flat sides of a round part with holes: each wedge has few of them."""
 NOTHING = 1e-9
 """A piece that is less than this share of its part's volume is rounding."""
 
@@ -33,19 +35,11 @@ def pierced_pieces(part: Shape, holes: Sequence[Hole]) -> list[Convex]:
     MissingExtraError
         manifold3d is not installed.
     """
-    try:
-        import manifold3d
-    except ImportError as error:
-        raise MissingExtraError(
-            "parts with holes need manifold3d to be cut into pieces, which is not installed; install the files extra:"
-            " pip install 'cagepose[files]'"
-        ) from error
+    library = manifold3d()
     origin = part.nodes_body().mean(axis=0)
     unit_m = 2.0 ** float(np.frexp(part.farthest_m(origin))[1])
-    mesh = shape_mesh(part, AROUND)
-    whole = manifold3d.Manifold(
-        manifold3d.Mesh64((mesh.vertices_m - origin) / unit_m, mesh.triangles.astype(np.uint64))
-    )
+    mesh = shape_mesh(part, OUTSIDE)
+    whole = library.Manifold(library.Mesh64((mesh.vertices_m - origin) / unit_m, mesh.triangles.astype(np.uint64)))
 
     def cut(body: Any, outwards: FloatArray, point: FloatArray) -> Any:
         """Keep what lies on the side of a plane that ``outwards`` points to."""

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cagepose.errors import Problem, SceneError
-from cagepose.exchange.pierced import AROUND, pierced_pieces
+from cagepose.exchange.pierced import AROUND, OUTSIDE, pierced_pieces
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.hole import Hole
@@ -23,7 +23,7 @@ from cagepose.model.scene import Scene
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Disc, Rounded, Shape, Sphere, Turned
 from cagepose.model.surface import shape_mesh
 
-POINT_OF_SIZE = 1e-6
+POINT_OF_SIZE = 1e-8
 """Radius of the ball that stands for a cage point, as a fraction of the scene's size."""
 
 Primitive = Box | Sphere | Capsule | Cylinder | Convex
@@ -61,6 +61,8 @@ class Assembly:
         Their solids, in the frames of the object and of the cage.
     point_radius_m
         Radius of the balls that stand for cage points, metres.
+    error_m
+        By how much a surface is off at most, metres.
     notes
         What is not exactly as in the scene, in sentences.
     """
@@ -69,6 +71,7 @@ class Assembly:
     object: tuple[Solid, ...]
     cage: tuple[Solid, ...]
     point_radius_m: float
+    error_m: float
     notes: tuple[str, ...]
 
 
@@ -83,6 +86,7 @@ def assembly_of(scene: Scene) -> Assembly:
         Parts with holes need manifold3d.
     """
     notes: list[str] = []
+    errors_m = [0.0]
     problems: list[Problem] = []
     radius_m = POINT_OF_SIZE * scene.size_m
     cage_points = [
@@ -90,6 +94,7 @@ def assembly_of(scene: Scene) -> Assembly:
         for name, point in zip(scene.cage.names, scene.cage.points_cage, strict=True)
     ]
     if cage_points:
+        errors_m.append(radius_m)
         notes.append(
             f"cage points are balls of radius {radius_m:.3g} m, so each gap to one is smaller by that"
             f" ({POINT_OF_SIZE:g} of the scene's size)"
@@ -99,12 +104,12 @@ def assembly_of(scene: Scene) -> Assembly:
         ("object", scene.object.parts, scene.object.holes, scene.size_m),
         ("cage", scene.cage.shapes, scene.cage.holes, 2.0 * scene.object.reach_m),
     ):
-        made = _Body(body, holes, reach_m, notes, problems)
+        made = _Body(body, holes, reach_m, notes, errors_m, problems)
         bodies.append([solid for shape in (*shapes, *_alone(holes)) for solid in made.solids(shape)])
     if problems:
         raise SceneError(problems)
     held, cage = bodies
-    return Assembly(scene, tuple(held), (*cage_points, *cage), radius_m, tuple(notes))
+    return Assembly(scene, tuple(held), (*cage_points, *cage), radius_m, max(errors_m), tuple(notes))
 
 
 def _alone(holes: Sequence[Hole]) -> list[Hole]:
@@ -119,6 +124,7 @@ class _Body:
     holes: Sequence[Hole]
     reach_m: float
     notes: list[str]
+    errors_m: list[float]
     problems: list[Problem]
 
     def solids(self, shape: Shape) -> list[Solid]:
@@ -143,8 +149,10 @@ class _Body:
 
     def pieces(self, shape: Shape) -> Iterator[Primitive]:
         if isinstance(shape, Cone):
+            within_m = _sagitta_m(shape, AROUND)
+            self.errors_m.append(within_m)
             self.notes.append(
-                f"{shape.name!r} is a frustum; here it has {AROUND} sides, up to {_sagitta_m(shape):.3g} m within it"
+                f"{shape.name!r} is a frustum; here it has {AROUND} sides, up to {within_m:.3g} m within it"
             )
             yield Convex(shape_mesh(shape, AROUND).vertices_m)
         elif isinstance(shape, Convex) and shape.radius_m > 0.0:
@@ -166,22 +174,23 @@ class _Body:
             return []
         radius_m = max(radius for hole in holes for _, radius in hole.rims)
         around_m = radius_m * (1.0 / math.cos(math.pi / AROUND) - 1.0)
-        within_m = _sagitta_m(part) if isinstance(part, Turned) else 0.0
+        within_m = _sagitta_m(part, OUTSIDE) if isinstance(part, Turned) else 0.0
+        self.errors_m.extend((around_m, within_m))
         self.notes.append(
             f"{name!r} has holes; here it is made of wedges around them, so that a hole has {AROUND} flat sides, up to"
             f" {around_m:.3g} m outside of it"
             + (
                 ""
                 if isinstance(part, Box | Convex)
-                else f", and the part {AROUND} sides, up to {within_m:.3g} m within it"
+                else f", and the part {OUTSIDE} sides, up to {within_m:.3g} m within it"
             )
         )
         return [Solid(f"{name}/{index + 1}", name, piece) for index, piece in enumerate(pierced_pieces(part, holes))]
 
 
-def _sagitta_m(shape: Turned) -> float:
+def _sagitta_m(shape: Turned, sides: int) -> float:
     """Return how far flat sides are within a shape at most, metres."""
-    return max(radius for _, radius in shape.rims) * (1.0 - math.cos(math.pi / AROUND))
+    return max(radius for _, radius in shape.rims) * (1.0 - math.cos(math.pi / sides))
 
 
 def _rounded_pieces(shape: Convex) -> Iterator[Primitive]:

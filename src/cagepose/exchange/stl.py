@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cagepose.errors import MissingExtraError, Problem, SceneError
-from cagepose.exchange.pierced import AROUND
+from cagepose.errors import Problem, SceneError
+from cagepose.exchange.extra import manifold3d
 from cagepose.exchange.solids import POINT_OF_SIZE
 from cagepose.files.write import MADE_BY
 from cagepose.model.checks import FloatArray
@@ -18,6 +18,8 @@ from cagepose.model.scene import Scene
 from cagepose.model.shapes import Disc, Rounded, Shape, Sphere, Turned
 from cagepose.model.surface import Mesh, shape_mesh
 
+SEGMENTS = 64
+"""Chords of a full circle."""
 POINT_SEGMENTS = 4
 """Of the ball that stands for a cage point."""
 
@@ -58,13 +60,13 @@ def stl_text(scene: Scene, pose_world_object: Pose) -> tuple[str, tuple[str, ...
             is_point = any(shape is point for point in points)
             if not is_point:
                 widest_m = max(widest_m, *(_radius_m(round_one) for round_one in (shape, *cuts)))
-            mesh = _drilled(shape, cuts) if cuts else shape_mesh(shape, POINT_SEGMENTS if is_point else AROUND)
+            mesh = _drilled(shape, cuts) if cuts else shape_mesh(shape, POINT_SEGMENTS if is_point else SEGMENTS)
             lines.append(_solid_text(f"{body}/{shape.name}", Mesh(pose.transform(mesh.vertices_m), mesh.triangles)))
     if problems:
         raise SceneError(problems)
     if widest_m > 0.0:
-        sagitta_m = widest_m * (1.0 - math.cos(math.pi / AROUND))
-        notes.append(f"what is round has {AROUND} chords, at most {sagitta_m:.3g} m within it")
+        sagitta_m = widest_m * (1.0 - math.cos(math.pi / SEGMENTS))
+        notes.append(f"what is round has {SEGMENTS} chords, at most {sagitta_m:.3g} m within it")
     return "".join(lines), tuple(notes)
 
 
@@ -84,21 +86,15 @@ def _radius_m(shape: Shape) -> float:
 
 
 def _drilled(part: Shape, holes: Sequence[Hole]) -> Mesh:
-    try:
-        import manifold3d
-    except ImportError as error:
-        raise MissingExtraError(
-            "parts with holes need manifold3d to be drilled, which is not installed; install the files extra:"
-            " pip install 'cagepose[files]'"
-        ) from error
+    library = manifold3d()
     origin = part.nodes_body().mean(axis=0)
     unit_m = 2.0 ** float(np.frexp(part.farthest_m(origin))[1])
     bodies = []
     for shape in (part, *holes):
-        mesh = shape_mesh(shape, AROUND)
+        mesh = shape_mesh(shape, SEGMENTS)
         vertices = (mesh.vertices_m - origin) / unit_m
-        bodies.append(manifold3d.Manifold(manifold3d.Mesh64(vertices, mesh.triangles.astype(np.uint64))))
-    found = manifold3d.Manifold.batch_boolean(bodies, manifold3d.OpType.Subtract).to_mesh64()
+        bodies.append(library.Manifold(library.Mesh64(vertices, mesh.triangles.astype(np.uint64))))
+    found = library.Manifold.batch_boolean(bodies, library.OpType.Subtract).to_mesh64()
     return Mesh(found.vert_properties[:, :3] * unit_m + origin, found.tri_verts.astype(np.int64))
 
 

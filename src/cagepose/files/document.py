@@ -45,6 +45,11 @@ def run_document(
     }
 
 
+def pose_document(scene: Scene, pose: Pose, length_unit: LengthUnit) -> dict[str, Any]:
+    """Return a pose of a scene's object as the document has it."""
+    return _Writer(scene, length_unit).pose(pose)
+
+
 def _force_unit(run: Run) -> Literal["N", "load"] | None:
     """Return the unit of forces: newtons, or the load; None: phases differ, and each of them tells its own."""
     units = {force_unit(run.scene, load) for load in run.scene.loads[: len(run.phases)]}

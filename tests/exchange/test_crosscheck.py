@@ -1,0 +1,104 @@
+"""MuJoCo beside cagepose: where there is one rest they agree, small errors are seen, and partings have reasons."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import numpy as np
+import pytest
+
+from cagepose import Box, Cage, Force, Load, Moment, Object, Pose, Scene, Spring, load_scene, run
+from cagepose.cli.app import main
+from cagepose.exchange import crosscheck as module
+from cagepose.exchange.crosscheck import crosscheck
+from cagepose.exchange.solids import assembly_of
+from our_scenes import SCENES
+
+pytest.importorskip("mujoco")
+
+FILES = {path.stem: path for path in SCENES}
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["chuck", "connector", "gripper", "ladder", "rail-pitch", "rail-yaw", "rollers", "v-groove", "plate-on-pins"],
+)
+def test_mujoco_ends_where_cagepose_ends(name):
+    found = crosscheck(run(load_scene(FILES[name])))
+    assert found.agrees, [phase.reasons for phase in found.phases]
+    for phase in found.phases:
+        assert 0.0 < phase.mujoco.penetration_m < 1e-5 * found.run.scene.size_m
+        assert phase.distance_m <= phase.allowed_m < 5e-4 * found.run.scene.size_m
+
+
+def test_a_roller_a_tenth_of_a_millimetre_off_is_seen(monkeypatch):
+    """Of 1200: a wrong answer of cagepose would be."""
+    scene = load_scene(FILES["rail-pitch"])
+    assert crosscheck(run(scene)).agrees
+    off = assembly_of(scene.changed({f"cage.points[{index}][2]": 0.9e-3 for index in (1, 3)}))
+    monkeypatch.setattr(module, "assembly_of", lambda _: off)
+    found = crosscheck(run(scene))
+    assert not found.phases[0].agrees
+    assert found.phases[0].distance_m > 1e-4
+
+
+def test_all_kinds_of_loads_act_in_mujoco():
+    """A block is brought to a corner by a spring, a force that follows it and a moment."""
+    block = Object([Box((0.04, 0.04, 0.01))], mass_kg=0.5, pose=Pose((0.001, 0.0015, 0.0055), euler_zyx=(0.02, 0, 0)))
+    floor = [(0.015, 0.015, 0), (-0.015, 0.015, 0), (0, -0.015, 0)]
+    walls = [(-0.0205, 0.01, 0.004), (-0.0205, -0.01, 0.004), (0.003, -0.0205, 0.004)]
+    load = Load(
+        "corner",
+        gravity=(0, 0, -9.81),
+        forces=[Force((0, -1, 0), (0.003, 0, 0), 2.0, follows=True)],
+        moments=[Moment((0, 0, 1), 0.002)],
+        springs=[Spring((-0.02, 0, 0), (-0.06, 0, 0.005), 100.0, 3.0)],
+    )
+    found = crosscheck(run(Scene(block, Cage([*floor, *walls]), [load])))
+    assert {contact.point for contact in found.run.contacts} == {f"C{index + 1}" for index in range(6)}
+    assert found.agrees, found.phases[0].reasons
+    half = Load("half", gravity=load.gravity_world, forces=load.forces, springs=load.springs)
+    assert crosscheck(run(Scene(block, Cage([*floor, *walls]), [half, load]))).agrees
+
+
+def test_a_fall_without_end_agrees_with_a_fall():
+    found = crosscheck(run(Scene(Object([Box((1, 1, 1))]), Cage([(0, 0, 2)]), [Load("weight", gravity=(0, 0, -1))])))
+    assert found.run.verdict == "escapes"
+    assert found.agrees
+
+
+def test_the_reasons_say_what_the_proof_and_the_other_program_say():
+    wedge = crosscheck(run(load_scene(FILES["wedge"]))).phases[0]
+    assert "cagepose's proof says no more than that it may rest: a motion can begin there as well" in wedge.reasons
+    assert wedge.leaves_theirs_m is None  # MuJoCo has no rest at which to start
+    rod = crosscheck(run(load_scene(FILES["slender-rod"]))).phases[0]
+    assert rod.leaves_theirs_m <= rod.allowed_m < rod.distance_m
+    assert "cagepose, started at MuJoCo's pose, stays there" in rod.reasons or rod.reasons[0].startswith("both poses")
+    paper = crosscheck(run(load_scene(FILES["sample"]))).phases[0]
+    assert any(
+        reason.startswith("the paper's rules end here, but by the mechanics it moves") for reason in paper.reasons
+    )
+
+
+def test_after_a_parting_the_next_phase_starts_at_our_pose():
+    found = crosscheck(run(load_scene(FILES["drawer"])))
+    assert [phase.agrees for phase in found.phases] == [False, True]
+
+
+def test_the_command_says_it_with_its_exit_code(capsys):
+    assert main(["crosscheck", str(FILES["rollers"])]) == 0
+    assert capsys.readouterr().out.startswith("bar between rollers: agrees  (quasistatic beside mujoco)\n")
+    assert main(["crosscheck", str(FILES["wedge"]), "--json"]) == 1
+    document = json.loads(capsys.readouterr().out)
+    assert document["agrees"] is False
+    (phase,) = document["phases"]
+    assert phase["distance"] > phase["allowed"]
+    assert phase["cagepose_leaves_theirs_by"] is None
+    assert np.isfinite(phase["mujoco"]["pose"]["position"]).all()
+
+
+def test_without_mujoco_the_command_says_what_to_install(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    assert main(["crosscheck", str(FILES["rollers"])]) == 2
+    assert "pip install 'cagepose[files]'" in capsys.readouterr().err
