@@ -49,6 +49,10 @@ COMMANDS = {
         "cagepose.cli.export_command:export_command",
         "Write a scene and its final poses for other programs: MJCF, URDF, STL, CSV.",
     ),
+    "import": (
+        "cagepose.cli.import_command:import_command",
+        "Write the scene that an MJCF or URDF file describes.",
+    ),
     "crosscheck": (
         "cagepose.cli.crosscheck_command:crosscheck_command",
         "Run a scene in MuJoCo, too: do the two end at the same poses, and if not, why?",

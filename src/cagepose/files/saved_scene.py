@@ -37,7 +37,7 @@ def save_scene(scene: Scene, path: str | os.PathLike[str], length_unit: LengthUn
     """
     expect(scene, Scene, "scene")
     expect_choice(length_unit, LENGTH_UNITS, "length_unit")
-    check_can_write(path, is_made_by_us, "a scene that cagepose saved")
+    check_can_save_scene(path)
     yaml = YAML()
     yaml.width = 4096  # no line is broken
     yaml.indent(mapping=2, sequence=4, offset=2)
@@ -45,6 +45,17 @@ def save_scene(scene: Scene, path: str | os.PathLike[str], length_unit: LengthUn
     stream.seek(0, io.SEEK_END)
     yaml.dump(_styled(_readable(scene_document(scene, length_unit))), stream)
     write_whole(path, stream.getvalue().encode())
+
+
+def check_can_save_scene(path: str | os.PathLike[str]) -> None:
+    """Find out before long work whether `save_scene` can write to ``path``.
+
+    Raises
+    ------
+    OSError
+        It cannot, see `check_can_write`.
+    """
+    check_can_write(path, is_made_by_us, "a scene that cagepose saved")
 
 
 def _readable(data: dict[str, Any]) -> dict[str, Any]:

@@ -1,0 +1,44 @@
+"""``cagepose import``: a model of another program as a scene file."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+from cyclopts import Parameter
+
+
+def import_command(
+    file: Annotated[str, Parameter(help="MJCF or URDF file.")],
+    /,
+    *,
+    out: Annotated[str, Parameter(name=("--out", "-o"), help="Scene file to write, such as scene.yaml.")],
+    object: Annotated[
+        str | None,
+        Parameter(help="The body that is held, with all that hangs on it; left out: the one that moves freely."),
+    ] = None,
+    cage: Annotated[
+        tuple[str, ...],
+        Parameter(
+            negative=(),
+            show_default=False,
+            help="A body that holds it, with all that hangs on it; may be given several times. Left out: all others.",
+        ),
+    ] = (),
+) -> int:
+    """Read a model, write it as a scene, and say what is not in it as it was."""
+    from cagepose.errors import printable
+    from cagepose.exchange.imported import imported
+    from cagepose.files.saved_scene import check_can_save_scene, save_scene
+
+    try:
+        check_can_save_scene(out)
+        found = imported(file, object, cage)
+        save_scene(found.scene, out)
+    except OSError as error:
+        sys.stderr.write(printable(f"--out {out}: {error.strerror or error}") + "\n")
+        return 2
+    contents = f"{found.scene.object!r} {found.scene.cage!r}".replace("<", "").replace(">", ";").rstrip(";")
+    sys.stdout.write(printable(f"wrote {out}: {contents}") + "\n")
+    sys.stdout.write("".join(printable(f"note: {note}") + "\n" for note in found.notes))
+    return 0

@@ -1,0 +1,314 @@
+"""Models come back as the scenes that they were; foreign ones say what was left out; hostile ones do no harm."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cagepose import Hole, Scene, SceneFileError, load_scene, run
+from cagepose.cli.app import main
+from cagepose.exchange import compile_model, imported, model_text
+from cagepose.exchange.compile_model import compiled_here
+from cagepose.exchange.crosscheck import surface_points
+from cagepose.exchange.export import exported
+from cagepose.exchange.model_friction import scene_friction
+from cagepose.exchange.stl import binary_stl
+from cagepose.model.shapes import Cone, Convex
+from cagepose.model.surface import Mesh
+from our_scenes import SCENES
+
+pytest.importorskip("mujoco")
+
+FILES = {path.stem: path for path in SCENES}
+
+
+def is_primitive(scene: Scene) -> bool:
+    """Whether every part is exactly what the formats have."""
+    parts = (*scene.object.parts, *scene.cage.shapes, *scene.object.holes, *scene.cage.holes)
+    return not any(isinstance(part, Cone | Hole) or (isinstance(part, Convex) and part.radius_m) for part in parts)
+
+
+EXACT = [name for name, path in FILES.items() if is_primitive(load_scene(path))]
+
+
+@pytest.fixture
+def here(monkeypatch):
+    """Compile in this process, which spares a start of Python."""
+    monkeypatch.setattr(imported, "compiled", compiled_here)
+
+
+def there_and_back(scene: Scene, to: str, folder: Path):
+    name = "scene.urdf" if to == "urdf" else "scene.xml"
+    for file, content in exported(run(scene), to, name).files.items():
+        (folder / file).parent.mkdir(exist_ok=True)
+        (folder / file).write_bytes(content)
+    return imported.imported(str(folder / name))
+
+
+def apart(one: Scene, other: Scene) -> float:
+    """How far the final poses of two scenes with the same object are apart, in sizes, phase by phase at most."""
+    points, ours, theirs = surface_points(one.object), run(one), run(other)
+    assert [phase.verdict for phase in ours.phases] == [phase.verdict for phase in theirs.phases]
+    gaps = [
+        np.linalg.norm(a.pose.transform(points) - b.pose.transform(points), axis=1).max()
+        for a, b in zip(ours.phases, theirs.phases, strict=True)
+    ]
+    return max(gaps) / one.size_m
+
+
+def test_sixteen_scenes_are_of_primitives():
+    assert len(EXACT) == 16
+    assert "rollers" in EXACT
+
+
+@pytest.mark.parametrize("to", ["mjcf", "urdf"])
+@pytest.mark.parametrize("name", EXACT)
+@pytest.mark.usefixtures("here")
+def test_primitives_come_back_exactly(name, to, tmp_path):
+    scene = load_scene(FILES[name])
+    found = there_and_back(scene, to, tmp_path)
+    assert apart(scene, found.scene) < 1e-9
+    assert found.notes == ()
+    assert found.scene.name == scene.name
+    assert found.scene.cage.names == scene.cage.names
+    if to == "mjcf":
+        assert set(found.scene.object.element_names) == set(scene.object.element_names)
+        assert set(found.scene.cage.element_names) == set(scene.cage.element_names)
+
+
+@pytest.mark.parametrize(("name", "off"), [("peg-in-hole", 1e-6), ("phone-dock", 1e-5)])
+@pytest.mark.usefixtures("here")
+def test_what_stands_for_other_shapes_comes_back_as_it_stands(name, off, tmp_path):
+    scene = load_scene(FILES[name])
+    assert apart(scene, there_and_back(scene, "mjcf", tmp_path).scene) < off
+
+
+@pytest.mark.usefixtures("here")
+def test_own_friction_comes_back(tmp_path):
+    scene = load_scene(FILES["rollers"])
+    changed = Scene(
+        scene.object,
+        scene.cage,
+        scene.loads,
+        friction_coefficient=0.1,
+        friction_of={"low front": 0.4, "high back": 0.0},
+    )
+    for to in ("mjcf", "urdf"):
+        found = there_and_back(changed, to, tmp_path).scene
+        assert found.friction_coefficient == 0.1
+        if to == "mjcf":
+            assert found.friction_of == {"low front": 0.4, "high back": 0.0}
+        assert apart(changed, found) < 1e-9
+
+
+def test_friction_of_pairs_is_that_of_mujoco():
+    random = np.random.default_rng(5)
+    n_uneven = 0
+    for _ in range(400):
+        held, cage = (
+            {
+                f"{body}{index}": {
+                    "friction": float(random.choice([0.0, 0.2, 0.5])),
+                    "priority": int(random.choice([0, 0, 1])),
+                }
+                for index in range(random.integers(1, 4))
+            }
+            for body in ("part", "wall")
+        )
+        plain, of, uneven = scene_friction(held, cage)
+        n_uneven += bool(uneven)
+        for part, one in held.items():
+            for wall, other in cage.items():
+                wanted = max(one["friction"], other["friction"])
+                if one["priority"] != other["priority"]:
+                    wanted = (one if one["priority"] > other["priority"] else other)["friction"]
+                ours = of.get(wall, of.get(part, plain))
+                if wall in uneven:
+                    assert ours >= wanted
+                else:
+                    assert ours == wanted, (held, cage, plain, of)
+    assert 0 < n_uneven < 300
+
+
+ARM = """
+<mujoco model="arm">
+  <compiler angle="degree" meshdir="meshes"/>
+  <option gravity="0 0 -3"/>
+  <default><geom friction="0.4"/><default class="seen"><geom contype="0" conaffinity="0"/></default></default>
+  <asset><mesh name="wedge" file="wedge.stl" scale="0.001 0.001 0.001"/></asset>
+  <worldbody>
+    <geom name="floor" type="plane" size="0 0 1"/>
+    <body name="stand" pos="1 0 0"><geom type="cylinder" size="0.1 0.2"/></body>
+    <body name="block" pos="0 0 0.3">
+      <freejoint/>
+      <geom name="base" type="box" size="0.1 0.05 0.05" mass="2"/>
+      <geom name="shell" class="seen" type="box" size="1 1 1" mass="0"/>
+      <geom name="egg" type="ellipsoid" size="0.01 0.02 0.03" mass="0"/>
+      <body name="flap" pos="0.1 0 0.05" euler="0 90 0">
+        <joint type="hinge" axis="0 1 0"/>
+        <geom name="tongue" type="mesh" mesh="wedge" mass="1"/>
+      </body>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+WEDGE = np.array([(0, 0, 0), (40, 0, 0), (0, 30, 0), (0, 0, 20)], dtype=float)
+SIDES = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+
+
+@pytest.fixture
+def arm(tmp_path) -> Path:
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "meshes" / "wedge.stl").write_bytes(binary_stl(Mesh(WEDGE, SIDES)))
+    (tmp_path / "arm.xml").write_text(ARM)
+    return tmp_path / "arm.xml"
+
+
+@pytest.mark.usefixtures("here")
+def test_a_foreign_model_is_read_and_what_it_loses_is_said(arm):
+    scene, notes = imported.imported(str(arm))
+    assert notes == (
+        "joints stay where the model has them, of flap",
+        "left out, as they touch nothing: shell",
+        "left out: 'egg', as it is neither box, ball, capsule, cylinder, plane nor mesh",
+        "'floor' is a plane; here, a box, 8 m by 8 m, its top there",
+        "loads: the weight alone, with a gravity of (0, 0, -3) m/s^2",
+    )
+    held = scene.object
+    assert held.element_names == ("base", "tongue")
+    assert held.mass_kg == pytest.approx(3.0)
+    tongue = held.parts[1]
+    # The flap is turned by 90 deg about y: x down, z along x.
+    expected = np.array((0.1, 0, 0.05)) + 1e-3 * WEDGE[:, [2, 1, 0]] * (1, 1, -1)
+    found = tongue.pose_body_shape.transform(tongue.vertices_m)
+    assert sorted(found.round(7).tolist()) == sorted(expected.round(7).tolist())
+    wedge_center = expected.mean(axis=0)
+    assert held.center_of_gravity_m == pytest.approx(wedge_center / 3.0, abs=1e-7)
+    assert scene.friction_coefficient == 0.4
+    ended = run(scene)
+    assert ended.verdict == "rests"
+    assert ended.pose.position_m[2] == pytest.approx(0.05, abs=1e-9)
+
+
+@pytest.mark.usefixtures("here")
+def test_inertia_of_bodies_that_are_one_is_theirs_together(tmp_path):
+    """Half of a block on a joint weighs what the whole block does."""
+    half = '<geom type="box" size="0.1 0.1 0.1" mass="1" pos="{} 0 0"/>'
+    floor = '<geom type="plane" size="1 1 1" pos="0 0 -1"/>'
+    turned = '<body name="b" pos="0.1 0 0" euler="20 30 40"><joint/><body euler="0 0 0">{}</body></body>'
+    for name, rest in (("one", half.format(0.1)), ("two", turned.format(half.format(0.0)))):
+        body = f'<body name="a"><freejoint/>{half.format(-0.1)}{rest}</body>'
+        (tmp_path / f"{name}.xml").write_text(f"<mujoco><worldbody>{floor}{body}</worldbody></mujoco>")
+    one, two = (imported.imported(str(tmp_path / f"{name}.xml")).scene.object for name in ("one", "two"))
+    assert two.mass_kg == one.mass_kg == 2.0
+    assert two.center_of_gravity_m == pytest.approx(one.center_of_gravity_m, abs=1e-15)
+    assert np.trace(two.gyration_m2) == pytest.approx(np.trace(one.gyration_m2), rel=1e-12)  # a cube turns as it likes
+    assert two.gyration_m2 == pytest.approx(one.gyration_m2, abs=1e-12)
+
+
+@pytest.mark.usefixtures("here")
+def test_bodies_are_chosen_by_name(arm):
+    scene, notes = imported.imported(str(arm), "flap", ["stand", "block"])
+    assert scene.object.element_names == ("tongue",)
+    assert [str(shape.name) for shape in scene.cage.shapes] == ["geom 2", "base"]
+    with pytest.raises(SceneFileError, match=r"has no body 'flop'; its bodies: stand, block, flap"):
+        imported.imported(str(arm), "flop")
+    arm.write_text(ARM.replace("<freejoint/>", ""))
+    with pytest.raises(SceneFileError, match=r"has no body that moves freely; say which is held, with --object"):
+        imported.imported(str(arm))
+    assert notes
+
+
+@pytest.mark.usefixtures("here")
+def test_a_mesh_that_is_not_convex_is_said(arm):
+    inwards = np.vstack([WEDGE, (6, 5, 4)])  # the slanted side goes in to here
+    sides = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 4), (2, 3, 4), (3, 1, 4)])
+    (arm.parent / "meshes" / "wedge.stl").write_bytes(binary_stl(Mesh(inwards, sides)))
+    assert (
+        "the mesh 'tongue' is not convex: here, its hull, 48.3% of which is too much" in imported.imported(str(arm))[1]
+    )
+
+
+BOMB = '<!DOCTYPE m [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]><mujoco model="&b;"/>'
+HOSTILE = {
+    "truncated": (ARM[:400], "is not XML"),
+    "no model": ("<svg/>", "is XML with the root <svg>; give MJCF"),
+    "entities": (BOMB, "declares a document type or entities"),
+    "outside": (ARM.replace("wedge.stl", "../../../etc/passwd"), "lies outside of the model's folder"),
+    "absolute": (ARM.replace("wedge.stl", "/etc/passwd"), "lies outside of the model's folder"),
+    "folder": (ARM.replace('meshdir="meshes"', 'meshdir="/"'), "lies outside of the model's folder"),
+    "link": (ARM.replace("wedge.stl", "link.stl"), "lies outside of the model's folder"),
+    "missing": (ARM.replace("wedge.stl", "none.stl"), "is refused by MuJoCo's compiler: "),
+    "garbage": (ARM.replace("wedge.stl", "garbage.stl"), "refused by MuJoCo's compiler"),
+    "flat": (ARM.replace("wedge.stl", "flat.stl"), "refused by MuJoCo's compiler"),
+    "claims": (ARM.replace("wedge.stl", "claims.stl"), "refused by MuJoCo's compiler"),
+    "itself": ('<mujoco><include file="model.xml"/></mujoco>', "refused by MuJoCo's compiler"),
+    "included": ('<mujoco><include file="meshes/bomb.xml"/></mujoco>', "declares a document type"),
+    "large": ("<mujoco>" + " " * (4 * 1024**2) + "</mujoco>", "is larger than 4 MiB"),
+    "no body": ("<mujoco><worldbody/></mujoco>", "has no body that moves freely"),
+    "nothing": (
+        "<mujoco><worldbody><body><freejoint/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/></body></worldbody>"
+        "</mujoco>",
+        "has nothing that touches in what is the object",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_hostile_files_are_clear_errors_and_nothing_is_written(name, arm, monkeypatch, capsys):
+    folder = arm.parent
+    monkeypatch.chdir(folder)
+    (folder / "meshes" / "garbage.stl").write_bytes(os.urandom(1000))
+    (folder / "meshes" / "claims.stl").write_bytes(b" " * 80 + b"\xff\xff\xff\x7f" + bytes(500))
+    (folder / "meshes" / "flat.stl").write_bytes(binary_stl(Mesh(WEDGE * (1, 1, 0), SIDES)))
+    (folder / "meshes" / "bomb.xml").write_text(BOMB)
+    (folder / "meshes" / "link.stl").symlink_to("/etc/passwd")
+    text, message = HOSTILE[name]
+    Path("model.xml").write_text(text)
+    began = time.monotonic()
+    assert main(["import", "model.xml", "-o", "scene.yaml"]) == 2
+    assert time.monotonic() - began < 10.0
+    error = capsys.readouterr().err
+    assert message in error
+    assert len(error.splitlines()) == 1
+    assert not Path("scene.yaml").exists()
+
+
+def test_a_model_that_asks_for_too_much_is_stopped(arm, monkeypatch):
+    many = '<replicate count="30000"><replicate count="30000"><geom size="1"/></replicate></replicate>'
+    arm.write_text(f"<mujoco><worldbody>{many}</worldbody></mujoco>")
+    monkeypatch.setattr(compile_model, "SECONDS", 1.0)
+    with pytest.raises(SceneFileError, match="takes MuJoCo's compiler more than 1 s; simplify it"):
+        imported.imported(str(arm))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not count memory so")
+def test_the_compiler_may_take_two_gibibytes():
+    code = "from cagepose.exchange.compile_model import limit_memory; limit_memory(); bytearray({} * 2**20)"
+    for mebibytes, stops in ((1500, False), (2100, True)):
+        done = subprocess.run([sys.executable, "-c", code.format(mebibytes)], capture_output=True, check=False)
+        assert (b"MemoryError" in done.stderr) is stops
+
+
+def test_meshes_have_a_limit(arm, monkeypatch):
+    monkeypatch.setattr(model_text, "MAX_MESH_BYTES", 100)
+    with pytest.raises(SceneFileError, match="names files of more than"):
+        imported.imported(str(arm))
+
+
+def test_the_command_writes_a_scene_that_runs(arm, monkeypatch, capsys):
+    monkeypatch.chdir(arm.parent)
+    assert main(["import", "arm.xml", "-o", "arm.yaml"]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("wrote arm.yaml: Object: 1 box, 1 shape, 3 kg; Cage: 2 shapes\nnote: joints stay")
+    assert main(["run", "arm.yaml"]) == 0
+    assert main(["import", "arm.xml", "-o", "arm.yaml"]) == 0  # over its own file
+    Path("mine.yaml").write_text("name: mine")
+    assert main(["import", "arm.xml", "-o", "mine.yaml"]) == 2
+    assert Path("mine.yaml").read_text() == "name: mine"
