@@ -1,11 +1,10 @@
-"""Libraries of the files extra, imported where they are needed; a missing one is named with its install line."""
+"""What the exchange floor takes from the files extra."""
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
 
-from cagepose.errors import MissingExtraError
+from cagepose.files.extra import files_library
 
 
 def manifold3d() -> Any:
@@ -16,7 +15,7 @@ def manifold3d() -> Any:
     MissingExtraError
         It is not installed.
     """
-    return _library("manifold3d", "parts with holes need manifold3d")
+    return files_library("manifold3d", "parts with holes need manifold3d")
 
 
 def mujoco() -> Any:
@@ -27,12 +26,4 @@ def mujoco() -> Any:
     MissingExtraError
         It is not installed.
     """
-    return _library("mujoco", "this needs MuJoCo")
-
-
-def _library(module: str, need: str) -> Any:
-    try:
-        return import_module(module)
-    except ImportError as error:
-        message = f"{need}, which is not installed; install the files extra: pip install 'cagepose[files]'"
-        raise MissingExtraError(message) from error
+    return files_library("mujoco", "this needs MuJoCo")

@@ -16,6 +16,7 @@ from cagepose.exchange.extra import mujoco
 from cagepose.exchange.model_bodies import WORLD, ModelBodies
 from cagepose.exchange.model_friction import scene_friction
 from cagepose.exchange.model_text import ModelText, read_model_text
+from cagepose.files.mesh_file import MOST_CORNERS
 from cagepose.files.scene_document import pose_angles
 from cagepose.files.scene_file import SceneText
 from cagepose.files.yaml_source import YamlSource
@@ -28,8 +29,6 @@ from cagepose.model.wording import few
 Data = dict[str, Any]
 """Of a geom, or of a part of a scene file."""
 
-MOST_CORNERS = 300
-"""Of a convex mesh: the time of runs grows with the square of it."""
 NOT_CONVEX = 1e-3
 """Of a hull's volume: a mesh that is less by more is not convex."""
 PLANE_OF_REACH = 20.0

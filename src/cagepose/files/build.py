@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import ParamSpec, TypeVar
 
 import numpy as np
 
 from cagepose.errors import Key, Problem, SceneError
+from cagepose.files.mesh_file import read_mesh
 from cagepose.files.points_file import PointsTable
 from cagepose.files.schema import BoxModel, ForceModel, LoadModel, MomentModel, PoseModel, SceneModel, SpringModel
-from cagepose.files.schema_shapes import CoefficientModel, ShapeModel
+from cagepose.files.schema_shapes import CoefficientModel, MeshModel, ShapeModel
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
+from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.load import Force, Load, Moment, Spring
 from cagepose.model.parts import Object
@@ -26,16 +29,20 @@ from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT, T
 Noun = TypeVar("Noun")
 Given = ParamSpec("Given")
 
+CURRENT = Path()
+"""The folder that names of files start from where there is no scene file."""
 
-def build_scene(model: SceneModel, table: PointsTable | None) -> Scene:
-    """Make the scene that ``model`` describes; ``table`` holds the points if they stand in a file of their own.
+
+def build_scene(model: SceneModel, table: PointsTable | None, folder: Path = CURRENT) -> Scene:
+    """Make the scene that ``model`` describes; ``table`` holds the points if they stand in a file of their own, and
+    ``folder`` its meshes.
 
     Raises
     ------
     SceneError
         All that the model found wrong, with paths from the root of the scene file.
     """
-    builder = _Builder(model.units.length if model.units else "mm")
+    builder = _Builder(model.units.length if model.units else "mm", folder)
     held = builder.make(("object",), builder.object, model)
     cage = builder.make(("cage",), builder.cage, model, table)
     loads = [builder.make(("loads", index), builder.load, load, index) for index, load in enumerate(model.loads)]
@@ -61,8 +68,9 @@ def build_scene(model: SceneModel, table: PointsTable | None) -> Scene:
 
 
 class _Builder:
-    def __init__(self, unit: LengthUnit) -> None:
+    def __init__(self, unit: LengthUnit, folder: Path) -> None:
         self.unit: LengthUnit = unit
+        self.folder = folder
         self.problems: list[Problem] = []
 
     def make(
@@ -119,6 +127,8 @@ class _Builder:
         if model.convex is not None:
             vertices = to_metres(model.convex.vertices, self.unit)
             return Convex(vertices, length(model.convex.radius or 0.0), pose, model.name)
+        if model.mesh is not None:
+            return Convex(self.mesh(model.mesh), 0.0, pose, model.name)
         if model.disc is not None:
             return Disc(length(model.disc.radius), pose, model.name)
         assert model.hole is not None, "the schema lets no shape pass that has no kind"
@@ -128,6 +138,13 @@ class _Builder:
         return Hole(
             length(model.hole.radius), length(model.hole.depth), chamfer, model.hole.in_ or (), pose, model.name
         )
+
+    def mesh(self, model: MeshModel) -> FloatArray:
+        path = self.folder / model.file
+        try:
+            return read_mesh(path, model.unit, self.unit)
+        except SceneError as error:
+            raise SceneError([Problem(("file",), f"{path} {error.problems[0].message}")]) from None
 
     def length(self, length: float) -> float:
         return float(to_metres(length, self.unit))

@@ -213,7 +213,7 @@ class _Attempt:
         if self.table is None and isinstance(model.cage.points, PointsFileModel):
             return
         try:
-            scene = build_scene(model, self.table)
+            scene = build_scene(model, self.table, folder)
         except SceneError as error:
             self.findings += [Finding(problem, False) for problem in error.problems]
             return

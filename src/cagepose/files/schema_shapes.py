@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
 from cagepose.files.schema_base import Mapping, Name, NotNegative, Positive, Size, Vector, wrong
+from cagepose.files.units import LengthUnit
 
 
 def either(*keys: str) -> dict[str, Any]:
@@ -80,6 +81,17 @@ class ConvexModel(Mapping):
     )
 
 
+class MeshModel(Mapping):
+    """A convex body of triangles in a file of its own."""
+
+    file: str = Field(
+        min_length=1, description="STL, OBJ, PLY or GLB file beside this one; closed and convex.", examples=["part.stl"]
+    )
+    unit: LengthUnit | None = Field(
+        None, description="Of the file's lengths; left out: that of this scene, and metres of a GLB.", examples=["mm"]
+    )
+
+
 class DiscModel(Mapping):
     """A flat round disc without thickness, across z."""
 
@@ -123,7 +135,7 @@ Friction = Annotated[
     Annotated[NotNegative, Tag("number")] | Annotated[CoefficientModel, Tag("mapping")], Discriminator(_friction_form)
 ]
 
-KINDS = ("box", "sphere", "capsule", "cylinder", "cone", "convex", "disc", "hole")
+KINDS = ("box", "sphere", "capsule", "cylinder", "cone", "convex", "mesh", "disc", "hole")
 """Keys that say what a shape is."""
 
 
@@ -148,6 +160,7 @@ class ShapeModel(Mapping):
         description="The convex hull of some points.",
         examples=[{"vertices": [[0, 0, 0], [10, 0, 0], [0, 10, 0], [0, 0, 10]]}],
     )
+    mesh: MeshModel | None = Field(None, description="A convex mesh.", examples=[{"file": "part.stl"}])
     disc: DiscModel | None = Field(None, description="A flat round disc.", examples=[{"radius": 3}])
     hole: HoleModel | None = Field(None, description="A round hole.", examples=[{"radius": 3, "depth": 10}])
     position: Vector | None = Field(

@@ -1,0 +1,23 @@
+"""Libraries of the files extra, imported where they are needed; a missing one is named with its install line."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+from cagepose.errors import MissingExtraError
+
+
+def files_library(module: str, need: str) -> Any:
+    """Return a module; ``need`` says what needs it: "meshes need trimesh".
+
+    Raises
+    ------
+    MissingExtraError
+        It is not installed.
+    """
+    try:
+        return import_module(module)
+    except ImportError as error:
+        message = f"{need}, which is not installed; install the files extra: pip install 'cagepose[files]'"
+        raise MissingExtraError(message) from error

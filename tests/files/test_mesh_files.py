@@ -1,0 +1,190 @@
+"""A convex mesh is a convex shape; any other is refused with the way out, and hostile files do no harm."""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cagepose import MissingExtraError, SceneFileError, load_scene, run, save_scene
+from cagepose.cli.app import main
+from cagepose.files import mesh_file
+
+trimesh = pytest.importorskip("trimesh")
+
+CORNERS = np.array(
+    [(-20, -15, 0), (20, -15, 0), (20, 15, 0), (-20, 15, 0), (-8, -5, 24), (9, -5, 24), (0, 11, 24)], float
+)
+SCENE = """\
+name: part on three points
+object:
+  shapes: [{{{shape}}}]
+  mass: 1
+  pose: {{position: [0, 0, 3], euler_zyx_deg: [0, 5, 8]}}
+cage:
+  points: [[12, 9, 0], [-14, 8, 0], [-3, -12, 0]]
+loads: [{{name: weight, gravity: [0, 0, -9.81]}}]
+"""
+
+
+def part():
+    return trimesh.convex.convex_hull(CORNERS)
+
+
+def written(folder: Path, mesh, name: str) -> str:
+    content = mesh.export(file_type=name.rpartition(".")[2])
+    (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+    return name
+
+
+def scene_of(folder: Path, shape: str):
+    (folder / "scene.yaml").write_text(SCENE.format(shape=shape))
+    return load_scene(folder / "scene.yaml")
+
+
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "glb"])
+def test_a_convex_mesh_is_the_convex_shape_of_its_corners(suffix, tmp_path):
+    name = written(tmp_path, part(), f"part.{suffix}")
+    meshed = scene_of(tmp_path, f"mesh: {{file: {name}, unit: mm}}")
+    plain = scene_of(tmp_path, f"convex: {{vertices: {CORNERS.tolist()}}}")
+    (shape,) = meshed.object.shapes
+    assert sorted(shape.vertices_m.tolist()) == sorted((CORNERS / 1e3).tolist())
+    ours, theirs = run(meshed), run(plain)
+    assert ours.verdict == theirs.verdict == "rests"
+    assert ours.pose.position_m == pytest.approx(theirs.pose.position_m, abs=1e-12)
+    assert ours.pose.quaternion_wxyz == pytest.approx(theirs.pose.quaternion_wxyz, abs=1e-11)
+
+
+def test_units_are_those_given_else_of_the_scene_else_metres_of_glb(tmp_path):
+    stl, glb = (written(tmp_path, part(), f"part.{suffix}") for suffix in ("stl", "glb"))
+
+    def size(shape: str) -> float:
+        return float(np.ptp(scene_of(tmp_path, shape).object.shapes[0].vertices_m, axis=0).max())
+
+    assert size(f"mesh: {{file: {stl}}}") == pytest.approx(0.04)
+    assert size(f"mesh: {{file: {stl}, unit: in}}") == pytest.approx(40 * 0.0254)
+    assert size(f"mesh: {{file: {glb}}}") == pytest.approx(40.0)
+
+
+def test_corners_within_faces_and_edges_are_none(tmp_path):
+    name = written(tmp_path, part().subdivide().subdivide(), "fine.stl")
+    (shape,) = scene_of(tmp_path, f"mesh: {{file: {name}}}").object.shapes
+    assert len(shape.hull.vertices_m) == len(CORNERS)
+
+
+def test_a_saved_scene_holds_the_corners_itself(tmp_path):
+    written(tmp_path, part(), "part.stl")
+    scene = scene_of(tmp_path, "mesh: {file: part.stl}, name: part")
+    save_scene(scene, tmp_path / "saved.yaml")
+    (tmp_path / "part.stl").unlink()
+    again = load_scene(tmp_path / "saved.yaml")
+    assert run(again).pose.position_m.tolist() == run(scene).pose.position_m.tolist()
+
+
+def test_a_mesh_that_changes_is_read_again(tmp_path):
+    written(tmp_path, part(), "part.stl")
+    first = scene_of(tmp_path, "mesh: {file: part.stl}")
+    larger = part()
+    larger.apply_scale(1.5)
+    written(tmp_path, larger, "part.stl")
+    os.utime(tmp_path / "part.stl", ns=(1, 1))
+    second = scene_of(tmp_path, "mesh: {file: part.stl}")
+    assert second.object.reach_m == pytest.approx(1.5 * first.object.reach_m)
+
+
+def open_mesh():
+    mesh = part()
+    mesh.update_faces(np.arange(len(mesh.faces)) > 0)
+    return mesh
+
+
+def inside_out():
+    mesh = part()
+    mesh.invert()
+    return mesh
+
+
+HOSTILE = {
+    "open.stl": (open_mesh, "is not closed: triangles are missing"),
+    "inverted.stl": (inside_out, "is inside out: its triangles face inwards; flip them"),
+    "bracket.stl": (
+        lambda: trimesh.util.concatenate([part(), part().apply_translation((60, 0, 0))]),
+        "is not convex: ",
+    ),
+    "ball.stl": (lambda: trimesh.creation.icosphere(subdivisions=3), "has 642 corners, more than 300; make it coarser"),
+    "flat.stl": (lambda: trimesh.Trimesh(CORNERS[:4] * (1, 1, 0), [(0, 1, 2), (0, 2, 3)]), "encloses no volume"),
+    "zero.stl": (lambda: trimesh.Trimesh(np.zeros((3, 3)), [(0, 1, 2)], process=False), "encloses no volume"),
+}
+BYTES = {
+    "empty.stl": (b"", "holds no triangles"),
+    "garbage.glb": (bytes(range(256)) * 40, "cannot be read as a mesh"),
+    "text.ply": (b"ply\nformat ascii 1.0\nelement vertex 999999999\nend_header\n", "cannot be read as a mesh"),
+    "claims.stl": (b" " * 80 + b"\xff\xff\xff\x7f" + bytes(500), "holds no triangles"),
+    "part.step": (b"ISO-10303-21;", "has the suffix '.step'; give a file of one of: .stl, .obj, .ply, .glb"),
+}
+
+
+def refusal(folder: Path, name: str) -> str:
+    began = time.monotonic()
+    with pytest.raises(SceneFileError) as caught:
+        scene_of(folder, f"mesh: {{file: {name}}}")
+    assert time.monotonic() - began < 10.0
+    (problem,) = caught.value.problems
+    assert (problem.path, problem.line, problem.column) == (("object", "shapes", 0, "mesh", "file"), 3, 26)
+    return problem.message.removeprefix(f"{folder / name} ")
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_meshes_that_cannot_be_shapes_say_why_and_what_to_do(name, tmp_path):
+    make, message = HOSTILE[name]
+    written(tmp_path, make(), name)
+    assert refusal(tmp_path, name).startswith(message)
+
+
+@pytest.mark.parametrize("name", BYTES)
+def test_damaged_files_are_clear_errors(name, tmp_path):
+    content, message = BYTES[name]
+    (tmp_path / name).write_bytes(content)
+    assert refusal(tmp_path, name).startswith(message)
+
+
+@pytest.mark.parametrize("share", [0.3, 0.9])
+def test_truncated_files_are_clear_errors(share, tmp_path):
+    for suffix in ("stl", "ply", "glb"):
+        name = written(tmp_path, part().subdivide(), f"whole.{suffix}")
+        content = (tmp_path / name).read_bytes()
+        (tmp_path / f"cut.{suffix}").write_bytes(content[: int(share * len(content))])
+        assert refusal(tmp_path, f"cut.{suffix}")
+
+
+def test_missing_and_huge_files(tmp_path, monkeypatch):
+    assert refusal(tmp_path, "none.stl") == "is no file; check the name and the folder"
+    written(tmp_path, part(), "part.stl")
+    monkeypatch.setattr(mesh_file, "MAX_MESH_BYTES", 100)
+    assert "simplify it" in refusal(tmp_path, "part.stl")
+
+
+def test_other_files_that_a_mesh_names_are_not_opened(tmp_path):
+    """An OBJ may name a library of materials, and that textures."""
+    text = io.StringIO()
+    text.write("mtllib /etc/passwd\nusemtl root\n" + part().export(file_type="obj"))
+    (tmp_path / "part.obj").write_text(text.getvalue())
+    opened = []
+    sys.addaudithook(lambda event, args: opened.append(str(args[0])) if event == "open" else None)
+    scene_of(tmp_path, "mesh: {file: part.obj}")
+    assert any(name.endswith("part.obj") for name in opened)
+    assert "/etc/passwd" not in opened
+
+
+def test_a_missing_extra_is_named(tmp_path, monkeypatch, capsys):
+    written(tmp_path, part(), "new.stl")
+    monkeypatch.setitem(sys.modules, "trimesh", None)
+    with pytest.raises(MissingExtraError, match=r"meshes need trimesh.*pip install 'cagepose\[files\]'"):
+        scene_of(tmp_path, "mesh: {file: new.stl}")
+    assert main(["run", str(tmp_path / "scene.yaml")]) == 2
+    assert "pip install 'cagepose[files]'" in capsys.readouterr().err
