@@ -152,3 +152,12 @@ def test_seats_are_phases_that_come_to_rest():
     assert run(lifted).verdict == "escapes"
     with pytest.raises(SceneError, match="does not come to rest"):
         play(lifted, seated="up")
+
+
+def test_a_seat_that_friction_alone_keeps_is_refused():
+    slope = Load("down the slope", gravity=(0.2, 0, -1))
+    held = walled(["floor"])
+    scene = Scene(held.object, held.cage, [slope], friction_coefficient=0.3)
+    assert run(scene).verdict == "rests"
+    with pytest.raises(SceneError, match="friction alone keeps it"):
+        play(scene, seated="down the slope")

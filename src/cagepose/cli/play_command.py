@@ -30,7 +30,7 @@ def play_command(
     seated: Annotated[
         bool,
         Switch,
-        Parameter(help="From where the loads bring it to rest: how far a small push moves it while the load goes on."),
+        Parameter(help="From where the loads bring it to rest: how far small pushes move it in its seat."),
     ] = False,
     phase: Annotated[
         str | None,

@@ -30,9 +30,7 @@ MEANING = (
     " perhaps farther; certified: no motion at all inside the cage does"
 )
 MEANING_WITHOUT_PROOF = "exact: no motion nearby goes farther; past: so far, and perhaps farther; no end: it goes on"
-SEATED = (
-    "under the load, pushed a ten-thousandth as hard, without friction: how far it comes along each freedom and back"
-)
+SEATED = "without friction, pushed a ten-thousandth as hard as the load, which goes on: how far it comes each way"
 HALVED = (
     "limited by: the gaps that end the play there, and by how much the end comes back, or goes on, as one of them is"
     " made smaller or larger; halved if closed by: one gap alone, made so much smaller, leaves half of the play"

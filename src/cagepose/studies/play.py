@@ -10,12 +10,13 @@ from numpy.typing import ArrayLike
 from cagepose.errors import Problem, SceneError
 from cagepose.model.checks import FloatArray, expect, finite_array, unit_vector
 from cagepose.model.scene import FARTHEST_START, Scene, millimetres
-from cagepose.studies import pushes
 from cagepose.studies.cage_verdict import CageVerdict, judge_cage
 from cagepose.studies.play_frame import FREEDOMS, PlayFrame, range_goals
 from cagepose.studies.play_result import Play, PlayRange, PointPlay
 from cagepose.studies.polytope_play import MOST_STARTS, PolytopePlay
 from cagepose.studies.pushed_play import PushedPlay
+from cagepose.studies.pushes import unseated
+from cagepose.studies.seat import seated as seated_pushes
 
 SEARCH_S = 2.0
 """Seconds that the search for a way out may take, if the object is not proven to be caged."""
@@ -60,10 +61,10 @@ def play(
     shifts = [(point, direction) for point in points for direction in along]
     cage: CageVerdict | None = None
     if seated is not None:
-        pushed = PushedPlay(scene, pushes.seated(scene, seated), shifts)
+        pushed = PushedPlay(scene, seated_pushes(scene, seated), shifts)
         ranges, times = pushed.ranges(), (pushed.analysis_s, 0.0)
     elif scene.has_other_shapes:
-        pushed = PushedPlay(scene, pushes.unseated(scene), shifts)
+        pushed = PushedPlay(scene, unseated(scene), shifts)
         cage, ranges, times = pushed.judge(search_s, progress), pushed.ranges(), (pushed.analysis_s, 0.0)
     else:
         frame = PlayFrame(scene)

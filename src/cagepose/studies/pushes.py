@@ -7,7 +7,6 @@ from typing import Any, cast
 
 import numpy as np
 
-from cagepose.errors import Problem, SceneError
 from cagepose.kernels.algebra.record import Rows, dtype_of
 from cagepose.kernels.contact.loads import CARDAN_MOMENT, DEAD_FORCE, Action, PhaseLoad, acting
 from cagepose.kernels.native.slots import Slots
@@ -18,18 +17,12 @@ from cagepose.kernels.stability.second_order import STABILITY_NAMES
 from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.model.wording import few
-from cagepose.runs.actions import actions_of, load_size
 from cagepose.runs.cases import cases_of, part_of
 from cagepose.runs.methods import REGISTRY
 from cagepose.runs.quasistatic import TURN_STEP_RAD
-from cagepose.runs.run import AT_REST
-from cagepose.runs.solve import run
 
 STEP_LIMIT = 500
 """Of one push: forty are many for one that comes to rest."""
-SHARE_OF_LOAD = 1e-4
-"""Of a push beside what seats the object: on a flat seat it goes as far as by any smaller push."""
 STEEPEST = 1.55
 """Radians. Pitch beyond is next to the pole of the angles; what is pushed there, or almost half a turn, has no end."""
 YAW, PITCH, ROLL = range(3)
@@ -147,6 +140,14 @@ class Pushes:
         The work of a force is how far its point goes along it; the work of a Cardan moment is how far its angle turns.
         """
         self._aim(freedom, sign)
+        return self._let_go(start, freedom.angle)
+
+    def settle(self) -> Pushed:
+        """Let what acts beside pushes bring the object to rest, from the start."""
+        self._actions[0]["kind"], self._actions[0]["vector"] = DEAD_FORCE, 0.0
+        return self._let_go(self.start, None)
+
+    def _let_go(self, start: Pose, angle: int | None) -> Pushed:
         cases = self._cases._replace(
             object_positions=start.position_m[None].copy(), object_quaternions=start.quaternion_wxyz[None].copy()
         )
@@ -160,7 +161,7 @@ class Pushes:
             poses,
             VERDICT_NAMES[ended.verdict],
             STABILITY_NAMES[ended.stability] == "unstable",
-            freedom.angle is not None and self._pass_pole(freedom.angle, poses),
+            angle is not None and self._pass_pole(angle, poses),
             contacts[:n_contacts].copy(),
         )
 
@@ -201,23 +202,3 @@ class Pushes:
 def unseated(scene: Scene) -> Pushes:
     """Return pushes from the scene's start, with nothing beside them."""
     return Pushes(scene, scene.object.pose_world_object, np.zeros(0, dtype_of(Action)))
-
-
-def seated(scene: Scene, phase: str) -> Pushes:
-    """Return pushes from where a phase of the scene's run comes to rest, small beside its load, which goes on.
-
-    Raises
-    ------
-    SceneError
-        There is no such phase, or the run does not come to rest in it.
-    """
-    names = [load.name for load in scene.loads]
-    if phase not in names:
-        raise SceneError([Problem(("phase",), f"is {phase!r}, and the scene has {few(names)}; give one of them")])
-    number, ended = names.index(phase), run(scene).phases
-    if number >= len(ended) or ended[number].verdict not in AT_REST:
-        how = ended[number].verdict if number < len(ended) else "is not reached"
-        raise SceneError([Problem(("phase",), f"is {phase!r}, which does not come to rest ({how}); see cagepose run")])
-    pose = ended[number].pose
-    unit_n = SHARE_OF_LOAD * load_size(scene, number, pose)
-    return Pushes(scene, pose, actions_of(scene)[number], unit_n, unit_n * scene.object.reach_m)
