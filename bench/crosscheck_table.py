@@ -9,7 +9,7 @@ from bench.rail_case import SCENES
 from cagepose import load_scene, run
 from cagepose.exchange.crosscheck import PhaseCheck, crosscheck
 
-HEADINGS = ("scene", "phase", "apart, of the size", "angle", "allowed", "MuJoCo's penetration", "agrees", "time")
+HEADINGS = ("scene", "phase", "apart", "allowed", "penetration", "angle, deg", "agrees", "time")
 
 
 def main() -> None:
@@ -27,11 +27,10 @@ def main() -> None:
 
 
 def _figures(phase: PhaseCheck, size_m: float) -> list[str]:
-    lengths = (phase.allowed_m, phase.mujoco.penetration_m)
+    lengths = (phase.distance_m, phase.allowed_m, phase.mujoco.penetration_m)
     return [
-        f"{phase.distance_m / size_m:.1e}",
-        f"{math.degrees(phase.angle_rad):.1e} deg",
         *(f"{length / size_m:.1e}" for length in lengths),
+        f"{math.degrees(phase.angle_rad):.0e}",
         "yes" if phase.agrees else "no",
     ]
 

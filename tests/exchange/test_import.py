@@ -23,7 +23,7 @@ from cagepose.model.shapes import Cone, Convex
 from cagepose.model.surface import Mesh
 from our_scenes import SCENES
 
-pytest.importorskip("mujoco")
+mujoco = pytest.importorskip("mujoco")
 
 FILES = {path.stem: path for path in SCENES}
 
@@ -226,6 +226,27 @@ def test_bodies_are_chosen_by_name(arm):
 
 
 @pytest.mark.usefixtures("here")
+def test_a_body_without_a_name_is_called_by_its_number(arm):
+    arm.write_text(ARM.replace('name="flap" ', ""))
+    scene, _ = imported.imported(str(arm), "body 3")
+    assert scene.object.element_names == ("tongue",)
+    with pytest.raises(SceneFileError, match=r"its bodies: stand, block, body 3"):
+        imported.imported(str(arm), "flap")
+
+
+def test_a_model_that_comes_with_mujoco_is_read(capsys, tmp_path):
+    """Its own test model: hinges, hulls, an ellipsoid, a height field, bodies without names."""
+    model = Path(mujoco.__file__).parent / "testdata" / "model.xml"
+    if not model.is_file():
+        pytest.skip("this MuJoCo comes without its test model")
+    assert main(["import", str(model), "-o", str(tmp_path / "x.yaml")]) == 2
+    assert "has 5 bodies that move freely; say which is held, with --object" in capsys.readouterr().err
+    assert main(["import", str(model), "--object", "head", "-o", str(tmp_path / "x.yaml")]) == 0
+    assert "note: left out: 'wheel_0', as it is neither" in capsys.readouterr().out
+    assert main(["run", str(tmp_path / "x.yaml")]) == 0
+
+
+@pytest.mark.usefixtures("here")
 def test_a_mesh_that_is_not_convex_is_said(arm):
     inwards = np.vstack([WEDGE, (6, 5, 4)])  # the slanted side goes in to here
     sides = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 4), (2, 3, 4), (3, 1, 4)])
@@ -290,7 +311,7 @@ def test_a_model_that_asks_for_too_much_is_stopped(arm, monkeypatch):
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not count memory so")
 def test_the_compiler_may_take_two_gibibytes():
-    code = "from cagepose.exchange.compile_model import limit_memory; limit_memory(); bytearray({} * 2**20)"
+    code = "from cagepose.exchange.compile_model import limit_memory; limit_memory(); import numpy; numpy.empty({} * 2**20, numpy.uint8)"
     for mebibytes, stops in ((1500, False), (2100, True)):
         done = subprocess.run([sys.executable, "-c", code.format(mebibytes)], capture_output=True, check=False)
         assert (b"MemoryError" in done.stderr) is stops

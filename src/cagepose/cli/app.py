@@ -45,6 +45,10 @@ COMMANDS = {
         "cagepose.cli.study_command:study_command",
         "Run a scene many times with numbers that vary: yield, tolerances, what matters.",
     ),
+    "reproduce": (
+        "cagepose.cli.reproduce_command:reproduce_command",
+        "Run the paper's cases and write a report of its numbers beside ours.",
+    ),
     "export": (
         "cagepose.cli.export_command:export_command",
         "Write a scene and its final poses for other programs: MJCF, URDF, STL, CSV.",
@@ -56,10 +60,6 @@ COMMANDS = {
     "crosscheck": (
         "cagepose.cli.crosscheck_command:crosscheck_command",
         "Run a scene in MuJoCo, too: do the two end at the same poses, and if not, why?",
-    ),
-    "reproduce": (
-        "cagepose.cli.reproduce_command:reproduce_command",
-        "Run the paper's cases and write a report of its numbers beside ours.",
     ),
     "schema": ("cagepose.cli.schema_command:schema_command", "Print the JSON Schema of scene files, for editors."),
     "init": ("cagepose.cli.init_command:init_command", "Write a commented scene to start from."),

@@ -37,20 +37,20 @@ class ModelBodies:
 
     def __init__(self, source: str, compiled: dict[str, Any]) -> None:
         self._source, self._bodies = source, compiled["bodies"]
+        self._names = [body["name"] or f"body {number}" for number, body in enumerate(self._bodies)]
         self.geoms: list[dict[str, Any]] = compiled["geoms"]
         self.gravity: list[float] = compiled["gravity"]
 
     def named(self, name: str) -> int:
-        """Return the body of a name.
+        """Return the body of a name; one without a name is called by its number: "body 3".
 
         Raises
         ------
         SceneFileError
             There is none.
         """
-        for number, body in enumerate(self._bodies):
-            if body["name"] == name:
-                return number
+        if name in self._names:
+            return self._names.index(name)
         raise self._refused(f"has no body {name!r}; its bodies: {self._list(range(1, len(self._bodies)))}")
 
     def free(self) -> int:
@@ -78,11 +78,11 @@ class ModelBodies:
 
     def jointed(self, bodies: Iterable[int]) -> list[str]:
         """Return the names of those that a joint moves."""
-        return [self._bodies[number]["name"] for number in sorted(bodies) if self._bodies[number]["is_jointed"]]
+        return [self._names[number] for number in sorted(bodies) if self._bodies[number]["is_jointed"]]
 
     def others(self, bodies: set[int]) -> list[str]:
         """Return the names of all other bodies but the world."""
-        return [body["name"] for number, body in enumerate(self._bodies) if number not in bodies | {WORLD}]
+        return [name for number, name in enumerate(self._names) if number not in bodies | {WORLD}]
 
     def pose(self, body: int) -> Pose:
         """Return where a body is in the world."""
@@ -116,7 +116,7 @@ class ModelBodies:
         return Inertial(mass, center, total)
 
     def _list(self, bodies: Iterable[int]) -> str:
-        return few((str(self._bodies[number]["name"]) for number in bodies), 12)
+        return few((self._names[number] for number in bodies), 12) or "none"
 
     def _refused(self, message: str) -> SceneFileError:
         return SceneFileError([FileProblem((), message, self._source)])
