@@ -311,9 +311,10 @@ def test_a_model_that_asks_for_too_much_is_stopped(arm, monkeypatch):
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not count memory so")
 def test_the_compiler_may_take_two_gibibytes():
-    code = "from cagepose.exchange.compile_model import limit_memory; limit_memory(); import numpy; numpy.empty({} * 2**20, numpy.uint8)"
+    limited = "from cagepose.exchange.compile_model import limit_memory; limit_memory()"
     for mebibytes, stops in ((1500, False), (2100, True)):
-        done = subprocess.run([sys.executable, "-c", code.format(mebibytes)], capture_output=True, check=False)
+        code = f"{limited}; import numpy; numpy.empty({mebibytes} * 2**20, numpy.uint8)"
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
         assert (b"MemoryError" in done.stderr) is stops
 
 
