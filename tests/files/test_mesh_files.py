@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cagepose import MissingExtraError, SceneFileError, load_scene, run, save_scene
+from cagepose import MissingExtraError, Pose, SceneFileError, load_scene, run, save_scene
 from cagepose.cli.app import main
 from cagepose.files import mesh_file
+from cagepose.model.volume import BOX_SIGNS
 
 trimesh = pytest.importorskip("trimesh")
 
@@ -25,7 +26,7 @@ name: part on three points
 object:
   shapes: [{{{shape}}}]
   mass: 1
-  pose: {{position: [0, 0, 3], euler_zyx_deg: [0, 5, 8]}}
+  pose: {{position: [0, 0, 40], euler_zyx_deg: [0, 5, 8]}}
 cage:
   points: [[12, 9, 0], [-14, 8, 0], [-3, -12, 0]]
 loads: [{{name: weight, gravity: [0, 0, -9.81]}}]
@@ -75,6 +76,35 @@ def test_corners_within_faces_and_edges_are_none(tmp_path):
     name = written(tmp_path, part().subdivide().subdivide(), "fine.stl")
     (shape,) = scene_of(tmp_path, f"mesh: {{file: {name}}}").object.shapes
     assert len(shape.hull.vertices_m) == len(CORNERS)
+
+
+@pytest.mark.parametrize(
+    "angles_deg", [(0, 0, 0), (10, 20, 30), (90, 0, 0), (45, 35.264389682754654, 45), (180, 90, 0)]
+)
+def test_a_box_becomes_a_box(angles_deg, tmp_path):
+    """Which the paper's rules and play know, too."""
+    turn, size = Pose((0.001, 0.002, 0.003), euler_zyx=np.radians(angles_deg)), np.array((0.03, 0.02, 0.01))
+    corners = turn.transform(BOX_SIGNS * size / 2.0) * 1e3
+    random = np.random.default_rng(7)
+    mesh = trimesh.convex.convex_hull(corners[random.permutation(8)]).subdivide()
+    (box,) = scene_of(tmp_path, f"mesh: {{file: {written(tmp_path, mesh, 'box.stl')}}}").object.boxes
+    assert sorted(box.size_m) == pytest.approx(sorted(size), rel=1e-6)
+    found = box.corners_object() * 1e3
+    assert np.linalg.norm(found[:, None] - corners, axis=2).min(axis=1).max() < 1e-5
+    if angles_deg == (0, 0, 0):
+        assert box.pose_object_box.quaternion_wxyz.tolist() == [1, 0, 0, 0]
+
+
+@pytest.mark.parametrize("by", [1e-4, 1.0])
+def test_what_is_nearly_a_box_is_none(by, tmp_path):
+    corners = BOX_SIGNS * (15.0, 10.0, 5.0)
+    for changed in (
+        corners + by * (corners[:, [2]] > 0) * (1, 0, 0),
+        corners * (1 + by * (corners[:, [2]] > 0) / 15.0),
+    ):
+        name = written(tmp_path, trimesh.convex.convex_hull(changed), "box.stl")
+        os.utime(tmp_path / name, ns=(1, int(1e6 * by)))
+        assert scene_of(tmp_path, f"mesh: {{file: {name}}}").object.boxes == ()
 
 
 def test_a_saved_scene_holds_the_corners_itself(tmp_path):

@@ -10,6 +10,7 @@ from typing import ParamSpec, TypeVar
 import numpy as np
 
 from cagepose.errors import Key, Problem, SceneError
+from cagepose.files.box_corners import box_of_corners
 from cagepose.files.mesh_file import read_mesh
 from cagepose.files.points_file import PointsTable
 from cagepose.files.schema import BoxModel, ForceModel, LoadModel, MomentModel, PoseModel, SceneModel, SpringModel
@@ -128,7 +129,11 @@ class _Builder:
             vertices = to_metres(model.convex.vertices, self.unit)
             return Convex(vertices, length(model.convex.radius or 0.0), pose, model.name)
         if model.mesh is not None:
-            return Convex(self.mesh(model.mesh), 0.0, pose, model.name)
+            corners = self.mesh(model.mesh)
+            box = box_of_corners(corners)
+            if box is not None:
+                return Box(box.size_m, pose @ box.pose_body_shape, model.name)
+            return Convex(corners, 0.0, pose, model.name)
         if model.disc is not None:
             return Disc(length(model.disc.radius), pose, model.name)
         assert model.hole is not None, "the schema lets no shape pass that has no kind"

@@ -23,6 +23,8 @@ MOST_CORNERS = 300
 """Of a convex hull: the time of runs grows with the square of it."""
 NOT_CONVEX = 1e-5
 """Of the hull's volume: a mesh that is less by more is not convex; single precision is off by some 1e-7."""
+ROUNDING = 3e-7
+"""Of the mesh's size: corners of the hull that stand out by less are none. Single precision is off by as much."""
 KEPT = 64
 """Meshes that are not read again for each scene of a study."""
 
@@ -93,7 +95,7 @@ def _corners(name: str, _changed: int, _n_bytes: int) -> FloatArray:
             f"is not convex: {share:.2%} of its hull is not in it; cut it into convex parts, a mesh each, or make it of"
             " boxes and cylinders, with `hole` for what is drilled"
         )
-    corners = hull.to_mesh64().vert_properties[:, :3] * size + vertices.mean(axis=0)
+    corners = hull.simplify(ROUNDING).to_mesh64().vert_properties[:, :3] * size + vertices.mean(axis=0)
     if len(corners) > MOST_CORNERS:
         raise _refused(
             f"has {len(corners)} corners, more than {MOST_CORNERS}; make it coarser, or take sphere, capsule, cylinder"
