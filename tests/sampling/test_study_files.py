@@ -40,7 +40,7 @@ KINDS = "give one of: uniform, normal, triangular, grid, steps"
 # What is broken, the text to replace, what to put there, and the line that must come out, or its beginning.
 EDITS = [
     ("unknown key", "watch:", "wach:", "7:1: wach: is no known key; did you mean watch? known keys: scene, vary,"
-     " sample, watch, accept, forces, map"),
+     " watch, accept, sample, forces, map"),
     ("no scene", "scene: scene.yaml\n", "", "1:1: scene: is missing; add it, for example scene: scene.yaml"),
     ("no sample", "sample: {method: sobol, runs: 100, seed: 1}\n", "", "1:1: sample: is missing; add it"),
     ("nothing varies", STUDY[STUDY.index("vary:") : STUDY.index("sample:")], "vary: {}\n",
@@ -65,7 +65,9 @@ EDITS = [
     ("infinite", SIDE, "parameters.side: {uniform: [9, .inf]}",
      "3:34: vary.parameters.side.uniform[1]: is infinite; give a finite number"),
     ("no such parameter", SIDE, "parameters.sode: {normal: {sigma: 1}}",
-     "3:3: vary.parameters.sode: is not in the scene, so the normal distribution needs its mean; give mean"),
+     "3:3: vary.parameters.sode: is no parameter of the scene; use one of: side, half, or write it into"),
+    ("no nominal value", SIDE, "object.mass: {normal: {sigma: 1}}",
+     "3:3: vary.object.mass: is not in the scene, so the normal distribution needs its mean; give mean"),
     ("an expression varies", SIDE, "parameters.half: {uniform: [4, 6]}",
      "3:3: vary.parameters.half: holds the expression '=side/2'; vary the parameters that it is made of"),
     ("text varies", SIDE, "name: {uniform: [4, 6]}", "3:3: vary.name: is text 'sample'; vary a number of the scene"),

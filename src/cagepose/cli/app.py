@@ -45,6 +45,10 @@ COMMANDS = {
         "cagepose.cli.study_command:study_command",
         "Run a scene many times with numbers that vary: yield, tolerances, what matters.",
     ),
+    "design": (
+        "cagepose.cli.design_command:design_command",
+        "Find the loosest value of a number that keeps a yield or a capture range.",
+    ),
     "reproduce": (
         "cagepose.cli.reproduce_command:reproduce_command",
         "Run the paper's cases and write a report of its numbers beside ours.",

@@ -6,11 +6,8 @@ import os
 from collections.abc import Callable, Mapping
 from typing import Any
 
-import numpy as np
-
 from cagepose.errors import Problem, SceneError
-from cagepose.files.study_file import StudyFile, parse_study, read_study_file, refused_at, study_text
-from cagepose.model.checks import duplicates
+from cagepose.files.study_file import StudyFile, parse_study, read_study_file, study_text
 from cagepose.model.wording import few
 from cagepose.sampling.results import StudyResults
 from cagepose.sampling.runner import Runner
@@ -53,7 +50,7 @@ class Study:
         forces: bool | None = None,
         map: Mapping[str, Any] | None = None,
     ) -> None:
-        content = {"scene": _file_name(scene), "vary": vary, "sample": sample}
+        content = {"scene": scene_name(scene), "vary": vary, "sample": sample}
         given = {"watch": watch, "accept": accept, "forces": forces, "map": map}
         text = study_text({**content, **{key: value for key, value in given.items() if value is not None}})
         self._begin(parse_study(text, "study"), "study")
@@ -73,26 +70,10 @@ class Study:
 
     def _begin(self, file: StudyFile, source: str) -> None:
         require_study()
-        from cagepose.sampling.distribution import distribution_of  # the class itself can be imported without the extra
-        from cagepose.sampling.row_columns import RowColumns
-        from cagepose.sampling.sample import Sample
+        from cagepose.sampling.at_the_door import checked_columns, checked_sample
 
-        self._file, self._columns = file, RowColumns(file)
-        for name in duplicates(self._columns.names):
-            message = f"gives the column {name} a second meaning; rename the point that is watched"
-            raise refused_at("watch", file, source, message)
-        try:
-            self._sample = Sample(file.model.sample, [distribution_of(one) for one in file.varied])
-        except ValueError as error:
-            raise refused_at("sample", file, source, str(error)) from None
-        nominal = np.array([[one.nominal for one in file.varied]])
-        outcomes = Runner(file).run_one_by_one(nominal)
-        if outcomes.errors[0] is not None:
-            raise refused_at("scene", file, source, f"cannot be run: {outcomes.errors[0]}")
-        try:
-            self._columns.columns(nominal, outcomes)
-        except ValueError as error:
-            raise refused_at("accept", file, source, str(error)) from None
+        self._file, self._columns = file, checked_columns(file, source)
+        self._sample = checked_sample(file, source)
 
     def __repr__(self) -> str:
         varied = few(one.key for one in self._file.varied)
@@ -153,7 +134,14 @@ class Study:
         return StudyResults(folder)
 
 
-def _file_name(scene: object) -> str:
+def scene_name(scene: object) -> str:
+    """Return the name of a scene's file.
+
+    Raises
+    ------
+    SceneError
+        It is none.
+    """
     if isinstance(scene, str | os.PathLike):
         return os.fspath(scene)
     message = f"is of type {type(scene).__name__}; give the name of a scene file: cagepose.save_scene writes one"
