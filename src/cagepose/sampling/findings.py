@@ -112,6 +112,7 @@ def document(findings: Findings) -> dict[str, Any]:
             {
                 "name": run.name,
                 "file": run.file,
+                "page": run.page,
                 "run": run.run,
                 "verdict": run.verdict,
                 "accepted": run.accepted,
