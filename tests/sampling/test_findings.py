@@ -11,11 +11,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from SALib.sample import sobol as design
 from scipy import stats
+from scipy.stats import qmc
 
 from cagepose import SceneFileError, Study, StudyResults, load_scene, run
 from cagepose.sampling.capture_map import largest_box, refined_map
-from cagepose.sampling.sensitivity import _indices
+from cagepose.sampling.sensitivity import _indices, saltelli_rows
 from cagepose.sampling.statistics import Spread, statistics_of, wilson
 from our_studies import RunStudy
 
@@ -163,6 +165,14 @@ def test_no_row_leaves_a_worst_case_that_is_not_known(run_study: RunStudy, peg: 
     assert (row["nominal"], row["worst_case"], row["stays_within_worst_case"]) == (0.5, [None, None], None)
     assert row["monte_carlo"]["runs"] == 20
     assert 'class="leaves"' not in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
+def test_the_design_of_the_indices_is_that_of_salib() -> None:
+    problem = {"num_vars": 5, "names": list("abcde"), "bounds": [[0.0, 1.0]] * 5}
+    base = qmc.Sobol(10, scramble=False).random(64)
+    expected = design.sample(problem, 64, calc_second_order=False, scramble=False)
+    assert np.array_equal(saltelli_rows(base), expected)
+    assert np.array_equal(np.concatenate([saltelli_rows(base[:7]), saltelli_rows(base[7:])]), expected)
 
 
 def test_blocks_of_a_design_in_which_a_run_has_no_pose_are_left_out() -> None:

@@ -130,7 +130,7 @@ def test_a_parameter_reaches_the_batch_by_expressions(run_study: RunStudy, scene
     assert set(compare_with_runs(results)) >= {"rests", "refused"}
 
 
-@pytest.mark.parametrize("text", ["min(0.001/a, 5)/100", "min(a**0.5, 0.001)"])
+@pytest.mark.parametrize("text", ["min(0.001/a, 5)/100", "min(a**0.5, 0.001)", "(1/a < 1)*0.001", "(1/(1/a) > 9)*a"])
 def test_a_row_whose_expression_comes_to_no_number_is_refused(
     run_study: RunStudy, scene_with: Callable[..., Path], text: str
 ) -> None:
