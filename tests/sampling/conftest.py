@@ -11,7 +11,7 @@ from cagepose.files.key_path import parse_key_path
 from cagepose.files.scene_edit import with_values
 from cagepose.files.yaml_source import parse_yaml
 from cagepose.sampling import capture_map, sensitivity
-from our_studies import RAIL, RunStudy
+from our_studies import PEG, RAIL, RunStudy
 
 
 @pytest.fixture
@@ -49,3 +49,10 @@ def scene_with(tmp_path: Path) -> Callable[..., Path]:
         return path
 
     return write
+
+
+@pytest.fixture
+def peg(tmp_path: Path) -> Path:
+    path = tmp_path / "peg.yaml"
+    path.write_text(PEG, encoding="utf-8")
+    return path

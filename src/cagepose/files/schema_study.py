@@ -117,10 +117,13 @@ class WatchModel(Mapping):
 
 
 class MapModel(Mapping):
-    """A capture map: two of the varied numbers, the others as in the scene."""
+    """A capture map: two of the varied numbers, the others as in the scene; or three, of which the third takes a few
+    values.
+    """
 
-    over: Annotated[list[str], Field(min_length=2, max_length=2)] = Field(
-        description="Two keys of vary.", examples=[["parameters.pitch", "parameters.yaw"]]
+    over: Annotated[list[str], Field(min_length=2, max_length=3)] = Field(
+        description="Two keys of vary, or three: a map for each of a few values of the third.",
+        examples=[["parameters.pitch", "parameters.yaw"]],
     )
     count: Annotated[int, Field(ge=2, le=1000)] = Field(60, description="Cells along each of the two.")
 

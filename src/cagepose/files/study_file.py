@@ -234,12 +234,13 @@ def _check_sample(sample: SampleModel, vary: Mapping[str, DistributionModel], pr
 
 def _check_map(model: StudyModel, varied: tuple[VariedKey, ...], problems: list[Problem]) -> None:
     known = [one.key for one in varied if one.distribution.grid is None or len(one.distribution.grid) > 1]
-    for index, key in enumerate(model.map.over if model.map else []):
-        if key not in known:
-            message = f"is {key!r}, which does not vary; use two of: {few(known, 10) or 'none'}"
+    over = model.map.over if model.map else []
+    for index, key in enumerate(over):
+        if key in over[:index]:
+            problems.append(Problem(("map", "over", index), "stands here before; name another"))
+        elif key not in known:
+            message = f"is {key!r}, which does not vary; use some of: {few(known, 10) or 'none'}"
             problems.append(Problem(("map", "over", index), message))
-    if model.map and model.map.over[0] == model.map.over[1]:
-        problems.append(Problem(("map", "over", 1), "is the first once more; name another"))
 
 
 def _accept(model: StudyModel, problems: list[Problem]) -> Expression | None:

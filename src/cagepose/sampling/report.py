@@ -42,8 +42,8 @@ def write_report(findings: Findings) -> list[Path]:
 
 
 def numbers_text(numbers: dict[str, Any]) -> str:
-    """Return the numbers as JSON, the map's cells on one line."""
-    return json_text({key: value for key, value in numbers.items() if key != "map"}, map=numbers["map"])
+    """Return the numbers as JSON, the maps' cells on one line."""
+    return json_text({key: value for key, value in numbers.items() if key != "maps"}, maps=numbers["maps"])
 
 
 def kept_numbers(results: StudyResults) -> dict[str, Any] | None:
