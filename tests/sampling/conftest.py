@@ -20,11 +20,11 @@ def run_study(tmp_path: Path) -> RunStudy:
 
     def run(vary: dict[str, Any], runs: int | None = None, **given: Any) -> StudyResults:
         scene, folder = given.pop("scene", RAIL), given.pop("folder", "out")
-        workers, resume = given.pop("workers", None), given.pop("resume", False)
+        how = {name: given.pop(name) for name in ("workers", "resume", "dask") if name in given}
         sample = {"method": given.pop("method", "sobol"), "seed": given.pop("seed", 1)}
         if runs is not None:
             sample["runs"] = runs
-        return Study(scene, vary, sample, **given).run(tmp_path / folder, workers=workers, resume=resume)
+        return Study(scene, vary, sample, **given).run(tmp_path / folder, **how)
 
     return run
 

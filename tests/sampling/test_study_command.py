@@ -169,14 +169,18 @@ def test_a_missing_extra_is_named_with_its_install_line(monkeypatch: pytest.Monk
     missing = r"studies need pyarrow.*pip install 'cagepose\[study\]'"
     with pytest.raises(MissingExtraError, match=missing):
         StudyResults("out")
+    vary = {"cage.pose.euler_zyx_deg[1]": {"uniform": [0, 1]}}
     with pytest.raises(MissingExtraError, match=missing):
-        Study(RAIL, {"cage.pose.euler_zyx_deg[1]": {"uniform": [0, 1]}}, {"runs": 1})
+        Study(RAIL, vary, {"runs": 1})
+    monkeypatch.setattr("cagepose.views.extra.find_spec", lambda name: None if name == "distributed" else find(name))
+    with pytest.raises(MissingExtraError, match=r"many machines need Dask.*pip install 'cagepose\[dask\]'"):
+        Study(RAIL, vary, {"runs": 1}).run("out", dask="tcp://localhost:1")
 
 
 def test_the_classes_can_be_imported_without_the_extra() -> None:
     """``from cagepose import *`` asks for all names, and most users have no use for studies."""
     code = (
-        "import sys\nfor name in ('scipy', 'pyarrow', 'SALib', 'jinja2', 'matplotlib', 'pandas'):\n"
+        "import sys\nfor name in ('scipy', 'pyarrow', 'SALib', 'distributed', 'jinja2', 'matplotlib', 'pandas'):\n"
         "    sys.modules[name] = None\nfrom cagepose import *\nprint(Study.__name__, StudyResults.__name__)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

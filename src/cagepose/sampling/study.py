@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from cagepose.errors import Problem, SceneError
 from cagepose.files.study_file import StudyFile, parse_study, read_study_file, study_text
+from cagepose.model.checks import FloatArray
 from cagepose.model.wording import few
+from cagepose.sampling.outcome import Outcomes
 from cagepose.sampling.results import StudyResults
 from cagepose.sampling.runner import Runner
-from cagepose.views.extra import require_study
+from cagepose.views.extra import require_dask, require_study
 
 Progress = Callable[[int, int, bool], None]
 """Called with how many rows are done, how many there are, and whether the last of them were run now."""
@@ -89,6 +91,7 @@ class Study:
         *,
         resume: bool = False,
         workers: int | None = None,
+        dask: str | None = None,
         progress: Progress | None = None,
     ) -> StudyResults:
         """Run all rows into a folder, part by part, and return what is there.
@@ -102,13 +105,18 @@ class Study:
         workers
             Threads, or processes where scenes are built row by row; None: a thread for each core, or one process. A
             script that asks for more processes needs ``if __name__ == "__main__":``.
+        dask
+            The address of a Dask scheduler, such as ``"tcp://10.0.0.1:8786"``: its workers run the parts.
         progress
             Called after each part.
 
         Raises
         ------
         SceneError
-            ``workers`` is no whole number from 1 upwards.
+            ``workers`` is no whole number from 1 upwards; or there is no such scheduler, or its workers have another
+            cagepose.
+        MissingExtraError
+            The extra ``dask`` is not installed.
         StudyFolderError
             The folder holds something else.
         OSError
@@ -116,22 +124,40 @@ class Study:
         KeyboardInterrupt
             Ctrl-C was pressed; all parts that are there are whole.
         """
+        if dask is not None:
+            require_dask()
         from cagepose.sampling.folder import StudyFolder
 
         kept, runner, n_runs = StudyFolder(folder), Runner(self._file, workers), len(self)
         kept.begin(self._file, resume=resume)
+        size = runner.rows_of_a_part
+        parts = [(first, min(first + size, n_runs)) for first in range(0, n_runs, size)]
+        missing = [part for part in parts if not kept.has(*part)]
+        n_done = n_runs - sum(last - first for first, last in missing)
+        if progress is not None and n_done:
+            progress(n_done, n_runs, False)
         try:
-            for first in range(0, n_runs, runner.rows_of_a_part):
-                last = min(first + runner.rows_of_a_part, n_runs)
-                is_missing = not kept.has(first, last)
-                if is_missing:
-                    values = self._sample.values(first, last)
-                    kept.write(first, last, self._columns.table(first, values, runner.run(values)))
+            for (first, last), values, outcomes in self._outcomes(runner, missing, dask):
+                kept.write(first, last, self._columns.table(first, values, outcomes))
+                n_done += last - first
                 if progress is not None:
-                    progress(last, n_runs, is_missing)
+                    progress(n_done, n_runs, True)
         finally:
             runner.close()
         return StudyResults(folder)
+
+    def _outcomes(
+        self, runner: Runner, parts: Sequence[tuple[int, int]], dask: str | None
+    ) -> Iterator[tuple[tuple[int, int], FloatArray, Outcomes]]:
+        """Yield parts with their varied numbers and where their runs ended, in any order."""
+        if dask is not None:
+            from cagepose.sampling.cluster import run_on_cluster
+
+            yield from run_on_cluster(self._file, dask, parts, self._sample.values)
+            return
+        for part in parts:
+            values = self._sample.values(*part)
+            yield part, values, runner.run(values)
 
 
 def scene_name(scene: object) -> str:
