@@ -56,6 +56,11 @@ def json_text(document: dict[str, Any], **on_one_line: object) -> str:
     return text + "\n"
 
 
+def json_line(document: dict[str, Any]) -> str:
+    """Return a document on a line of its own, for those who read many."""
+    return json.dumps(document, separators=(",", ":"), allow_nan=False) + "\n"
+
+
 def check_can_write(path: str | os.PathLike[str], may_replace: Callable[[Path], bool], what: str) -> None:
     """Find out before long work whether `write_whole` can write to ``path``.
 
