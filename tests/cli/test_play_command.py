@@ -157,7 +157,7 @@ def test_the_ranges_of_freedoms_and_points_are_a_line_each(
 ) -> None:
     """No number is broken on a narrow screen, and a wide one shows more digits."""
     monkeypatch.setattr("sys.stdout.isatty", lambda: True)
-    for key, value in (("COLUMNS", str(columns)), ("TERM", "dumb")):
+    for key, value in (("COLUMNS", str(columns)), ("LINES", "50"), ("TERM", "dumb")):
         monkeypatch.setenv(key, value)
     scene = load_scene(RAIL)
     print_play(play(scene, [(-0.6, 0.02, -0.0607)]), (), "mm")
@@ -167,3 +167,40 @@ def test_the_ranges_of_freedoms_and_points_are_a_line_each(
     assert any(re.match(rf"pitch +deg +\S+ to \S+ +{pitch} +\S+ to \S+$", line) for line in lines)
     assert any(re.match(r"point 1 along z +mm +\S+ to \S+ +\S+ to \S+ +\S+ to \S+$", line) for line in lines)
     assert "point 1: (-600, 20, -60.7) mm in the object's frame" in lines
+
+
+def test_a_scene_of_rollers_has_play_without_bounds(command: Command) -> None:
+    """0.5 mm of vertical play: 0.25 mm each way, and the pitch of (h + 2 rho + p) cos t - 2 a sin t = h + 2 rho."""
+    rollers = str(Path(RAIL).with_name("rollers.yaml"))
+    document = json.loads(command("play", rollers, "--json").out)
+    assert document["freedoms"]["z"]["exact"] == pytest.approx([-0.25, 0.25], abs=1e-9)
+    assert document["freedoms"]["z"]["linear"] == [None, None]
+    assert document["freedoms"]["x"]["status"] == ["open", "open"]
+    assert document["cage"]["verdict"] == "escapes"
+    assert document["rests"] == []
+    answer = command("play", rollers)
+    assert answer.code == 0
+    assert "linear" not in answer.out
+    assert "certified" not in answer.out
+    assert "way out: nothing is ahead where it starts" in answer.out
+
+
+def test_seated_play_is_asked_of_a_phase(command: Command) -> None:
+    dock = str(Path(RAIL).with_name("phone-dock.yaml"))
+    document = json.loads(command("play", dock, "--seated", "--json").out)
+    assert (document["seated"], document["cage"]) == ("weight", None)
+    left, right = document["freedoms"]["x"]["exact"]
+    assert left < -1 < 1 < right
+    y = document["freedoms"]["y"]["exact"]
+    assert y[1] - y[0] < 1e-3  # its back and the ledge hold it
+    assert "play where weight seats it" in command("play", dock, "--seated", "--phase", "weight").out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [(("--phase", "weight"), "add --seated"), (("--seated", "--phase", "wind"), "phase: is 'wind', and the scene has")],
+)
+def test_a_seat_that_is_none_is_refused(command: Command, arguments: tuple[str, ...], told: str) -> None:
+    answer = command("play", RAIL, *arguments)
+    assert (answer.code, answer.out) == (2, "")
+    assert told in answer.err

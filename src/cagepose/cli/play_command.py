@@ -27,6 +27,15 @@ def play_command(
             allow_leading_hyphen=True,
         ),
     ] = (),
+    seated: Annotated[
+        bool,
+        Switch,
+        Parameter(help="From where the loads bring it to rest: how far small pushes move it in its seat."),
+    ] = False,
+    phase: Annotated[
+        str | None,
+        Parameter(help="With --seated: at rest in which phase. Left out: the last.", show_default=False),
+    ] = None,
     set_values: SetOption = (),
     json: Annotated[bool, Switch, Parameter(help="Print one JSON document instead of the tables.")] = False,
 ) -> int:
@@ -46,6 +55,8 @@ def play_command(
     ]
     if direction and not at:
         problems.append("--direction: says where points go, and there are none; give one with --at")
+    if phase is not None and not seated:
+        problems.append("--phase: says in which rest, and none is asked about; add --seated")
     try:
         scene_file = read_scene_file(scene, set_values)
     except SceneFileError as error:
@@ -54,24 +65,23 @@ def play_command(
         sys.stderr.write("\n".join(problems) + "\n")
         return 2
 
-    from cagepose.model.scope import check_boxes_and_points
     from cagepose.studies.play import play
     from cagepose.studies.play_rest import play_rests
 
-    check_boxes_and_points(scene_file.scene, "play")
     try:
         found = play(
             scene_file.scene,
             [to_metres(point, scene_file.length_unit) for point in points],
             along,
+            seated=(phase or scene_file.scene.loads[-1].name) if seated else None,
             progress=_show_search if sys.stderr.isatty() else None,
         )
     except SceneError as error:
         sys.stderr.write(f"--{error}\n")
         return 2
-    if found.cage.verdict != "caged" and sys.stderr.isatty():
+    if found.verdict in ("not certified", "escapes") and sys.stderr.isatty():
         sys.stderr.write(ERASE_LINE)
-    rests = play_rests(scene_file.scene)
+    rests = () if seated or scene_file.scene.has_other_shapes else play_rests(scene_file.scene)
     if json:
         from cagepose.files.play_document import play_document
         from cagepose.files.write import json_text

@@ -10,9 +10,9 @@ from cagepose.files.document import FORMAT_VERSION
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
-from cagepose.studies.cage_verdict import PathStep
-from cagepose.studies.play import Play, PlayEnd, PlayRange, PointPlay
+from cagepose.studies.cage_verdict import CageVerdict, PathStep
 from cagepose.studies.play_rest import PlayRest, PressedPoint
+from cagepose.studies.play_result import Play, PlayEnd, PlayRange, PointPlay
 
 LENGTHS = ("x", "y", "z")
 
@@ -33,15 +33,20 @@ def play_document(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> di
             }
             for point in play.points
         ],
-        "cage": {
-            "verdict": cage.verdict,
-            "reason": cage.reason,
-            "free_directions": list(cage.free_directions),
-            "leaves_at": _pose(cage.leaves_at, unit),
-            "path": None if cage.path is None else [_step(step, unit) for step in cage.path],
-        },
+        "seated": play.seated,
+        "cage": None if cage is None else _cage(cage, unit),
         "rests": [_rest(rest, unit) for rest in rests],
         "timing_s": {"analysis": play.analysis_s, "certificate": play.certificate_s},
+    }
+
+
+def _cage(cage: CageVerdict, unit: LengthUnit) -> dict[str, Any]:
+    return {
+        "verdict": cage.verdict,
+        "reason": cage.reason,
+        "free_directions": list(cage.free_directions),
+        "leaves_at": _pose(cage.leaves_at, unit),
+        "path": None if cage.path is None else [_step(step, unit) for step in cage.path],
     }
 
 
