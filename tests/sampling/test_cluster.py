@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -56,27 +57,49 @@ def test_the_table_is_the_same_for_one_process_and_three_dask_workers(
     assert first.stat().st_mtime_ns == kept
 
 
+@contextmanager
+def once_a_part_is_there(folder: Path, act: Callable[[], object]) -> Iterator[None]:
+    """Act while a study runs, and see to it that this was not too late."""
+    done, acted = threading.Event(), threading.Event()
+
+    def wait() -> None:
+        while not list(folder.glob("parts/*.parquet")):
+            if done.wait(0.01):
+                return
+        act()
+        acted.set()
+
+    thread = threading.Thread(target=wait)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
+        thread.join()
+    assert acted.is_set()
+
+
 def test_the_table_is_the_same_after_a_worker_was_killed(run_study: RunStudy, workers: Any, tmp_path: Path) -> None:
     """Kill -9 as soon as a part is there; Dask gives what it had to the others, and starts a new one."""
     runs, vary = KINDS["built"]
     victim = next(iter(workers.workers.values())).pid
-
-    def kill() -> None:
-        while not list(tmp_path.glob("killed/parts/*.parquet")):
-            if done.wait(0.01):
-                return
-        os.kill(victim, signal.SIGKILL)
-        was_killed.set()
-
-    done, was_killed, killer = threading.Event(), threading.Event(), threading.Thread(target=kill)
-    killer.start()
-    try:
+    with once_a_part_is_there(tmp_path / "killed", lambda: os.kill(victim, signal.SIGKILL)):
         killed = run_study(vary, runs, dask=workers.scheduler_address, folder="killed")
-    finally:
-        done.set()
-        killer.join()
-    assert was_killed.is_set()
     assert rows_of(killed) == rows_of(run_study(vary, runs, folder="alone"))
+
+
+@pytest.mark.filterwarnings("ignore")  # Dask's own, of connections that end
+def test_a_study_goes_on_alone_after_its_scheduler_was_lost(
+    run_study: RunStudy, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(cluster, "CONNECT_S", 2.0)  # so long it is looked for
+    runs, vary = 20 * 32, KINDS["built"][1]
+    options = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": ":0", "silence_logs": 50}
+    lost = pytest.raises(SceneError, match="the scheduler was lost; what is done is kept: add --resume")
+    with distributed.LocalCluster(**options) as found, lost, once_a_part_is_there(tmp_path / "lost", found.close):
+        run_study(vary, runs, dask=found.scheduler_address, folder="lost")
+    assert 0 < len(StudyResults(tmp_path / "lost")) < runs
+    assert rows_of(run_study(vary, runs, folder="lost", resume=True)) == rows_of(run_study(vary, runs, folder="alone"))
 
 
 def test_what_is_wrong_with_a_cluster_is_said(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import CancelledError
 from itertools import islice
 
 from distributed import Client, KilledWorker, as_completed
@@ -33,7 +34,8 @@ def run_on_cluster(
     Raises
     ------
     SceneError
-        No scheduler at the address, no worker, or one without this version of cagepose.
+        No scheduler at the address, or it was lost; no worker, or one without this version of cagepose; or workers die
+        of the same rows again and again.
     """
     try:
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
@@ -59,6 +61,8 @@ def run_on_cluster(
         for future in running:
             try:
                 version, outcomes = future.result()
+            except CancelledError:
+                raise _refused(f"{address}: the scheduler was lost; what is done is kept: add --resume") from None
             except KilledWorker as error:
                 raise _refused(
                     f"{address}: the same rows ended several workers ({error}); look at their logs"
