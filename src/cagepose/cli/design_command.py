@@ -71,10 +71,9 @@ def _print(results: DesignResults) -> None:
     has_interval = wish.share is not None
     columns = ("yield", "95 % interval") if has_interval else ("capture range",)
     table = plain_table(study.varied[-1].key, *columns, "keeps the wish")
-    wished = wish.share if wish.share is not None else next(iter((wish.capture or {}).values()))
     for point in results.trade_off.points:
         low, high = (reached_text(results, limit) for limit in (point.low, point.high))
         limits = (f"{low} to {high}",) if has_interval else ()
-        kept = "yes" if point.reached >= wished else "no"
+        kept = "yes" if point.reached >= wish.at_least else "no"
         table.add_row(f"{point.value:.5g}", reached_text(results, point.reached), *limits, kept)
     print_all(f"{study.nominal.scene.name}: {wish_text(results)}", "", table, "", results.sentence())

@@ -196,6 +196,11 @@ class WishModel(Mapping):
             raise wrong(f"{found}; give one of: yield, capture")
         return self
 
+    @property
+    def at_least(self) -> float:
+        """The share, or the width."""
+        return self.share if self.share is not None else next(iter((self.capture or {}).values()))
+
 
 class DesignModel(RunsModel):
     """The loosest value of one number that keeps a wish."""

@@ -184,9 +184,9 @@ class Design:
                 progress(point)
             return point
 
-        (wished,) = (wish.share,) if wish.share is not None else (wish.capture or {}).values()
         try:
-            return DesignResults(self._file, trade_off(measured, self._file.tight, self._file.loose, wished), n_runs)
+            found = trade_off(measured, self._file.tight, self._file.loose, wish.at_least)
+            return DesignResults(self._file, found, n_runs)
         finally:
             runner.close()
 

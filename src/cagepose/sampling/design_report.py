@@ -106,8 +106,9 @@ def trade_off_figure(results: DesignResults) -> Figure:
             low, high = ([unit * getattr(point, name) for point in found.points] for name in ("low", "high"))
             panel.fill_between(values, low, high, color=BLUE, alpha=0.25, linewidth=0, label="95 % interval")
         panel.plot(values, [unit * point.reached for point in found.points], color=BLUE, marker="o", label="reached")
-        (wished,) = (wish.share,) if wish.share is not None else (wish.capture or {}).values()
-        panel.axhline(unit * wished, color=BLACK, linestyle="--", linewidth=1.0, label=f"wish: {wish_text(results)}")
+        panel.axhline(
+            unit * wish.at_least, color=BLACK, linestyle="--", linewidth=1.0, label=f"wish: {wish_text(results)}"
+        )
         for number, (tight, loose) in enumerate(found.kept):
             span = sorted((tight, loose))
             panel.axvspan(*span, color=GREEN, alpha=0.12, linewidth=0, label="kept" if number == 0 else None)
