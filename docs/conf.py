@@ -6,6 +6,8 @@ import itertools
 import re
 from importlib.metadata import version as installed_version
 from pathlib import Path
+from shutil import copy
+from tempfile import TemporaryDirectory
 
 import latex2mathml.converter
 from docutils import nodes
@@ -13,8 +15,9 @@ from sphinx.application import Sphinx
 from sphinx.config import Config
 from sphinx.writers.html5 import HTML5Translator
 
-from cagepose import load_scene, play, run
+from cagepose import Design, Study, load_scene, play, run
 from cagepose.files.scene_file import read_scene_file
+from cagepose.model.wording import percent
 from cagepose.paper.report import write_report
 from cagepose.paper.reproduction import METHODS, reproduce
 from cagepose.views.play_figure import play_figure
@@ -116,9 +119,37 @@ def _gallery(app: Sphinx, _config: Config) -> None:
     (generated / "gallery.md").write_text("\n\n".join(words) + "\n", encoding="utf-8")
 
 
+def _studies(app: Sphinx, _config: Config) -> None:
+    """Run every worked study and design, and write its page, a picture and a few words."""
+    generated = Path(app.srcdir) / "generated"
+    words = []
+    for file in sorted((Path(app.srcdir).parent / "scenes" / "studies").glob("*.yaml")):
+        text, name = file.read_text(encoding="utf-8"), file.stem
+        pages = generated / "playable/study" / name
+        pages.mkdir(parents=True, exist_ok=True)
+        with TemporaryDirectory() as folder:
+            if "\nwish:" in text:
+                found = Design.load(file).run()
+                found.write(folder)
+                picture, told = "design.png", f"{found.sentence()}."
+            elif "\nvary:" in text:
+                report = Study.load(file).run(folder).report()
+                is_all_good = all(min(map(min, one["accepted_cells"])) for one in report["maps"])
+                picture = "spread.png" if is_all_good else "map.png"
+                told = f'<a href="study/{name}/report.html">Its report</a> (yield {percent(report["yield"]["share"])})'
+            else:
+                continue  # a scene of theirs
+            for written in (*Path(folder).glob("*.html"), *Path(folder).glob("*.yaml")):
+                copy(written, pages)
+            copy(Path(folder) / picture, generated / "pictures" / f"study-{name}.png")
+        words += [f"## {name}", _comment(file), f"![A picture of {name}](pictures/study-{name}.png)", told]
+    (generated / "studies.md").write_text("\n\n".join(words) + "\n", encoding="utf-8")
+
+
 def setup(app: Sphinx) -> None:
     """Register the equations' writer, the repair of signatures, and what draws the gallery, play and the report."""
     app.connect("config-inited", _gallery, priority=100)  # before Sphinx looks for the pages in `html_extra_path`
+    app.connect("config-inited", _studies, priority=101)
     app.connect("builder-inited", _reproduce)
     app.connect("builder-inited", _draw_play)
     app.connect("autodoc-process-signature", _plain_aliases)

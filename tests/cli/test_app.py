@@ -47,7 +47,7 @@ def test_the_version_is_that_of_the_package(command: Command) -> None:
     ("arguments", "message"),
     [
         (["rnu"], 'Unknown command "rnu". Did you mean "run"? Available commands: run, compare, play, check, plot,'
-                  " view, study, reproduce, ... See: cagepose --help"),
+                  " view, study, design, ... See: cagepose --help"),
         (["run"], 'Command "run" parameter SCENE requires an argument. See: cagepose run --help'),
         (["run", "a.yaml", "--jsn"], "Unknown option: --jsn. Did you mean --json? See: cagepose run --help"),
         (["run", "a.yaml", "--set"], 'Command "run" parameter --set requires an argument. See: cagepose run --help'),

@@ -304,7 +304,7 @@ def test_a_scene_whose_ending_was_left_out_is_found(command):
 
 
 def test_two_scenes_and_a_scene_without_a_command_are_told_apart_from_changes(command, sample):
-    assert "one scene at a time, and other.yaml is left over" in command("run", sample, "other.yaml").err
+    assert "one scene at a time, and other.yaml is left over" in command("check", sample, "other.yaml").err
     assert "each change needs its own --set" in command("run", sample, "object.mass=2").err
     assert command(sample) == (2, "", f"cagepose: {sample} is no command; did you mean: cagepose run {sample}\n")
 

@@ -11,7 +11,7 @@ from cagepose.files.key_path import parse_key_path
 from cagepose.files.scene_edit import with_values
 from cagepose.files.yaml_source import parse_yaml
 from cagepose.sampling import capture_map, sensitivity
-from our_studies import RAIL, RunStudy
+from our_studies import PEG, RAIL, RunStudy
 
 
 @pytest.fixture
@@ -20,11 +20,11 @@ def run_study(tmp_path: Path) -> RunStudy:
 
     def run(vary: dict[str, Any], runs: int | None = None, **given: Any) -> StudyResults:
         scene, folder = given.pop("scene", RAIL), given.pop("folder", "out")
-        workers, resume = given.pop("workers", None), given.pop("resume", False)
+        how = {name: given.pop(name) for name in ("workers", "resume", "dask") if name in given}
         sample = {"method": given.pop("method", "sobol"), "seed": given.pop("seed", 1)}
         if runs is not None:
             sample["runs"] = runs
-        return Study(scene, vary, sample, **given).run(tmp_path / folder, workers=workers, resume=resume)
+        return Study(scene, vary, sample, **given).run(tmp_path / folder, **how)
 
     return run
 
@@ -49,3 +49,10 @@ def scene_with(tmp_path: Path) -> Callable[..., Path]:
         return path
 
     return write
+
+
+@pytest.fixture
+def peg(tmp_path: Path) -> Path:
+    path = tmp_path / "peg.yaml"
+    path.write_text(PEG, encoding="utf-8")
+    return path

@@ -6,40 +6,21 @@ import json
 import math
 import re
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
+from SALib.sample import sobol as design
 from scipy import stats
+from scipy.stats import qmc
 
-from cagepose import SceneFileError, Study, StudyResults, load_scene, run
-from cagepose.sampling.capture_map import largest_box, refined_map
-from cagepose.sampling.sensitivity import _indices
+from cagepose import Study, StudyResults, load_scene, run
+from cagepose.sampling.sensitivity import _indices, saltelli_rows
 from cagepose.sampling.statistics import Spread, statistics_of, wilson
-from our_studies import RunStudy
+from our_studies import PEG, RunStudy
 
-PEG = """\
-name: peg
-units: {length: m}
-object:
-  boxes: [{size: [1, 1, 1], position: [0, 0, 0]}]
-  pose: {position: [0.0, 0.02, 3]}
-cage:
-  points: [[0.4, 0.4, 0], [0.4, -0.4, 0], [-0.4, -0.4, 0], [-0.4, 0.4, 0]]
-  pose: {position: [0, 0, 0]}
-loads: [{name: weight, gravity: [0, 0, -1]}]
-"""
-"""A cube falls straight down onto four points: its height afterwards is theirs and a half, to rounding."""
 RISES = {"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}}
 HEIGHTS = {"cage.pose.position[2]": {"normal": {"sigma": 0.1}}, "object.pose.position[0]": {"uniform": [-0.05, 0.05]}}
-
-
-@pytest.fixture
-def peg(tmp_path: Path) -> Path:
-    path = tmp_path / "peg.yaml"
-    path.write_text(PEG, encoding="utf-8")
-    return path
 
 
 def test_the_tilt_of_a_rail_with_normal_gaps_has_the_distribution_of_the_closed_form(
@@ -165,6 +146,14 @@ def test_no_row_leaves_a_worst_case_that_is_not_known(run_study: RunStudy, peg: 
     assert 'class="leaves"' not in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
 
 
+def test_the_design_of_the_indices_is_that_of_salib() -> None:
+    problem = {"num_vars": 5, "names": list("abcde"), "bounds": [[0.0, 1.0]] * 5}
+    base = qmc.Sobol(10, scramble=False).random(64)
+    expected = design.sample(problem, 64, calc_second_order=False, scramble=False)
+    assert np.array_equal(saltelli_rows(base), expected)
+    assert np.array_equal(np.concatenate([saltelli_rows(base[:7]), saltelli_rows(base[7:])]), expected)
+
+
 def test_blocks_of_a_design_in_which_a_run_has_no_pose_are_left_out() -> None:
     problem = {"num_vars": 1, "names": ["a"], "bounds": [[0.0, 1.0]]}
     rng = np.random.default_rng(2)
@@ -177,95 +166,6 @@ def test_blocks_of_a_design_in_which_a_run_has_no_pose_are_left_out() -> None:
     assert "too many" in (_indices("q", measured, problem, 1, 0.0).missing or "")
 
 
-def test_the_largest_box_is_that_of_trying_all() -> None:
-    rng = np.random.default_rng(7)
-    for _ in range(60):
-        shape = tuple(rng.integers(1, 7, 2))
-        good = rng.random(shape) < 0.75
-        row, column = int(rng.integers(shape[0])), int(rng.integers(shape[1]))
-        areas = {
-            (bottom, top, left, right): (top - bottom + 1) * (right - left + 1)
-            for bottom in range(row + 1)
-            for top in range(row, shape[0])
-            for left in range(column + 1)
-            for right in range(column, shape[1])
-            if good[bottom : top + 1, left : right + 1].all()
-        }
-        found = largest_box(good, row, column)
-        assert (found is None) == (not good[row, column])
-        if found is not None:
-            assert areas[found] == max(areas.values())
-
-
-def _look_up(whole: np.ndarray, times_asked: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    np.add.at(times_asked, (rows, columns), 1)
-    return whole[rows, columns]
-
-
-def test_a_refined_map_is_the_whole_grid_by_few_runs() -> None:
-    """Rings, wedges and steps in random places, none of them narrower than a block of the first lattice."""
-    rng = np.random.default_rng(8)
-    for count in (2, 3, 61, 130, 500, 1000):
-        for _ in range(3):
-            x, y = np.meshgrid(np.linspace(-1, 1, count), np.linspace(-1, 1, count))
-            a, b, c, d = rng.uniform(-0.5, 0.5, 4)
-            radius = np.hypot(x - a, y - b)
-            whole = (radius < 0.7).astype(int) + 2 * (radius < 0.4) + 4 * (y > c + 2.0 * d * x + 0.2 * np.sin(5.0 * x))
-            times_asked = np.zeros(whole.shape, int)
-            found, n_runs = refined_map(count, partial(_look_up, whole, times_asked))
-            assert np.array_equal(found, whole)
-            assert n_runs == times_asked.sum()
-            assert times_asked.max() == 1
-            assert n_runs <= (0.1 * count**2 if count == 1000 else count**2)
-
-
-@pytest.mark.usefixtures("small_designs")
-def test_the_capture_map_says_what_each_of_its_runs_does(run_study: RunStudy, tmp_path: Path) -> None:
-    keys = ["cage.pose.euler_zyx_deg[1]", "cage.points[0][2]"]
-    vary = {
-        "friction.coefficient": {"uniform": [0.0, 0.2]},
-        keys[0]: {"uniform": [-0.3, 0.5]},
-        keys[1]: {"uniform": [-1.2, -0.3]},
-    }
-    accept = "verdict == 'rests' and abs(pitch_deg) < 0.3"
-    numbers = run_study(vary, 50, map={"over": keys, "count": 12}, accept=accept).report()
-    found = numbers["map"]
-    assert found["over"] == keys
-    assert found["verdicts"] == ["refused", "rests"]
-    study = StudyResults(tmp_path / "out").study
-    for up in (0, 5, 11):
-        for across in (0, 6, 11):
-            numbers_there = {keys[0]: found["across"][across], keys[1]: found["up"][up], "friction.coefficient": 0.1}
-            paths = {one.path: numbers_there[one.key] for one in study.varied}
-            if found["verdicts"][found["verdict_cells"][up][across]] == "refused":
-                assert not found["accepted_cells"][up][across]
-                continue
-            ended = run(study.scene_text.scene_with(paths).scene)
-            pitch = math.degrees(ended.pose.euler_zyx[1])
-            assert found["accepted_cells"][up][across] == (ended.verdict == "rests" and abs(pitch) < 0.3)
-
-
-@pytest.mark.usefixtures("small_designs")
-def test_a_number_with_one_value_has_no_side_of_the_map(run_study: RunStudy, peg: Path) -> None:
-    one, *others = {"cage.pose.position[1]": {"grid": [0.1]}, **HEIGHTS}.items()
-    numbers = run_study(dict([one, *others]), 20, scene=peg).report()
-    assert numbers["map"]["over"] == [key for key, _ in others]
-    assert run_study(dict([one, others[0]]), 20, scene=peg, folder="two").report()["map"] is None
-    with pytest.raises(SceneFileError, match=r"map\.over\[0\]: is .*, which does not vary; use two of: cage"):
-        Study(peg, dict([one, *others]), {"runs": 8}, map={"over": [one[0], others[0][0]]})
-
-
-@pytest.mark.usefixtures("small_designs")
-@pytest.mark.parametrize("low", [-0.1, 0.1])
-def test_a_box_of_permitted_values_is_about_nominal_ones_that_are_on_the_map(
-    run_study: RunStudy, peg: Path, low: float
-) -> None:
-    vary = {"cage.pose.position[2]": {"uniform": [low, 0.2]}, "cage.pose.position[0]": {"uniform": [-0.1, 0.1]}}
-    found = run_study(vary, 20, scene=peg).report()["map"]
-    assert sum(map(sum, found["accepted_cells"])) == found["runs"] == 64
-    assert found["box"] == ([[low, 0.2], [-0.1, 0.1]] if low < 0.0 else None)
-
-
 @pytest.mark.usefixtures("small_designs")
 def test_a_report_of_one_number_and_one_quantity_has_room_for_its_pictures(
     run_study: RunStudy, peg: Path, tmp_path: Path
@@ -273,7 +173,8 @@ def test_a_report_of_one_number_and_one_quantity_has_room_for_its_pictures(
     """Or matplotlib warns, which is an error here."""
     watch = {"top": {"point": [0, 0, 0.5]}}
     run_study({"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}}, 20, scene=peg, watch=watch).report()
-    assert {path.stem for path in tmp_path.glob("out/*.svg")} == {"sobol", "tornado", "spread"}
+    for suffix in ("svg", "png"):
+        assert {path.stem for path in tmp_path.glob(f"out/*.{suffix}")} == {"sobol", "tornado", "spread"}
 
 
 @pytest.mark.usefixtures("small_designs")
@@ -289,6 +190,7 @@ def test_chosen_runs_are_scenes_that_run_as_their_rows_do(run_study: RunStudy, t
         assert (ended.verdict, row["verdict"]) == (one["verdict"], one["verdict"])
         assert math.degrees(ended.pose.euler_zyx[1]) == row["pitch_deg"]
         assert one["values"] == {key: row[key] for key in results.columns.varied}
+        assert f'"verdict":"{ended.verdict}"' in (tmp_path / "out" / one["page"]).read_text(encoding="utf-8")
 
 
 @pytest.mark.usefixtures("small_designs")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import errno
 import json
 import signal
@@ -63,11 +64,35 @@ def test_a_study_prints_what_its_page_says_and_show_says_it_again(
     assert shown == (0, out[: out.index("wrote")], "")
     code, text, _ = answer(capsys, "show", "out", "--json")
     assert (code, json.loads(text)) == (0, numbers)
+    rows_as_csv(capsys)
     Path("out/report.json").unlink()  # then it is written anew
     code, out_again, _ = answer(capsys, "show", "out")
     assert (code, out_again) == (0, out)
     assert answer(capsys, study, "--out", "out")[0] == 2
     assert answer(capsys, study, "--out", "out", "--resume")[0] == 0
+
+
+def rows_as_csv(capsys: pytest.CaptureFixture[str]) -> None:
+    """All rows with all their digits; over our own file, and over nobody else's."""
+    for _ in range(2):
+        assert answer(capsys, "show", "out", "--csv", "rows.csv") == (0, "wrote rows.csv: 300 rows\n", "")
+    with Path("rows.csv").open(encoding="utf-8", newline="") as stream:
+        read = list(csv.DictReader(stream))
+    for line, row in zip(read, StudyResults("out").table().to_pylist(), strict=True):
+        assert list(line) == list(row)
+        for name, value in row.items():
+            if isinstance(value, bool) or value is None:
+                assert line[name] == {None: "", True: "true", False: "false"}[value]
+            else:
+                assert type(value)(line[name]) == value  # to the last digit
+    Path("mine.csv").write_text("a,b\n1,2\n", encoding="utf-8")
+    code, out, err = answer(capsys, "show", "out", "--csv", "mine.csv")
+    assert (code, out) == (2, "")
+    assert (
+        err == "--csv mine.csv: holds something else than these columns as CSV; name another file, or remove it first\n"
+    )
+    assert answer(capsys, "show", "out", "--csv", "no/such.csv")[2].startswith("--csv no/such.csv: its folder does not")
+    assert not list(Path().glob(".*.part"))
 
 
 @pytest.mark.parametrize(
@@ -77,6 +102,8 @@ def test_a_study_prints_what_its_page_says_and_show_says_it_again(
         (("study.yaml", "other.yaml", "--out", "o"), "too many arguments: other.yaml"),
         (("show",), "study show needs the folder"),
         (("show", "out", "--resume"), "study show runs nothing"),
+        (("study.yaml", "--out", "o", "--csv", "x.csv"), "--csv writes the rows of a folder that is there"),
+        (("show", "out", "--csv", "x.csv", "--json"), "--csv prints no report; leave --json out"),
         (("study.yaml", "--out", "o", "--workers", "0"), "--workers is 0; give 1 or more"),
         (("none.yaml", "--out", "o"), "none.yaml: does not exist"),
         (("show", "none"), "none: holds no study"),
@@ -142,14 +169,18 @@ def test_a_missing_extra_is_named_with_its_install_line(monkeypatch: pytest.Monk
     missing = r"studies need pyarrow.*pip install 'cagepose\[study\]'"
     with pytest.raises(MissingExtraError, match=missing):
         StudyResults("out")
+    vary = {"cage.pose.euler_zyx_deg[1]": {"uniform": [0, 1]}}
     with pytest.raises(MissingExtraError, match=missing):
-        Study(RAIL, {"cage.pose.euler_zyx_deg[1]": {"uniform": [0, 1]}}, {"runs": 1})
+        Study(RAIL, vary, {"runs": 1})
+    monkeypatch.setattr("cagepose.views.extra.find_spec", lambda name: None if name == "distributed" else find(name))
+    with pytest.raises(MissingExtraError, match=r"many machines need Dask.*pip install 'cagepose\[dask\]'"):
+        Study(RAIL, vary, {"runs": 1}).run("out", dask="tcp://localhost:1")
 
 
 def test_the_classes_can_be_imported_without_the_extra() -> None:
     """``from cagepose import *`` asks for all names, and most users have no use for studies."""
     code = (
-        "import sys\nfor name in ('scipy', 'pyarrow', 'SALib', 'jinja2', 'matplotlib', 'pandas'):\n"
+        "import sys\nfor name in ('scipy', 'pyarrow', 'SALib', 'distributed', 'jinja2', 'matplotlib', 'pandas'):\n"
         "    sys.modules[name] = None\nfrom cagepose import *\nprint(Study.__name__, StudyResults.__name__)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

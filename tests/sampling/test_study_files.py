@@ -40,7 +40,7 @@ KINDS = "give one of: uniform, normal, triangular, grid, steps"
 # What is broken, the text to replace, what to put there, and the line that must come out, or its beginning.
 EDITS = [
     ("unknown key", "watch:", "wach:", "7:1: wach: is no known key; did you mean watch? known keys: scene, vary,"
-     " sample, watch, accept, forces, map"),
+     " watch, accept, sample, forces, map"),
     ("no scene", "scene: scene.yaml\n", "", "1:1: scene: is missing; add it, for example scene: scene.yaml"),
     ("no sample", "sample: {method: sobol, runs: 100, seed: 1}\n", "", "1:1: sample: is missing; add it"),
     ("nothing varies", STUDY[STUDY.index("vary:") : STUDY.index("sample:")], "vary: {}\n",
@@ -65,7 +65,9 @@ EDITS = [
     ("infinite", SIDE, "parameters.side: {uniform: [9, .inf]}",
      "3:34: vary.parameters.side.uniform[1]: is infinite; give a finite number"),
     ("no such parameter", SIDE, "parameters.sode: {normal: {sigma: 1}}",
-     "3:3: vary.parameters.sode: is not in the scene, so the normal distribution needs its mean; give mean"),
+     "3:3: vary.parameters.sode: is no parameter of the scene; use one of: side, half, or write it into"),
+    ("no nominal value", SIDE, "object.mass: {normal: {sigma: 1}}",
+     "3:3: vary.object.mass: is not in the scene, so the normal distribution needs its mean; give mean"),
     ("an expression varies", SIDE, "parameters.half: {uniform: [4, 6]}",
      "3:3: vary.parameters.half: holds the expression '=side/2'; vary the parameters that it is made of"),
     ("text varies", SIDE, "name: {uniform: [4, 6]}", "3:3: vary.name: is text 'sample'; vary a number of the scene"),
@@ -114,9 +116,9 @@ EDITS = [
     ("no expression", STUDY[STUDY.index("accept:") :], 'accept: "pitch_deg <"\n', "9:9: accept: is no expression"),
     ("text that is compared with numbers", "verdict == 'rests'", "verdict < 3", "9:9: accept: cannot be worked out"),
     ("a map of what does not vary", "watch:", "map: {over: [parameters.side, object.mass]}\nwatch:",
-     "7:31: map.over[1]: is 'object.mass', which does not vary; use two of: parameters.side, cage.points[0][2]"),
+     "7:31: map.over[1]: is 'object.mass', which does not vary; use some of: parameters.side, cage.points[0][2]"),
     ("a map over one", "watch:", "map: {over: [parameters.side, parameters.side]}\nwatch:",
-     "7:31: map.over[1]: is the first once more; name another"),
+     "7:31: map.over[1]: stands here before; name another"),
     ("a key twice", "watch:", "scene: x.yaml\nwatch:",
      "7:1: scene: stands here for the second time (first in line 1); remove one of the two"),
     ("a tag", "scene: scene", "scene: !!python/object:os.system scene", "1:8: scene: has the tag"),

@@ -23,6 +23,8 @@ BUG = 3
 INTERRUPTED = 130  # 128 + SIGINT, as shells have it
 OBJECTS_BETWEEN_COLLECTIONS = 100_000
 BROKEN_PIPE = 141  # 128 + SIGPIPE
+STANDARD_INPUT = "/dev/stdin"
+"""Its name where there are such files, and in messages elsewhere, too."""
 
 PURPOSE = "Where a loosely held part comes to rest in its cage of points, through which contacts, and why."
 COMMANDS = {
@@ -44,6 +46,10 @@ COMMANDS = {
     "study": (
         "cagepose.cli.study_command:study_command",
         "Run a scene many times with numbers that vary: yield, tolerances, what matters.",
+    ),
+    "design": (
+        "cagepose.cli.design_command:design_command",
+        "Find the loosest value of a number that keeps a yield or a capture range.",
     ),
     "reproduce": (
         "cagepose.cli.reproduce_command:reproduce_command",
@@ -124,6 +130,8 @@ def _dispatch(tokens: list[str]) -> int:
 
     from cagepose.errors import CageposeError
 
+    if tokens[0] == "run":
+        tokens = [*map(_named_input, ["", *tokens], tokens)]
     app = App(
         name="cagepose",
         help=PURPOSE,
@@ -146,6 +154,11 @@ def _dispatch(tokens: list[str]) -> int:
         sys.stderr.write(f"{error}\n")
         return BAD_INPUT
     return int(code or 0)  # help returns None
+
+
+def _named_input(before: str, token: str) -> str:
+    """A lone dash is the name of standard input, and no option, unless an option in front of it takes a value."""
+    return STANDARD_INPUT if token == "-" and before not in ("--set", "--method", "--out") else token
 
 
 def _is_scene_name(token: str) -> bool:

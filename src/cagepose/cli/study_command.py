@@ -30,10 +30,17 @@ def study_command(
     workers: Annotated[
         int | None, Parameter(help="Threads, or processes where scenes are built row by row; left out: all cores.")
     ] = None,
+    dask: Annotated[
+        str | None,
+        Parameter(help="Address of a Dask scheduler whose workers run the rows, such as tcp://10.0.0.1:8786."),
+    ] = None,
     json: Annotated[bool, Switch, Parameter(help="Print the report's numbers as JSON instead of tables.")] = False,
+    csv: Annotated[
+        str | None, Parameter(help="After show: write all rows into this file, and print nothing else.")
+    ] = None,
 ) -> int:
     """Run a study into a folder with its report, or show what a folder says: cagepose study show FOLDER"""
-    problem = _problem(file, folder, out, resume, workers)
+    problem = _problem(file, folder, out, resume, workers, dask) or _csv_problem(file, csv, json)
     if problem is not None:
         sys.stderr.write(f"cagepose: {problem} See: cagepose study --help\n")
         return 2
@@ -42,12 +49,14 @@ def study_command(
     from cagepose.sampling.study import Study
 
     workers = workers or os.cpu_count() or 1
+    if folder is not None and csv is not None:
+        return _write_csv(StudyResults(folder), csv)
     try:
         if folder is not None:
             numbers, written = _reported(StudyResults(folder), workers, is_shown=True)
         else:
             assert out is not None, "it was asked for above"
-            results = Study.load(file).run(out, resume=resume, workers=workers, progress=_progress())
+            results = Study.load(file).run(out, resume=resume, workers=workers, dask=dask, progress=_progress())
             numbers, written = _reported(results, workers, is_shown=False)
     except OSError as error:
         remedy = "make room and add --resume" if folder is None else "make room"
@@ -77,16 +86,37 @@ def _again(file: str, out: str) -> str:
     return join(["cagepose", "study", file, "--out", out, "--resume"])
 
 
-def _problem(file: str, folder: str | None, out: str | None, resume: bool, workers: int | None) -> str | None:
+def _problem(
+    file: str, folder: str | None, out: str | None, resume: bool, workers: int | None, dask: str | None
+) -> str | None:
     if workers is not None and workers < 1:
         return f"--workers is {workers}; give 1 or more."
     if file == SHOW:
         if folder is None:
             return "study show needs the folder of a study."
-        return "study show runs nothing; leave --out and --resume out." if out is not None or resume else None
+        is_run = out is not None or resume or dask is not None
+        return "study show runs nothing; leave --out, --resume and --dask out." if is_run else None
     if folder is not None:
         return f"too many arguments: {folder}; write study FILE --out FOLDER, or study show FOLDER."
     return "study needs --out FOLDER for its rows and its report." if out is None else None
+
+
+def _csv_problem(file: str, csv: str | None, json: bool) -> str | None:
+    if csv is not None and file != SHOW:
+        return "--csv writes the rows of a folder that is there: study show FOLDER --csv FILE."
+    return "--csv prints no report; leave --json out." if csv is not None and json else None
+
+
+def _write_csv(results: StudyResults, path: str) -> int:
+    from cagepose.errors import printable
+
+    try:
+        results.to_csv(path)
+    except OSError as error:
+        sys.stderr.write(printable(f"--csv {path}: {error.strerror or error}") + "\n")
+        return 2
+    sys.stdout.write(printable(f"wrote {path}: {len(results):,} rows") + "\n")
+    return 0
 
 
 def _reported(results: StudyResults, workers: int, *, is_shown: bool) -> tuple[dict[str, Any], list[Path]]:

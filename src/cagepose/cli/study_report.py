@@ -28,8 +28,7 @@ def print_study(found: dict[str, Any]) -> None:
     matters = _matters(found)
     if matters is not None:
         parts += ["", matters]
-    if found["map"] is not None:
-        parts += ["", _box(found["map"])]
+    parts += ["", *map(_box, found["maps"])] if found["maps"] else []
     print_all(*parts)
 
 
@@ -66,10 +65,11 @@ def _matters(found: dict[str, Any]) -> Table | None:
 
 
 def _box(found: dict[str, Any]) -> str:
+    layer = "".join(f", {key} {number_or_dash(value)}" for key, value in (found["layer"] or {}).items())
     if found["box"] is None:
-        return "capture map: the nominal values are not accepted, or not on the map"
+        return f"capture map{layer}: the nominal values are not accepted, or not on the map"
     sides = [f"{key} {_range(*side)}" for key, side in zip(found["over"], found["box"], strict=True)]
-    return f"largest box of accepted runs: {', '.join(sides)}"
+    return f"largest box of accepted runs{layer}: {', '.join(sides)}"
 
 
 def _range(low: float | None, high: float | None) -> str:

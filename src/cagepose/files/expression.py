@@ -2,7 +2,7 @@
 
 simpleeval walks the parsed text; of what it can do we leave in names, numbers, text, arithmetic, comparisons, ``and``,
 ``or``, ``not``, and three functions. Names may stand for arrays, so that one walk answers for all rows of a table, each
-row with the bits that it has by itself, and NaN where it has none: by itself that is an error.
+row with the bits that it has by itself. What by itself is an error is NaN, and false as the answer of a comparison.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Expression:
         evaluator = _Evaluator(names)
         try:
             with np.errstate(all="ignore"):
-                return evaluator.eval(self.text, previously_parsed=self._tree)
+                return evaluator.known(evaluator.eval(self.text, previously_parsed=self._tree))
         except NameNotDefined as error:
             known = ", ".join(names) or "none"
             raise ValueError(f"has the unknown name {error.name}; known names: {known}") from None
@@ -89,19 +89,6 @@ def _is_array(*values: Any) -> bool:
     return any(isinstance(value, np.ndarray) for value in values)
 
 
-def _quotient(one: Any, other: Any) -> Any:
-    """As Python, to which nothing divided by zero is a number: of arrays NaN stands for it, not infinity."""
-    return np.where(np.equal(other, 0.0), np.nan, one / other) if _is_array(one, other) else one / other
-
-
-def _power(base: Any, exponent: Any) -> Any:
-    """Python's power of each element: NumPy's may differ in the last digit."""
-    if not _is_array(base, exponent):
-        return base**exponent
-    bases, exponents = np.broadcast_arrays(base, exponent)
-    return np.array([_real_power(one, two) for one, two in zip(bases.tolist(), exponents.tolist(), strict=True)])
-
-
 def _real_power(base: float, exponent: float) -> float:
     try:
         found = base**exponent
@@ -123,8 +110,6 @@ _OPERATORS: dict[type, Callable[..., Any]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
     ast.Mult: operator.mul,
-    ast.Div: _quotient,
-    ast.Pow: _power,
     ast.UAdd: operator.pos,
     ast.USub: operator.neg,
     ast.Not: np.logical_not,
@@ -140,7 +125,9 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {"abs": abs, "min": _least, "max": _g
 
 class _Evaluator(SimpleEval):  # type: ignore[misc]  # it has no types
     def __init__(self, names: Mapping[str, Any]) -> None:
-        super().__init__(operators=_OPERATORS, functions=FUNCTIONS, names=names)
+        own: dict[type, Callable[..., Any]] = {ast.Div: self._quotient, ast.Pow: self._power}
+        super().__init__(operators={**_OPERATORS, **own}, functions=FUNCTIONS, names=names)
+        self._unknown: Any = np.False_
         self.nodes = {
             ast.Name: self._eval_name,
             ast.Attribute: self._eval_attribute,
@@ -151,6 +138,29 @@ class _Evaluator(SimpleEval):  # type: ignore[misc]  # it has no types
             ast.Call: self._eval_call,
             ast.Constant: self._eval_constant,
         }
+
+    def known(self, found: Any) -> Any:
+        """Return what was found without the rows of which a part is an error: a comparison hides that it was NaN."""
+        if not _is_array(found) or not np.any(self._unknown):
+            return found
+        return found & ~self._unknown if found.dtype == np.bool_ else np.where(self._unknown, np.nan, found)
+
+    def _quotient(self, one: Any, other: Any) -> Any:
+        """As Python, to which nothing divided by zero is a number."""
+        if not _is_array(one, other):
+            return one / other
+        self._unknown = self._unknown | np.equal(other, 0.0)
+        return np.where(np.equal(other, 0.0), np.nan, one / other)
+
+    def _power(self, base: Any, exponent: Any) -> Any:
+        """Python's power of each element: NumPy's may differ in the last digit."""
+        if not _is_array(base, exponent):
+            return base**exponent
+        bases, exponents = np.broadcast_arrays(base, exponent)
+        pairs = zip(bases.tolist(), exponents.tolist(), strict=True)
+        found = np.array([_real_power(one, other) for one, other in pairs])
+        self._unknown = self._unknown | (np.isnan(found) & ~np.isnan(bases) & ~np.isnan(exponents))
+        return found
 
     @staticmethod
     def _eval_constant(node: ast.Constant) -> float | str:

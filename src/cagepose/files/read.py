@@ -28,8 +28,8 @@ def read_text(path: Path, source: str, at: tuple[Key, ...] = ()) -> str:
         Missing, not a file, not readable, larger than `MAX_FILE_BYTES`, binary, or not UTF-8.
     """
 
-    def refuse(message: str, line: int | None = None, column: int | None = None) -> SceneFileError:
-        return SceneFileError([FileProblem(at, message, source, line, column)])
+    def refuse(message: str) -> SceneFileError:
+        return SceneFileError([FileProblem(at, message, source)])
 
     try:
         if "\0" in source:
@@ -44,6 +44,21 @@ def read_text(path: Path, source: str, at: tuple[Key, ...] = ()) -> str:
             content = stream.read(MAX_FILE_BYTES + 1)
     except OSError as error:
         raise refuse(f"cannot be read ({error.strerror or error}); check its name and permissions") from None
+    return decoded(content, source, at)
+
+
+def decoded(content: bytes, source: str, at: tuple[Key, ...] = ()) -> str:
+    """Return the text of what was read from a file, or from a pipe; ``source`` and ``at`` say in messages what it is.
+
+    Raises
+    ------
+    SceneFileError
+        Larger than `MAX_FILE_BYTES`, binary, or not UTF-8.
+    """
+
+    def refuse(message: str, line: int | None = None, column: int | None = None) -> SceneFileError:
+        return SceneFileError([FileProblem(at, message, source, line, column)])
+
     if len(content) > MAX_FILE_BYTES:
         limit = f"{MAX_FILE_BYTES // 1024**2} MiB"
         raise refuse(f"is larger than {limit}, the size limit of scene and points files; give fewer points")

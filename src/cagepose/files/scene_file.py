@@ -64,7 +64,18 @@ def read_scene_text(path: str | os.PathLike[str]) -> SceneText:
         The file cannot be read, is not YAML, or is a saved run.
     """
     source = os.fspath(path)
-    text = read_text(Path(source), source)
+    return scene_text_of(read_text(Path(source), source), source)
+
+
+def scene_text_of(text: str, source: str) -> SceneText:
+    """As `read_scene_text`, of text that has been read; ``source`` stands for the file in messages, and its folder is
+    where points files are.
+
+    Raises
+    ------
+    SceneFileError
+        The text is not YAML, or is a saved run.
+    """
     if starts_as_run(text):
         message = "is a saved run, not a scene; name its scene file (saved runs are for `cagepose plot` and `view`)"
         raise SceneFileError([FileProblem((), message, source)])

@@ -117,10 +117,13 @@ class WatchModel(Mapping):
 
 
 class MapModel(Mapping):
-    """A capture map: two of the varied numbers, the others as in the scene."""
+    """A capture map: two of the varied numbers, the others as in the scene; or three, of which the third takes a few
+    values.
+    """
 
-    over: Annotated[list[str], Field(min_length=2, max_length=2)] = Field(
-        description="Two keys of vary.", examples=[["parameters.pitch", "parameters.yaw"]]
+    over: Annotated[list[str], Field(min_length=2, max_length=3)] = Field(
+        description="Two keys of vary, or three: a map for each of a few values of the third.",
+        examples=[["parameters.pitch", "parameters.yaw"]],
     )
     count: Annotated[int, Field(ge=2, le=1000)] = Field(60, description="Cells along each of the two.")
 
@@ -134,10 +137,8 @@ def _column(name: str) -> str:
 ColumnName = Annotated[str, StringConstraints(max_length=100), AfterValidator(_column)]
 
 
-class StudyModel(Mapping):
-    """Many runs of one scene, and what is asked of them."""
-
-    model_config = ConfigDict(title="cagepose study")
+class RunsModel(Mapping):
+    """What studies and designs have in common: a scene, what varies in it, and which runs are good."""
 
     scene: Annotated[str, StringConstraints(min_length=1)] = Field(
         description="The scene's file, beside this one.", examples=["scene.yaml"]
@@ -147,7 +148,6 @@ class StudyModel(Mapping):
         description="Numbers of the scene by their keys; * stands for all in a list or mapping, each on its own.",
         examples=[{"parameters.play": {"uniform": [0.2, 1.0]}}],
     )
-    sample: SampleModel = Field(description="Which values are run.", examples=[{"runs": 10_000}])
     watch: dict[ColumnName, WatchModel] | None = Field(
         None, description="Points whose final places become columns.", examples=[{"tip": {"point": [600, 0, 0]}}]
     )
@@ -156,7 +156,65 @@ class StudyModel(Mapping):
         description="Which runs are good: an expression of the columns; left out: those that end at rest.",
         examples=["verdict == 'rests' and abs(pitch_deg) < 0.05"],
     )
+
+
+class StudyModel(RunsModel):
+    """Many runs of one scene, and what is asked of them."""
+
+    model_config = ConfigDict(title="cagepose study")
+
+    sample: SampleModel = Field(description="Which values are run.", examples=[{"runs": 10_000}])
     forces: bool | None = Field(
         None, description="Whether each row holds the contact forces, which takes one run at a time; left out: no."
     )
     map: MapModel | None = Field(None, description="The capture map; left out: over the first two of vary.")
+
+
+def _apart(ends: list[float]) -> list[float]:
+    if ends[0] == ends[1]:
+        raise wrong(f"is {ends}; give two different numbers, the tight end first")
+    return ends
+
+
+class WishModel(Mapping):
+    """What a design must reach: one of these keys."""
+
+    share: Annotated[float, Field(gt=0.0, le=1.0)] | None = Field(
+        None, alias="yield", description="At least this share of the runs is good.", examples=[0.997]
+    )
+    capture: Annotated[dict[str, Positive], Field(min_length=1, max_length=1)] | None = Field(
+        None,
+        description="A varied number, and how wide the range about its nominal value is, at least, in which all runs"
+        " are good; all others are nominal.",
+        examples=[{"parameters.pitch": 0.5}],
+    )
+
+    @model_validator(mode="after")
+    def _one(self) -> WishModel:
+        if (self.share is None) == (self.capture is None):
+            found = "says nothing" if self.share is None else "has both yield and capture"
+            raise wrong(f"{found}; give one of: yield, capture")
+        return self
+
+    @property
+    def at_least(self) -> float:
+        """The share, or the width."""
+        return self.share if self.share is not None else next(iter((self.capture or {}).values()))
+
+
+class DesignModel(RunsModel):
+    """The loosest value of one number that keeps a wish."""
+
+    model_config = ConfigDict(title="cagepose design")
+
+    change: Annotated[
+        dict[str, Annotated[list[Number], Field(min_length=2, max_length=2), AfterValidator(_apart)]],
+        Field(min_length=1, max_length=1),
+    ] = Field(
+        description="The number that is to be chosen, and between which two values: the tight end first.",
+        examples=[{"parameters.play": [0.1, 2.0]}],
+    )
+    wish: WishModel = Field(description="What must be reached.", examples=[{"yield": 0.997}])
+    sample: SampleModel | None = Field(
+        None, description="Which values are run for a yield; a capture range needs none.", examples=[{"runs": 4096}]
+    )

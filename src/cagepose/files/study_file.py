@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from pydantic import ValidationError
@@ -22,9 +23,11 @@ from cagepose.files.points_file import POINTS_KEY
 from cagepose.files.read import read_text
 from cagepose.files.scene_edit import with_values
 from cagepose.files.scene_file import SceneFile, SceneText, read_scene_text
-from cagepose.files.schema_study import DistributionModel, StudyModel
+from cagepose.files.schema_study import DistributionModel, RunsModel, SampleModel, StudyModel
 from cagepose.files.yaml_source import YamlSource, parse_yaml
 from cagepose.model.wording import few
+
+Model = TypeVar("Model", bound=RunsModel)
 
 ALL = "*"
 STUDY_NAME, SCENE_NAME, POINTS_NAME = "study.yaml", "scene.yaml", "points.csv"
@@ -101,31 +104,55 @@ def parse_study(text: str, source: str = "study.yaml") -> StudyFile:
     SceneFileError
         As `read_study_file`.
     """
+    yaml, model = checked_model(text, source, StudyModel)
+    return study_of(yaml, model, text)
+
+
+def checked_model(text: str, source: str, kind: type[Model]) -> tuple[YamlSource, Model]:
+    """Return a file's YAML, and its model with all types and limits checked.
+
+    Raises
+    ------
+    SceneFileError
+        Lists every problem with its line and column.
+    """
     yaml = parse_yaml(text, source)
     if yaml.problems:
         raise SceneFileError(yaml.problems)
     try:
-        model = StudyModel.model_validate(yaml.data)
+        return yaml, kind.model_validate(yaml.data)
     except ValidationError as error:
-        raise _placed(yaml, schema_findings(error, yaml.data, StudyModel)) from None
-    scene_path = Path(source).parent / model.scene
-    scene_text = read_scene_text(scene_path)
+        raise placed(yaml, schema_findings(error, yaml.data, kind)) from None
+
+
+def study_of(yaml: YamlSource, model: StudyModel, text: str, changed: str | None = None) -> StudyFile:
+    """Return the study that a model asks for; ``changed`` is the key of ``vary`` that stands under ``change`` in the
+    file.
+
+    Raises
+    ------
+    SceneFileError
+        Lists every problem with its line and column.
+    """
+    scene_text = read_scene_text(Path(yaml.source).parent / model.scene)
     scene_text.scene_file()  # its own problems first
     problems: list[Problem] = []
-    varied = _varied_keys(model, scene_text.yaml.data, problems)
-    _check_sample(model, problems)
+    places = {key: ("change" if key == changed else "vary", key) for key in model.vary}
+    varied = _varied_keys(model, places, scene_text.yaml.data, problems)
+    _check_sample(model.sample, {key: one for key, one in model.vary.items() if key != changed}, problems)
     _check_map(model, varied, problems)
     accept = _accept(model, problems)
     if problems:
-        raise _placed(yaml, [Finding(problem, problem.path[0] == "vary") for problem in problems])
+        raise placed(yaml, [Finding(problem, problem.path[0] in ("vary", "change")) for problem in problems])
     try:
         nominal = scene_text.scene_with({one.path: one.nominal for one in varied})
     except SceneError as error:
-        raise _placed(yaml, [_of_nominal(problem, varied) for problem in error.problems]) from None
+        raise placed(yaml, [_of_nominal(problem, varied, places) for problem in error.problems]) from None
     return StudyFile(text, model, scene_text, nominal, varied, accept)
 
 
-def _placed(yaml: YamlSource, findings: list[Finding]) -> SceneFileError:
+def placed(yaml: YamlSource, findings: list[Finding]) -> SceneFileError:
+    """Return the error for findings, each with its line and column, in the order of the file."""
     problems = list[FileProblem]()
     for problem, about_key in findings:
         mark = yaml.mark(problem.path, of_key=about_key)
@@ -134,18 +161,20 @@ def _placed(yaml: YamlSource, findings: list[Finding]) -> SceneFileError:
     return SceneFileError(problems)
 
 
-def _of_nominal(problem: Problem, varied: tuple[VariedKey, ...]) -> Finding:
+def _of_nominal(problem: Problem, varied: tuple[VariedKey, ...], places: Mapping[str, KeyPath]) -> Finding:
     """Place what is wrong with the nominal scene at the varied number that it is about, if there is one."""
     for one in varied:
         if problem.path[: len(one.path)] == one.path:
-            return Finding(Problem(("vary", one.key), f"at its nominal value {one.nominal!r}: {problem.message}"), True)
+            at = places.get(one.key, ("vary", one.key))
+            return Finding(Problem(at, f"at its nominal value {one.nominal!r}: {problem.message}"), True)
     return Finding(Problem(("vary",), f"with all numbers at their nominal values, {problem}"), True)
 
 
-def _varied_keys(model: StudyModel, data: object, problems: list[Problem]) -> tuple[VariedKey, ...]:
+def _varied_keys(
+    model: StudyModel, places: Mapping[str, KeyPath], data: object, problems: list[Problem]
+) -> tuple[VariedKey, ...]:
     found: dict[KeyPath, VariedKey] = {}
     for key, distribution in model.vary.items():
-        at = ("vary", key)
         try:
             paths = _filled_in(data, parse_key_path(key))
             for path in paths:
@@ -154,7 +183,7 @@ def _varied_keys(model: StudyModel, data: object, problems: list[Problem]) -> tu
                 nominal = _nominal(data, path, distribution)
                 found[path] = VariedKey(key_path(path), path, distribution, nominal)
         except ValueError as error:
-            problems.append(Problem(at, str(error)))
+            problems.append(Problem(places[key], str(error)))
     return tuple(found.values())
 
 
@@ -178,6 +207,9 @@ def _nominal(data: object, path: KeyPath, distribution: DistributionModel) -> fl
     if expression_at(data, path) is not None:
         raise ValueError(f"holds the expression {given!r}; vary the parameters that it is made of")
     if given is None:
+        if path[0] == "parameters":
+            known = ", ".join(value_at(data, ("parameters",)) or ()) or "none"
+            raise ValueError(f"is no parameter of the scene; use one of: {known}, or write it into the scene")
         set_value(deepcopy(data), path, 0.0)  # says where there is no such place
         if distribution.middle is None:
             raise ValueError("is not in the scene, so the normal distribution needs its mean; give mean")
@@ -187,14 +219,14 @@ def _nominal(data: object, path: KeyPath, distribution: DistributionModel) -> fl
     return float(given)
 
 
-def _check_sample(model: StudyModel, problems: list[Problem]) -> None:
-    if model.sample.method != "grid":
-        if model.sample.runs is None:
+def _check_sample(sample: SampleModel, vary: Mapping[str, DistributionModel], problems: list[Problem]) -> None:
+    if sample.method != "grid":
+        if sample.runs is None:
             problems.append(Problem(("sample",), "has no runs; add how many, for example runs: 10000"))
         return
-    if model.sample.runs is not None:
+    if sample.runs is not None:
         problems.append(Problem(("sample", "runs"), "stands beside a grid, which is run as a whole; leave it out"))
-    for key, distribution in model.vary.items():
+    for key, distribution in vary.items():
         if distribution.kind not in ("grid", "steps"):
             message = f"is {distribution.kind}, and the sample a grid; give grid or steps, or another sample.method"
             problems.append(Problem(("vary", key), message))
@@ -202,12 +234,13 @@ def _check_sample(model: StudyModel, problems: list[Problem]) -> None:
 
 def _check_map(model: StudyModel, varied: tuple[VariedKey, ...], problems: list[Problem]) -> None:
     known = [one.key for one in varied if one.distribution.grid is None or len(one.distribution.grid) > 1]
-    for index, key in enumerate(model.map.over if model.map else []):
-        if key not in known:
-            message = f"is {key!r}, which does not vary; use two of: {few(known, 10) or 'none'}"
+    over = model.map.over if model.map else []
+    for index, key in enumerate(over):
+        if key in over[:index]:
+            problems.append(Problem(("map", "over", index), "stands here before; name another"))
+        elif key not in known:
+            message = f"is {key!r}, which does not vary; use some of: {few(known, 10) or 'none'}"
             problems.append(Problem(("map", "over", index), message))
-    if model.map and model.map.over[0] == model.map.over[1]:
-        problems.append(Problem(("map", "over", 1), "is the first once more; name another"))
 
 
 def _accept(model: StudyModel, problems: list[Problem]) -> Expression | None:
@@ -220,9 +253,9 @@ def _accept(model: StudyModel, problems: list[Problem]) -> Expression | None:
         return None
 
 
-def refused_at(key: str, study: StudyFile, source: str, message: str) -> SceneFileError:
-    """Return the error for the value of a key that is found wrong only where its study is made ready to run."""
-    return _placed(parse_yaml(study.text, source), [Finding(Problem((key,), message), False)])
+def refused_at(path: KeyPath, study: StudyFile, source: str, message: str) -> SceneFileError:
+    """Return the error for a value that is found wrong only where its study is made ready to run."""
+    return placed(parse_yaml(study.text, source), [Finding(Problem(path, message), False)])
 
 
 def copies(study: StudyFile) -> dict[str, str]:

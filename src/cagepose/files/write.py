@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 MADE_BY = "made by cagepose"
 """Stands in every picture and report that we write, so that the next one may replace it."""
@@ -22,11 +23,24 @@ def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
     OSError
         It cannot be written.
     """
+    with whole_file(path) as stream:
+        stream.write(content)
+
+
+@contextmanager
+def whole_file(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
+    """Open a file to be written bit by bit: it is there, whole, once the context has ended without an error.
+
+    Raises
+    ------
+    OSError
+        It cannot be written.
+    """
     target = Path(path).resolve()  # a link stays a link; what it points to is replaced
     partial = target.with_name(f".{target.name}.{os.getpid()}.part")
     try:
         with partial.open("wb") as stream:
-            stream.write(content)
+            yield stream
             stream.flush()
             os.fsync(stream.fileno())
         partial.replace(target)
@@ -40,6 +54,11 @@ def json_text(document: dict[str, Any], **on_one_line: object) -> str:
     for key, value in on_one_line.items():
         text = f'{text[:-2]},\n "{key}": {json.dumps(value, separators=(",", ":"), allow_nan=False)}\n}}'
     return text + "\n"
+
+
+def json_line(document: dict[str, Any]) -> str:
+    """Return a document on a line of its own, for those who read many."""
+    return json.dumps(document, separators=(",", ":"), allow_nan=False) + "\n"
 
 
 def check_can_write(path: str | os.PathLike[str], may_replace: Callable[[Path], bool], what: str) -> None:

@@ -17,6 +17,11 @@ if TYPE_CHECKING:
     from cagepose.runs.run import Contact, Event, PhaseRun
 
 POSITION, ANGLES = ("x_m", "y_m", "z_m"), ("yaw_rad", "pitch_rad", "roll_rad")
+CONTACT_COLUMNS = (
+    "phase", "point", "box", "force_normal_n", *(f"force_tangential_n_{axis}" for axis in "xyz"),
+    *(f"normal_{axis}" for axis in "xyz"), *POSITION, "gap_m", "near_edge", "force_unit",
+)  # fmt: skip
+"""Of a run without contacts, too."""
 NOWHERE = np.full(3, np.nan)
 
 
@@ -39,7 +44,7 @@ def data_frame(columns: Mapping[str, object]) -> Any:
 def event_columns(phases: Sequence[PhaseRun]) -> dict[str, list[object]]:
     """Return a row for each event."""
     rows = [_event(phase, number, event) for phase in phases for number, event in enumerate(phase.events, start=1)]
-    return _columns(rows)
+    return {key: [row[key] for row in rows] for key in rows[0]}
 
 
 def contact_columns(scene: Scene, phases: Sequence[PhaseRun]) -> dict[str, list[object]]:
@@ -49,11 +54,7 @@ def contact_columns(scene: Scene, phases: Sequence[PhaseRun]) -> dict[str, list[
         for phase, load in zip(phases, scene.loads, strict=False)
         for contact in phase.contacts
     ]
-    return _columns(rows)
-
-
-def _columns(rows: list[dict[str, object]]) -> dict[str, list[object]]:
-    return {key: [row[key] for row in rows] for key in rows[0]} if rows else {}
+    return {key: [row[key] for row in rows] for key in CONTACT_COLUMNS}
 
 
 def _event(phase: PhaseRun, number: int, event: Event) -> dict[str, object]:

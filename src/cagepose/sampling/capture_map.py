@@ -19,6 +19,8 @@ COUNT = 60
 """Cells along each side, where the study does not say."""
 LINES = 60
 """At least so many lines of cells are run along each side, or all of them."""
+LAYERS, MOST_LAYERS = 4, 9
+"""Values of a third number: so many, or those that the study lists, if they are not more than the latter."""
 CORNERS = ((0, 0), (0, 1), (1, 0), (1, 1))
 """Of a block, down and right."""
 
@@ -33,6 +35,8 @@ class CaptureMap:
     ----------
     keys
         Of the two numbers: across and up.
+    layer
+        A third number and its value here; None: there are but two.
     across, up
         Their values at the middles of the cells, (n,) each.
     verdicts, accepted
@@ -45,6 +49,7 @@ class CaptureMap:
     """
 
     keys: tuple[str, str]
+    layer: tuple[str, float] | None
     across: FloatArray
     up: FloatArray
     verdicts: NDArray[Any]
@@ -53,9 +58,9 @@ class CaptureMap:
     n_runs: int
 
 
-def capture_map(runner: Runner, columns: RowColumns, distributions: Sequence[Distribution]) -> CaptureMap | None:
-    """Return the map over the two numbers that the study names, or the first two that have more than one value; None:
-    there are no two.
+def capture_maps(runner: Runner, columns: RowColumns, distributions: Sequence[Distribution]) -> tuple[CaptureMap, ...]:
+    """Return the map over the two numbers that the study names, or the first two that have more than one value; one for
+    each of a few values of the third number, if it names three; none if there are no two.
     """
     study = runner.study
     keys = [one.key for one in study.varied]
@@ -63,10 +68,31 @@ def capture_map(runner: Runner, columns: RowColumns, distributions: Sequence[Dis
     moving = [index for index, one in enumerate(distributions) if one.low < one.high]
     chosen = [keys.index(key) for key in given.over] if given else moving[:2]
     if len(chosen) < 2:
-        return None
-    count = given.count if given else COUNT
-    across, up = (np.linspace(distributions[one].low, distributions[one].high, count) for one in chosen)
-    nominal = np.array([one.nominal for one in study.varied])
+        return ()
+    nominal, count = np.array([one.nominal for one in study.varied]), given.count if given else COUNT
+    axes = [np.linspace(distributions[one].low, distributions[one].high, count) for one in chosen[:2]]
+    if len(chosen) == 2:
+        return (_map(runner, columns, chosen, axes, nominal),)
+    return tuple(
+        _map(runner, columns, chosen, axes, np.where(np.arange(len(nominal)) == chosen[2], value, nominal))
+        for value in _layers(distributions[chosen[2]])
+    )
+
+
+def _layers(distribution: Distribution) -> list[float]:
+    """Return the values of the third number: those that are listed, or some of them, or evenly spaced ones."""
+    if distribution.kind != "listed":
+        return list(np.linspace(distribution.low, distribution.high, LAYERS))
+    listed = distribution.numbers
+    places = np.linspace(0, len(listed) - 1, min(len(listed), MOST_LAYERS)).round().astype(int)
+    return [listed[place] for place in places.tolist()]
+
+
+def _map(
+    runner: Runner, columns: RowColumns, chosen: Sequence[int], axes: Sequence[FloatArray], nominal: FloatArray
+) -> CaptureMap:
+    """Return the map over the first two of the chosen numbers, all others as in ``nominal``."""
+    across, up = axes
     kinds: dict[tuple[str, bool], int] = {}
 
     def kinds_of(rows: Indices, places: Indices) -> Indices:
@@ -83,10 +109,10 @@ def capture_map(runner: Runner, columns: RowColumns, distributions: Sequence[Dis
         runner.run_in_parts(values, told)
         return np.array(found, dtype=np.int64)
 
-    cells, n_runs = refined_map(count, kinds_of)
+    cells, n_runs = refined_map(len(across), kinds_of)
     verdicts = np.array([verdict for verdict, _ in kinds])[cells]
     good = np.array([accepted for _, accepted in kinds])[cells]
-    starts = [(axis, nominal[one]) for axis, one in zip((across, up), chosen, strict=True)]
+    starts = [(axis, nominal[one]) for axis, one in zip(axes, chosen, strict=False)]
     column, row = (int(np.abs(axis - value).argmin()) for axis, value in starts)
     is_on_map = all(axis[0] <= value <= axis[-1] for axis, value in starts)
     around = largest_box(good, row, column) if is_on_map else None
@@ -94,7 +120,9 @@ def capture_map(runner: Runner, columns: RowColumns, distributions: Sequence[Dis
     if around is not None:
         bottom, top, left, right = around
         box = (float(across[left]), float(across[right])), (float(up[bottom]), float(up[top]))
-    return CaptureMap((keys[chosen[0]], keys[chosen[1]]), across, up, verdicts, good, box, n_runs)
+    names = [runner.study.varied[one].key for one in chosen]
+    layer = (names[2], float(nominal[chosen[2]])) if len(names) > 2 else None
+    return CaptureMap((names[0], names[1]), layer, across, up, verdicts, good, box, n_runs)
 
 
 def refined_map(count: int, kinds_of: Callable[[Indices, Indices], Indices]) -> tuple[Indices, int]:

@@ -8,14 +8,16 @@ from pathlib import Path as PathOnDisk
 
 import numpy as np
 
-from cagepose.files.key_path import Path
 from cagepose.files.scene_edit import with_values
 from cagepose.files.study_file import SCENE_NAME
 from cagepose.files.write import write_whole
 from cagepose.model.checks import FloatArray
+from cagepose.runs.solve import run
 from cagepose.sampling.outcome import REFUSED, at_rest
 from cagepose.sampling.results import StudyResults
 from cagepose.sampling.statistics import Statistics
+from cagepose.views.viewer.page import page
+from cagepose.views.viewer.playback import playback
 
 WORST = 3
 
@@ -26,8 +28,9 @@ class ChosenRun:
 
     Attributes
     ----------
-    name, file
-        What it is, "worst 1" or "typical", and the name of its scene in the study's folder.
+    name, file, page
+        What it is, "worst 1" or "typical", and the names of its scene and of the page that plays it in the study's
+        folder.
     run, verdict, accepted
         Its number, and how it ended.
     distance
@@ -39,6 +42,7 @@ class ChosenRun:
 
     name: str
     file: str
+    page: str
     run: int
     verdict: str
     accepted: bool
@@ -71,17 +75,22 @@ def chosen_runs(results: StudyResults, statistics: Statistics) -> list[ChosenRun
                 key = (sign * int(ranks[row]), sign * float(distances[row]), int(part["run"][row]))
                 values = np.array([part[name][row] for name in columns.varied])
                 verdict, accepted = str(part["verdict"][row]), bool(part["accepted"][row])
-                chosen.append((key, ChosenRun("", "", key[2], verdict, accepted, abs(key[1]), values)))
+                chosen.append((key, ChosenRun("", "", "", key[2], verdict, accepted, abs(key[1]), values)))
         worst.sort(key=lambda item: item[0])
         typical.sort(key=lambda item: item[0])
         del worst[WORST:], typical[1:]
     named = [(f"worst {number}", found) for number, (_, found) in enumerate(worst, 1)]
     named += [("typical", found) for _, found in typical]
-    return [replace(found, name=name, file=f"{name.replace(' ', '-')}.yaml") for name, found in named]
+    stems = [name.replace(" ", "-") for name, _ in named]
+    return [
+        replace(found, name=name, file=f"{stem}.yaml", page=f"{stem}.html")
+        for stem, (name, found) in zip(stems, named, strict=True)
+    ]
 
 
-def write_scenes(results: StudyResults, chosen: Sequence[ChosenRun]) -> list[PathOnDisk]:
-    """Write the scenes of chosen runs beside the study's own scene, the file with other numbers; return the files.
+def write_runs(results: StudyResults, chosen: Sequence[ChosenRun]) -> list[PathOnDisk]:
+    """Write chosen runs beside the study's own scene, as its file with other numbers and as a page that plays; return
+    the files.
 
     Raises
     ------
@@ -90,7 +99,12 @@ def write_scenes(results: StudyResults, chosen: Sequence[ChosenRun]) -> list[Pat
     """
     folder, paths = results.folder.path, [one.path for one in results.study.varied]
     text = (folder / SCENE_NAME).read_text(encoding="utf-8")
-    for run in chosen:
-        changes: dict[Path, object] = dict(zip(paths, run.values.tolist(), strict=True))
-        write_whole(folder / run.file, with_values(text, changes).encode())
-    return [folder / run.file for run in chosen]
+    written = []
+    for one in chosen:
+        values = dict(zip(paths, one.values.tolist(), strict=True))
+        source = results.study.scene_text.scene_with(values)
+        shown = page(playback(run(source.scene), source.length_unit))
+        for name, content in ((one.file, with_values(text, {**values})), (one.page, shown)):
+            write_whole(folder / name, content.encode())
+            written.append(folder / name)
+    return written

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
+from cagepose.model.checks import FloatArray
 from cagepose.sampling.capture_map import CaptureMap
 from cagepose.sampling.distribution import Distribution
 from cagepose.sampling.findings import Findings
@@ -52,8 +54,8 @@ def draw(findings: Findings) -> dict[str, Figure]:
         }
         if spreads:
             pictures["spread"] = _spread_figure(spreads)
-        if findings.map is not None:
-            pictures["map"] = _map_figure(findings.map)
+        if findings.maps:
+            pictures["map"] = _map_figure(findings.maps)
     return pictures
 
 
@@ -127,11 +129,26 @@ def _spread_figure(spreads: dict[str, Spread]) -> Figure:
     return figure
 
 
-def _map_figure(found: CaptureMap) -> Figure:
-    figure, (panel,) = _panels(1, 4.6, 1)
-    verdicts, codes = np.unique(found.verdicts, return_inverse=True)
-    colours = [VERDICT_COLOURS.get(str(verdict), VERMILLION) for verdict in verdicts]
-    shades = np.array([to_rgb(colour) for colour in colours])[codes.reshape(found.verdicts.shape)]
+def _map_figure(maps: Sequence[CaptureMap]) -> Figure:
+    figure, panels = _panels(len(maps), 4.6 if len(maps) == 1 else 3.2, 2)
+    verdicts = sorted({str(verdict) for found in maps for verdict in np.unique(found.verdicts)})
+    colours = [VERDICT_COLOURS.get(verdict, VERMILLION) for verdict in verdicts]
+    for panel, found in zip(panels, maps, strict=True):
+        _draw_map(
+            panel, found, np.array([to_rgb(colour) for colour in colours])[np.searchsorted(verdicts, found.verdicts)]
+        )
+        if found.layer is not None:
+            panel.set_title(f"{found.layer[0]} = {found.layer[1]:.5g}")
+    handles = [Patch(color=colour, label=verdict) for verdict, colour in zip(verdicts, colours, strict=True)]
+    if any(found.box is not None for found in maps):
+        handles.append(Patch(fill=False, edgecolor=BLACK, linestyle="--", label="largest box of accepted runs"))
+    handles.append(Patch(facecolor=GREY, alpha=0.25, label="pale: not accepted"))
+    figure.legend(handles=handles, loc="outside lower center", ncols=4)
+    return figure
+
+
+def _draw_map(panel: Axes, found: CaptureMap, shades: FloatArray) -> None:
+    """Draw one map; ``shades`` are the colours of its verdicts, (n, n, 3)."""
     shades = np.where(found.accepted[..., None], shades, 0.55 + 0.45 * shades)  # what is not accepted is pale
     half = [(axis[-1] - axis[0]) / (len(axis) - 1) / 2.0 for axis in (found.across, found.up)]
     extent = (
@@ -140,15 +157,10 @@ def _map_figure(found: CaptureMap) -> Figure:
     panel.imshow(shades, origin="lower", extent=extent, aspect="auto", interpolation="nearest")
     if found.accepted.any() and not found.accepted.all():
         panel.contour(found.across, found.up, found.accepted.astype(float), [0.5], colors=[BLACK], linewidths=1.0)
-    handles = [Patch(color=colour, label=str(verdict)) for verdict, colour in zip(verdicts, colours, strict=True)]
     if found.box is not None:
         (left, right), (bottom, top) = found.box
         panel.add_patch(
             Rectangle((left, bottom), right - left, top - bottom, fill=False, edgecolor=BLACK, linestyle="--")
         )
-        handles.append(Patch(fill=False, edgecolor=BLACK, linestyle="--", label="largest box of accepted runs"))
-    handles.append(Patch(facecolor=GREY, alpha=0.25, label="pale: not accepted"))
     panel.set_xlabel(found.keys[0])
     panel.set_ylabel(found.keys[1])
-    figure.legend(handles=handles, loc="outside lower center", ncols=4)
-    return figure

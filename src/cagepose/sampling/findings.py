@@ -10,7 +10,7 @@ import numpy as np
 
 import cagepose
 from cagepose.runs.methods import chosen_method
-from cagepose.sampling.capture_map import CaptureMap, capture_map
+from cagepose.sampling.capture_map import CaptureMap, capture_maps
 from cagepose.sampling.chosen_runs import ChosenRun, chosen_runs
 from cagepose.sampling.contact_table import ContactTable, contact_table
 from cagepose.sampling.distribution import Distribution, distribution_of
@@ -32,7 +32,7 @@ class Findings:
         The rows, how many there will be, and how each number varies.
     statistics, tolerances, contacts, chosen
         What the rows say, and runs of their own beside them.
-    sensitivities, map
+    sensitivities, maps
         From designs of their own.
     """
 
@@ -42,7 +42,7 @@ class Findings:
     statistics: Statistics
     tolerances: tuple[ToleranceRow, ...]
     sensitivities: tuple[Sensitivity, ...]
-    map: CaptureMap | None
+    maps: tuple[CaptureMap, ...]
     contacts: ContactTable
     chosen: tuple[ChosenRun, ...]
 
@@ -68,7 +68,7 @@ def findings_of(results: StudyResults, workers: int | None = None) -> Findings:
             statistics,
             tuple(tolerance_rows(runner, columns, distributions, statistics.spreads)),
             tuple(sensitivities(runner, columns, distributions, study.model.sample.seed)),
-            capture_map(runner, columns, distributions),
+            capture_maps(runner, columns, distributions),
             contact_table(results, runner, statistics),
             tuple(chosen_runs(results, statistics)),
         )
@@ -107,11 +107,12 @@ def document(findings: Findings) -> dict[str, Any]:
                 for row in findings.contacts.rows
             ],
         },
-        "map": None if findings.map is None else _map(findings.map),
+        "maps": [_map(found) for found in findings.maps],
         "chosen_runs": [
             {
                 "name": run.name,
                 "file": run.file,
+                "page": run.page,
                 "run": run.run,
                 "verdict": run.verdict,
                 "accepted": run.accepted,
@@ -167,6 +168,7 @@ def _map(found: CaptureMap) -> dict[str, Any]:
     names, codes = np.unique(found.verdicts, return_inverse=True)
     return {
         "over": list(found.keys),
+        "layer": None if found.layer is None else dict([found.layer]),
         "runs": found.n_runs,
         "across": found.across.tolist(),
         "up": found.up.tolist(),

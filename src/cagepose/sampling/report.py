@@ -1,4 +1,4 @@
-"""The report of a study: a page that stands alone, its numbers as JSON, its pictures, and chosen runs as scenes."""
+"""The report of a study: a page that stands alone, its numbers as JSON, its pictures, and chosen runs."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from cagepose.files.write import MADE_BY, json_text, write_whole
 from cagepose.model.wording import number_or_dash, percent
-from cagepose.sampling.chosen_runs import write_scenes
+from cagepose.sampling.chosen_runs import write_runs
 from cagepose.sampling.figures import draw
 from cagepose.sampling.findings import Findings, document
 from cagepose.sampling.results import StudyResults
@@ -18,6 +18,7 @@ from cagepose.views.style import figure_bytes
 from cagepose.views.templates import environment
 
 PAGE_NAME, NUMBERS_NAME = "report.html", "report.json"
+PICTURES = (".svg", ".png")
 
 
 def write_report(findings: Findings) -> list[Path]:
@@ -29,18 +30,20 @@ def write_report(findings: Findings) -> list[Path]:
         A file cannot be written.
     """
     folder, numbers = findings.results.folder.path, document(findings)
-    pictures = {name: figure_bytes(figure, ".svg") for name, figure in draw(findings).items()}
-    contents = {f"{name}.svg": content for name, content in pictures.items()}
+    figures = draw(findings)
+    contents = {
+        f"{name}{suffix}": figure_bytes(figure, suffix) for name, figure in figures.items() for suffix in PICTURES
+    }
     contents[NUMBERS_NAME] = numbers_text(numbers).encode()
-    contents[PAGE_NAME] = page_text(numbers, findings, pictures).encode()
+    contents[PAGE_NAME] = page_text(numbers, findings, {name: contents[f"{name}.svg"] for name in figures}).encode()
     for name, content in contents.items():
         write_whole(folder / name, content)
-    return [*(folder / name for name in reversed(contents)), *write_scenes(findings.results, findings.chosen)]
+    return [*(folder / name for name in reversed(contents)), *write_runs(findings.results, findings.chosen)]
 
 
 def numbers_text(numbers: dict[str, Any]) -> str:
-    """Return the numbers as JSON, the map's cells on one line."""
-    return json_text({key: value for key, value in numbers.items() if key != "map"}, map=numbers["map"])
+    """Return the numbers as JSON, the maps' cells on one line."""
+    return json_text({key: value for key, value in numbers.items() if key != "maps"}, maps=numbers["maps"])
 
 
 def kept_numbers(results: StudyResults) -> dict[str, Any] | None:

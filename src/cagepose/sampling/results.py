@@ -89,6 +89,24 @@ class StudyResults:
         """Return the rows, or some columns of them, as a ``pandas.DataFrame``."""
         return self.table(columns).to_pandas()
 
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write all rows as comma-separated values, part by part; where there is nothing, nothing.
+
+        Numbers have as many digits as they need to be read again exactly. A file of that name is replaced if it begins
+        with the same columns.
+
+        Raises
+        ------
+        StudyFolderError
+            There are no rows.
+        OSError
+            It cannot be written, or holds something else.
+        """
+        self.require_rows()
+        from cagepose.sampling.csv_file import write_csv
+
+        write_csv(self.folder.batches(), path)
+
     def parts(self, columns: Sequence[str]) -> Iterator[dict[str, np.ndarray]]:
         """Yield some columns part by part, so that memory does not grow with the rows; where there is nothing, NaN."""
         for table in self.folder.batches(columns):

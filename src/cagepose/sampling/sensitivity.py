@@ -8,11 +8,10 @@ from typing import Any
 
 import numpy as np
 from SALib.analyze import sobol as analysis
-from SALib.sample import sobol as design
+from scipy.stats import qmc
 
 from cagepose.model.checks import FloatArray
 from cagepose.sampling.distribution import Distribution
-from cagepose.sampling.outcome import Outcomes
 from cagepose.sampling.row_columns import RowColumns
 from cagepose.sampling.runner import Runner
 
@@ -55,20 +54,34 @@ def sensitivities(
     """Return the indices of the yield and of each quantity (Saltelli et al. 2010, Jansen 1999; by SALib)."""
     n_varied = len(distributions)
     problem = {"num_vars": n_varied, "names": list(columns.varied), "bounds": [[0.0, 1.0]] * n_varied}
-    base = BASE if runner.is_batch else BASE_ONE_BY_ONE
-    shares = design.sample(problem, base, calc_second_order=False, seed=seed % 2**32)
-    values = np.stack([one.values(share) for one, share in zip(distributions, shares.T, strict=True)], axis=1)
+    n_blocks = BASE if runner.is_batch else BASE_ONE_BY_ONE
+    base = qmc.Sobol(2 * n_varied, rng=seed % 2**32).random(n_blocks)
     parts: list[dict[str, FloatArray]] = []
-
-    def told(outcomes: Outcomes, rows: FloatArray) -> None:
+    n_at_once = max(runner.rows_of_a_part // (n_varied + 2), 1)
+    for first in range(0, n_blocks, n_at_once):
+        shares = saltelli_rows(base[first : first + n_at_once])
+        rows = np.stack([one.values(share) for one, share in zip(distributions, shares.T, strict=True)], axis=1)
+        outcomes = runner.run(rows)
         accepted = columns.columns(rows, outcomes)[ACCEPTED].astype(np.float64)
         parts.append({ACCEPTED: accepted, **columns.quantities_of(outcomes)})
-
-    runner.run_in_parts(values, told)
     return [
         _indices(name, np.concatenate([part[name] for part in parts]), problem, seed, columns.resolution.get(name, 0.0))
         for name in (ACCEPTED, *columns.quantities)
     ]
+
+
+def saltelli_rows(base: FloatArray) -> FloatArray:
+    """Return the rows of Saltelli's design, (n (n_varied + 2), n_varied), for some of its base points, (n, 2 n_varied).
+
+    A base point is two of all numbers, A and B. Its block is A, A with each number in turn from B, and B: those of a
+    hundred numbers would be 80 MB, so not all of them are made at once.
+    """
+    n_varied = base.shape[1] // 2
+    a, b, places = base[:, :n_varied], base[:, n_varied:], np.arange(n_varied)
+    blocks = np.repeat(a[:, None, :], n_varied + 2, axis=1)
+    blocks[:, places + 1, places] = b
+    blocks[:, -1] = b
+    return blocks.reshape(-1, n_varied)
 
 
 def _indices(name: str, measured: FloatArray, problem: dict[str, Any], seed: int, resolution: float) -> Sensitivity:

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
 from cagepose.errors import Problem, SceneError
-from cagepose.files.study_file import StudyFile, parse_study, read_study_file, refused_at, study_text
-from cagepose.model.checks import duplicates
+from cagepose.files.study_file import StudyFile, parse_study, read_study_file, study_text
+from cagepose.model.checks import FloatArray
 from cagepose.model.wording import few
+from cagepose.sampling.outcome import Outcomes
 from cagepose.sampling.results import StudyResults
 from cagepose.sampling.runner import Runner
-from cagepose.views.extra import require_study
+from cagepose.views.extra import require_dask, require_study
 
 Progress = Callable[[int, int, bool], None]
 """Called with how many rows are done, how many there are, and whether the last of them were run now."""
@@ -53,7 +52,7 @@ class Study:
         forces: bool | None = None,
         map: Mapping[str, Any] | None = None,
     ) -> None:
-        content = {"scene": _file_name(scene), "vary": vary, "sample": sample}
+        content = {"scene": scene_name(scene), "vary": vary, "sample": sample}
         given = {"watch": watch, "accept": accept, "forces": forces, "map": map}
         text = study_text({**content, **{key: value for key, value in given.items() if value is not None}})
         self._begin(parse_study(text, "study"), "study")
@@ -73,26 +72,10 @@ class Study:
 
     def _begin(self, file: StudyFile, source: str) -> None:
         require_study()
-        from cagepose.sampling.distribution import distribution_of  # the class itself can be imported without the extra
-        from cagepose.sampling.row_columns import RowColumns
-        from cagepose.sampling.sample import Sample
+        from cagepose.sampling.at_the_door import checked_columns, checked_sample
 
-        self._file, self._columns = file, RowColumns(file)
-        for name in duplicates(self._columns.names):
-            message = f"gives the column {name} a second meaning; rename the point that is watched"
-            raise refused_at("watch", file, source, message)
-        try:
-            self._sample = Sample(file.model.sample, [distribution_of(one) for one in file.varied])
-        except ValueError as error:
-            raise refused_at("sample", file, source, str(error)) from None
-        nominal = np.array([[one.nominal for one in file.varied]])
-        outcomes = Runner(file).run_one_by_one(nominal)
-        if outcomes.errors[0] is not None:
-            raise refused_at("scene", file, source, f"cannot be run: {outcomes.errors[0]}")
-        try:
-            self._columns.columns(nominal, outcomes)
-        except ValueError as error:
-            raise refused_at("accept", file, source, str(error)) from None
+        self._file, self._columns = file, checked_columns(file, source)
+        self._sample = checked_sample(file, source)
 
     def __repr__(self) -> str:
         varied = few(one.key for one in self._file.varied)
@@ -108,6 +91,7 @@ class Study:
         *,
         resume: bool = False,
         workers: int | None = None,
+        dask: str | None = None,
         progress: Progress | None = None,
     ) -> StudyResults:
         """Run all rows into a folder, part by part, and return what is there.
@@ -121,13 +105,18 @@ class Study:
         workers
             Threads, or processes where scenes are built row by row; None: a thread for each core, or one process. A
             script that asks for more processes needs ``if __name__ == "__main__":``.
+        dask
+            The address of a Dask scheduler, such as ``"tcp://10.0.0.1:8786"``: its workers run the parts.
         progress
             Called after each part.
 
         Raises
         ------
         SceneError
-            ``workers`` is no whole number from 1 upwards.
+            ``workers`` is no whole number from 1 upwards; or there is no such scheduler, or its workers have another
+            cagepose.
+        MissingExtraError
+            The extra ``dask`` is not installed.
         StudyFolderError
             The folder holds something else.
         OSError
@@ -135,25 +124,50 @@ class Study:
         KeyboardInterrupt
             Ctrl-C was pressed; all parts that are there are whole.
         """
+        if dask is not None:
+            require_dask()
         from cagepose.sampling.folder import StudyFolder
 
         kept, runner, n_runs = StudyFolder(folder), Runner(self._file, workers), len(self)
         kept.begin(self._file, resume=resume)
+        size = runner.rows_of_a_part
+        parts = [(first, min(first + size, n_runs)) for first in range(0, n_runs, size)]
+        missing = [part for part in parts if not kept.has(*part)]
+        n_done = n_runs - sum(last - first for first, last in missing)
+        if progress is not None and n_done:
+            progress(n_done, n_runs, False)
         try:
-            for first in range(0, n_runs, runner.rows_of_a_part):
-                last = min(first + runner.rows_of_a_part, n_runs)
-                is_missing = not kept.has(first, last)
-                if is_missing:
-                    values = self._sample.values(first, last)
-                    kept.write(first, last, self._columns.table(first, values, runner.run(values)))
+            for (first, last), values, outcomes in self._outcomes(runner, missing, dask):
+                kept.write(first, last, self._columns.table(first, values, outcomes))
+                n_done += last - first
                 if progress is not None:
-                    progress(last, n_runs, is_missing)
+                    progress(n_done, n_runs, True)
         finally:
             runner.close()
         return StudyResults(folder)
 
+    def _outcomes(
+        self, runner: Runner, parts: Sequence[tuple[int, int]], dask: str | None
+    ) -> Iterator[tuple[tuple[int, int], FloatArray, Outcomes]]:
+        """Yield parts with their varied numbers and where their runs ended, in any order."""
+        if dask is not None:
+            from cagepose.sampling.cluster import run_on_cluster
 
-def _file_name(scene: object) -> str:
+            yield from run_on_cluster(self._file, dask, parts, self._sample.values)
+            return
+        for part in parts:
+            values = self._sample.values(*part)
+            yield part, values, runner.run(values)
+
+
+def scene_name(scene: object) -> str:
+    """Return the name of a scene's file.
+
+    Raises
+    ------
+    SceneError
+        It is none.
+    """
     if isinstance(scene, str | os.PathLike):
         return os.fspath(scene)
     message = f"is of type {type(scene).__name__}; give the name of a scene file: cagepose.save_scene writes one"

@@ -62,6 +62,17 @@ def require_study() -> None:
         _require(module, f"studies need {name}", "study")
 
 
+def require_dask() -> None:
+    """Do nothing if Dask is installed.
+
+    Raises
+    ------
+    MissingExtraError
+        As `require_pillow`.
+    """
+    _require("distributed", "many machines need Dask", "dask")
+
+
 def _require(module: str, need: str, extra: str) -> None:
     if find_spec(module) is None:
         raise MissingExtraError(
