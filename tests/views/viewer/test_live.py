@@ -101,7 +101,7 @@ def test_the_saved_scene_is_the_one_on_screen(watched, server, tmp_path):
 
 def test_another_method_is_run_when_chosen(watched, server):
     page = opened(watched, server)
-    page.locator("select").select_option("stepwise")
+    page.locator("#controls select").select_option("stepwise")
     wait_until(page, "method.innerText.startsWith('stepwise')")
     assert state(page)["answers"] == 1
 

@@ -103,10 +103,10 @@ def test_the_range_itself_moves_as_its_number_does(watched, server):
 
 def test_the_method_and_the_exaggeration_are_named_on_the_screen(watched, server, sled):
     page = opened(watched, server)
-    page.locator("select").select_option("stepwise")
+    page.locator("#controls select").select_option("stepwise")
     wait_until(page, "method.innerText.includes('stepwise')")
     assert page.locator("#verdict").inner_text() == run(load_scene(sled), "stepwise").verdict
-    for index, times in ((0, "true scale"), (7, "motions and gaps exaggerated \u00d7200")):
+    for index, times in ((0, "true scale"), (7, "play and gaps exaggerated \u00d7200")):
         set_range(page, "exaggeration", index)
         wait_until(page, f"badge.innerText === '{times}'")
     assert state(page)["exaggeration"] == 200
