@@ -149,6 +149,9 @@ function show() {
   $("play").textContent = player.playing ? "\u275A\u275A" : "\u25B6";
   $("times").textContent = `\u00D7${k}`;
   $("exaggeration").value = data.exaggerations.indexOf(k);
+  const { start: from, last } = data.phases[phase()];
+  $("exaggeration").disabled = from >= last && from > 0;
+  $("exaggeration").title = $("exaggeration").disabled ? "this phase ends with a long motion, which is shown as it is" : "of the phase on screen";
   const factor = digits(Math.round(look.factor), 0);
   $("badge").textContent = factor === 1 ? "true scale" : `play and gaps exaggerated \u00D7${factor}`;
   $("badge").className = factor === 1 ? "" : "exaggerated";

@@ -63,10 +63,10 @@ def test_undo_goes_back_to_the_values_of_the_file(watched, server):
 def test_a_value_that_cannot_be_is_told_in_the_page_and_the_last_scene_stays(watched, server):
     page = opened(watched, server)
     before = shown_angles(page)
-    slide(page, "cage: z", 0.7)
+    slide(page, "push: direction x", 0)
     told = page.locator("#problems").inner_text()
-    assert "inside object.boxes" in told
-    assert "move the point out" in told
+    assert "is all zeros, which points nowhere" in told
+    assert "Shown is the last scene that could be run" in told
     assert shown_angles(page) == before
     watched.complaints.clear()  # the browser notes the refusal itself
     page.locator("#undo").click()
