@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import sys
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 from cagepose.cli.options import AtOption, SceneArgument, SetOption, Switch
+
+if TYPE_CHECKING:
+    from cagepose.files.scene_file import SceneFile
 
 ERASE_LINE = "\r\x1b[K"
 
@@ -28,6 +31,12 @@ def play_command(
         ),
     ] = (),
     set_values: SetOption = (),
+    seated: Annotated[
+        bool, Switch, Parameter(help="Run the scene first, and measure from where its loads have seated the object.")
+    ] = False,
+    phase: Annotated[
+        str | None, Parameter(help="With --seated: the phase at whose end; left out: the last.", show_default=False)
+    ] = None,
     json: Annotated[bool, Switch, Parameter(help="Print one JSON document instead of the tables.")] = False,
 ) -> int:
     """Print the range of each freedom and point, what limits it, whether the object is caged, where loads leave it."""
@@ -46,6 +55,8 @@ def play_command(
     ]
     if direction and not at:
         problems.append("--direction: says where points go, and there are none; give one with --at")
+    if phase is not None and not seated:
+        problems.append(f"--phase {phase}: says where the object is seated; give --seated, too")
     try:
         scene_file = read_scene_file(scene, set_values)
     except SceneFileError as error:
@@ -59,6 +70,8 @@ def play_command(
     from cagepose.studies.play_rest import play_rests
 
     check_boxes_and_points(scene_file.scene, "play")
+    if seated:
+        return _play_seated(scene_file, phase, points, along, json)
     try:
         found = play(
             scene_file.scene,
@@ -81,6 +94,44 @@ def play_command(
     from cagepose.cli.play_report import print_play
 
     print_play(found, rests, scene_file.length_unit)
+    return 0
+
+
+def _play_seated(
+    scene_file: SceneFile,
+    phase: str | None,
+    points: list[tuple[float, ...]],
+    along: list[tuple[float, ...]],
+    json: bool,
+) -> int:
+    """Run the scene and print its play about where it ends; 1 where it has not been seated."""
+    from cagepose.errors import SceneError, printable
+    from cagepose.files.units import to_metres
+    from cagepose.runs.solve import run
+    from cagepose.studies.seated_play import seated_play
+
+    unit = scene_file.length_unit
+    names = {load.name for load in scene_file.scene.loads}
+    if phase is not None and phase not in names:
+        sys.stderr.write(printable(f"--phase {phase}: no such phase; use one of: {', '.join(sorted(names))}") + "\n")
+        return 2
+    try:
+        found = seated_play(run(scene_file.scene), phase, [to_metres(point, unit) for point in points], along)
+    except SceneError as error:
+        sys.stderr.write(printable(str(error)) + "\n")
+        return 1
+    if json:
+        from cagepose.files.play_document import seated_document
+        from cagepose.files.write import json_text
+
+        sys.stdout.write(json_text(seated_document(found, unit)))
+        return 0
+    from cagepose.cli.seated_report import print_seated_play
+
+    ways = along or [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
+    axes = {(1.0, 0.0, 0.0): "x", (0.0, 1.0, 0.0): "y", (0.0, 0.0, 1.0): "z"}
+    asked = (f"point {n} along {axes.get(way, way)}" for n, _ in enumerate(points, start=1) for way in ways)
+    print_seated_play(found, tuple(asked), unit)
     return 0
 
 

@@ -13,6 +13,7 @@ from cagepose.model.pose import Pose
 from cagepose.studies.cage_verdict import PathStep
 from cagepose.studies.play import Play, PlayEnd, PlayRange, PointPlay
 from cagepose.studies.play_rest import PlayRest, PressedPoint
+from cagepose.studies.seated_play import SeatedEnd, SeatedPlay, SeatedRange
 
 LENGTHS = ("x", "y", "z")
 
@@ -43,6 +44,30 @@ def play_document(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> di
         "rests": [_rest(rest, unit) for rest in rests],
         "timing_s": {"analysis": play.analysis_s, "certificate": play.certificate_s},
     }
+
+
+def seated_document(found: SeatedPlay, unit: LengthUnit) -> dict[str, Any]:
+    """Return the document of play about a seated pose, as `play_document`; null: nothing nearby ends it."""
+    return {
+        "version": FORMAT_VERSION,
+        "scene": found.run.scene.name,
+        "units": {"length": unit},
+        "phase": found.phase,
+        "pose": _pose(found.pose_world_object, unit),
+        "bearing": list(found.bearing),
+        "freedoms": {name: _seated(ends, name in LENGTHS, unit) for name, ends in found.freedoms.items()},
+        "points": [_seated(ends, True, unit) for ends in found.points],
+    }
+
+
+def _seated(ends: SeatedRange, is_length: bool, unit: LengthUnit) -> dict[str, Any]:
+    def told(end: SeatedEnd) -> dict[str, Any]:
+        value = end.value
+        if value is not None:
+            value = float(from_metres(value, unit)) if is_length else math.degrees(value)
+        return {"value": value, "stops": list(end.stops)}
+
+    return {"seated": [told(end) for end in ends.seated], "lifted": [told(end) for end in ends.lifted]}
 
 
 def _ends(ends: PlayRange | PointPlay, is_length: bool, unit: LengthUnit) -> dict[str, Any]:
