@@ -169,16 +169,15 @@ def test_the_ranges_of_freedoms_and_points_are_a_line_each(
     assert "point 1: (-600, 20, -60.7) mm in the object's frame" in lines
 
 
-def test_play_about_a_seated_pose_is_printed_and_told_as_json(capsys: pytest.CaptureFixture[str]) -> None:
-    scene = str(SCENES / "v-groove.yaml")
-    assert main(["play", scene, "--seated", "--phase", "clamp", "--at", "1,0,0"]) == 0
-    printed = capsys.readouterr().out
-    assert "play from where clamp has seated it" in printed
-    assert "load is carried by L1, L2, R1, R2" in printed
-    assert re.search(r"^y +mm +free to 5 +-; stop ", printed, re.MULTILINE)
-    assert "no end" not in printed
-    assert main(["play", scene, "--seated", "--json"]) == 0
-    document = json.loads(capsys.readouterr().out)
+def test_play_about_a_seated_pose_is_printed_and_told_as_json(command: Command) -> None:
+    groove = str(Path(RAIL).with_name("v-groove.yaml"))
+    answer = command("play", groove, "--seated", "--phase", "clamp", "--at", "1,0,0")
+    assert answer.code == 0
+    assert "play from where clamp has seated it" in answer.out
+    assert "load is carried by L1, L2, R1, R2" in answer.out
+    assert re.search(r"^y +mm +free to 5 +-; stop ", answer.out, re.MULTILINE)
+    assert "no end" not in answer.out
+    document = json.loads(command("play", groove, "--seated", "--json").out)
     assert document["phase"] == "clamp"
     assert document["freedoms"]["y"]["seated"] == [
         {"value": None, "stops": []},
@@ -189,17 +188,12 @@ def test_play_about_a_seated_pose_is_printed_and_told_as_json(capsys: pytest.Cap
 @pytest.mark.parametrize(
     ("arguments", "code", "told"),
     [
-        (
-            ["v-groove.yaml", "--phase", "clamp"],
-            2,
-            "--phase clamp: says where the object is seated; give --seated, too",
-        ),
-        (["v-groove.yaml", "--seated", "--phase", "pull"], 2, "--phase pull: no such phase; use one of: clamp, weight"),
-        (["sample.yaml", "--seated"], 1, "gravity has no known contact forces at its end: nothing seats it"),
+        (["v-groove", "--phase", "clamp"], 2, "--phase clamp: says where the object is seated; give --seated, too"),
+        (["v-groove", "--seated", "--phase", "pull"], 2, "--phase pull: no such phase; use one of: clamp, weight"),
+        (["sample", "--seated"], 1, "gravity has no known contact forces at its end: nothing seats it"),
     ],
 )
-def test_what_is_not_seated_is_told(
-    arguments: list[str], code: int, told: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["play", str(SCENES / arguments[0]), *arguments[1:]]) == code
-    assert told in capsys.readouterr().err
+def test_what_is_not_seated_is_told(arguments: list[str], code: int, told: str, command: Command) -> None:
+    answer = command("play", str(Path(RAIL).with_name(f"{arguments[0]}.yaml")), *arguments[1:])
+    assert answer.code == code
+    assert told in answer.err

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from cagepose.files.scene_file import SceneFile
 
 ERASE_LINE = "\r\x1b[K"
+Numbers = tuple[float, ...]
 
 
 def play_command(
@@ -100,8 +101,8 @@ def play_command(
 def _play_seated(
     scene_file: SceneFile,
     phase: str | None,
-    points: list[tuple[float, ...]],
-    along: list[tuple[float, ...]],
+    points: list[Numbers],
+    along: list[Numbers],
     json: bool,
 ) -> int:
     """Run the scene and print its play about where it ends; 1 where it has not been seated."""
@@ -129,7 +130,7 @@ def _play_seated(
     from cagepose.cli.seated_report import print_seated_play
 
     ways = along or [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
-    axes = {(1.0, 0.0, 0.0): "x", (0.0, 1.0, 0.0): "y", (0.0, 0.0, 1.0): "z"}
+    axes: dict[Numbers, str] = {(1.0, 0.0, 0.0): "x", (0.0, 1.0, 0.0): "y", (0.0, 0.0, 1.0): "z"}
     asked = (f"point {n} along {axes.get(way, way)}" for n, _ in enumerate(points, start=1) for way in ways)
     print_seated_play(found, tuple(asked), unit)
     return 0

@@ -15,8 +15,8 @@ from cagepose.studies.seated_play import SeatedEnd, SeatedPlay, SeatedRange
 
 DIGITS, NOISE = 5, 1e-9
 MEANING = (
-    "seated: while all points that carry load stay closed; lifted: any of them may open; to first order, and free: nothing"
-    " nearby ends it"
+    "seated: while all points that carry load stay closed; lifted: any of them may open; to first order, and free:"
+    " nothing nearby ends it"
 )
 
 
