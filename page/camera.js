@@ -11,9 +11,10 @@ const REACH = 400; // times half the height: what is near
 const CLICK = 4; // pixels: the most that a click moves
 
 export class Camera {
-  // `content()` returns the places that a view is fitted to, `under(x, y)` the place that is seen at a pixel or null.
-  constructor(canvas, { radius, look }, { content, under, changed, clicked }) {
-    Object.assign(this, { canvas, radius, look, content, under, changed, clicked, perspective: true, pointers: new Map(), travelled: 0 });
+  // `content()` returns the places that a view is fitted to, `under(x, y)` the place that is seen at a pixel or null, and
+  // `covered()` the height in pixels that something else covers from above.
+  constructor(canvas, { radius, look }, { content, under, covered, changed, clicked }) {
+    Object.assign(this, { canvas, radius, look, content, under, covered, changed, clicked, perspective: true, pointers: new Map(), travelled: 0 });
     this.cameras = [new OrthographicCamera(), new PerspectiveCamera()];
     this.home("corner");
     canvas.addEventListener("pointerdown", (event) => this.press(event));
@@ -90,12 +91,13 @@ export class Camera {
   fit() {
     this.target ??= [0, 0, 0];
     this.half ??= this.radius;
-    const [width, height] = this.size();
+    const [width, whole] = this.size();
+    const covered = Math.min(this.covered(), whole / 3), height = whole - covered;
     const axes = this.axes();
     for (let round = 0; round < 6; round++) {
       const seen = this.content().map((place) => this.project(place));
       const [low, high] = [Math.min, Math.max].map((pick) => [0, 1].map((i) => seen.reduce((best, place) => pick(best, place[i]), seen[0][i])));
-      const middle = [0, 1].map((i) => (low[i] + high[i]) / 2 - [width, height][i] / 2);
+      const middle = [0, 1].map((i) => (low[i] + high[i]) / 2 - [width / 2, covered + height / 2][i]);
       this.target = add(this.target, add(times(middle[0] * this.pixel(), axes[0]), times(-middle[1] * this.pixel(), axes[1])));
       this.half = Math.max(0.02 * this.radius, this.half * Math.max((high[0] - low[0]) / width, (high[1] - low[1]) / height) / this.look.margin);
     }

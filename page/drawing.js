@@ -14,7 +14,7 @@ const CLOSE_UP = 0.008, TILT = 0.25; // half the height of a picture of one cont
 const PICKED = 14; // pixels from a mark that is clicked
 
 export class Drawing {
-  constructor(stage, exaggerations, canvas, overlay, changed, clicked) {
+  constructor(stage, exaggerations, canvas, overlay, { covered, changed, clicked }) {
     this.canvas = canvas;
     this.ways = stage.data.look; // sizes, in pixels unless look.py says otherwise
     this.paint = Object.fromEntries(Object.entries(this.ways.paint).map(([name, hex]) => [name, color(hex)]));
@@ -30,7 +30,7 @@ export class Drawing {
     this.isGlass = false;
     this.take(stage, exaggerations);
     this.allNames = stage.data.names.length <= this.ways.few_names;
-    this.camera = new Camera(canvas, stage.data, { content: () => this.content(), under: (x, y) => this.under(x, y), changed, clicked: (x, y) => clicked(this.touchAt(x, y)) });
+    this.camera = new Camera(canvas, stage.data, { content: () => this.content(), under: (x, y) => this.under(x, y), covered, changed, clicked: (x, y) => clicked(this.touchAt(x, y)) });
     this.camera.fit(); // with loads and forces, whose arrows have a camera by now
   }
 

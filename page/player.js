@@ -23,7 +23,8 @@ const card = new Card((touch) => {
   drawing.zoomTo(touch);
 }, refresh);
 try {
-  drawing = new Drawing(stage, exaggerations, $("scene"), $("labels"), refresh, (touch) => { card.pick(touch); refresh(); });
+  drawing = new Drawing(stage, exaggerations, $("scene"), $("labels"), {
+    covered: () => $("bar").offsetTop + $("bar").offsetHeight, changed: refresh, clicked: (touch) => { card.pick(touch); refresh(); } });
 } catch (error) {
   $("trouble").textContent = `No picture: ${error.message}. All else on this page works.`;
   $("trouble").hidden = false;
