@@ -78,8 +78,8 @@ if TYPE_CHECKING:
     from cagepose.studies.margin import ContactMargin as ContactMargin
     from cagepose.studies.margin import Margin as Margin
     from cagepose.studies.margin import margin as margin
-    from cagepose.studies.play import Play as Play
     from cagepose.studies.play import play as play
+    from cagepose.studies.play_result import Play as Play
 
     __version__: str
 
@@ -118,7 +118,8 @@ _HOMES = {
     "cagepose.studies.comparison": ("Comparison", "Parting", "Variant", "compare"),
     "cagepose.studies.contact_problem": ("ContactFace",),
     "cagepose.studies.margin": ("ContactMargin", "Margin", "margin"),
-    "cagepose.studies.play": ("Play", "play"),
+    "cagepose.studies.play": ("play",),
+    "cagepose.studies.play_result": ("Play",),
     "cagepose.files.run_file": ("load_certificates", "load_run", "save_run"),
     "cagepose.files.saved_scene": ("save_scene",),
     "cagepose.files.scene_file": ("load_scene",),

@@ -8,9 +8,9 @@ import math
 import numpy as np
 import pytest
 
-from bench import rail_table
+from bench import rail_table, scenes_table
 from bench.growth_table import exponent
-from bench.rail_case import EXACT_TILTS_RAD, Answer, rail_scenes, tilt_error
+from bench.rail_case import EXACT_TILTS_RAD, SCENES, Answer, rail_scenes, tilt_error
 from bench.rows import Row, save
 
 PROMISED = {"scene", "engine", "median_s", "error", "ratio_to_ours", "settings"}
@@ -76,3 +76,11 @@ OUR_TIMES_S = {
 def test_the_exponent_looks_at_the_upper_half():
     sizes = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0]
     assert exponent(sizes, [1.0, 1.0, 1.0, 64.0, 256.0, 1024.0]) == pytest.approx(2.0)
+
+
+def test_every_scene_has_a_row_by_each_method_that_runs_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(scenes_table, "BUDGET_S", 0.001)
+    rows = list(scenes_table.scene_rows())
+    assert {row.scene for row in rows} == {path.stem for path in SCENES.glob("*.yaml")}
+    assert {row.engine for row in rows if row.scene == "rail-yaw"} == {"cagepose-stepwise", "cagepose-quasistatic"}
+    assert {row.engine for row in rows if row.scene == "rollers"} == {"cagepose-quasistatic"}

@@ -157,7 +157,7 @@ def test_the_ranges_of_freedoms_and_points_are_a_line_each(
 ) -> None:
     """No number is broken on a narrow screen, and a wide one shows more digits."""
     monkeypatch.setattr("sys.stdout.isatty", lambda: True)
-    for key, value in (("COLUMNS", str(columns)), ("TERM", "dumb")):
+    for key, value in (("COLUMNS", str(columns)), ("LINES", "50"), ("TERM", "dumb")):
         monkeypatch.setenv(key, value)
     scene = load_scene(RAIL)
     print_play(play(scene, [(-0.6, 0.02, -0.0607)]), (), "mm")
@@ -169,31 +169,38 @@ def test_the_ranges_of_freedoms_and_points_are_a_line_each(
     assert "point 1: (-600, 20, -60.7) mm in the object's frame" in lines
 
 
-def test_play_about_a_seated_pose_is_printed_and_told_as_json(command: Command) -> None:
-    groove = str(Path(RAIL).with_name("v-groove.yaml"))
-    answer = command("play", groove, "--seated", "--phase", "clamp", "--at", "1,0,0")
+def test_a_scene_of_rollers_has_play_without_bounds(command: Command) -> None:
+    """0.5 mm of vertical play: 0.25 mm each way, and the pitch of (h + 2 rho + p) cos t - 2 a sin t = h + 2 rho."""
+    rollers = str(Path(RAIL).with_name("rollers.yaml"))
+    document = json.loads(command("play", rollers, "--json").out)
+    assert document["freedoms"]["z"]["exact"] == pytest.approx([-0.25, 0.25], abs=1e-9)
+    assert document["freedoms"]["z"]["linear"] == [None, None]
+    assert document["freedoms"]["x"]["status"] == ["open", "open"]
+    assert document["cage"]["verdict"] == "escapes"
+    assert document["rests"] == []
+    answer = command("play", rollers)
     assert answer.code == 0
-    assert "play from where clamp has seated it" in answer.out
-    assert "load is carried by L1, L2, R1, R2" in answer.out
-    assert re.search(r"^y +mm +free to 5 +-; stop ", answer.out, re.MULTILINE)
-    assert "no end" not in answer.out
-    document = json.loads(command("play", groove, "--seated", "--json").out)
-    assert document["phase"] == "clamp"
-    assert document["freedoms"]["y"]["seated"] == [
-        {"value": None, "stops": []},
-        {"value": pytest.approx(5.0), "stops": ["stop"]},
-    ]
+    assert "linear" not in answer.out
+    assert "certified" not in answer.out
+    assert "way out: nothing is ahead where it starts" in answer.out
+
+
+def test_seated_play_is_asked_of_a_phase(command: Command) -> None:
+    dock = str(Path(RAIL).with_name("phone-dock.yaml"))
+    document = json.loads(command("play", dock, "--seated", "--json").out)
+    assert (document["seated"], document["cage"]) == ("weight", None)
+    left, right = document["freedoms"]["x"]["exact"]
+    assert left < -1 < 1 < right
+    y = document["freedoms"]["y"]["exact"]
+    assert y[1] - y[0] < 1e-3  # its back and the ledge hold it
+    assert "play where weight seats it" in command("play", dock, "--seated", "--phase", "weight").out
 
 
 @pytest.mark.parametrize(
-    ("arguments", "code", "told"),
-    [
-        (["v-groove", "--phase", "clamp"], 2, "--phase clamp: says where the object is seated; give --seated, too"),
-        (["v-groove", "--seated", "--phase", "pull"], 2, "--phase pull: no such phase; use one of: clamp, weight"),
-        (["sample", "--seated"], 1, "gravity has no known contact forces at its end: nothing seats it"),
-    ],
+    ("arguments", "told"),
+    [(("--phase", "weight"), "add --seated"), (("--seated", "--phase", "wind"), "phase: is 'wind', and the scene has")],
 )
-def test_what_is_not_seated_is_told(arguments: list[str], code: int, told: str, command: Command) -> None:
-    answer = command("play", str(Path(RAIL).with_name(f"{arguments[0]}.yaml")), *arguments[1:])
-    assert answer.code == code
+def test_a_seat_that_is_none_is_refused(command: Command, arguments: tuple[str, ...], told: str) -> None:
+    answer = command("play", RAIL, *arguments)
+    assert (answer.code, answer.out) == (2, "")
     assert told in answer.err

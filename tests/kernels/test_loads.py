@@ -9,6 +9,7 @@ from cagepose.kernels.algebra.pose import quaternion_about, quaternion_product, 
 from cagepose.kernels.algebra.record import empty_record, empty_rows
 from cagepose.kernels.contact.load_curvature import add_load_curvature, write_circulation
 from cagepose.kernels.contact.loads import (
+    CARDAN_MOMENT,
     DEAD_FORCE,
     DEAD_MOMENT,
     FOLLOWING_FORCE,
@@ -30,6 +31,7 @@ KINDS = {
     "dead moment": DEAD_MOMENT,
     "following moment": FOLLOWING_MOMENT,
     "spring": SPRING,
+    "cardan moment": CARDAN_MOMENT,
 }
 
 
@@ -38,6 +40,11 @@ def body() -> Body:
     found.axes_object[:] = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
     found.radii[:] = 0.4, 0.7, 1.1
     return found
+
+
+def unit(random: np.random.Generator) -> np.ndarray:
+    vector = random.normal(size=3)
+    return np.array(vector / np.linalg.norm(vector))
 
 
 def load(kind: int, random: np.random.Generator) -> PhaseLoad:
@@ -49,6 +56,9 @@ def load(kind: int, random: np.random.Generator) -> PhaseLoad:
     if kind == SPRING:
         action.anchor[:] = 3.0 * random.normal(size=3)
         action.stiffness, action.tension_at_zero = random.uniform(0.5, 2.0), random.normal()
+    if kind == CARDAN_MOMENT:
+        action.anchor[:] = unit(random)
+        action.arm_object[:] = unit(random)
     return actions
 
 

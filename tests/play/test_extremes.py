@@ -12,8 +12,7 @@ from caged_scenes import caged_scene
 from cagepose import Box, Cage, Load, Object, Pose, Scene, play
 from cagepose.kernels.algebra.linear_program import OPTIMAL, UNBOUNDED, solve_program
 from cagepose.kernels.play.polytope import empty_play_workspace, write_start
-from cagepose.studies.play import FREEDOMS
-from cagepose.studies.play_frame import PlayFrame
+from cagepose.studies.play_frame import FREEDOMS, PlayFrame
 from rails import rail_scene
 
 MM = 1e-3

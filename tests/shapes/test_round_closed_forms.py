@@ -116,6 +116,24 @@ def test_a_standing_cylinder_tips_where_its_weight_leaves_the_rim(
     assert tilt_of(result) < 1e-9 or tilt_of(result) == pytest.approx(math.pi / 2.0, abs=1e-6)
 
 
+@pytest.mark.parametrize("direction_deg", [0.0, 22.5, 100.0])
+def test_the_friction_of_a_pushed_can_is_the_push_over_its_weight_until_it_tips(direction_deg: float) -> None:
+    """W mu >= F, and F h <= W r, h the height of the push: also between octagon and circle."""
+    radius, height = 0.03, 0.1
+    direction = math.radians(direction_deg)
+    for share in (0.5, 0.97, 1.001):
+        part = share * radius / height
+        push = Force((math.cos(direction), math.sin(direction), 0.0), (0, 0, 0), 10.0 * part)
+        can = Object(shapes=[Cylinder(radius, 2 * height)], pose=Pose((0, 0, height)), mass_kg=1.0)
+        load = Load("both", gravity=(0, 0, -10.0), force=push)
+        result = with_critical_friction(end_of(can, [Box((0.4, 0.4, 0.02), Pose((0, 0, -0.01)), "floor")], [load], 1.0))
+        if share < 1.0:
+            assert result.verdict == "rests"
+            assert result.phases[0].proof.critical_friction == pytest.approx(part, rel=1e-9)
+        else:
+            assert result.verdict != "rests" or tilt_of(result) > 1.0
+
+
 @pytest.mark.parametrize("shape", [Cylinder(0.01, 0.03), Cone(0.01, 0.004, 0.03), Cone(0.01, 0.0, 0.03)])
 @pytest.mark.parametrize("share", [0.999, 1.001])
 def test_what_stands_on_a_slope_tips_at_the_angle_of_its_rim(shape, share: float) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cagepose import Box, Cage, Load, Margin, Object, Pose, Run, Scene, Spring, load_scene, margin, run
+from cagepose import Box, Cage, Cylinder, Load, Margin, Object, Pose, Run, Scene, Spring, load_scene, margin, run
 from cagepose.files.document import run_document
 from cagepose.studies.contact_cones import ConeProgram, ContactCones, contact_cones
 from cagepose.studies.equal_stiffness import equally_stiff_forces
@@ -250,3 +250,20 @@ def test_a_part_that_nothing_touches_has_no_margin_and_one_under_a_spring_has_it
     assert [contact.equally_stiff_n for contact in found.contacts] == pytest.approx([2.5] * 4, rel=1e-9)
     hung = Load("hang", gravity=(0.0, 0.0, -9.81), springs=[Spring((0, 0, 0.01), (0, 0, 0.1), 100.0)])
     assert margin(run(Scene(held, Cage([(0.5, 0.5, 0.5)]), [hung]))) is None
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.13])
+def test_a_can_tips_over_any_point_of_its_rim(turn: float) -> None:
+    """Weight W on a rim of radius r, the centre of gravity h above it: a force of W sin(atan(r / h)) tips it, at right
+    angles to the way from the rim to the centre, and so does a moment of W r. A run lists eight places of the rim,
+    within which this would be 8 % less."""
+    radius, height = 0.03, 0.1
+    upright = Pose((0, 0, height), (math.cos(turn), 0, 0, math.sin(turn)))
+    can = Object(shapes=[Cylinder(radius, 2 * height)], pose=upright)
+    floor = Cage(shapes=[Box((0.4, 0.4, 0.02), Pose((0, 0, -0.01)), "floor")])
+    found = margin_of(run(Scene(can, floor, [Load("weight", gravity=(0, 0, -9.81))], friction_coefficient=2.0)))
+    assert len(found.contacts) == 8
+    tips = math.sin(math.atan(radius / height))
+    assert 0.998 * tips <= found.force_n <= tips
+    assert found.force_n <= found.force_below_n <= tips * (1 + 1e-5)
+    assert 0.998 * radius <= found.moment_nm <= radius * (1 + 1e-9)

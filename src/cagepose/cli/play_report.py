@@ -15,9 +15,9 @@ from cagepose.files.units import LengthUnit, from_metres
 from cagepose.files.words import LengthWords, line_of
 from cagepose.model.checks import FloatArray
 from cagepose.model.wording import short
-from cagepose.studies.cage_verdict import PathStep
-from cagepose.studies.play import Play, PlayEnd
+from cagepose.studies.cage_verdict import CageVerdict, PathStep
 from cagepose.studies.play_rest import PlayRest
+from cagepose.studies.play_result import Play, PlayEnd
 
 DIGITS = (6, 5, 4)
 """Of ranges: as many as fit the screen."""
@@ -29,6 +29,8 @@ MEANING = (
     "exact: no motion nearby goes farther (*: nor any inside the cage, by more than 1 % of it); past: so far, and"
     " perhaps farther; certified: no motion at all inside the cage does"
 )
+MEANING_WITHOUT_PROOF = "exact: no motion nearby goes farther; past: so far, and perhaps farther; no end: it goes on"
+SEATED = "without friction, pushed a ten-thousandth as hard as the load, which goes on: how far it comes each way"
 HALVED = (
     "limited by: the gaps that end the play there, and by how much the end comes back, or goes on, as one of them is"
     " made smaller or larger; halved if closed by: one gap alone, made so much smaller, leaves half of the play"
@@ -53,11 +55,31 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
             for number, (worth, points) in enumerate(_limits(end, is_length, unit).items()):
                 title = f"{sign} {name}" if number == 0 else ""
                 why.add_row(Text(title), Text(", ".join(points)), *(Text(cell) for cell in worth))
-    cage = play.cage
+    if play.cage is None:
+        print_all(Text(f"{play.scene.name}: play where {play.seated} seats it, in the cage's frame"), "", Text(SEATED))
+    else:
+        print_all(Text(f"{play.scene.name}: play from the start pose, in the cage's frame"), "")
+        _print_cage(play.cage, LengthWords(unit, play.scene.size_m), unit)
+    is_proven = any(end.certified is not None for _, _, low, high in rows for end in (low, high))
+    print_all("", table, "", *_legend(play, unit), Text(MEANING if is_proven else MEANING_WITHOUT_PROOF), "")
+    if why.row_count:
+        print_all(why, "", Text(HALVED), "")
+    for rest in rests:
+        print_all(_rest(rest, unit))
+    asked = {rest.phase for rest in rests}
+    for load in play.scene.loads if rests else ():
+        if load.name not in asked:
+            print_all(
+                Text(f"{load.name} has more than a weight and one force: where it leaves the object says cagepose run")
+            )
+    proven = f", certificate {play.certificate_s * 1e3:.3g} ms" if play.certificate_s else ""
+    print_all(Text(f"analysis {play.analysis_s * 1e3:.3g} ms{proven}"))
+
+
+def _print_cage(cage: CageVerdict, words: LengthWords, unit: LengthUnit) -> None:
     verdict = Text("cage: ")
     verdict.append(cage.verdict, style=STYLES[cage.verdict])
-    verdict.append(f" ({cage.reason})")
-    print_all(Text(f"{play.scene.name}: play from the start pose, in the cage's frame"), "", verdict)
+    print_all(verdict.append(f" ({cage.reason})"))
     if cage.verdict == "escapes":
         print_all(Text("it can leave: the ends are those near the start, and beyond them there is more"))
     if cage.free_directions:
@@ -65,36 +87,29 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
     if cage.leaves_at is not None:
         print_all(Text(f"it leaves its face with the object's origin at ({_triple(cage.leaves_at.position_m, unit)})"))
     if cage.path is not None:
-        print_all(Text(f"way out: {_way_out(cage.path, LengthWords(unit, play.scene.size_m))}"))
-    print_all("", table, "", *_legend(play, unit), Text(MEANING), "")
-    if why.row_count:
-        print_all(why, "", Text(HALVED), "")
-    for rest in rests:
-        print_all(_rest(rest, unit))
-    asked = {rest.phase for rest in rests}
-    for load in play.scene.loads:
-        if load.name not in asked:
-            print_all(
-                Text(f"{load.name} has more than a weight and one force: where it leaves the object says cagepose run")
-            )
-    print_all(Text(f"analysis {play.analysis_s * 1e3:.3g} ms, certificate {play.certificate_s * 1e3:.3g} ms"))
+        print_all(Text(f"way out: {_way_out(cage.path, words)}"))
 
 
 def _ranges(rows: Sequence[tuple[str, bool, PlayEnd, PlayEnd]], unit: LengthUnit, digits: int) -> Table:
     """Return the table of ranges: names, whether they are lengths, and both ends."""
-    table = plain_table("", "unit", "linear", "exact", "certified within")
+    ends = [end for _, _, low, high in rows for end in (low, high)]
+    has_linear = any(end.linear is not None for end in ends) or all(end.is_open for end in ends)
+    has_certified = any(end.certified is not None for end in ends)
+    kinds = ["linear"] * has_linear + ["exact"] + ["certified within"] * has_certified
+    table = plain_table("", "unit", *kinds)
     for name, is_length, low, high in rows:
 
         def written(value: float | None, is_length: bool = is_length) -> str:
             return _value(value, is_length, unit, digits)
 
-        ranges = [
-            f"{written(low.linear)} to {written(high.linear)}",
-            f"{_exact(low, is_length, unit, digits)} to {_exact(high, is_length, unit, digits)}",
-        ]
         is_certified = low.certified is not None and high.certified is not None
-        bound = f"{written(low.certified)} to {written(high.certified)}" if is_certified else "-"
-        table.add_row(*(Text(cell) for cell in (name, str(unit) if is_length else "deg", *ranges, bound)))
+        ranges = {
+            "linear": f"{written(low.linear)} to {written(high.linear)}",
+            "exact": f"{_exact(low, is_length, unit, digits)} to {_exact(high, is_length, unit, digits)}",
+            "certified within": f"{written(low.certified)} to {written(high.certified)}" if is_certified else "-",
+        }
+        cells = (name, str(unit) if is_length else "deg", *(ranges[kind] for kind in kinds))
+        table.add_row(*(Text(cell) for cell in cells))
     return table
 
 
@@ -182,7 +197,9 @@ def _halving(end: PlayEnd) -> tuple[float, list[str]]:
 
 
 def _way_out(path: Sequence[PathStep], words: LengthWords) -> str:
-    """``turn about (0, 0, 1) by 90 deg, travel along (1, 0, 0) by 5 mm, then nothing is ahead``."""
+    """``turn about (0, 0, 1) by 90 deg, travel along (1, 0, 0) by 5 mm; then nothing is ahead``."""
+    if not path:
+        return "nothing is ahead where it starts"
     motions = [step.motion for step in path[:MOST_MOTIONS]]
     ways = {"travel": "along", "turn": "about", "screw": "about"}
     told = [f"{motion.kind} {ways[motion.kind]} {line_of(motion)} by {words.amount(motion, 4)}" for motion in motions]

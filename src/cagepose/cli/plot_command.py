@@ -85,7 +85,7 @@ def _play_picture(
     from cagepose.views.style import figure_bytes
 
     found = play(source.run.scene if isinstance(source, RunFile) else source.scene)
-    said = f"{found.scene.name}, {found.cage.verdict}"
+    said = f"{found.scene.name}, {found.verdict}"
     if kind == "extremes":
         return figure_bytes(extreme_figure(found, source.length_unit), suffix), said
     points_m = [to_metres(point, source.length_unit) for point in points]

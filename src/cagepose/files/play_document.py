@@ -10,10 +10,9 @@ from cagepose.files.document import FORMAT_VERSION
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
-from cagepose.studies.cage_verdict import PathStep
-from cagepose.studies.play import Play, PlayEnd, PlayRange, PointPlay
+from cagepose.studies.cage_verdict import CageVerdict, PathStep
 from cagepose.studies.play_rest import PlayRest, PressedPoint
-from cagepose.studies.seated_play import SeatedEnd, SeatedPlay, SeatedRange
+from cagepose.studies.play_result import Play, PlayEnd, PlayRange, PointPlay
 
 LENGTHS = ("x", "y", "z")
 
@@ -34,40 +33,21 @@ def play_document(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> di
             }
             for point in play.points
         ],
-        "cage": {
-            "verdict": cage.verdict,
-            "reason": cage.reason,
-            "free_directions": list(cage.free_directions),
-            "leaves_at": _pose(cage.leaves_at, unit),
-            "path": None if cage.path is None else [_step(step, unit) for step in cage.path],
-        },
+        "seated": play.seated,
+        "cage": None if cage is None else _cage(cage, unit),
         "rests": [_rest(rest, unit) for rest in rests],
         "timing_s": {"analysis": play.analysis_s, "certificate": play.certificate_s},
     }
 
 
-def seated_document(found: SeatedPlay, unit: LengthUnit) -> dict[str, Any]:
-    """Return the document of play about a seated pose, as `play_document`; null: nothing nearby ends it."""
+def _cage(cage: CageVerdict, unit: LengthUnit) -> dict[str, Any]:
     return {
-        "version": FORMAT_VERSION,
-        "scene": found.run.scene.name,
-        "units": {"length": unit},
-        "phase": found.phase,
-        "pose": _pose(found.pose_world_object, unit),
-        "bearing": list(found.bearing),
-        "freedoms": {name: _seated(ends, name in LENGTHS, unit) for name, ends in found.freedoms.items()},
-        "points": [_seated(ends, True, unit) for ends in found.points],
+        "verdict": cage.verdict,
+        "reason": cage.reason,
+        "free_directions": list(cage.free_directions),
+        "leaves_at": _pose(cage.leaves_at, unit),
+        "path": None if cage.path is None else [_step(step, unit) for step in cage.path],
     }
-
-
-def _seated(ends: SeatedRange, is_length: bool, unit: LengthUnit) -> dict[str, Any]:
-    def told(end: SeatedEnd) -> dict[str, Any]:
-        value = end.value
-        if value is not None:
-            value = float(from_metres(value, unit)) if is_length else math.degrees(value)
-        return {"value": value, "stops": list(end.stops)}
-
-    return {"seated": [told(end) for end in ends.seated], "lifted": [told(end) for end in ends.lifted]}
 
 
 def _ends(ends: PlayRange | PointPlay, is_length: bool, unit: LengthUnit) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from cagepose.kernels.algebra.linear_program import N_UNKNOWNS, OPTIMAL, UNBOUND
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.model.checks import FloatArray
 
+Contacts = int | NDArray[np.int64]
 FIRST_RAYS = 8
 """Of each cone, evenly spread: cuts bring the others."""
 MOST_ROUNDS = 40
@@ -135,22 +136,23 @@ class ConeProgram:
         return len(cut) > 0
 
 
-def greatest_normal_force(program: ConeProgram, load: FloatArray, counts: FloatArray, contact: int) -> float:
-    """Return the greatest normal force of a contact over all forces that give the wrench ``load``; inf: no bound.
+def greatest_normal_force(program: ConeProgram, load: FloatArray, counts: FloatArray, contacts: Contacts) -> float:
+    """Return the greatest normal force of a contact, or the greatest sum of those of several, over all forces that give
+    the wrench ``load``; inf: no bound.
 
     ``counts``: 0 for contacts that count, -inf for others, (n,).
     """
-    return _end_of_force(program, load, counts, contact, 1.0)
+    return _end_of_force(program, load, counts, contacts, 1.0)
 
 
-def least_normal_force(program: ConeProgram, load: FloatArray, counts: FloatArray, contact: int) -> float:
+def least_normal_force(program: ConeProgram, load: FloatArray, counts: FloatArray, contacts: Contacts) -> float:
     """As `greatest_normal_force`, the least one."""
-    return -_end_of_force(program, load, counts, contact, -1.0)
+    return -_end_of_force(program, load, counts, contacts, -1.0)
 
 
-def _end_of_force(program: ConeProgram, load: FloatArray, counts: FloatArray, contact: int, sign: float) -> float:
-    """max sign f_i is, by duality, the least load . y with every ray . y >= 0, and >= sign for those of contact i."""
+def _end_of_force(program: ConeProgram, load: FloatArray, counts: FloatArray, contacts: Contacts, sign: float) -> float:
+    """max sign sum f_i is, by duality, the least load . y with every ray . y >= 0, and >= sign for those of the sum."""
     least = counts.copy()
-    least[contact] = sign
+    least[contacts] = sign
     outcome, motion = program.greatest(-load, least, np.zeros(N_UNKNOWNS))
     return float(load @ motion) if outcome == OPTIMAL else np.inf

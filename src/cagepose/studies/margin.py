@@ -28,6 +28,7 @@ from cagepose.studies.contact_cones import (
 )
 from cagepose.studies.equal_stiffness import equally_stiff_forces
 from cagepose.studies.extra_load import NOTHING, WITHOUT_BOUND, ExtraLoad, least_extra_load
+from cagepose.studies.whole_rims import more_places
 
 UNBALANCED = 1e-7
 """Of the load: forces that leave more do not balance it to first order. A rest leaves at most 1e-8."""
@@ -128,11 +129,11 @@ def margin(run: Run, phase: int = -1) -> Margin | None:
     choices = list(islice(product(*groups), CHOICES_LIMIT + 1))
     if len(choices) > CHOICES_LIMIT:
         return None
-    cones = _cones(run, number, contacts)
+    cones = _cones(run, number, [*contacts, *more_places(run.scene, ended)])
     load, size_n = _load(run, number, cones)
     if size_n == 0.0:
         return None
-    found = _Choices(cones, load, [_counting(len(contacts), choice) for choice in choices])
+    found = _Choices(cones, len(contacts), load, [_counting(len(contacts), choice) for choice in choices])
     if not found.are_balanced:
         return None
     force, moment = found.least_extra_load(FORCES), found.least_extra_load(MOMENTS)
@@ -219,12 +220,16 @@ def _counting(n_contacts: int, choice: tuple[int, ...]) -> FloatArray:
 
 
 class _Choices:
-    """The answers over all choices of faces at edges: the object is held only if it is with every one of them."""
+    """The answers over all choices of faces at edges: the object is held only if it is with every one of them.
 
-    def __init__(self, cones: ContactCones, load: FloatArray, counts: list[FloatArray]) -> None:
-        self.cones, self.load, self.counts = cones, load, counts
+    The first cones are those of contacts that are listed. Others, on whole rims, count where a load is to be balanced.
+    """
+
+    def __init__(self, cones: ContactCones, n_listed: int, load: FloatArray, counts: list[FloatArray]) -> None:
+        self.all_cones, self.cones = cones, cones.some(np.arange(len(cones.columns)) < n_listed)
+        self.load, self.counts = load, counts
         forces = [self._forces(of_choice) for of_choice in counts]
-        self.balanced = [cones.wrench(of_choice) for of_choice in forces]
+        self.balanced = [self.cones.wrench(of_choice) for of_choice in forces]
         self.are_balanced = all(float(np.linalg.norm(load - given)) <= UNBALANCED for given in self.balanced)
         self.shares = np.mean(forces, axis=0)
 
@@ -240,10 +245,11 @@ class _Choices:
         return np.asarray(np.einsum("ij,ijk->ik", self.shares[:, 1:], self.cones.columns[:, 1:, :3]))
 
     def least_extra_load(self, axes: slice) -> ExtraLoad:
-        program = ConeProgram(self.cones, CUT_FOR_BOUNDS)
+        program = ConeProgram(self.all_cones, CUT_FOR_BOUNDS)
         least = ExtraLoad(math.inf, math.inf, np.zeros(3))
         for counts, load in zip(self.counts, self.balanced, strict=True):
-            found = least_extra_load(program, load / np.linalg.norm(load), counts, axes, least.certain)
+            all_counts = np.append(counts, np.zeros(len(self.all_cones.columns) - len(counts)))
+            found = least_extra_load(program, load / np.linalg.norm(load), all_counts, axes, least.certain)
             least = min(least, found, key=lambda extra: extra.certain)
         return least
 

@@ -22,7 +22,7 @@ LENGTHS = 3
 
 
 class PlayFrame:
-    """A scene as the kernels of play take it, with the object at its start or at another pose that stands for it.
+    """A scene as the kernels of play take it.
 
     Attributes
     ----------
@@ -35,15 +35,13 @@ class PlayFrame:
         The object's start, metres.
     """
 
-    def __init__(self, scene: Scene, start_world_object: Pose | None = None) -> None:
+    def __init__(self, scene: Scene) -> None:
         points_world = scene.cage.points_world()
         self._pose_world_frame = Pose(points_world.mean(axis=0), scene.cage.pose_world_cage.quaternion_wxyz)
         points = self._pose_world_frame.inverse_transform(points_world)
         farthest = float(np.linalg.norm(points, axis=1).max())
         self.length_m = farthest if farthest > 0.0 else scene.size_m
-        self.pose_frame_object = self._pose_world_frame.inverse() @ (
-            start_world_object or scene.object.pose_world_object
-        )
+        self.pose_frame_object = self._pose_world_frame.inverse() @ scene.object.pose_world_object
         self.geometry = scene.geometry._replace(
             half_sizes=scene.geometry.half_sizes / self.length_m,
             box_positions=self.from_object(scene.geometry.box_positions),

@@ -4,12 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from cagepose.kernels.algebra.record import empty_rows
+from cagepose.kernels.collision.geometry import empty_placement, place_object
 from cagepose.kernels.play.clearances import LimitingGap, find_limiting_gaps
 from cagepose.kernels.play.extreme import Extreme
 from cagepose.kernels.play.goal import SHIFT, Goal
 from cagepose.kernels.play.polytope import empty_play_workspace
+from cagepose.kernels.play.tolerances import PRICELESS
+from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.studies.contact_cones import ConeProgram, contact_cones, greatest_normal_force, least_normal_force
 from cagepose.studies.play_frame import PlayFrame
 
 
@@ -55,4 +62,39 @@ def limiting_clearances(scene: Scene, frame: PlayFrame, goal: Goal, extreme: Ext
         )
         for gap in (gaps[index] for index in range(n_gaps))
     ]
+    return tuple(sorted(found, key=lambda clearance: (-clearance.closing, -clearance.opening)))
+
+
+def pressed_clearances(scene: Scene, pose: Pose, contacts: np.ndarray, push: FloatArray) -> tuple[Clearance, ...]:
+    """Return what limits a push that rests: the work of forces that balance it is how far its end moves (7.11).
+
+    Parameters
+    ----------
+    pose
+        Where it rests.
+    contacts
+        That touch there, rows of `ContactRecord`.
+    push
+        Force, and moment about the centre of gravity, in the world, (6,), whose work is what the end is measured in.
+    """
+    cones = contact_cones(
+        -contacts["normal"],
+        contacts["place"] - pose.transform(scene.object.center_of_gravity_m),
+        np.zeros(len(contacts)),
+    )
+    load = -push / np.repeat([1.0, cones.length_m], 3)
+    size = float(np.linalg.norm(load))
+    program, counts = ConeProgram(cones, 0.0), np.zeros(len(contacts))
+    placement = empty_placement(scene.geometry)
+    place_object(scene.geometry, *scene.object.pose_world_object.as_tuples(), placement)
+    found = []
+    for point, box in sorted(set(zip(contacts["point"].tolist(), contacts["box"].tolist(), strict=True))):
+        together = np.flatnonzero((contacts["point"] == point) & (contacts["box"] == box))
+        greatest = greatest_normal_force(program, load / size, counts, together)
+        if greatest <= PRICELESS:
+            continue
+        least = max(0.0, least_normal_force(program, load / size, counts, together))
+        gap = float(placement.meetings.gaps[box, point])
+        names = scene.cage.element_names[point], scene.object.element_names[box]
+        found.append(Clearance(*names, gap, size * greatest, size * least))
     return tuple(sorted(found, key=lambda clearance: (-clearance.closing, -clearance.opening)))

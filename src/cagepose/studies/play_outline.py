@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike
 
 from cagepose.model.checks import FloatArray
 from cagepose.model.scene import Scene
-from cagepose.studies.play import PointPlay, play
+from cagepose.studies.play import play
+from cagepose.studies.play_result import PointPlay
 from cagepose.studies.support import PARALLEL, polygon_within
 
 PLANES = (("x", "y"), ("x", "z"), ("y", "z"))
@@ -75,6 +76,8 @@ def _outline(axes: tuple[str, str], units: FloatArray, points: tuple[PointPlay, 
         signs * np.array([getattr(end, kind) for end in ends], dtype=np.float64)  # NaN: none
         for kind in ("linear", "reached", "certified")
     )
+    if np.isnan(linear).all():  # not known of such shapes
+        linear = exact
     heights = np.concatenate([linear, exact])
     has_end = np.isfinite(heights)
     farthest_m = float(np.abs(heights[has_end]).max(initial=0.0)) or 0.5 * size_m

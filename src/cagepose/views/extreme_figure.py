@@ -12,7 +12,7 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.studies.play import Play, PlayEnd
+from cagepose.studies.play_result import Play, PlayEnd
 from cagepose.views.scene_drawing import SceneDrawing
 from cagepose.views.solids import outer_points
 from cagepose.views.style import PAGE_WIDTH_IN, styled

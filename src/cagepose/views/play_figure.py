@@ -14,8 +14,8 @@ from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from cagepose.files.units import LengthUnit, from_metres
-from cagepose.studies.play import Play, PlayEnd, PlayRange
 from cagepose.studies.play_outline import PointOutline, point_outlines
+from cagepose.studies.play_result import Play, PlayEnd, PlayRange
 from cagepose.views.style import BLUE, GREY, ORANGE, PAGE_WIDTH_IN, PALE, VERMILLION, Look, styled
 
 BARS: dict[str, Look] = {
@@ -55,7 +55,7 @@ def play_figure(play: Play, at: Sequence[ArrayLike] = (), length_unit: LengthUni
             part.suptitle(f"the point ({place}) {length_unit} of the object, from where it starts", fontsize=9.5)
             for panel, outline in zip(part.subplots(1, 3), point_outlines(play.scene, point), strict=True):
                 _draw_outline(panel, outline, length_unit)
-        title = f"{play.scene.name}: play from the start pose ({play.cage.verdict})"
+        title = f"{play.scene.name}: play from the start pose ({play.verdict})"
         figure.suptitle(title, fontsize=11)
         handles = [Patch(label=WORDS[kind], **look) for kind, look in BARS.items()]
         lines = [Line2D([], [], label=f"{kind}, of a point", **look) for kind, look in LINES.items()]
@@ -72,6 +72,8 @@ def _draw_bars(panel: Axes, play: Play, names: tuple[str, ...], unit: float) -> 
             low, high = (_end(end, kind) for end in (ends.low, ends.high))
             if kind == "certified" and (low is None or high is None):
                 continue
+            if kind == "linear" and all(end.linear is None and not end.is_open for end in (ends.low, ends.high)):
+                continue  # not known of such shapes
             left = -reach if low is None else unit * low
             right = reach if high is None else unit * high
             panel.barh(row, right - left, left=left, height=HEIGHTS[kind], **look)

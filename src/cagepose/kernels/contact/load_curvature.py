@@ -8,7 +8,9 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.second_order import add_coupling, add_turned_arm
 from cagepose.kernels.algebra.vector import Vector, cross, dot, norm, scaled, vector_from
+from cagepose.kernels.contact.cardan import add_cardan_curvature, cardan_at
 from cagepose.kernels.contact.loads import (
+    CARDAN_MOMENT,
     DEAD_FORCE,
     DEAD_MOMENT,
     FOLLOWING_FORCE,
@@ -60,7 +62,7 @@ def add_spring_curvature(
 def add_load_curvature(
     load: PhaseLoad, position: Vector, quaternion: Quaternion, frame: Frame, out: FloatArray
 ) -> None:
-    """Add what a phase's load adds to S, (6, 6). That of moments, dead or following, is zero."""
+    """Add what a phase's load adds to S, (6, 6). That of dead and following moments is zero."""
     for which in range(len(load)):
         action = load[which]
         if is_idle(action):
@@ -73,6 +75,14 @@ def add_load_curvature(
         elif action.kind == FOLLOWING_FORCE:
             force = acting(action, position, quaternion).force
             add_coupling(force, 0.5, frame.axes, frame.radii, out)
+        elif action.kind == CARDAN_MOMENT:
+            joint = cardan_at(vector_from(action.anchor), arm_of(action, quaternion))
+            add_cardan_curvature(joint, vector_from(action.vector), frame, out)
+
+
+@kernel
+def has_potential(action: Action) -> bool:
+    return action.kind == DEAD_FORCE or action.kind == SPRING or action.kind == CARDAN_MOMENT
 
 
 @kernel
@@ -80,7 +90,7 @@ def has_circulation(load: PhaseLoad) -> bool:
     """Whether a part of a phase's load has no potential."""
     found = False
     for which in range(len(load)):
-        found = found or (load[which].kind != DEAD_FORCE and load[which].kind != SPRING)
+        found = found or not has_potential(load[which])
     return found
 
 
@@ -92,7 +102,7 @@ def write_circulation(load: PhaseLoad, position: Vector, quaternion: Quaternion,
             out[j, k] = 0.0
     for which in range(len(load)):
         action = load[which]
-        if action.kind == DEAD_FORCE or action.kind == SPRING:
+        if has_potential(action):
             continue
         one = acting(action, position, quaternion)
         sign = -0.5 if action.kind == DEAD_MOMENT else 0.5

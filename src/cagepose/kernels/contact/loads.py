@@ -10,10 +10,11 @@ from typing import Annotated, NamedTuple
 from cagepose.kernels.algebra.pose import Quaternion, quaternion_product, rotated
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.contact.cardan import cardan_at, cardan_moment, cardan_turns
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.native.kernel import kernel
 
-DEAD_FORCE, FOLLOWING_FORCE, DEAD_MOMENT, FOLLOWING_MOMENT, SPRING = 0, 1, 2, 3, 4
+DEAD_FORCE, FOLLOWING_FORCE, DEAD_MOMENT, FOLLOWING_MOMENT, SPRING, CARDAN_MOMENT = 0, 1, 2, 3, 4, 5
 """Kinds of actions. What is dead keeps its direction in the world, what follows keeps it in the object."""
 STRAIGHT, WINDING, BENT, BOUND = 0, 1, 2, 3
 """How an object flies that touches nothing: its centre of gravity along a straight line; on a helix that is carried
@@ -32,11 +33,14 @@ class Action:
     kind
         See above.
     vector
-        Force or moment: in the world, or in the object's frame where it follows.
+        Force or moment: in the world, or in the object's frame where it follows. Of a Cardan moment: what drives yaw,
+        pitch and roll.
     arm_object
-        Where a force or a spring acts, from the centre of gravity, in the object's frame, metres.
+        Where a force or a spring acts, from the centre of gravity, in the object's frame, metres. Of a Cardan moment:
+        the axis of roll in the object's frame, a unit vector.
     anchor
-        Where a spring is held, as seen from the middle of the cage points, as positions are; metres.
+        Where a spring is held, as seen from the middle of the cage points, as positions are; metres. Of a Cardan
+        moment: the axis of yaw in the world, a unit vector.
     stiffness
         Of a spring, force for each metre.
     tension_at_zero
@@ -97,6 +101,9 @@ def acting(action: Action, position: Vector, quaternion: Quaternion) -> Acting:
         return Acting((0.0, 0.0, 0.0), vector, 1.0)
     if action.kind == FOLLOWING_MOMENT:
         return Acting((0.0, 0.0, 0.0), rotated(quaternion, vector), 1.0)
+    if action.kind == CARDAN_MOMENT:
+        joint = cardan_at(vector_from(action.anchor), arm_of(action, quaternion))
+        return Acting((0.0, 0.0, 0.0), cardan_moment(joint, vector), 1.0)
     arm = arm_of(action, quaternion)
     way = spring_vector(action, position, arm)
     length = norm(way)
@@ -166,8 +173,9 @@ def joining_twist(
 def work_done(load: PhaseLoad, start: Vector, start_turned: Quaternion, end: Vector, end_turned: Quaternion) -> float:
     """Return the work of a phase's load between two poses of the centre of gravity.
 
-    That of dead forces and springs is what their potential falls, (5.2) and (5.26). That of moments, and of what
-    follows, is taken along the screw that joins the poses: their power along it is constant (5.27).
+    That of dead forces, springs and Cardan moments is what their potential falls, (5.2), (5.26) and (5.37). That of
+    other moments, and of what follows, is taken along the screw that joins the poses: their power along it is constant
+    (5.27).
     """
     work = 0.0
     for which in range(len(load)):
@@ -186,6 +194,9 @@ def work_done(load: PhaseLoad, start: Vector, start_turned: Quaternion, end: Vec
             if lengths > 0.0:
                 mean += action.tension_at_zero / lengths
             work += mean * dot(moved, plus(before, after))
+        elif action.kind == CARDAN_MOMENT:
+            axes = vector_from(action.anchor), vector_from(action.arm_object)
+            work += dot(vector_from(action.vector), cardan_turns(axes[0], axes[1], start_turned, end_turned))
         else:
             velocity, spin = joining_twist(start, start_turned, end, end_turned)
             one = acting(action, start, start_turned)
@@ -235,7 +246,7 @@ def flight(load: PhaseLoad) -> int:
             found = max(found, BOUND if action.stiffness > 0.0 else BENT)
         elif action.kind == FOLLOWING_FORCE:
             follows = True
-        elif action.kind == DEAD_MOMENT or norm(vector_from(action.arm_object)) > 0.0:
+        elif action.kind == DEAD_MOMENT or action.kind == CARDAN_MOMENT or norm(vector_from(action.arm_object)) > 0.0:
             turns_away = True  # its moment is not the same in the object's frame
     if follows:
         found = max(found, BENT if turns_away else WINDING)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.collision.geometry import PlacedCage
+from cagepose.kernels.contact.metric import frame_at
 from cagepose.kernels.native.kernel import entry
 from cagepose.kernels.outcome.cases import Cases, Part, start_of
 from cagepose.kernels.outcome.publish import begin, end_phase
@@ -46,4 +47,4 @@ def critical_friction(phase: int, part: Part, cases: Cases, cage: PlacedCage, at
     load, touch_m = start.actions[phase], start.tolerances.touch_m
     if not stand_at(start.geometry, part.body, start.position, start.quaternion, load, start.friction, touch_m, at):
         return math.nan
-    return least_friction_of_faces(at)
+    return least_friction_of_faces(frame_at(part.body, start.quaternion), at)

@@ -23,6 +23,10 @@ FLAT = 1e-13
 """Sine: flatter, a face lies on all of a rim, and its vertices meet it."""
 SECTIONS = 6
 """Of an arc, that are searched for a foot each: two rims in nearly the same plane have several."""
+SECTION = 2.0 * SEARCHED / SECTIONS
+COSINES = tuple(math.cos(-SEARCHED + section * SECTION) for section in range(SECTIONS + 1))
+SINES = tuple(math.sin(-SEARCHED + section * SECTION) for section in range(SECTIONS + 1))
+"""At their ends."""
 ITERATIONS, ROUNDING = 60, 2e-16
 """Of the search for a foot, radians."""
 REACH = 2.0 * math.sin(0.5 * SEARCHED)
@@ -109,16 +113,65 @@ def nearest_on_rim(rim: Feature, point: Vector) -> Vector:
     return plus(vector_from(rim.point), scaled(across, abs(rim.length) / size))
 
 
+class Seen(NamedTuple):
+    """An edge or another rim as seen from an arc, in numbers that an angle along it needs.
+
+    Attributes
+    ----------
+    ahead, aside
+        The way from its point to the rim's middle, along the arc's middle and across that in the rim's plane.
+    tilt_ahead, tilt_aside
+        Its direction, likewise.
+    height, square
+        The way along its direction, and its square.
+    radius
+        Of the rim, below zero in a hole.
+    """
+
+    ahead: float
+    aside: float
+    tilt_ahead: float
+    tilt_aside: float
+    height: float
+    square: float
+    radius: float
+
+
 @kernel
-def rise(rim: Feature, other: Feature, angle: float) -> float:
-    """Return how the distance from an edge or another rim grows along a rim: of its sign alone use is made."""
-    at = on_rim(rim, angle, True)
+def seen_from(rim: Feature, other: Feature) -> Seen:
+    toward, direction = vector_from(rim.toward), vector_from(other.direction)
+    aside = cross(vector_from(rim.direction), toward)
+    way = minus(vector_from(rim.point), vector_from(other.point))
+    return Seen(
+        dot(way, toward),
+        dot(way, aside),
+        dot(direction, toward),
+        dot(direction, aside),
+        dot(direction, way),
+        dot(way, way),
+        rim.length,
+    )
+
+
+@kernel
+def rise(seen: Seen, other: Feature, cosine: float, sine: float) -> float:
+    """Return how the distance from an edge or another rim grows along a rim, at an angle from its arc's middle: of its
+    sign alone use is made.
+    """
+    along = seen.aside * cosine - seen.ahead * sine  # of the way to the place on the rim, along the tangent there
+    tilt = seen.tilt_aside * cosine - seen.tilt_ahead * sine
+    height = seen.height + seen.radius * (seen.tilt_ahead * cosine + seen.tilt_aside * sine)
+    sense = math.copysign(1.0, seen.radius)
+    square = seen.square + seen.radius * (seen.radius + 2.0 * (seen.ahead * cosine + seen.aside * sine))
+    across = math.sqrt(max(square - height * height, 0.0))
     if other.kind == EDGE:
-        nearest = nearest_on_edge(other, at.point)
-        away = scaled(minus(at.point, nearest.place), math.copysign(1.0, other.radius))
-    else:
-        away = minus(at.point, nearest_on_rim(other, at.point))
-    return dot(away, at.tangent) * math.copysign(1.0, rim.length)
+        if other.taper != 0.0:
+            side = across / math.sqrt(1.0 - other.taper * other.taper)
+            height -= math.copysign(side, other.radius) * other.taper
+        return (along - height * tilt) * math.copysign(1.0, other.radius) * sense
+    if across == 0.0:
+        return along * sense
+    return (along - (along - height * tilt) * abs(other.length) / across) * sense
 
 
 @kernel
@@ -163,13 +216,13 @@ class Feet(NamedTuple):
 @kernel
 def feet_on(rim: Feature, other: Feature) -> Feet:
     """Find where an edge or another rim, both in the world, is nearest to an arc of a rim."""
-    n_feet, first, last, before = 0, 0.0, 0.0, rise(rim, other, -SEARCHED)
-    width = 2.0 * SEARCHED / SECTIONS
+    seen = seen_from(rim, other)
+    n_feet, first, last, before = 0, 0.0, 0.0, rise(seen, other, COSINES[0], SINES[0])
     for section in range(SECTIONS):
-        low = -SEARCHED + section * width
-        after = rise(rim, other, low + width)
+        after = rise(seen, other, COSINES[section + 1], SINES[section + 1])
         if before < 0.0 <= after:
-            last = root_of_rise(rim, other, low, low + width, before, after)
+            low = -SEARCHED + section * SECTION
+            last = root_of_rise(seen, other, low, low + SECTION, before, after)
             first = last if n_feet == 0 else first
             n_feet += 1
         before = after
@@ -185,12 +238,12 @@ def distance_from_arc(rim: Feature, other: Feature) -> float:
 
 
 @kernel
-def root_of_rise(rim: Feature, other: Feature, low: float, high: float, at_low: float, at_high: float) -> float:
+def root_of_rise(seen: Seen, other: Feature, low: float, high: float, at_low: float, at_high: float) -> float:
     """Return the angle at which `rise` is zero, between two where it is below and not below zero."""
     angle, last_side = low, 0.0
     for _ in range(ITERATIONS):  # false position; where one end stays, its value is halved (Illinois)
         before, angle = angle, min(max(low - at_low * (high - low) / (at_high - at_low), low), high)
-        at = rise(rim, other, angle)
+        at = rise(seen, other, math.cos(angle), math.sin(angle))
         if at == 0.0 or abs(angle - before) <= ROUNDING:
             break
         if at < 0.0:

@@ -9,6 +9,8 @@ from cagepose.kernels.contact.cone import BALANCED, HELD, steepest_tangent, writ
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.edges import CHOICES_LIMIT, ONLY_CARRYING, first_choice, next_choice
 from cagepose.kernels.contact.equilibrium import least_residual
+from cagepose.kernels.contact.metric import Frame
+from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.proof import ProofWorkspace
@@ -35,26 +37,33 @@ def step_to_balance(contacts: ContactSet, work: ContactWorkspace) -> float:
 
 
 @kernel
-def left_of_load(contacts: ContactSet, friction: float, work: ContactWorkspace) -> float:
-    return least_residual(contacts, friction, work.load, work.load_terms, work)
+def left_of_load(contacts: ContactSet, n_listed: int, frame: Frame, friction: float, work: ContactWorkspace) -> float:
+    """Return what the listed contacts, and those points of flat rims that count at this friction, leave of the load."""
+    contacts.used[0] = n_listed
+    left = least_residual(contacts, friction, work.load, work.load_terms, work)
+    for _ in range(MOST_ADDED):
+        if left <= HELD or not add_on_rims(contacts, frame, work.cone.passive.residual):
+            break
+        left = least_residual(contacts, friction, work.load, work.load_terms, work)
+    return left
 
 
 @kernel
-def least_friction(contacts: ContactSet, work: ContactWorkspace) -> float:
+def least_friction(contacts: ContactSet, n_listed: int, frame: Frame, work: ContactWorkspace) -> float:
     """Return the least coefficient at which one choice of faces balances the load (5.17); inf: none.
 
     Bisection, and Newton's method where the residual falls straight to zero: there the last step is taken from a
     residual that is still large enough to be sure of its digits.
     """
     low, high = 0.0, 1.0
-    if left_of_load(contacts, low, work) <= BALANCED:
+    if left_of_load(contacts, n_listed, frame, low, work) <= BALANCED:
         return 0.0
-    while left_of_load(contacts, high, work) > HELD:
+    while left_of_load(contacts, n_listed, frame, high, work) > HELD:
         low, high = high, 4.0 * high
         if high > FRICTION_GREATEST:
             return math.inf
     for _ in range(BISECTIONS):
-        left = left_of_load(contacts, low, work)
+        left = left_of_load(contacts, n_listed, frame, low, work)
         write_forces(work.cone, low, contacts)
         following = low + step_to_balance(contacts, work)
         if left <= SURE:
@@ -63,10 +72,10 @@ def least_friction(contacts: ContactSet, work: ContactWorkspace) -> float:
             following = 0.5 * (low + high)
         if following in (low, high):
             break
-        if left_of_load(contacts, following, work) <= HELD:
+        if left_of_load(contacts, n_listed, frame, following, work) <= HELD:
             high = following
             following = 0.5 * (low + high)
-            if left_of_load(contacts, following, work) <= HELD:
+            if left_of_load(contacts, n_listed, frame, following, work) <= HELD:
                 high = following
                 continue
         low = following
@@ -74,15 +83,16 @@ def least_friction(contacts: ContactSet, work: ContactWorkspace) -> float:
 
 
 @kernel
-def least_friction_of_faces(at: ProofWorkspace) -> float:
+def least_friction_of_faces(frame: Frame, at: ProofWorkspace) -> float:
     """Return the least coefficient with which the contacts at a pose balance the load, whichever faces count on edges;
     inf: none; NaN: there are too many choices of faces to ask them all.
     """
     least = 0.0
-    contacts, work = at.contacts, at.scratch[0].solver
+    contacts, work, n_listed = at.contacts, at.scratch[0].solver, at.contacts.used[0]
     first_choice(contacts)
     for _ in range(CHOICES_LIMIT):
-        least = max(least, least_friction(contacts, work))
+        least = max(least, least_friction(contacts, n_listed, frame, work))
+        contacts.used[0] = n_listed
         write_forces(work.cone, least, contacts)
         if least == math.inf or not next_choice(contacts, ONLY_CARRYING):
             return least

@@ -1,0 +1,189 @@
+"""Play of any shapes: its ends are where pushes come to rest (7.15)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from time import perf_counter
+
+import numpy as np
+
+from cagepose.model.checks import FloatArray
+from cagepose.model.scene import Scene
+from cagepose.runs.run import motion_between
+from cagepose.studies.cage_verdict import CageVerdict, PathStep
+from cagepose.studies.play_frame import FREEDOMS, LENGTHS
+from cagepose.studies.play_limits import Clearance, pressed_clearances
+from cagepose.studies.play_result import EndStatus, PlayEnd
+from cagepose.studies.pushes import PITCH, ROLL, YAW, Freedom, Pushed, Pushes
+
+MOST_ROUNDS = 5
+"""Of pushes from the ends of others. One round that finds nothing is usual."""
+MOST_STEPS = 5_000
+"""Of all pushes from ends of others, as many on any machine: a second or two, where shapes are many."""
+FARTHER = 1e-9
+"""In sizes of the scene, or radians: an end that lies farther by less is the same."""
+SEED = 20250101
+
+Chain = tuple[Pushed, ...]
+"""Pushes one after the other, from the start; none: the start itself."""
+
+
+@dataclass(eq=False)
+class _Found:
+    """The farthest of one end: its value with its sign, where it was pushed to, and what led to the start of that."""
+
+    value: float
+    pushed: Pushed
+    before: Chain
+
+    @property
+    def is_end(self) -> bool:
+        return self.pushed.rests and not self.pushed.is_saddle
+
+
+class PushedPlay:
+    """What pushes find for the freedoms of a scene's object and for further ways of points of it."""
+
+    def __init__(self, scene: Scene, pushes: Pushes, shifts: Sequence[tuple[FloatArray, FloatArray]]) -> None:
+        self.scene, self._pushes = scene, pushes
+        lengths = [Freedom(np.zeros(3), axis) for axis in np.eye(LENGTHS)]
+        angles = [Freedom(np.zeros(3), np.zeros(3), angle) for angle in (ROLL, PITCH, YAW)]
+        self._freedoms = [*lengths, *angles, *(Freedom(*shift) for shift in shifts)]
+        self._found = dict[tuple[int, float], _Found]()
+        self.escape: Chain | None = None
+        self._escape_by = ""
+        started = perf_counter()
+        self._search()
+        self.analysis_s = perf_counter() - started
+
+    def _search(self) -> None:
+        """Push each way from the start, then from where other pushes came to rest, until none goes farther.
+
+        An object that gets out is pushed from the start alone: out there nothing has an end.
+        """
+        named, asked = range(len(FREEDOMS)), range(len(FREEDOMS), len(self._freedoms))
+        self._push_all(named, [()])
+        first_steps = self._pushes.n_steps
+        new = self._chains(named)
+        pool = list(new)
+        for _ in range(MOST_ROUNDS if self.escape is None else 0):
+            before = {key: found.pushed for key, found in self._found.items()}
+            self._push_all(named, new, first_steps + MOST_STEPS)
+            new = [chain for key, chain in self._chains_of(named) if before[key] is not self._found[key].pushed]
+            pool += new
+            if not new or self.escape is not None:
+                break
+        if asked:
+            self._push_all(asked, [(), *(pool if self.escape is None else ())])
+
+    def _chains_of(self, places: Sequence[int]) -> list[tuple[tuple[int, float], Chain]]:
+        return [
+            (key, (*found.before, found.pushed))
+            for key, found in self._found.items()
+            if key[0] in places and found.pushed.rests
+        ]
+
+    def _chains(self, places: Sequence[int]) -> list[Chain]:
+        return [chain for _, chain in self._chains_of(places)]
+
+    def _push_all(self, places: Sequence[int], chains: Sequence[Chain], most_steps: float = math.inf) -> None:
+        for place in places:
+            for sign in (-1.0, 1.0):
+                for chain in chains:
+                    found = self._found.get((place, sign))
+                    if found is not None and (found.pushed.goes_on or self._pushes.n_steps > most_steps):
+                        break
+                    self._push(place, sign, chain)
+
+    def _push(self, place: int, sign: float, chain: Chain) -> None:
+        freedom = self._freedoms[place]
+        pushed = self._pushes.push(freedom, sign, chain[-1].pose if chain else self._pushes.start)
+        if pushed.verdict == "escapes":
+            self._note_escape((*chain, pushed), _words(place, sign) if place < len(FREEDOMS) else "there")
+        value = math.inf if pushed.goes_on else sign * self._pushes.value(freedom, pushed.pose)
+        before = self._found.get((place, sign))
+        unit = self.scene.size_m if freedom.angle is None else 1.0
+        if before is None or value > before.value + FARTHER * unit:
+            self._found[place, sign] = _Found(value, pushed, chain)
+
+    def ranges(self) -> list[tuple[PlayEnd, PlayEnd]]:
+        """Return the ends of all freedoms, then of all ways of points, least and greatest."""
+        return [(self._end(place, -1.0), self._end(place, 1.0)) for place in range(len(self._freedoms))]
+
+    def _end(self, place: int, sign: float) -> PlayEnd:
+        found = self._found[place, sign]
+        if found.pushed.goes_on:
+            return PlayEnd(None, None, None, "open", lambda: None, tuple)
+        status: EndStatus = "local" if found.is_end else "not converged"
+        find = partial(self._clearances, place, sign, found.pushed)
+        clearances = find if found.is_end and not self._pushes.is_seated else tuple  # the seat's forces are no prices
+        return PlayEnd(None, sign * found.value, None, status, lambda: found.pushed.pose, clearances)
+
+    def _clearances(self, place: int, sign: float, pushed: Pushed) -> tuple[Clearance, ...]:
+        push = self._pushes.wrench(self._freedoms[place], sign, pushed.pose)
+        return pressed_clearances(self.scene, pushed.pose, pushed.contacts, push)
+
+    def free_directions(self) -> tuple[str, ...]:
+        """``x``: free both ways; ``+x``: free one way."""
+        names = []
+        for place, name in enumerate(FREEDOMS):
+            low, high = (self._found[place, sign].pushed.goes_on for sign in (-1.0, 1.0))
+            if low or high:
+                names.append(name if low and high else f"{'-' if low else '+'}{name}")
+        return tuple(names)
+
+    def judge(self, search_s: float, progress: Callable[[float], None] | None) -> CageVerdict:
+        """Say whether a push led out; if none of those did, push points of the object at random for a time."""
+        rng, started, n_tried = np.random.default_rng(SEED), perf_counter(), 0
+        chains = [(), *self._chains(range(len(FREEDOMS)))]
+        reach, center = self.scene.object.reach_m, self.scene.object.center_of_gravity_m
+        while self.escape is None:
+            share = (perf_counter() - started) / search_s if search_s > 0.0 else 1.0
+            if progress is not None:
+                progress(min(share, 1.0))
+            if share >= 1.0:
+                break
+            along = rng.normal(size=3)
+            aim = Freedom(center + reach * rng.uniform(-1.0, 1.0, 3), along / np.linalg.norm(along))
+            chain = chains[rng.integers(len(chains))]
+            pushed = self._pushes.push(aim, 1.0, chain[-1].pose if chain else self._pushes.start)
+            n_tried += 1
+            if pushed.verdict == "escapes":
+                self._note_escape((*chain, pushed), "at random")
+            elif pushed.rests:
+                chains.append((*chain, pushed))
+        if self.escape is not None:
+            n_before = len(self.escape) - 1
+            after = f" after {n_before} other {'push' if n_before == 1 else 'pushes'}" if n_before else ""
+            reason = f"pushed {self._escape_by}{after}, it gets out"
+            return CageVerdict("escapes", reason, self.free_directions(), self._path(self.escape), None, n_tried)
+        searched = f"no way out was found by {n_tried} random pushes" if n_tried else "no way out was looked for"
+        reason = f"bounds are known of boxes among points alone; {searched}"
+        return CageVerdict("not certified", reason, self.free_directions(), None, None, n_tried)
+
+    def _note_escape(self, chain: Chain, by: str) -> None:
+        """Keep the shortest way out."""
+        if self.escape is None or _n_steps(chain) < _n_steps(self.escape):
+            self.escape, self._escape_by = chain, by
+
+    def _path(self, chain: Sequence[Pushed]) -> tuple[PathStep, ...]:
+        held, found = self.scene.object, list[PathStep]()
+        for pushed in chain:
+            for number in range(len(pushed.poses)):
+                before, after = pushed.pose_after(number), pushed.pose_after(number + 1)
+                motion = motion_between(before, after, held.center_of_gravity_m, self.scene.size_m)
+                if motion is not None:
+                    found.append(PathStep(motion, after))
+        return tuple(found)
+
+
+def _n_steps(chain: Chain) -> int:
+    return sum(len(pushed.poses) for pushed in chain)
+
+
+def _words(place: int, sign: float) -> str:
+    """``along -x``, ``in +yaw``."""
+    return f"{'along' if place < LENGTHS else 'in'} {'+' if sign > 0.0 else '-'}{FREEDOMS[place]}"

@@ -1,0 +1,204 @@
+"""Pushes without friction from any pose, and where they lead: they find the ends of the play (7.15)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+
+from cagepose.kernels.algebra.record import Rows, dtype_of
+from cagepose.kernels.contact.loads import CARDAN_MOMENT, DEAD_FORCE, Action, PhaseLoad, acting
+from cagepose.kernels.native.slots import Slots
+from cagepose.kernels.outcome.records import empty_outcome
+from cagepose.kernels.outcome.trace import VERDICT_NAMES
+from cagepose.kernels.quasistatic.run import QuasistaticRules
+from cagepose.kernels.stability.second_order import STABILITY_NAMES
+from cagepose.model.checks import FloatArray, as_vector
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
+from cagepose.runs.cases import cases_of, part_of
+from cagepose.runs.methods import REGISTRY
+from cagepose.runs.quasistatic import TURN_STEP_RAD
+
+STEP_LIMIT = 500
+"""Of one push: forty are many for one that comes to rest."""
+STEEPEST = 1.55
+"""Radians. Pitch beyond is next to the pole of the angles; what is pushed there, or almost half a turn, has no end."""
+YAW, PITCH, ROLL = range(3)
+
+
+@dataclass(frozen=True, eq=False)
+class Freedom:
+    """What is asked: how far a point of the object goes along a direction of the cage, or how far an angle turns.
+
+    Attributes
+    ----------
+    at_object_m, direction_cage
+        Of a way, (3,) each; metres, and a unit vector.
+    angle
+        YAW, PITCH or ROLL in the cage's axes, from the start; None: a way.
+    """
+
+    at_object_m: FloatArray
+    direction_cage: FloatArray
+    angle: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Pushed:
+    """Where a push led.
+
+    Attributes
+    ----------
+    start, poses
+        Where it began, and where the object was after each step.
+    verdict
+        "rests", or as of a run that does not.
+    is_saddle
+        Whether it rests where a motion to the side would let the push go on.
+    passes_pole
+        Whether an angle came to where it has no end.
+    contacts
+        At the end, rows of `ContactRecord`.
+    """
+
+    start: Pose
+    poses: FloatArray
+    verdict: str
+    is_saddle: bool
+    passes_pole: bool
+    contacts: np.ndarray
+
+    @property
+    def pose(self) -> Pose:
+        """At the end."""
+        return self.pose_after(len(self.poses))
+
+    def pose_after(self, n_steps: int) -> Pose:
+        if n_steps == 0:
+            return self.start
+        return Pose.from_unit(self.poses[n_steps - 1, :3], self.poses[n_steps - 1, 3:])
+
+    @property
+    def rests(self) -> bool:
+        return self.verdict == "rests"
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether nothing is ahead, or the object turns around."""
+        return self.verdict == "escapes" or (not self.rests and self.passes_pole)
+
+
+class Pushes:
+    """The object of a scene, to be pushed.
+
+    Attributes
+    ----------
+    start
+        From where ways and angles count.
+    is_seated
+        Whether more than the push acts.
+    n_steps
+        That all pushes so far took together.
+    """
+
+    def __init__(self, scene: Scene, start: Pose, seat: np.ndarray, unit_n: float = 1.0, unit_nm: float = 1.0) -> None:
+        """
+        Parameters
+        ----------
+        scene
+            Its start pose, loads and friction do not matter.
+        start
+            See above.
+        seat
+            What acts beside each push, rows of `Action`.
+        unit_n, unit_nm
+            How much force and moment a push has.
+        """
+        self.start, self._cage = start, scene.cage.pose_world_cage
+        self._center, self._units = scene.object.center_of_gravity_m, (unit_n, unit_nm)
+        self.is_seated = len(seat) > 0
+        self._actions = np.concatenate([np.zeros(1, dtype_of(Action)), seat])
+        method, cases = REGISTRY["quasistatic"], cases_of(scene, 0.0)
+        self._run = method.run
+        self._cases = cases._replace(
+            point_frictions=np.full_like(cases.point_frictions, np.nan),
+            box_frictions=np.full_like(cases.box_frictions, np.nan),
+            actions=cast(Rows[Rows[PhaseLoad]], self._actions[None, None]),
+        )
+        self._outcome = empty_outcome(scene.geometry, 1, STEP_LIMIT, 0)
+        rules = QuasistaticRules(TURN_STEP_RAD, STEP_LIMIT)
+        work = method.workspace(scene.geometry, STEP_LIMIT)
+        self._part, self._rules, self._work = Slots(part_of(scene)), Slots(rules), Slots(work)
+        self._written = Slots(self._outcome)
+        self.n_steps = 0
+
+    def push(self, freedom: Freedom, sign: float, start: Pose) -> Pushed:
+        """Push from a pose, towards the greatest value (sign 1) or the least (-1), until the push is at rest.
+
+        The work of a force is how far its point goes along it; the work of a Cardan moment is how far its angle turns.
+        """
+        self._aim(freedom, sign)
+        return self._let_go(start, freedom.angle)
+
+    def settle(self) -> Pushed:
+        """Let what acts beside pushes bring the object to rest, from the start."""
+        self._actions[0]["kind"], self._actions[0]["vector"] = DEAD_FORCE, 0.0
+        return self._let_go(self.start, None)
+
+    def _let_go(self, start: Pose, angle: int | None) -> Pushed:
+        cases = self._cases._replace(
+            object_positions=start.position_m[None].copy(), object_quaternions=start.quaternion_wxyz[None].copy()
+        )
+        self._run(self._part, Slots(cases), self._rules, self._work, self._written)
+        _, _, n_steps, n_contacts = self._outcome.counts.tolist()
+        self.n_steps += n_steps
+        contacts, poses = cast(Any, self._outcome.contacts), self._outcome.path[:n_steps].copy()
+        ended = self._outcome.phases[0]
+        return Pushed(
+            start,
+            poses,
+            VERDICT_NAMES[ended.verdict],
+            STABILITY_NAMES[ended.stability] == "unstable",
+            angle is not None and self._pass_pole(angle, poses),
+            contacts[:n_contacts].copy(),
+        )
+
+    def _pass_pole(self, angle: int, poses: FloatArray) -> bool:
+        """Whether an angle comes near half a turn, or the pitch to the pole, at one of the poses, (n, 7)."""
+        turns = [self._turn(Pose.from_unit(pose[:3], pose[3:])).euler_zyx for pose in poses]
+        return any(abs(turn[PITCH]) > STEEPEST or abs(turn[angle]) > 0.9 * np.pi for turn in turns)
+
+    def _turn(self, pose: Pose) -> Pose:
+        return self._cage.inverse() @ pose @ self.start.inverse() @ self._cage
+
+    def value(self, freedom: Freedom, pose: Pose) -> float:
+        """Return how far a pose is from the start, metres or radians."""
+        if freedom.angle is not None:
+            return float(self._turn(pose).euler_zyx[freedom.angle])
+        way = pose.transform(freedom.at_object_m) - self.start.transform(freedom.at_object_m)
+        return float(self._cage.rotation @ freedom.direction_cage @ way)
+
+    def wrench(self, freedom: Freedom, sign: float, pose: Pose) -> FloatArray:
+        """Return a push at a pose: force, and moment about the centre of gravity, (6,), whose work is its value."""
+        self._aim(freedom, sign)
+        one = acting(self._actions[0], as_vector(np.zeros(3)), pose.as_tuples()[1])
+        return np.append(one.force, one.moment) / self._units[0 if freedom.angle is None else 1]
+
+    def _aim(self, freedom: Freedom, sign: float) -> None:
+        action = self._actions[0]
+        if freedom.angle is None:
+            action["kind"] = DEAD_FORCE
+            action["vector"] = sign * self._units[0] * (self._cage.rotation @ freedom.direction_cage)
+            action["arm_object"] = freedom.at_object_m - self._center
+        else:
+            action["kind"], action["vector"] = CARDAN_MOMENT, 0.0
+            action["vector"][freedom.angle] = sign * self._units[1]
+            action["anchor"] = self._cage.rotation[:, 2]
+            action["arm_object"] = self.start.rotation.T @ self._cage.rotation[:, 0]
+
+
+def unseated(scene: Scene) -> Pushes:
+    """Return pushes from the scene's start, with nothing beside them."""
+    return Pushes(scene, scene.object.pose_world_object, np.zeros(0, dtype_of(Action)))

@@ -1,0 +1,40 @@
+"""Where a load seats the object, and pushes from there: `seated`."""
+
+from __future__ import annotations
+
+from cagepose.errors import Problem, SceneError
+from cagepose.model.scene import Scene
+from cagepose.model.wording import few
+from cagepose.runs.actions import actions_of, load_size
+from cagepose.runs.run import AT_REST
+from cagepose.runs.solve import run
+from cagepose.studies.pushes import Pushes
+
+SHARE_OF_LOAD = 1e-4
+"""Of a push beside what seats the object: on a flat seat it goes as far as by any smaller push."""
+
+
+def seated(scene: Scene, phase: str) -> Pushes:
+    """Return pushes, small beside the load of a phase, from where that leaves the object without friction.
+
+    Raises
+    ------
+    SceneError
+        There is no such phase, the scene's run does not come to rest in it, or it is friction that keeps it there.
+    """
+    names = [load.name for load in scene.loads]
+    if phase not in names:
+        raise SceneError([Problem(("phase",), f"is {phase!r}, and the scene has {few(names)}; give one of them")])
+    number, ended = names.index(phase), run(scene).phases
+    if number >= len(ended) or ended[number].verdict not in AT_REST:
+        how = ended[number].verdict if number < len(ended) else "is not reached"
+        raise SceneError([Problem(("phase",), f"is {phase!r}, which does not come to rest ({how}); see cagepose run")])
+    pose = ended[number].pose
+    unit_n = SHARE_OF_LOAD * load_size(scene, number, pose)
+    pushes = Pushes(scene, pose, actions_of(scene)[number], unit_n, unit_n * scene.object.reach_m)
+    settled = pushes.settle()
+    if not settled.rests:
+        says = f"is {phase!r}, in which friction alone keeps it ({settled.verdict} without); ask about another phase"
+        raise SceneError([Problem(("phase",), says)])
+    pushes.start = settled.pose
+    return pushes
