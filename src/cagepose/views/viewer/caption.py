@@ -50,20 +50,26 @@ class Caption:
         self.units_per_pixel = units_per_pixel
         self.small, self.large = (ImageFont.load_default(height) for height in (SMALL, LARGE))
 
-    def write(self, image: Image.Image, shot: Shot, labels: list[Label], exaggeration: float) -> None:
-        """Write everything on the picture of one shot, in which play is so many times as large."""
+    def write(self, image: Image.Image, shot: Shot | None, labels: list[Label], exaggeration: float) -> None:
+        """Write on a picture in which play is so many times as large; None for the shot: no words above it."""
         pen = ImageDraw.Draw(image)
         self._write_names(pen, labels)
+        if shot is not None:
+            self._write_head(pen, shot)
+        self._write_exaggeration(pen, round(exaggeration))
+        self._write_scale(pen)
+
+    def _write_head(self, pen: ImageDraw.ImageDraw, shot: Shot) -> None:
         run = self.shown.run
         pen.text((14.0, 10.0), run.scene.name, TITLE_INK, self.large)
         across = 24.0 + pen.textlength(run.scene.name, self.large)
         pen.text((across, 10.0), run.verdict, VERDICT_INK[verdict_kind(run.verdict)], self.large)
         pen.text((14.0, 34.0), self._happening(shot), SOFT_INK, self.small)
-        self._write_exaggeration(pen, round(exaggeration))
-        self._write_scale(pen)
 
     def _write_names(self, pen: ImageDraw.ImageDraw, labels: list[Label]) -> None:
-        loud_first = sorted(labels, key=lambda label: label.ink != LOUD_INK)
+        size = (self.width, self.height)
+        seen = [label for label in labels if all(0.0 < at < room for at, room in zip(label.place, size, strict=True))]
+        loud_first = sorted(seen, key=lambda label: label.ink != LOUD_INK)
         sizes = [(pen.textlength(label.text, self.small), SMALL) for label in loud_first]
         corners = laid_out([label.place for label in loud_first], sizes, (self.width, self.height))
         for label, corner in zip(loud_first, corners, strict=True):

@@ -28,17 +28,20 @@ class Eye:
         What is looked at, (3,), and half the height of the picture there, drawing units.
     """
 
-    def __init__(self, size: tuple[int, int]) -> None:
+    def __init__(self, size: tuple[int, int], least_distance: float = 0.0) -> None:
+        """``least_distance``: how far the eye keeps from the target, so that a part of a large thing can be seen from
+        outside.
+        """
         self.size = np.array(size, dtype=np.float64)
         sin_a, cos_a, sin_e, cos_e = math.sin(AZIMUTH), math.cos(AZIMUTH), math.sin(ELEVATION), math.cos(ELEVATION)
         back, right = np.array([cos_a * cos_e, sin_a * cos_e, sin_e]), np.array([-sin_a, cos_a, 0.0])
         self.axes: FloatArray = np.stack([right, np.cross(back, right), back])
-        self.target, self.half = np.zeros(3), 1.0
+        self.target, self.half, self.least_distance = np.zeros(3), 1.0, least_distance
 
     @property
     def distance(self) -> float:
         """From the eye to the target."""
-        return self.half / math.tan(math.radians(FIELD_DEG) / 2.0)
+        return max(self.least_distance, self.half / math.tan(math.radians(FIELD_DEG) / 2.0))
 
     def fit(self, radius: float, content: Callable[[], FloatArray]) -> None:
         """Bring all places (n, 3) that ``content`` returns into the picture; they may follow from where the eye is."""

@@ -45,6 +45,8 @@ PIN, PIN_OF_CAGE, PIN_SLOPE = 0.05, 0.12, 0.22
 """A cage point as a pin: its length in drawing units, and in reaches of all points, at most; its radius beside that."""
 GRID_LINES, BELOW = 12, 0.01
 """From the middle of the ground to one side; how far it lies below all else, in drawing units."""
+NEAR_CAGE, LEAST_NEAR = 0.3, 0.06
+"""Of the cage's extent, and in drawing units at least: what counts as near it."""
 FEW_NAMES = 14
 """Of more contacts than these, only those are named that press or were just reached."""
 LEAST_FORCE = 1e-9

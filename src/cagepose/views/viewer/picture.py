@@ -28,6 +28,8 @@ SIZE = (900, 600)
 """Pixels across and down."""
 FINER = 2
 """How many times as many are drawn before they are put together."""
+FAR = 3.0
+"""In radii of the scene: how far off the eye is that looks at what is near the cage."""
 
 
 class PictureMaker:
@@ -40,16 +42,19 @@ class PictureMaker:
         size: tuple[int, int] = SIZE,
         *,
         seen: Sequence[int] | None = None,
+        is_near: bool = False,
     ) -> None:
         """``exaggerations``: of each phase; left out, those that the stage proposes. ``seen``: the shots that must fit
-        into the picture; left out, the start and the end of every event.
+        into the picture; left out, the start and the end of every event. The object's outline is drawn where the
+        first of them has it. ``is_near``: only what is near the cage must fit, of an object that reaches far beyond it.
         """
         self.stage, self.shown = stage, stage.shown
         self.width, self.height = size
         self.exaggerations = stage.proposed if exaggerations is None else tuple(exaggerations)
         self.scene = self.shown.run.scene
         self.seen = (0, *(row.last_shot for row in self.shown.rows)) if seen is None else tuple(seen)
-        self.eye = Eye(size)
+        self.is_near = is_near
+        self.eye = Eye(size, FAR * stage.radius if is_near else 0.0)
         self.force_scale = look.FORCE / (self.shown.greatest_force or 1.0)
         self._measure_pins()
         self.eye.fit(stage.radius, self._content)
@@ -59,8 +64,8 @@ class PictureMaker:
         units_per_pixel = float(from_metres(stage.size_m, self.shown.length_unit)) * self.eye.pixel()
         self.caption = Caption(self.shown, size, units_per_pixel)
 
-    def picture(self, shot: Shot) -> Image.Image:
-        """Return one shot as a picture."""
+    def picture(self, shot: Shot, *, is_captioned: bool = True) -> Image.Image:
+        """Return one shot as a picture, with or without the words above it."""
         self.raster.begin()
         self.labels: list[Label] = []
         self.now = self._look(shot)
@@ -74,7 +79,7 @@ class PictureMaker:
         self._draw_way(shot, pose)
         self._glaze_bodies()
         image = self.raster.shrunk(FINER)
-        self.caption.write(image, shot, self.labels, self.now.factor)
+        self.caption.write(image, shot if is_captioned else None, self.labels, self.now.factor)
         return image
 
     def places(self, shot: Shot) -> FloatArray:
@@ -119,7 +124,17 @@ class PictureMaker:
             found.append(self.stage.place(body + shift))
         cage = self.scene.cage.pose_world_cage
         found += [self.stage.place(cage.transform(vertices_of([hole]))) for hole in self.scene.cage.holes]
-        return np.concatenate(found)
+        places = np.concatenate(found)
+        return places if not self.is_near else np.clip(places, *self._near_cage(last, now))
+
+    def _near_cage(self, shot: Shot, now: Look) -> tuple[FloatArray, FloatArray]:
+        """Return two corners of what is near the cage and its contacts."""
+        cage = [self.stage.place(self.stage.points(now)), self.places(shot)]
+        cage += [self.stage.place(body) for body in self.stage.bodies_world]
+        cage.append(self.stage.place(self.stage.middles_world))
+        low, high = np.concatenate(cage).min(axis=0), np.concatenate(cage).max(axis=0)
+        room = max(look.NEAR_CAGE * float((high - low).max()), look.LEAST_NEAR)
+        return low - room, high + room
 
     def _rod(
         self, start: FloatArray, end: FloatArray, pixels: float, paint: str, end_pixels: float | None = None
@@ -153,7 +168,8 @@ class PictureMaker:
         lowest += [self.stage.place(body)[:, 2].min() for body in self.stage.bodies_world]
         lowest += (self.stage.place(self.stage.points(self._look(shots[-1])))[:, 2] - self.pin).tolist()
         unit = float(from_metres(self.stage.size_m, self.shown.length_unit))
-        rough = 2.0 * self.stage.radius * unit / look.GRID_LINES
+        reach = min(self.stage.radius, 2.0 * self.eye.half) if self.is_near else self.stage.radius
+        rough = 2.0 * reach * unit / look.GRID_LINES
         power = 10.0 ** math.floor(math.log10(rough))
         step = power * next(times for times in (1, 2, 5, 10) if times * power >= rough) / unit
         at = step * np.arange(-look.GRID_LINES, look.GRID_LINES + 1)
@@ -209,8 +225,8 @@ class PictureMaker:
             self.bodies.glaze(body, placed, PAINT["cage"], self.cage_holes, look.GLASS)
 
     def _draw_start(self) -> None:
-        """Draw where the object started."""
-        start = self.shown.shots[0]
+        """Draw where the object was in the first shot that must be seen."""
+        start = self.shown.shots[self.seen[0]]
         pose = self.stage.pose(start.pose_world_object, self._look(start))
         for part in self.scene.object.parts:
             self.bodies.edges(part, pose @ part.pose_body_shape, PAINT["ghost"])

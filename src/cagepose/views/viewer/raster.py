@@ -114,6 +114,7 @@ class Raster:
 
     def lines(self, starts: FloatArray, ends: FloatArray, color: FloatArray) -> None:
         """Draw straight lines, two pixels wide, from ``starts`` to ``ends``, (n, 3) each."""
+        starts, ends = self._within(starts, ends)
         steps = np.ceil(np.abs(ends - starts)[:, :2].max(axis=1)).astype(int) + 1
         place = np.arange(steps.sum()) - np.repeat(np.cumsum(steps) - steps, steps)
         ways = ((ends - starts) / steps[:, None]).T
@@ -184,6 +185,24 @@ class Raster:
     def shrunk(self, factor: int) -> Image.Image:
         """Return the picture, each pixel the mean of ``factor`` by ``factor``."""
         return Image.fromarray(self.colors).reduce(factor)
+
+    def _within(self, starts: FloatArray, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the parts of straight lines, (n, 3) each, that are in the picture."""
+        low, high = np.zeros(len(starts)), np.ones(len(starts))
+        for axis, room in ((0, self.heights.shape[1]), (1, self.heights.shape[0])):
+            way = ends[:, axis] - starts[:, axis]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                cuts = np.sort(np.stack([-starts[:, axis] / way, (room - starts[:, axis]) / way]), axis=0)
+            inside = (starts[:, axis] >= 0.0) & (starts[:, axis] <= room)
+            first, last = (
+                np.where(way == 0.0, np.where(inside, end, np.nan), cut)
+                for end, cut in zip((0.0, 1.0), cuts, strict=True)
+            )
+            low, high = np.fmax(low, first), np.fmin(high, last)
+            high[np.isnan(first)] = -1.0
+        kept = low < high
+        way = (ends - starts)[kept]
+        return starts[kept] + low[kept, None] * way, starts[kept] + high[kept, None] * way
 
     def _window(self, low: FloatArray, high: FloatArray) -> tuple[slice, slice, NDArray[Any], NDArray[Any]] | None:
         """Return rows and columns of the pixels between two corners, and their middles; None: outside the picture."""
