@@ -1,6 +1,6 @@
 // Light, shadow, ground: what makes a picture of bodies one of a place.
 
-import { BufferAttribute, BufferGeometry, DirectionalLight, Fog, HemisphereLight, LineBasicMaterial, LineSegments, Mesh, PCFSoftShadowMap,
+import { BufferAttribute, BufferGeometry, DirectionalLight, Fog, HemisphereLight, LineBasicMaterial, LineSegments, Mesh, PCFShadowMap,
   PlaneGeometry, Scene, ShadowMaterial, WebGLRenderer } from "three";
 import { sub } from "./geometry.js";
 import { color } from "./marks.js";
@@ -39,7 +39,7 @@ export class World {
 
   castShadows() {
     this.renderer.shadowMap.enabled = this.sun.castShadow = true;
-    this.renderer.shadowMap.type = PCFSoftShadowMap;
+    this.renderer.shadowMap.type = PCFShadowMap;
     this.sun.shadow.mapSize.set(2048, 2048);
     this.sun.shadow.radius = 4;
     this.sun.shadow.normalBias = 0.002;

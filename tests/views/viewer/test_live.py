@@ -158,3 +158,16 @@ def test_a_saved_scene_keeps_its_comments_and_changes_nothing_else():
         "  coefficient: 0.3",
     ]
     assert parse_scene(edited).friction_coefficient == 0.3
+
+
+def test_a_server_that_is_gone_is_told_and_the_last_answer_stays(watched, server):
+    page = opened(watched, server)
+    before = shown_angles(page)
+    page.context.set_offline(True)
+    page.get_by_label("cage: pitch", exact=True).last.fill("0.2")
+    wait_until(page, "!problems.hidden")
+    assert "The viewer's server does not answer" in page.locator("#problems").inner_text()
+    assert shown_angles(page) == before
+    page.locator("#first").click()
+    assert state(page)["time"] == 0
+    watched.complaints.clear()  # the browser notes the lost connection itself
