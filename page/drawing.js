@@ -16,10 +16,10 @@ const PICKED = 14; // pixels from a mark that is clicked
 export class Drawing {
   constructor(stage, exaggerations, canvas, overlay, { covered, changed, clicked }) {
     this.canvas = canvas;
-    this.ways = stage.data.look; // sizes, in pixels unless look.py says otherwise
-    this.paint = Object.fromEntries(Object.entries(this.ways.paint).map(([name, hex]) => [name, color(hex)]));
+    this.sizes = stage.data.look; // sizes, in pixels unless look.py says otherwise
+    this.paint = Object.fromEntries(Object.entries(this.sizes.paint).map(([name, hex]) => [name, color(hex)]));
     this.world = new World(canvas, stage.data);
-    this.marks = new Marks(this.ways);
+    this.marks = new Marks(this.sizes);
     this.trace = new Line(new BufferGeometry(), new LineBasicMaterial({ color: this.paint.trace }));
     this.ghost = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: this.paint.ghost }));
     for (const line of [this.trace, this.ghost]) line.frustumCulled = false;
@@ -29,7 +29,7 @@ export class Drawing {
     this.pointLook = "pin";
     this.isGlass = false;
     this.take(stage, exaggerations);
-    this.allNames = stage.data.names.length <= this.ways.few_names;
+    this.allNames = stage.data.names.length <= this.sizes.few_names;
     this.camera = new Camera(canvas, stage.data, { content: () => this.content(), under: (x, y) => this.under(x, y), covered, changed, clicked: (x, y) => clicked(this.touchAt(x, y)) });
     this.camera.fit(); // with loads and forces, whose arrows have a camera by now
   }
@@ -54,7 +54,7 @@ export class Drawing {
       return norm(gap) > 1e-9 ? unit(gap) : null;
     });
     const middle = times(1 / (data.points.length || 1), data.points.reduce(add, [0, 0, 0]));
-    this.pin = Math.min(this.ways.pin, this.ways.pin_of_cage * Math.max(0, ...data.points.map((point) => norm(sub(point, middle)))) || this.ways.pin);
+    this.pin = Math.min(this.sizes.pin, this.sizes.pin_of_cage * Math.max(0, ...data.points.map((point) => norm(sub(point, middle)))) || this.sizes.pin);
     this.glaze(this.isGlass);
     this.layGround();
   }
@@ -62,9 +62,9 @@ export class Drawing {
   // Whether the object is seen through; bodies of the cage that would hide it always are.
   glaze(isGlass) {
     this.isGlass = isGlass;
-    this.object.seeThrough(isGlass ? this.ways.seen_through : 1);
+    this.object.seeThrough(isGlass ? this.sizes.seen_through : 1);
     const reach = this.object.reach;
-    for (const body of this.bodies) body.seeThrough(body.reach > this.ways.large * reach ? this.ways.glass : 1);
+    for (const body of this.bodies) body.seeThrough(body.reach > this.sizes.large * reach ? this.sizes.glass : 1);
   }
 
   layGround() {
@@ -74,7 +74,7 @@ export class Drawing {
     const bodies = this.bodies.flatMap((body, index) => body.whole.corners.map((corner) => carried(stage.bodyPose(index, look), corner)[2]));
     const points = stage.data.points.map((_, index) => stage.point(index, look)[2] - (this.pointLook === "pin" ? this.pin : 0));
     const low = [...corners, ...bodies, ...points].reduce((least, height) => Math.min(least, height), 0);
-    this.world.layGround(low - this.ways.below);
+    this.world.layGround(low - this.sizes.below);
   }
 
   // The look of a time, and the pose of the object then.
@@ -98,7 +98,7 @@ export class Drawing {
     this.drawLoads(shot, pose);
     this.drawMotion(shot, pose);
     this.drawTrace(time, look);
-    if (!camera.isClose()) this.marks.ball(carried(pose, stage.data.center), this.ways.ball - 1, this.paint.trace);
+    if (!camera.isClose()) this.marks.ball(carried(pose, stage.data.center), this.sizes.ball - 1, this.paint.trace);
     this.marks.end();
     const scale = window.devicePixelRatio;
     this.world.draw(camera, scale);
@@ -159,9 +159,9 @@ export class Drawing {
     const at = carried(pose, load.at);
     if (load.kind === "spring") {
       const way = sub(load.to, at);
-      return [at, add(at, times(Math.min(1, this.ways.longest_spring / (norm(way) || 1)), way))];
+      return [at, add(at, times(Math.min(1, this.sizes.longest_spring / (norm(way) || 1)), way))];
     }
-    const arrow = times(this.ways.load * this.camera.pixel(at), load.follows ? rotated(pose.q, load.direction) : load.direction);
+    const arrow = times(this.sizes.load * this.camera.pixel(at), load.follows ? rotated(pose.q, load.direction) : load.direction);
     return load.kind === "moment" ? [at, add(at, arrow)] : [sub(at, arrow), at];
   }
 
@@ -169,7 +169,7 @@ export class Drawing {
   forceArrow(touch, pose, look) {
     const place = this.stage.place(touch, look);
     const pixel = this.camera.pixel(place);
-    const force = times(this.ways.force * pixel / this.stage.data.greatestForce, rotated(pose.q, touch.force));
+    const force = times(this.sizes.force * pixel / this.stage.data.greatestForce, rotated(pose.q, touch.force));
     const tip = this.camera.isClose() && norm(force) ? sub(place, times(RING * pixel / norm(force), force)) : place;
     return [sub(tip, force), tip];
   }
@@ -180,7 +180,7 @@ export class Drawing {
     const touching = new Set(shot.touches.map((touch) => touch.point));
     const row = data.rows[shot.row];
     const isEnd = row && stage.shots[row.last] === shot;
-    const pressing = new Set(shot.touches.filter((touch) => touch.force && norm(touch.force) > this.ways.least_force * data.greatestForce).map((touch) => touch.point));
+    const pressing = new Set(shot.touches.filter((touch) => touch.force && norm(touch.force) > this.sizes.least_force * data.greatestForce).map((touch) => touch.point));
     data.names.forEach((name, index) => {
       const kind = isEnd && row.hit.includes(name) ? "reached" : touching.has(index) ? "touching" : "free";
       const isPoint = index < data.points.length;
@@ -188,7 +188,7 @@ export class Drawing {
       const places = isPoint ? [point] : shot.touches.filter((touch) => touch.point === index).map((touch) => stage.place(touch, look));
       if (isPoint && this.pointLook === "pin") this.drawPin(point, this.outOf(index, shot, pose));
       if (kind !== "free" || this.pointLook === "ball") places.forEach((place) => this.mark(place, kind));
-      const counts = kind === "reached" || (kind === "touching" && (touching.size <= this.ways.few_names || pressing.has(index)));
+      const counts = kind === "reached" || (kind === "touching" && (touching.size <= this.sizes.few_names || pressing.has(index)));
       if (counts || this.allNames) this.labels.push([places[0] ?? this.namedPlace(index - data.points.length, look), name, kind !== "free"]);
     });
   }
@@ -203,12 +203,12 @@ export class Drawing {
   }
 
   drawPin(place, out) {
-    this.marks.put("pin", place, turnedTo(out), [this.ways.pin_slope * this.pin, this.pin], this.paint.pin);
+    this.marks.put("pin", place, turnedTo(out), [this.sizes.pin_slope * this.pin, this.pin], this.paint.pin);
   }
 
   mark(place, kind) {
     if (this.camera.isClose()) this.marks.ring(place, RING, this.paint[kind]);
-    else this.marks.ball(place, kind === "free" ? this.ways.free_ball : this.ways.ball, this.paint[kind]);
+    else this.marks.ball(place, kind === "free" ? this.sizes.free_ball : this.sizes.ball, this.paint[kind]);
   }
 
   // Where a shape or a hole of the cage that touches nothing has its name: in the middle of what is shown of it.
@@ -223,10 +223,10 @@ export class Drawing {
   drawTouches(shot, look, pose) {
     for (const touch of shot.touches) {
       const place = this.stage.place(touch, look);
-      const normal = times(this.ways.normal * this.camera.pixel(place), rotated(pose.q, touch.normal));
-      if (!this.camera.isClose()) this.marks.rod(place, add(place, normal), this.ways.thin, this.paint.normal);
-      if (!touch.force || norm(touch.force) < this.ways.least_shown * this.stage.data.greatestForce) continue;
-      this.marks.arrow(...this.forceArrow(touch, pose, look), this.ways.rod, this.paint.force);
+      const normal = times(this.sizes.normal * this.camera.pixel(place), rotated(pose.q, touch.normal));
+      if (!this.camera.isClose()) this.marks.rod(place, add(place, normal), this.sizes.thin, this.paint.normal);
+      if (!touch.force || norm(touch.force) < this.sizes.least_shown * this.stage.data.greatestForce) continue;
+      this.marks.arrow(...this.forceArrow(touch, pose, look), this.sizes.rod, this.paint.force);
     }
   }
 
@@ -234,9 +234,9 @@ export class Drawing {
     for (const load of this.stage.data.phases[shot.phase].loads) {
       const [start, end] = this.loadEnds(load, pose);
       if (load.kind === "spring") this.drawCoil(start, end);
-      else this.marks.arrow(start, end, 1.3 * this.ways.rod, this.paint.load);
+      else this.marks.arrow(start, end, 1.3 * this.sizes.rod, this.paint.load);
       // A moment's arrow has two heads.
-      if (load.kind === "moment") this.marks.arrow(start, add(start, times(this.ways.second_head, sub(end, start))), 1.3 * this.ways.rod, this.paint.load);
+      if (load.kind === "moment") this.marks.arrow(start, add(start, times(this.sizes.second_head, sub(end, start))), 1.3 * this.sizes.rod, this.paint.load);
       this.labels.push([load.kind === "spring" ? end : start, load.name, true]);
     }
   }
@@ -247,7 +247,7 @@ export class Drawing {
     if (norm(way) === 0) return;
     const aside = unit(cross(way, Math.abs(way[2]) < 0.9 * norm(way) ? [0, 0, 1] : [1, 0, 0]));
     const up = unit(cross(way, aside));
-    const radius = this.ways.coil * this.camera.pixel(start);
+    const radius = this.sizes.coil * this.camera.pixel(start);
     const on = (share) => add(start, times(share, way));
     const wound = Array.from({ length: COILS * COIL_POINTS + 1 }, (_, k) => {
       const turn = 2 * Math.PI * k / COIL_POINTS;
@@ -255,7 +255,7 @@ export class Drawing {
       return add(axis, add(times(radius * Math.cos(turn), aside), times(radius * Math.sin(turn), up)));
     });
     const line = [start, on(STRAIGHT_ENDS), ...wound, on(1 - STRAIGHT_ENDS), end];
-    line.slice(1).forEach((place, index) => this.marks.rod(line[index], place, this.ways.thin, this.paint.load));
+    line.slice(1).forEach((place, index) => this.marks.rod(line[index], place, this.sizes.thin, this.paint.load));
   }
 
   drawMotion(shot, pose) {
@@ -264,12 +264,12 @@ export class Drawing {
     const { through, direction } = axis;
     if (!axis.turns) {
       const center = carried(pose, this.stage.data.center);
-      this.marks.arrow(center, add(center, times(this.ways.travel * this.camera.pixel(center), direction)), this.ways.rod, this.paint.axis);
+      this.marks.arrow(center, add(center, times(this.sizes.travel * this.camera.pixel(center), direction)), this.sizes.rod, this.paint.axis);
       return;
     }
     const middle = add(through, times(-dot(through, direction), direction));
     const half = Math.sqrt(Math.max(0.04, this.stage.data.radius ** 2 - dot(middle, middle)));
-    this.marks.arrow(add(middle, times(-half, direction)), add(middle, times(half, direction)), 0.6 * this.ways.rod, this.paint.axis);
+    this.marks.arrow(add(middle, times(-half, direction)), add(middle, times(half, direction)), 0.6 * this.sizes.rod, this.paint.axis);
   }
 
   // The way of the centre of gravity, and where the object started.
