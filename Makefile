@@ -15,7 +15,7 @@ N ?= 20000
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test test-deep test-python audit lint format golden bench docs lock clean
+.PHONY: help setup run test test-deep test-python audit lint format golden bench docs page lock clean
 
 help:  ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -83,6 +83,9 @@ $(PEERS): $(READY) bench/requirements.lock
 docs: $(READY)  ## build the documentation into build/docs
 	@$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --builder html docs build/docs
 	@echo "Open build/docs/index.html"
+
+page:  ## bundle the page of `cagepose view` anew, from page/ and three.js (needs node)
+	@cd page && npm ci --silent && node build.mjs
 
 lock:  ## renew requirements.lock from pyproject.toml
 	@$(PYTHON) -m venv build/lock

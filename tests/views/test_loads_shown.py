@@ -66,15 +66,15 @@ def test_a_spring_is_drawn_from_end_to_end_around_its_line() -> None:
 
 def test_pictures_have_all_that_acts_inside(fastened: Run) -> None:
     shown = playback(fastened)
-    maker = PictureMaker(Stage(shown), 1)
+    maker = PictureMaker(Stage(shown), [1])
     last = shown.shots[-1]
     drawn = np.asarray(maker.picture(last), dtype=float)
     for act in shown.loads[0]:
         for end in maker._ends(act, last.pose_world_object):
-            place = maker._pixels(end)[:2] / 2.0
+            place = maker.seen_at(end)
             assert ((place > 0.0) & (place < SIZE)).all(), act.name
     # A spring's end is below all else: nothing but the spring is dark there.
-    x, y = (maker._pixels(maker._ends(shown.loads[0][3], last.pose_world_object)[1])[:2] / 2.0).astype(int)
+    x, y = maker.seen_at(maker._ends(shown.loads[0][3], last.pose_world_object)[1]).astype(int)
     assert drawn[y - 6 : y + 1, x - 3 : x + 4].min() < 100.0
     assert len(figure_bytes(event_figure(fastened), ".png")) > 10_000
 

@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import cast
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.box import Box
-from cagepose.model.pose import Pose
+from cagepose.model.checks import FloatArray
 from cagepose.model.scene import Scene
 from cagepose.runs.run import Event, Run
 from cagepose.studies.ending import ending
 from cagepose.studies.support import convex_hull, load_view
 from cagepose.studies.support_region import SupportRegion, support_region
-from cagepose.views.scene_drawing import POINT_LOOKS, SceneDrawing
+from cagepose.views.scene_drawing import POINT_LOOKS
 from cagepose.views.solids import cut_off, outer_points, vertices_of
 from cagepose.views.style import (
     BLACK,
@@ -37,13 +34,17 @@ from cagepose.views.style import (
     Look,
     styled,
 )
+from cagepose.views.viewer.picture import PictureMaker
+from cagepose.views.viewer.playback import Playback, playback
+from cagepose.views.viewer.stage import Stage
 
-COLUMNS = 3
-PANEL_IN, FLAT_PANEL_IN = 2.35, 1.85
-"""Height of a panel, and of one for a flat scene."""
+COLUMNS = 2
+PANEL_IN, PICTURE = 2.85, (560, 384)
+"""Height of a panel, and the pixels of a snapshot in it."""
 HEAD_IN, FOOT_IN = 0.55, 0.6
 """Room for the title and for the legend."""
-MOST_SNAPSHOTS = 14
+MOST_SNAPSHOTS = 8
+SHOTS_PER_MOTION = 2
 """A longer run shows its start, its first events and its last one, and says how many it leaves out."""
 
 RIGHT_OVER = 1e-9
@@ -53,79 +54,83 @@ REACH = 10.0
 MARGIN = 0.06
 """Of the extent of a view: room around it."""
 
-LENGTH_WORDS: Mapping[LengthUnit, str] = {"mm": "mm", "m": "m", "in": "inches"}
 LONGEST_NAME = 12
 """Characters of a phase's name in a title."""
-LONGEST_TITLE = 40
+LONGEST_TITLE = 60
 """Characters that fit above a panel; a longer title takes two lines."""
 
 
 def event_figure(run: Run, length_unit: LengthUnit = "mm") -> Figure:
     """Draw the scene at the start and after each event, as the paper's Figs. 6 and 7 do.
 
-    Each phase under a weight alone adds a view along it: the support region and the centre of gravity.
+    A snapshot shows what is near the cage. Each phase under a weight alone adds a view along it: the support region and
+    the centre of gravity.
     """
     shots, n_left_out = _snapshots(run, length_unit)
     weights = [index for index in range(len(run.phases)) if run.scene.loads[index].is_weight_alone]
     n_panels = len(shots) + len(weights)
     rows = math.ceil(n_panels / COLUMNS)
     with styled():
-        poses = [run.phases[0].start_pose, *(event.pose_world_object for phase in run.phases for event in phase.events)]
-        drawing = SceneDrawing(run.scene, poses, length_unit)
-        grid = _Grid(rows, FLAT_PANEL_IN if drawing.is_flat else PANEL_IN)
+        stage = Stage(playback(run, length_unit, SHOTS_PER_MOTION))
+        grid = _Grid(rows)
         height = grid.height_in
         figure = Figure(figsize=(PAGE_WIDTH_IN, height))
-        for place, (phase_index, event, before, title) in enumerate(shots):
-            panel = cast(Axes3D, figure.add_axes(grid.cell(place, (0.02, 0.02, 0.94, 0.85)), projection="3d"))
-            drawing.draw(panel, phase_index, event, before, title)
+        for place, (row, title) in enumerate(shots):
+            panel = figure.add_axes(grid.cell(place, (0.01, 0.01, 0.98, 0.87)))
+            panel.imshow(_snapshot(stage, row))
+            panel.set_axis_off()
+            panel.set_title(title, fontsize=8.5, pad=3.0)
         for place, phase_index in enumerate(weights, start=len(shots)):
             _draw_view(figure.add_axes(grid.cell(place, (0.2, 0.19, 0.72, 0.58))), run, phase_index, length_unit)
-        notes = [f"{run.scene.name}: {ending(run)} ({run.method})", f"x, y and z in {LENGTH_WORDS[length_unit]}"]
-        if scales := drawing.scales():
-            notes[1] += f"; not to one scale: {scales}"
+        title = f"{run.scene.name}: {ending(run)} ({run.method})"
+        figure.text(0.5, 1.0 - 0.08 / height, title, ha="center", va="top", fontsize=11)
         if n_left_out:
-            notes[1] += f"; {n_left_out} events before the last are left out"
-        figure.text(0.5, 1.0 - 0.08 / height, notes[0], ha="center", va="top", fontsize=11)
-        figure.text(0.5, 1.0 - 0.32 / height, notes[1], ha="center", va="top", fontsize=8.5)
+            note = f"motions before the last that are left out: {n_left_out}"
+            figure.text(0.5, 1.0 - 0.32 / height, note, ha="center", va="top", fontsize=8.5)
         _draw_legend(figure, run.scene)
     return figure
 
 
 @dataclass(frozen=True)
 class _Grid:
-    """Where panels lie: laid out by hand, as matplotlib's layouts do not see what sticks out of 3-D panels."""
+    """Where panels lie: laid out by hand, so that titles and snapshots keep their sizes."""
 
     n_rows: int
-    panel_in: float
 
     @property
     def height_in(self) -> float:
-        return HEAD_IN + self.n_rows * self.panel_in + FOOT_IN
+        return HEAD_IN + self.n_rows * PANEL_IN + FOOT_IN
 
     def cell(self, place: int, part: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
         """Return left, bottom, width and height in the figure; ``part`` gives them within the panel's cell."""
         row, column = divmod(place, COLUMNS)
-        bottom_in = self.height_in - HEAD_IN - self.panel_in * (row + 1 - part[1])
-        height = part[3] * self.panel_in / self.height_in
+        bottom_in = self.height_in - HEAD_IN - PANEL_IN * (row + 1 - part[1])
+        height = part[3] * PANEL_IN / self.height_in
         return (column + part[0]) / COLUMNS, bottom_in / self.height_in, part[2] / COLUMNS, height
 
 
-def _snapshots(run: Run, length_unit: LengthUnit) -> tuple[list[tuple[int, Event | None, Pose, str]], int]:
-    """Return (phase index, event, pose before it, title) of each panel, and how many events have none."""
-    shots: list[tuple[int, Event | None, Pose, str]] = [(0, None, run.phases[0].start_pose, "start")]
+def _snapshots(run: Run, length_unit: LengthUnit) -> tuple[list[tuple[int, str]], int]:
+    """Return (index of the event, -1: the start; title) of each snapshot, and how many motions have none."""
+    shots = [(-1, "start")]
     number = 0
-    for phase_index, phase in enumerate(run.phases):
-        before = phase.start_pose
+    for phase in run.phases:
         for event in phase.events:
-            number += 1
             if event.motion is not None:
-                name, amount = f"{number}. {_cut(phase.name)}, {event.rule}:", _amount(event, length_unit)
+                name, amount = f"{number + 1}. {_cut(phase.name)}, {event.rule}:", _amount(event, length_unit)
                 gap = " " if len(name) + len(amount) < LONGEST_TITLE else "\n"
-                shots.append((phase_index, event, before, f"{name}{gap}{amount}"))
-            before = event.pose_world_object
+                shots.append((number, f"{name}{gap}{amount}"))
+            number += 1
     if len(shots) <= MOST_SNAPSHOTS:
         return shots, 0
     return [*shots[: MOST_SNAPSHOTS - 1], shots[-1]], len(shots) - MOST_SNAPSHOTS
+
+
+def _snapshot(stage: Stage, row: int) -> FloatArray:
+    """Return the pixels of one event's end, with the outline of where its motion began."""
+    shown: Playback = stage.shown
+    before, after = (0, 0) if row < 0 else (shown.rows[row].first_shot - 1, shown.rows[row].last_shot)
+    maker = PictureMaker(stage, size=PICTURE, seen=(before, after), is_near=True)
+    return np.asarray(maker.picture(shown.shots[after], is_captioned=False))
 
 
 def _amount(event: Event, length_unit: LengthUnit) -> str:

@@ -63,10 +63,10 @@ def test_undo_goes_back_to_the_values_of_the_file(watched, server):
 def test_a_value_that_cannot_be_is_told_in_the_page_and_the_last_scene_stays(watched, server):
     page = opened(watched, server)
     before = shown_angles(page)
-    slide(page, "cage: z", 0.7)
+    slide(page, "push: direction x", 0)
     told = page.locator("#problems").inner_text()
-    assert "inside object.boxes" in told
-    assert "move the point out" in told
+    assert "is all zeros, which points nowhere" in told
+    assert "Shown is the last scene that could be run" in told
     assert shown_angles(page) == before
     watched.complaints.clear()  # the browser notes the refusal itself
     page.locator("#undo").click()
@@ -101,7 +101,7 @@ def test_the_saved_scene_is_the_one_on_screen(watched, server, tmp_path):
 
 def test_another_method_is_run_when_chosen(watched, server):
     page = opened(watched, server)
-    page.locator("select").select_option("stepwise")
+    page.locator("#controls select").select_option("stepwise")
     wait_until(page, "method.innerText.startsWith('stepwise')")
     assert state(page)["answers"] == 1
 
@@ -158,3 +158,16 @@ def test_a_saved_scene_keeps_its_comments_and_changes_nothing_else():
         "  coefficient: 0.3",
     ]
     assert parse_scene(edited).friction_coefficient == 0.3
+
+
+def test_a_server_that_is_gone_is_told_and_the_last_answer_stays(watched, server):
+    page = opened(watched, server)
+    before = shown_angles(page)
+    page.context.set_offline(True)
+    page.get_by_label("cage: pitch", exact=True).last.fill("0.2")
+    wait_until(page, "!problems.hidden")
+    assert "The viewer's server does not answer" in page.locator("#problems").inner_text()
+    assert shown_angles(page) == before
+    page.locator("#first").click()
+    assert state(page)["time"] == 0
+    watched.complaints.clear()  # the browser notes the lost connection itself

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from cagepose import Box, Cage, Load, Object, Pose, Scene, load_scene, run
+from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, load_scene, run
 from cagepose.kernels.outcome.trace import STALLED
 from cagepose.views.viewer.page_data import notes
 from cagepose.views.viewer.playback import ESCAPE, playback
-from cagepose.views.viewer.stage import Stage
+from cagepose.views.viewer.stage import Look, Stage
 from cagepose.views.viewer.surface import nearest_on_object
 
 SCENES = Path(__file__).resolve().parents[3] / "scenes"
@@ -23,10 +24,10 @@ def rail():
     return run(load_scene(SCENES / "rail-pitch.yaml", ["friction.coefficient=0.1"]))
 
 
-def drawn_gaps(stage: Stage, pose: Pose, exaggeration: float) -> np.ndarray:
+def drawn_gaps(stage: Stage, pose: Pose, look: Look) -> np.ndarray:
     """Distance of each cage point from the object on screen, as a fraction of the scene's size."""
-    points = stage.points(exaggeration)
-    nearest = nearest_on_object(stage.shown.run.scene.object, stage.pose(pose, exaggeration), Cage(points))
+    points = stage.points(look)
+    nearest = nearest_on_object(stage.shown.run.scene.object, stage.pose(pose, look), Cage(points))
     gaps = ((points - nearest.feet_world) * nearest.normals_world).sum(axis=1)
     return gaps / stage.size_m
 
@@ -90,8 +91,8 @@ def test_what_touches_on_screen_is_what_touches_and_gaps_grow_alike(rail, exagge
     stage = Stage(playback(rail))
     for row in stage.shown.rows:
         shot = stage.shown.shots[row.last_shot]
-        true = drawn_gaps(stage, shot.pose_world_object, 1.0)
-        shown = drawn_gaps(stage, shot.pose_world_object, float(exaggeration))
+        true = drawn_gaps(stage, shot.pose_world_object, Look(0, 1.0))
+        shown = drawn_gaps(stage, shot.pose_world_object, Look(0, float(exaggeration)))
         assert np.abs(shown - exaggeration * true).max() < 4e-3
 
 
@@ -100,10 +101,10 @@ def test_exaggeration_turns_about_the_same_axis_and_moves_along_the_same_line():
     film = playback(run(Scene(part, Cage([(0.0, 0.0, -0.011)]), [Load("weight", gravity=(0, 0, -1))])))
     stage = Stage(replace(film, shots=(film.shots[0],)))
     moved = Pose((0.001, 0.0, -0.002), euler_zyx=(0.0, 0.01, 0.0))
-    shown = stage.pose(moved, 20.0)
+    shown = stage.pose(moved, Look(0, 20.0))
     assert shown.position_m == pytest.approx([0.02, 0.0, -0.04])
     assert shown.euler_zyx == pytest.approx([0.0, 0.2, 0.0])
-    assert stage.pose(moved, 1.0) is moved
+    assert stage.pose(moved, Look(0, 1.0)) is moved
 
 
 def test_a_scene_in_millimetres_and_one_in_metres_look_alike():
@@ -123,13 +124,32 @@ def test_a_scene_in_millimetres_and_one_in_metres_look_alike():
         assert small.place(one.pose_world_object.position_m) == pytest.approx(
             large.place(other.pose_world_object.position_m), abs=1e-9
         )
-    assert small.place(small.points(10.0)) == pytest.approx(large.place(large.points(10.0)))
+    assert small.place(small.points(Look(0, 10.0))) == pytest.approx(large.place(large.points(Look(0, 10.0))))
 
 
-def test_the_exaggeration_proposed_shows_small_motions_and_leaves_large_ones_alone(rail):
-    assert Stage(playback(rail)).proposed >= 5
-    assert Stage(playback(run(load_scene(SCENES / "sample.yaml")))).proposed == 1
-    assert Stage(playback(run(load_scene(SCENES / "ladder.yaml")))).proposed == 1  # it rests where it starts
+def test_the_exaggeration_proposed_shows_play_and_leaves_long_motions_alone(rail):
+    assert min(Stage(playback(rail)).proposed) >= 5
+    assert Stage(playback(run(load_scene(SCENES / "sample.yaml")))).proposed == (1,)
+    assert Stage(playback(run(load_scene(SCENES / "ladder.yaml")))).proposed == (1,)  # it rests where it starts
+
+
+def test_a_long_way_into_the_cage_is_shown_as_it_is_and_the_play_behind_it_exaggerated():
+    """A peg falls 40 mm upright; then a push tilts it by what little play its four guides leave."""
+    peg = Object([Box((0.01, 0.01, 0.06))], pose=Pose((0.0, 0.0, 0.071)), mass_kg=1.0)
+    guides = [(x, y, z) for z in (0.01, 0.04) for x, y in ((0.0051, 0), (-0.0051, 0), (0, 0.0051), (0, -0.0051))]
+    cage = Cage([*((x, y, 0.0) for x in (0.004, -0.004) for y in (0.004, -0.004)), *guides])
+    push = Load("push", gravity=(0, 0, -1), force=Force((1, 0, 0), (0, 0, 0.03), magnitude_n=3.0))
+    film = playback(run(Scene(peg, cage, [Load("weight", gravity=(0, 0, -1)), push])))
+    stage = Stage(film)
+    weight, pushed = stage.phases
+    assert (weight.start, weight.proposed) == (film.rows[0].last_shot, 1)
+    assert pushed.reference == weight.start
+    assert pushed.proposed >= 10
+    middle = stage.look(weight.start // 2, stage.proposed)
+    assert middle.factor == 1.0
+    assert stage.look(pushed.last, stage.proposed) == (weight.start, pushed.proposed)
+    factors = [stage.look(shot, stage.proposed).factor for shot in range(len(film.shots))]
+    assert max(abs(one - other) for one, other in itertools.pairwise(factors)) < pushed.proposed / 2
 
 
 def test_a_run_without_progress_tells_after_which_event():

@@ -8,11 +8,16 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from cagepose import load_scene, run
+from cagepose import Pose, load_scene, run
+from cagepose.errors import CageposeError
 from cagepose.files.scene_file import read_scene_text
 from cagepose.views.viewer.server import ViewServer
 from cagepose.views.viewer.what_if import WhatIf
 from driving import opened, served, set_range, shown_angles, slide, state, wait_until
+from our_scenes import SCENES as OUR_SCENES
+
+RAIL = next(path for path in OUR_SCENES if path.stem == "rail-pitch")
+N_SWEPT = 5
 
 SLED = """\
 name: sled
@@ -73,6 +78,24 @@ SETTINGS = [
 ]
 
 
+def start_with_cage(path, label: str, value: float) -> list[str]:
+    """The setting that takes the start along, where a slider moves the cage."""
+    group, name = label.split(": ")
+    if group != "cage":
+        return []
+    scene = load_scene(path)
+    turn = dict(zip(("yaw", "pitch", "roll"), scene.cage.pose_world_cage.euler_zyx, strict=True))
+    moved = Pose(
+        (0.0, 0.0, value / 1000.0 if name == "z" else 0.0),
+        euler_zyx=tuple({**turn, name: math.radians(value)}[axis] for axis in turn)
+        if name in turn
+        else (*turn.values(),),
+    )
+    start = moved @ scene.cage.pose_world_cage.inverse() @ scene.object.pose_world_object
+    quaternion = [float(number) for number in start.quaternion_wxyz]
+    return [f"object.pose={{position: {(1000.0 * start.position_m).tolist()}, quat_wxyz: {quaternion}}}"]
+
+
 def shown_pose(page) -> list[float]:
     return shown_origin(page) + shown_angles(page)
 
@@ -82,7 +105,7 @@ def test_each_slider_shows_the_run_with_its_value_and_undo_the_file_again(watche
     start = shown_pose(page)
     for label, value, setting in SETTINGS:
         slide(page, label, value)
-        expected = run(load_scene(sled, [setting]))
+        expected = run(load_scene(sled, [setting, *start_with_cage(sled, label, value)]))
         pose = [*(expected.pose.position_m * 1000.0), *np.degrees(expected.pose.euler_zyx)]
         assert page.locator("#verdict").inner_text() == expected.verdict, label
         assert shown_pose(page) == pytest.approx(pose, rel=1e-4, abs=1e-4), label
@@ -103,13 +126,13 @@ def test_the_range_itself_moves_as_its_number_does(watched, server):
 
 def test_the_method_and_the_exaggeration_are_named_on_the_screen(watched, server, sled):
     page = opened(watched, server)
-    page.locator("select").select_option("stepwise")
-    wait_until(page, "method.innerText.includes('stepwise')")
-    assert page.locator("#verdict").inner_text() == run(load_scene(sled), "stepwise").verdict
-    for index, times in ((0, "true scale"), (7, "motions and gaps exaggerated \u00d7200")):
+    for index, times in ((0, "true scale"), (7, "play and gaps exaggerated \u00d7200")):
         set_range(page, "exaggeration", index)
         wait_until(page, f"badge.innerText === '{times}'")
     assert state(page)["exaggeration"] == 200
+    page.locator("#controls select").select_option("stepwise")
+    wait_until(page, "method.innerText.includes('stepwise')")
+    assert page.locator("#verdict").inner_text() == run(load_scene(sled), "stepwise").verdict
 
 
 def test_a_cage_given_by_a_quaternion_has_sliders_of_angles(sled):
@@ -136,3 +159,60 @@ def test_without_friction_in_the_file_the_slider_shows_what_the_method_takes(tmp
     for method, friction in (("stepwise", math.tan(0.1)), ("quasistatic", 0.0)):
         control = next(c for c in WhatIf(read_scene_text(path), (), method).controls if c.key == "friction")
         assert control.value == pytest.approx(friction, abs=1e-6)
+
+
+@pytest.mark.parametrize("path", OUR_SCENES, ids=[path.stem for path in OUR_SCENES])
+def test_every_slider_can_be_used_over_its_whole_range(path):
+    """On every scene of ours; but a load whose direction is along one axis has none at zero."""
+    what_if = WhatIf(read_scene_text(path))
+    n_values, problems = 0, []
+    for control in what_if.controls:
+        for value in () if control.choices else np.linspace(control.low, control.high, N_SWEPT).tolist():
+            given = value
+            if control.index is not None:
+                given = [other.value for other in what_if.controls if other.key == control.key]
+                given[control.index] = value
+            n_values += 1
+            try:
+                what_if.scene({control.key: given})
+            except CageposeError as error:
+                problems.append(str(error))
+    print(f"{path.stem}: {len(problems)} of {n_values} values cannot be used")
+    assert all("is all zeros, which points nowhere" in problem for problem in problems), problems
+
+
+def test_the_sliders_of_the_rail_are_green_from_end_to_end_and_nothing_jumps(watched):
+    with served(RAIL) as server:
+        page = opened(watched, server)
+        place = page.locator("#controls").bounding_box()
+        sliders = page.locator("#controls input[type=range]")
+        n_answers = 0
+        for index in range(sliders.count()):
+            slider = sliders.nth(index)
+            ends = [slider.get_attribute(name) for name in ("min", "max")]
+            for value in ends:
+                slider.evaluate("(s, v) => { s.value = v; s.dispatchEvent(new Event('input')); }", value)
+                n_answers += 1
+                wait_until(page, f"cagepose.state().answers >= {n_answers} || !problems.hidden")
+                assert page.locator("#problems").is_hidden(), (slider.get_attribute("aria-label"), value)
+            page.locator("#undo").click()
+            n_answers += 1
+            wait_until(page, f"cagepose.state().answers >= {n_answers}")
+        assert page.locator("#controls").bounding_box() == place
+        page.locator("#controls input[type=number]").nth(15).fill("")  # no number is a value that cannot be
+        wait_until(page, "!problems.hidden")
+        assert page.locator("#controls").bounding_box() == place
+        watched.complaints.clear()  # the browser notes the refusal itself
+
+
+def test_the_start_goes_with_the_cage_and_a_saved_scene_runs_to_the_same_end(tmp_path):
+    what_if = WhatIf(read_scene_text(RAIL))
+    values = {"cage.pose.euler_zyx_deg": [0.2, 0.4, 0.1], "cage.pose.position": [3.0, 0.0, 0.0]}
+    answer = what_if.answer(values)
+    saved = tmp_path / "saved.yaml"
+    saved.write_text(what_if.saved(values), encoding="utf-8")
+    scene, before = load_scene(saved), load_scene(RAIL)
+    relative = [s.cage.pose_world_cage.inverse() @ s.object.pose_world_object for s in (before, scene)]
+    assert relative[1].position_m == pytest.approx(relative[0].position_m, abs=1e-12)
+    assert relative[1].euler_zyx == pytest.approx(relative[0].euler_zyx, abs=1e-11)
+    assert answer["shots"][-1]["origin"] == pytest.approx((run(scene).pose.position_m * 1000.0).tolist())

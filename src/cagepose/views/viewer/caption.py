@@ -9,6 +9,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from cagepose.files.words import LengthWords
 from cagepose.views.viewer.labels import Pair, laid_out
+from cagepose.views.viewer.look import PAPER
 from cagepose.views.viewer.page_data import verdict_kind
 from cagepose.views.viewer.playback import Playback, Shot
 
@@ -16,7 +17,7 @@ LOUD_INK, QUIET_INK = "#000000", "#777777"
 """Of names: loads and contacts, and cage points that do not touch."""
 TITLE_INK, SOFT_INK, SCALE_INK = "#1a1a1a", "#5c5c5c", "#333333"
 VERDICT_INK = {"rest": "#00664a", "failure": "#a33b00", "elsewhere": "#a33b00"}
-PAPER, MARK = "#f6f7f9", "#e69f00"
+MARK = "#e69f00"
 SMALL, LARGE = 13.0, 17.0
 """Heights of letters, pixels."""
 SCALE_BAR = 100.0
@@ -42,30 +43,35 @@ class Label(NamedTuple):
 class Caption:
     """Writes on the pictures of one playback."""
 
-    def __init__(self, shown: Playback, exaggeration: int, size: tuple[int, int], units_per_pixel: float) -> None:
+    def __init__(self, shown: Playback, size: tuple[int, int], units_per_pixel: float) -> None:
         """``size`` is that of a picture in pixels, ``units_per_pixel`` the length of one in the scene's unit."""
         self.shown = shown
-        self.exaggeration = exaggeration
         self.width, self.height = size
         self.units_per_pixel = units_per_pixel
         self.small, self.large = (ImageFont.load_default(height) for height in (SMALL, LARGE))
 
-    def write(self, image: Image.Image, shot: Shot, labels: list[Label]) -> None:
-        """Write everything on the picture of one shot."""
+    def write(self, image: Image.Image, shot: Shot | None, labels: list[Label], exaggeration: float) -> None:
+        """Write on a picture in which play is so many times as large; None for the shot: no words above it."""
         pen = ImageDraw.Draw(image)
         self._write_names(pen, labels)
+        if shot is not None:
+            self._write_head(pen, shot)
+        self._write_exaggeration(pen, round(exaggeration))
+        self._write_scale(pen)
+
+    def _write_head(self, pen: ImageDraw.ImageDraw, shot: Shot) -> None:
         run = self.shown.run
         pen.text((14.0, 10.0), run.scene.name, TITLE_INK, self.large)
         across = 24.0 + pen.textlength(run.scene.name, self.large)
         pen.text((across, 10.0), run.verdict, VERDICT_INK[verdict_kind(run.verdict)], self.large)
         pen.text((14.0, 34.0), self._happening(shot), SOFT_INK, self.small)
-        self._write_exaggeration(pen)
-        self._write_scale(pen)
 
     def _write_names(self, pen: ImageDraw.ImageDraw, labels: list[Label]) -> None:
-        loud_first = sorted(labels, key=lambda label: label.ink != LOUD_INK)
+        size = (self.width, self.height)
+        seen = [label for label in labels if all(0.0 < at < room for at, room in zip(label.place, size, strict=True))]
+        loud_first = sorted(seen, key=lambda label: label.ink != LOUD_INK)
         sizes = [(pen.textlength(label.text, self.small), SMALL) for label in loud_first]
-        corners = laid_out([label.place for label in loud_first], sizes)
+        corners = laid_out([label.place for label in loud_first], sizes, (self.width, self.height))
         for label, corner in zip(loud_first, corners, strict=True):
             if corner is not None:
                 self._text(pen, corner, label.text, label.ink)
@@ -80,11 +86,11 @@ class Caption:
         told = ", ".join(word for word in (row.event.rule, what, row.verdict) if word)
         return f"{self.shown.run.phases[row.phase].name}, event {shot.row + 1}: {told}"
 
-    def _write_exaggeration(self, pen: ImageDraw.ImageDraw) -> None:
-        if self.exaggeration == 1:
+    def _write_exaggeration(self, pen: ImageDraw.ImageDraw, times: int) -> None:
+        if times == 1:
             pen.text((14.0, self.height - 26.0), "true scale", SOFT_INK, self.small)
             return
-        text = f"motions and gaps exaggerated x{self.exaggeration}"
+        text = f"play and gaps exaggerated x{times}"
         width = pen.textlength(text, self.small)
         pen.rectangle((10.0, self.height - 32.0, 22.0 + width, self.height - 8.0), fill=MARK)
         pen.text((16.0, self.height - 28.0), text, LOUD_INK, self.small)

@@ -24,19 +24,17 @@ SHOT_MS, PAUSE_MS, END_MS = 80, 600, 2500
 
 def png_bytes(shown: Playback) -> bytes:
     """Return the end of a run as a picture, small motions exaggerated as far as that looks right."""
-    stage = Stage(shown)
     notes = PngInfo()
     notes.add_text("Software", MADE_BY)
     stream = io.BytesIO()
-    PictureMaker(stage, stage.proposed).picture(shown.shots[-1]).save(stream, "PNG", pnginfo=notes, optimize=True)
+    PictureMaker(Stage(shown)).picture(shown.shots[-1]).save(stream, "PNG", pnginfo=notes, optimize=True)
     return stream.getvalue()
 
 
 def gif_bytes(run: Run, length_unit: LengthUnit) -> bytes:
     """Return a whole run as a film that starts again when it is over."""
     shown = playback(run, length_unit, SHOTS_PER_MOTION)
-    stage = Stage(shown)
-    maker = PictureMaker(stage, stage.proposed, FILM_SIZE)
+    maker = PictureMaker(Stage(shown), size=FILM_SIZE)
     pictures = [maker.picture(shot) for shot in shown.shots]
     palette = _palette(pictures)
     flat = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]

@@ -10,10 +10,11 @@ BESIDE = 7.0
 Pair = tuple[float, float]
 
 
-def laid_out(places: Sequence[Pair], sizes: Sequence[Pair]) -> list[Pair | None]:
+def laid_out(places: Sequence[Pair], sizes: Sequence[Pair], picture: Pair) -> list[Pair | None]:
     """Return the upper left corner of each name; None where there is no room for it.
 
-    Earlier ones choose first. A name keeps off places of others where it can, and off other names always.
+    Earlier ones choose first. A name keeps off places of others where it can, off other names always, and within the
+    picture.
 
     Parameters
     ----------
@@ -21,12 +22,15 @@ def laid_out(places: Sequence[Pair], sizes: Sequence[Pair]) -> list[Pair | None]
         What is named, in pixels, y down.
     sizes
         Width and height of each name as it is written.
+    picture
+        Width and height of the picture.
     """
     written: list[tuple[Pair, Pair]] = []
     marks = [((x - BESIDE / 2.0, y - BESIDE / 2.0), (BESIDE, BESIDE)) for x, y in places]
     corners: list[Pair | None] = []
     for which, (place, size) in enumerate(zip(places, sizes, strict=True)):
-        free = [corner for corner in _beside(place, size) if not any(_meet((corner, size), other) for other in written)]
+        inside = [_inside(corner, size, picture) for corner in _beside(place, size)]
+        free = [corner for corner in inside if not any(_meet((corner, size), other) for other in written)]
         others = [mark for index, mark in enumerate(marks) if index != which]
         clear = [corner for corner in free if not any(_meet((corner, size), mark) for mark in others)]
         chosen = next(iter([*clear, *free]), None)
@@ -42,6 +46,11 @@ def _beside(place: Pair, size: Pair) -> list[Pair]:
     right, left = x + BESIDE, x - BESIDE - width
     above, below, middle = y - BESIDE / 2.0 - height, y + BESIDE / 2.0, y - height / 2.0
     return [(right, above), (left, above), (right, below), (left, below), (right, middle), (left, middle)]
+
+
+def _inside(corner: Pair, size: Pair, picture: Pair) -> Pair:
+    x, y = (max(0.0, min(room - extent, at)) for at, extent, room in zip(corner, size, picture, strict=True))
+    return x, y
 
 
 def _meet(one: tuple[Pair, Pair], other: tuple[Pair, Pair]) -> bool:

@@ -11,9 +11,6 @@ from cagepose.views.viewer.page_data import page_data
 from cagepose.views.viewer.playback import Playback
 from cagepose.views.viewer.what_if import WhatIf
 
-SCRIPTS = ("geometry", "stage", "solids", "painter", "camera", "labels", "drawing", "plot", "panel", "player")
-"""In this order."""
-
 
 def page(shown: Playback, what_if: WhatIf | None = None) -> str:
     """Return the page. It asks nothing of any server, and tells the browser to allow nothing else.
@@ -31,7 +28,7 @@ def page(shown: Playback, what_if: WhatIf | None = None) -> str:
         "@CONNECT@": "" if what_if is None else "; connect-src 'self'",
         "@STYLE@": (folder / "page.css").read_text(encoding="utf-8"),
         "@DATA@": data.replace("<", "\\u003c"),  # a name may hold </script>
-        "@SCRIPT@": "\n".join((folder / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS),
+        "@SCRIPT@": (folder / "page.js").read_text(encoding="utf-8").replace("</script", "<\\/script"),
     }
     template = (folder / "page.html").read_text(encoding="utf-8")
     return re.sub("@[A-Z]+@", lambda place: parts[place[0]], template)

@@ -8,21 +8,26 @@ from typing import Any
 
 from cagepose.files.units import from_metres
 from cagepose.files.words import LengthWords
+from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray
+from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
-from cagepose.model.shapes import Shape
+from cagepose.model.shapes import Capsule, Shape, Sphere, Turned
+from cagepose.runs.cases import contact_friction
 from cagepose.runs.load_scaling import scaled_load
+from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, FAILURES
 from cagepose.studies.acts import Act
 from cagepose.studies.comparison import ENDS, same_pose
 from cagepose.views.solids import WINDOW, Solid, solid_of
+from cagepose.views.viewer import look
 from cagepose.views.viewer.playback import Playback, Row, Shot, Touches
-from cagepose.views.viewer.stage import EXAGGERATIONS, MOST_ADDED, Stage
+from cagepose.views.viewer.stage import EASE, EXAGGERATIONS, MOST_ADDED, Stage
 
 AMOUNT_DIGITS = 4
 """A list beside a picture is for reading; saved runs have all digits."""
-DRAWN_DIGITS = 7
-"""Behind the point, of what is drawn and not told."""
+DRAWN_DIGITS = 13
+"""Behind the point, of places: a picture may be a millionth of the scene wide, or less."""
 
 
 def page_data(shown: Playback) -> dict[str, Any]:
@@ -57,28 +62,23 @@ class _Writer:
             "radius": stage.radius,
             "shotsPerMotion": self.shown.shots_per_motion,
             "mostAdded": MOST_ADDED,
-            "exaggeration": stage.proposed,
+            "look": look.document(),
             "exaggerations": list(EXAGGERATIONS),
-            "boxes": [
-                {
-                    "name": box.name,
-                    "size": _numbers(box.size_m / stage.size_m),
-                    "position": _numbers(box.pose_object_box.position_m / stage.size_m),
-                    "quaternion": _numbers(box.pose_object_box.quaternion_wxyz),
-                }
-                for box in held.boxes
-            ],
+            "ease": EASE * self.shown.shots_per_motion,
             "center": _numbers(held.center_of_gravity_m / stage.size_m),
             "reach": held.reach_m * WINDOW / stage.size_m,
             "names": list(run.scene.cage.element_names),
             "points": [_numbers(point) for point in stage.place(self.shown.points_world)],
-            "gaps": [_numbers(gap / stage.size_m) for gap in stage.gaps_world],
+            "gaps": {
+                phase.reference: [_numbers(gap / stage.size_m) for gap in stage.gaps_world(phase.reference)]
+                for phase in stage.phases
+            },
             **self._solids(),
             "greatestForce": self._greatest_force(),
             "forceUnit": self._force_unit(),
             "phases": [
-                {"name": phase.name, "loads": [self._load(act) for act in acts]}
-                for phase, acts in zip(run.phases, self.shown.loads, strict=True)
+                {**view._asdict(), "name": phase.name, "loads": [self._load(act) for act in acts]}
+                for phase, view, acts in zip(run.phases, stage.phases, self.shown.loads, strict=True)
             ],
             "rows": [self._row(row) for row in self.shown.rows],
             "touches": [self._touch(touches) for touches in self.touches],
@@ -87,36 +87,56 @@ class _Writer:
         }
 
     def _solids(self) -> dict[str, Any]:
-        """The shapes and holes of the object in its frame, and those of the cage in the world, by the indices of their
-        meshes: shapes of the same kind and size have the same one.
+        """The parts and holes of the object in its frame, and the shapes and holes of the cage in the world, by the
+        indices of their forms: parts of the same kind and size have the same one.
         """
-        scene, meshes = self.run.scene, dict[Solid, int]()
-        bodies: dict[str, list[dict[str, Any]]] = {}
-        kinds: tuple[tuple[str, Sequence[Shape], Pose | None], ...] = (
-            ("shapes", scene.object.shapes, None),
-            ("holes", scene.object.holes, None),
-            ("bodies", scene.cage.shapes, scene.cage.pose_world_cage),
-            ("cageHoles", scene.cage.holes, scene.cage.pose_world_cage),
+        scene, forms = self.run.scene, dict[Solid, Shape]()
+        solids: dict[str, list[dict[str, Any]]] = {}
+        around, within = (plays / self.stage.size_m for plays in self.stage.plays)
+        kinds: tuple[tuple[str, Sequence[Shape], Pose | None, FloatArray | None], ...] = (
+            ("parts", scene.object.parts, None, None),
+            ("holes", scene.object.holes, None, around),
+            ("bodies", scene.cage.shapes, scene.cage.pose_world_cage, None),
+            ("cageHoles", scene.cage.holes, scene.cage.pose_world_cage, within),
         )
-        for key, shapes, pose in kinds:
-            bodies[key] = []
-            for shape in shapes:
+        for key, shapes, pose, plays in kinds:
+            solids[key] = []
+            for index, shape in enumerate(shapes):
                 placed = shape.pose_body_shape if pose is None else pose @ shape.pose_body_shape
                 in_object = placed.position_m / self.stage.size_m
-                bodies[key].append(
+                forms.setdefault(solid_of(shape), shape)
+                solids[key].append(
                     {
-                        "mesh": meshes.setdefault(solid_of(shape), len(meshes)),
+                        "form": list(forms).index(solid_of(shape)),
                         "position": _numbers(in_object if pose is None else self.stage.place(placed.position_m)),
                         "quaternion": _numbers(placed.quaternion_wxyz),
+                        **({} if plays is None else {"play": float(plays[index]), **self._mouth(shape, pose is None)}),
                     }
                 )
-        return {**bodies, "meshes": [self._mesh(solid) for solid in meshes]}
+        return {**solids, "forms": [self._form(shape, solid) for solid, shape in forms.items()]}
 
-    def _mesh(self, solid: Solid) -> dict[str, Any]:
-        return {
-            "vertices": _rounded(solid.mesh.vertices_m / self.stage.size_m),
-            "triangles": solid.mesh.triangles.tolist(),
-        }
+    def _mouth(self, shape: Shape, is_object: bool) -> dict[str, Any]:
+        """Of a hole: whether it is open below, and the shape that it is cut out of, by its index, if that is one."""
+        assert isinstance(shape, Hole)
+        scene = self.run.scene
+        all_parts = scene.object.parts if is_object else scene.cage.shapes
+        around = [(index, part) for index, part in enumerate(all_parts) if part.name in shape.in_]
+        _, is_open = shape.run_through([part for _, part in around])
+        return {"open": is_open, "in": around[0][0] if around and not is_object else None}
+
+    def _form(self, shape: Shape, solid: Solid) -> dict[str, Any]:
+        """What is turned about an axis is told by its measures: the page makes a mesh of it as fine as its picture
+        needs. All else has the mesh that pictures have.
+        """
+        size_m = self.stage.size_m
+        if isinstance(shape, Turned):
+            return {"rims": [[height / size_m, radius / size_m] for height, radius in shape.rims]}
+        if isinstance(shape, (Sphere, Capsule)):
+            length = shape.length_m if isinstance(shape, Capsule) else 0.0
+            return {"radius": shape.radius_m / size_m, "length": length / size_m}
+        if isinstance(shape, Box):
+            return {"size": _numbers(shape.size_m / size_m)}
+        return {"vertices": _rounded(solid.mesh.vertices_m / size_m), "triangles": solid.mesh.triangles.tolist()}
 
     def _shot(self, shot: Shot) -> dict[str, Any]:
         pose = shot.pose_world_object
@@ -137,8 +157,23 @@ class _Writer:
             "boxes": list(touches.boxes),
             "normals": _rounded(touches.normals_object),
             "forces": None if forces is None else (forces + 0.0).tolist(),
-            "places": _rounded(self.stage.place(touches.places_world)) if self.run.scene.cage.shapes else None,
+            "places": self._places(touches),
+            "gaps": None if touches.gaps_m is None else _numbers(from_metres(touches.gaps_m, self.shown.length_unit)),
+            "friction": None if forces is None else [self._friction(*pair) for pair in self._pairs(touches)],
         }
+
+    def _places(self, touches: Touches) -> list[list[float]] | None:
+        scene = self.run.scene
+        return _rounded(self.stage.place(touches.places_world)) if scene.cage.shapes or scene.cage.holes else None
+
+    def _pairs(self, touches: Touches) -> list[tuple[str, str]]:
+        names = self.run.scene.cage.element_names
+        return [(names[point], box) for point, box in zip(touches.points.tolist(), touches.boxes, strict=True)]
+
+    def _friction(self, element: str, part: str) -> float:
+        """The coefficient of one contact."""
+        scene = self.run.scene
+        return contact_friction(scene, chosen_method(scene, self.run.method).friction(scene), element, part)
 
     def _row(self, row: Row) -> dict[str, Any]:
         motion = row.event.motion

@@ -1,213 +1,301 @@
-"""One shot of a playback as a picture: the same things in the same colours as on the page."""
+"""One shot of a playback as a picture: the same things in the same light as on the page."""
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from PIL import Image
 
 from cagepose.files.units import from_metres
 from cagepose.model.checks import FloatArray
+from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
-from cagepose.model.shapes import Shape
 from cagepose.studies.acts import Act, coil
-from cagepose.views.solids import outer_points, solid_of
+from cagepose.views.solids import outer_points, vertices_of
+from cagepose.views.viewer import look
 from cagepose.views.viewer.caption import LOUD_INK, QUIET_INK, Caption, Label
-from cagepose.views.viewer.playback import Shot, Touches
-from cagepose.views.viewer.raster import DIM, Color, Raster
-from cagepose.views.viewer.stage import Stage
+from cagepose.views.viewer.eye import Eye
+from cagepose.views.viewer.look import PAINT, ink
+from cagepose.views.viewer.paint_bodies import BodyPainter, ShownHole
+from cagepose.views.viewer.playback import Shot
+from cagepose.views.viewer.raster import Raster
+from cagepose.views.viewer.stage import Look, Stage
 
 SIZE = (900, 600)
 """Pixels across and down."""
 FINER = 2
 """How many times as many are drawn before they are put together."""
-AZIMUTH, ELEVATION = math.radians(-56.0), math.radians(24.0)
-BLUE, SKY, GREY, DARK = (0.0, 0.447, 0.698), (0.337, 0.706, 0.914), (0.6, 0.6, 0.6), (0.45, 0.45, 0.45)
-ORANGE, VERMILLION, PURPLE, BLACK = (0.902, 0.624, 0.0), (0.835, 0.369, 0.0), (0.8, 0.475, 0.655), (0.05, 0.05, 0.05)
-BALL, FREE_BALL, ROD, LONGEST_ARROW, NORMAL = 0.01, 0.007, 0.0045, 0.22, 0.07
-"""In sizes of the scene, as on the page."""
-SECOND_HEAD, LONGEST_SPRING, COIL = 0.8, 1.0, 0.012
-"""Where a moment's arrow has its other head; in sizes of the scene, the greatest length of a spring that is drawn, and
-the radius of its coils."""
-SAND, BROWN = (0.72, 0.66, 0.55), (0.36, 0.3, 0.2)
-"""Of the cage's bodies and their outlines."""
-SEE_THROUGH, BODY_OPACITY = 0.3, 0.45
-FEW_NAMES = 14
-"""Of more contacts than these, only those are named that press or were just reached."""
-LEAST_FORCE = 1e-9
-"""In parts of the greatest one; what is less is rounding."""
-_Faces = tuple[FloatArray, FloatArray | None, Color, float]
-"""Corners, how bright these are, colour and opacity."""
-_EDGES = ((0, 1), (0, 2), (0, 4), (1, 3), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 6), (5, 7), (6, 7))
-_FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+FAR = 3.0
+"""In radii of the scene: how far off the eye is that looks at what is near the cage."""
 
 
 class PictureMaker:
     """Draws shots of one playback, all from the same place."""
 
-    def __init__(self, stage: Stage, exaggeration: int, size: tuple[int, int] = SIZE) -> None:
-        self.stage = stage
+    def __init__(
+        self,
+        stage: Stage,
+        exaggerations: Sequence[float] | None = None,
+        size: tuple[int, int] = SIZE,
+        *,
+        seen: Sequence[int] | None = None,
+        is_near: bool = False,
+    ) -> None:
+        """``exaggerations``: of each phase; left out, those that the stage proposes. ``seen``: the shots that must fit
+        into the picture; left out, the start and the end of every event. The object's outline is drawn where the
+        first of them has it. ``is_near``: only what is near the cage must fit, of an object that reaches far beyond it.
+        """
+        self.stage, self.shown = stage, stage.shown
         self.width, self.height = size
-        self.shown = stage.shown
-        self.exaggeration = exaggeration
-        scene = self.shown.run.scene
-        self.corners_object = np.concatenate([np.zeros((0, 3)), *(box.corners_object() for box in scene.object.boxes)])
-        self.points = stage.place(stage.points(exaggeration))
-        self.shifts = stage.shifts(exaggeration)
-        self.body_shifts = self.shifts[len(self.points) : len(self.points) + len(scene.cage.shapes)]
-        self.body_poses = [
-            Pose(shift) @ scene.cage.pose_world_cage @ shape.pose_body_shape
-            for shift, shape in zip(self.body_shifts, scene.cage.shapes, strict=True)
-        ]
-        self.hole_poses = [scene.cage.pose_world_cage @ hole.pose_body_shape for hole in scene.cage.holes]
-        sin_a, cos_a, sin_e, cos_e = math.sin(AZIMUTH), math.cos(AZIMUTH), math.sin(ELEVATION), math.cos(ELEVATION)
-        back = np.array([cos_a * cos_e, sin_a * cos_e, sin_e])
-        right = np.array([-sin_a, cos_a, 0.0])
-        self.axes = np.stack([right, np.cross(back, right), back])
-        self.arrow_per_force = LONGEST_ARROW / (self.shown.greatest_force or 1.0)
-        self._fit()
-        center = stage.center_object_m
-        self.way = self._pixels(
-            stage.place(np.stack([self._shown(shot).transform(center) for shot in self.shown.shots]))
-        )
+        self.exaggerations = stage.proposed if exaggerations is None else tuple(exaggerations)
+        self.scene = self.shown.run.scene
+        self.seen = (0, *(row.last_shot for row in self.shown.rows)) if seen is None else tuple(seen)
+        self.is_near = is_near
+        self.eye = Eye(size, FAR * stage.radius if is_near else 0.0)
+        self.force_scale = look.FORCE / (self.shown.greatest_force or 1.0)
+        self._measure_pins()
+        self.eye.fit(stage.radius, self._content)
         self.raster = Raster(self.width * FINER, self.height * FINER)
-        self._draw_standing()
-        units_per_pixel = float(from_metres(stage.size_m, self.shown.length_unit)) * FINER / self.pixels
-        self.caption = Caption(self.shown, exaggeration, size, units_per_pixel)
+        self.bodies = BodyPainter(stage, self.eye, self.raster, FINER)
+        self._draw_ground()
+        units_per_pixel = float(from_metres(stage.size_m, self.shown.length_unit)) * self.eye.pixel()
+        self.caption = Caption(self.shown, size, units_per_pixel)
 
-    def picture(self, shot: Shot) -> Image.Image:
-        """Return one shot as a picture."""
+    def picture(self, shot: Shot, *, is_captioned: bool = True) -> Image.Image:
+        """Return one shot as a picture, with or without the words above it."""
         self.raster.begin()
         self.labels: list[Label] = []
-        pose = self.stage.pose(shot.pose_world_object, self.exaggeration)
-        self._draw_points(shot)
+        self.now = self._look(shot)
+        pose = self.stage.pose(shot.pose_world_object, self.now)
+        self._draw_bodies(pose)
+        self._draw_start()
+        self._draw_points(shot, pose)
         self._draw_touches(shot, pose)
         self._draw_loads(shot, pose)
         self._draw_motion(shot, pose)
-        self._draw_way(shot)
-        self._draw_object(pose)
+        self._draw_way(shot, pose)
+        self._glaze_bodies()
         image = self.raster.shrunk(FINER)
-        self.caption.write(image, shot, self.labels)
+        self.caption.write(image, shot if is_captioned else None, self.labels, self.now.factor)
         return image
 
-    def _fit(self) -> None:
-        """Choose scale and middle so that the ends of all events, the cage, the loads and the last forces fit."""
-        ends = [self._shown(self.shown.shots[shot]) for shot in (0, *(row.last_shot for row in self.shown.rows))]
-        outer = outer_points(self.shown.run.scene.object)
-        places = [self.stage.place(pose.transform(outer)) for pose in ends]
-        for act in (act for acts in self.shown.loads for act in acts):
-            places.append(np.stack(self._ends(act, ends[-1])))
-        last = self.shown.shots[-1].touches
-        if last.forces_object is not None:
-            places.append(self._places(last) - self.arrow_per_force * last.forces_object @ ends[-1].rotation.T)
-        for body, shift in zip(self.stage.bodies_world, self.body_shifts, strict=True):
-            places.append(self.stage.place(body + shift))
-        for hole, pose in zip(self.shown.run.scene.cage.holes, self.hole_poses, strict=True):
-            places.append(self.stage.place(pose.transform(solid_of(hole).mesh.vertices_m)))
-        seen = np.concatenate([*places, self.points]) @ self.axes.T
-        low, high = seen.min(axis=0), seen.max(axis=0)
-        self.middle = (low + high) / 2.0
-        half = np.maximum((high - low) / 2.0, 0.05)
-        self.pixels = 0.42 * FINER * min(self.width / half[0], self.height / half[1])
+    def places(self, shot: Shot) -> FloatArray:
+        """Return where the contacts of a shot are shown, (n, 3), drawing units."""
+        now = self._look(shot)
+        places = shot.touches.places_world + self.stage.touch_shifts(shot.touches, now)
+        return self.stage.place(places)
 
-    def _shown(self, shot: Shot) -> Pose:
-        return self.stage.pose(shot.pose_world_object, self.exaggeration)
+    def seen_at(self, places: FloatArray) -> FloatArray:
+        """Return the pixels of the picture, (..., 2), at which places of drawing coordinates are."""
+        return self.eye.pixels(places)[..., :2]
 
-    def _pixels(self, places: FloatArray) -> FloatArray:
-        """Turn drawing coordinates into those of the raster."""
-        seen = (places @ self.axes.T - self.middle) * self.pixels * np.array([1.0, -1.0, 1.0])
-        pixels: FloatArray = seen + np.array([self.width, self.height, 0.0]) * FINER / 2.0
-        return pixels
+    def _look(self, shot: Shot) -> Look:
+        return self.stage.look(self.shown.shots.index(shot), self.exaggerations)
 
-    def _places(self, touches: Touches) -> FloatArray:
-        """Return where things touch, (n, 3)."""
-        return self.stage.place(touches.places_world + self.shifts[touches.points])
-
-    def _rod(self, start: FloatArray, end: FloatArray, radius: float, color: Color) -> None:
-        first, last = self._pixels(np.stack([start, end]))
-        self.raster.rod(first, last, max(radius * self.pixels, 0.5 * FINER), color)
-
-    def _arrow(self, tail: FloatArray, tip: FloatArray, radius: float, color: Color) -> None:
-        length = float(np.linalg.norm(tip - tail))
-        if length < 0.01:
+    def _measure_pins(self) -> None:
+        points = self.stage.place(self.shown.points_world)
+        self.pin = look.PIN
+        if len(points) == 0:
             return
-        neck = tip - min(5.0 * radius / length, 0.6) * (tip - tail)
-        self._rod(tail, neck, radius, color)
-        first, last = self._pixels(np.stack([neck, tip]))
-        self.raster.rod(first, last, 2.6 * radius * self.pixels, color, 0.0)
+        reach = float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())
+        self.pin = min(look.PIN, look.PIN_OF_CAGE * reach) or look.PIN
+        self.gaps = self.stage.gaps_world(self.stage.phases[0].reference)[: len(points)]
 
-    def _ball(self, place: FloatArray, radius: float, color: Color) -> None:
-        self.raster.ball(self._pixels(place), radius * self.pixels, color)
+    def _content(self) -> FloatArray:
+        """Return all that must fit: the object, the cage, the loads and the last forces."""
+        shots = [self.shown.shots[index] for index in self.seen]
+        outer = outer_points(self.scene.object)
+        poses = [self.stage.pose(shot.pose_world_object, self._look(shot)) for shot in shots]
+        last, end = shots[-1], poses[-1]
+        found = [self.stage.place(pose.transform(outer)) for pose in poses]
+        now = self._look(last)
+        found.append(self.stage.place(self.stage.points(now)))
+        for act in self.shown.loads[last.phase] if len(shots) < len(self.shown.rows) else sum(self.shown.loads, ()):
+            found.append(np.stack(self._ends(act, end)))
+        if last.touches.forces_object is not None:
+            places = self.places(last)
+            forces = last.touches.forces_object @ end.rotation.T
+            found.append(places - self.force_scale * self.eye.pixel() * forces)
+        shifts = self.stage.shifts(now)[len(self.shown.points_world) :]
+        for body, shift in zip(self.stage.bodies_world, shifts, strict=False):
+            found.append(self.stage.place(body + shift))
+        cage = self.scene.cage.pose_world_cage
+        found += [self.stage.place(cage.transform(vertices_of([hole]))) for hole in self.scene.cage.holes]
+        places = np.concatenate(found)
+        return places if not self.is_near else np.clip(places, *self._near_cage(last, now))
+
+    def _near_cage(self, shot: Shot, now: Look) -> tuple[FloatArray, FloatArray]:
+        """Return two corners of what is near the cage and its contacts."""
+        cage = [self.stage.place(self.stage.points(now)), self.places(shot)]
+        cage += [self.stage.place(body) for body in self.stage.bodies_world]
+        cage.append(self.stage.place(self.stage.middles_world))
+        low, high = np.concatenate(cage).min(axis=0), np.concatenate(cage).max(axis=0)
+        room = max(look.NEAR_CAGE * float((high - low).max()), look.LEAST_NEAR)
+        return low - room, high + room
+
+    def _rod(
+        self, start: FloatArray, end: FloatArray, pixels: float, paint: str, end_pixels: float | None = None
+    ) -> None:
+        first, last = self.bodies.pixels(np.stack([start, end]))
+        last_radius = None if end_pixels is None else end_pixels * FINER
+        self.raster.rod(first, last, pixels * FINER, ink(paint), last_radius)
+
+    def _arrow(self, tail: FloatArray, tip: FloatArray, pixels: float, paint: str) -> None:
+        length, pixel = float(np.linalg.norm(tip - tail)), self.eye.pixel(tip)
+        if length < pixel:
+            return
+        head = min(look.HEAD[1] * pixel, 0.7 * length)
+        neck = tip - head / length * (tip - tail)
+        self._rod(tail, neck, pixels, paint)
+        self._rod(neck, tip, max(look.HEAD[0], 2.3 * pixels), paint, 0.0)
+
+    def _ball(self, place: FloatArray, pixels: float, paint: str) -> None:
+        self.raster.ball(self.bodies.pixels(place), pixels * FINER, ink(paint))
 
     def _name(self, place: FloatArray, text: str, *, is_loud: bool) -> None:
-        x, y = (self._pixels(place)[:2] / FINER).tolist()
+        x, y = self.seen_at(place).tolist()
         self.labels.append(Label((x, y), text, LOUD_INK if is_loud else QUIET_INK))
 
-    def _draw_standing(self) -> None:
-        """Draw what all shots have: where the object started, and the cage; a point that touches covers itself."""
-        self._draw_edges(self.stage.reference, GREY)
-        for shape in self.shown.run.scene.object.shapes:
-            self._solid(shape, self.stage.reference @ shape.pose_body_shape, GREY)
-        for point in self.points:
-            self._ball(point, FREE_BALL, DARK)
+    def _draw_ground(self) -> None:
+        """Draw what all shots have: a grid of round lengths below."""
+        shots = (self.shown.shots[0], self.shown.shots[-1])
+        poses = [self.stage.pose(shot.pose_world_object, self._look(shot)) for shot in shots]
+        outer = outer_points(self.scene.object)
+        lowest = [self.stage.place(pose.transform(outer))[:, 2].min() for pose in poses]
+        lowest += [self.stage.place(body)[:, 2].min() for body in self.stage.bodies_world]
+        lowest += (self.stage.place(self.stage.points(self._look(shots[-1])))[:, 2] - self.pin).tolist()
+        unit = float(from_metres(self.stage.size_m, self.shown.length_unit))
+        reach = min(self.stage.radius, 2.0 * self.eye.half) if self.is_near else self.stage.radius
+        rough = 2.0 * reach * unit / look.GRID_LINES
+        power = 10.0 ** math.floor(math.log10(rough))
+        step = power * next(times for times in (1, 2, 5, 10) if times * power >= rough) / unit
+        at = step * np.arange(-look.GRID_LINES, look.GRID_LINES + 1)
+        end, height = np.full(len(at), at[-1]), np.full(len(at), min(lowest) - look.BELOW)
+        starts = np.concatenate([np.stack([at, -end, height], axis=1), np.stack([-end, at, height], axis=1)])
+        ends = np.concatenate([np.stack([at, end, height], axis=1), np.stack([end, at, height], axis=1)])
+        self.raster.lines(self.bodies.pixels(starts), self.bodies.pixels(ends), ink(PAINT["grid"]))
         self.raster.keep()
 
-    def _draw_points(self, shot: Shot) -> None:
+    def _holes(self, holes: Sequence[Hole], poses: Sequence[Pose], plays: FloatArray) -> list[ShownHole]:
+        added = (self.now.factor - 1.0) * plays
+        return [
+            ShownHole(hole, pose, 1.0 + float(more) / hole.radius_m)
+            for hole, pose, more in zip(holes, poses, added, strict=True)
+        ]
+
+    def _cage_poses(self) -> list[Pose]:
+        """Return where the cage's shapes and holes are shown."""
+        cage, shifts = self.scene.cage, self.stage.shifts(self.now)[len(self.shown.points_world) :]
+        return [
+            Pose(shift) @ cage.pose_world_cage @ shape.pose_body_shape
+            for shift, shape in zip(shifts, (*cage.shapes, *cage.holes), strict=True)
+        ]
+
+    def _draw_bodies(self, pose: Pose) -> None:
+        held, cage = self.scene.object, self.scene.cage
+        around, within = self.stage.plays
+        holes = self._holes(held.holes, [pose @ hole.pose_body_shape for hole in held.holes], around)
+        self.cage_poses = self._cage_poses()
+        self.cage_holes = self._holes(cage.holes, self.cage_poses[len(cage.shapes) :], within)
+        for part in held.parts:
+            placed = pose @ part.pose_body_shape
+            self.bodies.paint(part, placed, PAINT["object"], holes)
+            self.bodies.edges(part, placed, PAINT["objectEdge"])
+        reach = look.LARGE * held.reach_m
+        self.glass = [body.farthest_m(body.pose_body_shape.position_m) > reach for body in cage.shapes]
+        for body, placed, is_glass in zip(cage.shapes, self.cage_poses, self.glass, strict=False):
+            self.bodies.paint(body, placed, PAINT["cage"], self.cage_holes, is_glass=is_glass)
+            self.bodies.edges(body, placed, PAINT["cageEdge"])
+        for hole in holes:
+            self.bodies.wall(hole, PAINT["objectWall"], PAINT["objectEdge"])
+        for hole in self.cage_holes:
+            self.bodies.wall(hole, PAINT["cageWall"], PAINT["cageEdge"])
+
+    def _glaze_bodies(self) -> None:
+        """Paint the faces of the cage's large bodies that are in front, last, far ones first."""
+        bodies = [
+            (float(self.eye.axes[2] @ placed.position_m), body, placed)
+            for body, placed, is_glass in zip(self.scene.cage.shapes, self.cage_poses, self.glass, strict=False)
+            if is_glass
+        ]
+        for _, body, placed in sorted(bodies, key=lambda found: found[0]):
+            self.bodies.glaze(body, placed, PAINT["cage"], self.cage_holes, look.GLASS)
+
+    def _draw_start(self) -> None:
+        """Draw where the object was in the first shot that must be seen."""
+        start = self.shown.shots[self.seen[0]]
+        pose = self.stage.pose(start.pose_world_object, self._look(start))
+        for part in self.scene.object.parts:
+            self.bodies.edges(part, pose @ part.pose_body_shape, PAINT["ghost"])
+
+    def _draw_points(self, shot: Shot, pose: Pose) -> None:
         touching = set(shot.touches.points.tolist())
         row = self.shown.rows[shot.row] if shot.row >= 0 else None
         is_end = row is not None and self.shown.shots[row.last_shot] is shot
-        pressing, names = self._pressing(shot), self.shown.run.scene.cage.element_names
-        places = self._places(shot.touches)
+        pressing, names = self._pressing(shot), self.scene.cage.element_names
+        points, places = self.stage.place(self.stage.points(self.now)), self.places(shot)
         for index, name in enumerate(names):
+            kind = "touching" if index in touching else "free"
             if is_end and row is not None and name in row.event.hit:
-                color = VERMILLION
-            else:
-                color = ORANGE if index in touching else DARK
-            is_point = index < len(self.points)
+                kind = "reached"
             marks = places[shot.touches.points == index]
-            if color != DARK:
-                for mark in self.points[index : index + 1] if is_point else marks:
-                    self._ball(mark, BALL, color)
-            counts = color == VERMILLION or (color == ORANGE and (len(touching) <= FEW_NAMES or index in pressing))
-            if counts or len(names) <= FEW_NAMES:
-                self._name(self._named_place(index, marks), name, is_loud=color != DARK)
+            if index < len(points):
+                self._draw_pin(index, points[index], shot, pose)
+                marks = points[index : index + 1]
+            for mark in marks if kind != "free" else ():
+                self._ball(mark, look.BALL, PAINT[kind])
+            counts = kind == "reached" or (
+                kind == "touching" and (len(touching) <= look.FEW_NAMES or index in pressing)
+            )
+            if counts or len(names) <= look.FEW_NAMES:
+                place = marks[0] if len(marks) else self._middle(index - len(points))
+                self._name(place, name, is_loud=kind != "free")
 
-    def _named_place(self, index: int, marks: FloatArray) -> FloatArray:
-        """Return where an element of the cage has its name: a shape or a hole that touches where it does, else in its
-        middle or at its mouth.
-        """
-        if index < len(self.points):
-            return np.asarray(self.points[index])
-        if len(marks):
-            return np.asarray(marks[0])
-        return self._middle(index - len(self.points))
+    def _draw_pin(self, index: int, place: FloatArray, shot: Shot, pose: Pose) -> None:
+        """Draw a cage point as a pin with its tip there, away from the object."""
+        out, length = self.gaps[index], float(np.linalg.norm(self.gaps[index]))
+        if length < 1e-9 * self.stage.size_m:
+            touches = np.nonzero(shot.touches.points == index)[0]
+            out = (
+                pose.rotation @ shot.touches.normals_object[touches[0]] if len(touches) else np.array((0.0, 0.0, -1.0))
+            )
+            length = 1.0
+        base = place + self.pin / length * out
+        radius = look.PIN_SLOPE * self.pin / self.eye.pixel(base) * FINER
+        first, last = self.bodies.pixels(np.stack([place, base]))
+        self.raster.rod(first, last, 0.0, ink(PAINT["pin"]), radius, faint=0.0)
 
     def _pressing(self, shot: Shot) -> set[int]:
         """Return the points that bear some of the load in a shot."""
         if shot.touches.forces_object is None:
             return set()
         forces = np.linalg.norm(shot.touches.forces_object, axis=1)
-        return set(shot.touches.points[forces > LEAST_FORCE * self.shown.greatest_force].tolist())
+        return set(shot.touches.points[forces > look.LEAST_FORCE * self.shown.greatest_force].tolist())
 
     def _draw_touches(self, shot: Shot, pose: Pose) -> None:
-        places, forces = self._places(shot.touches), shot.touches.forces_object
+        places, forces = self.places(shot), shot.touches.forces_object
         for place, normal in zip(places, shot.touches.normals_object @ pose.rotation.T, strict=True):
-            self._rod(place, place + NORMAL * normal, 0.3 * ROD, (0.3, 0.3, 0.3))
-        if forces is not None:
-            for place, arrow in zip(places, self.arrow_per_force * forces @ pose.rotation.T, strict=True):
-                self._arrow(place - arrow, place, ROD, VERMILLION)
+            self._rod(place, place + look.NORMAL * self.eye.pixel(place) * normal, look.THIN, PAINT["normal"])
+        if forces is None:
+            return
+        for place, force in zip(places, self.force_scale * forces @ pose.rotation.T, strict=True):
+            if np.linalg.norm(force) >= look.LEAST_SHOWN * look.FORCE:
+                self._arrow(place - self.eye.pixel(place) * force, place, look.ROD, PAINT["force"])
 
     def _draw_loads(self, shot: Shot, pose: Pose) -> None:
         for act in self.shown.loads[shot.phase]:
             start, end = self._ends(act, pose)
             if act.kind == "spring":
-                line = self._pixels(coil(start, end, COIL))
-                self.raster.lines(line[:-1], line[1:], BLACK)
+                line = coil(start, end, look.COIL * self.eye.pixel(start))
+                for one, other in itertools.pairwise(line):
+                    self._rod(one, other, look.THIN, PAINT["load"])
             else:
-                self._arrow(start, end, 1.3 * ROD, BLACK)
+                self._arrow(start, end, 1.3 * look.ROD, PAINT["load"])
             if act.kind == "moment":  # two heads
-                self._arrow(start, start + SECOND_HEAD * (end - start), 1.3 * ROD, BLACK)
+                self._arrow(start, start + look.SECOND_HEAD * (end - start), 1.3 * look.ROD, PAINT["load"])
             self._name(end if act.kind == "spring" else start, act.name, is_loud=True)
 
     def _ends(self, act: Act, pose: Pose) -> tuple[FloatArray, FloatArray]:
@@ -217,10 +305,9 @@ class PictureMaker:
         at, direction = self.stage.place(pose.transform(act.at_object_m)), act.direction_at(pose)
         if act.to_world_m is not None:
             length = float(np.linalg.norm(self.stage.place(act.to_world_m) - at))
-            return at, at + min(length, LONGEST_SPRING) * direction
-        if act.kind == "moment":
-            return at, at + LONGEST_ARROW * direction
-        return at - LONGEST_ARROW * direction, at
+            return at, at + min(length, look.LONGEST_SPRING) * direction
+        arrow = look.LOAD * self.eye.pixel(at) * direction
+        return (at, at + arrow) if act.kind == "moment" else (at - arrow, at)
 
     def _draw_motion(self, shot: Shot, pose: Pose) -> None:
         row = self.shown.rows[shot.row] if shot.row >= 0 else None
@@ -228,70 +315,30 @@ class PictureMaker:
             return
         motion = row.event.motion
         before = self.shown.shots[row.first_shot - 1]
-        carried = self._shown(before)
+        carried = self.stage.pose(before.pose_world_object, self._look(before))
         along = motion.direction_world if motion.axis_world is None else motion.axis_world
         assert along is not None
         direction = self.stage.normal(along, before.pose_world_object, carried)
         if motion.through_world is None:
             center = self.stage.place(pose.transform(self.stage.center_object_m))
-            self._arrow(center, center + 0.25 * direction, 0.8 * ROD, PURPLE)
+            self._arrow(center, center + look.TRAVEL * self.eye.pixel(center) * direction, look.ROD, PAINT["axis"])
             return
         through = carried.transform(before.pose_world_object.inverse_transform(motion.through_world))
         middle = self.stage.place(through)
         middle = middle - (middle @ direction) * direction
         half = math.sqrt(max(0.04, self.stage.radius**2 - float(middle @ middle)))
-        self._rod(middle - half * direction, middle + half * direction, 0.5 * ROD, PURPLE)
+        self._arrow(middle - half * direction, middle + half * direction, 0.6 * look.ROD, PAINT["axis"])
 
-    def _draw_way(self, shot: Shot) -> None:
-        """Draw the way of the centre of gravity up to a shot."""
-        way = self.way[: self.shown.shots.index(shot) + 1]
-        self.raster.lines(way[:-1], way[1:], BLUE)
-
-    def _draw_object(self, pose: Pose) -> None:
-        """Draw the object's edges, and, seen through, its faces and the bodies of the cage, far ones first."""
-        self._draw_edges(pose, BLUE)
-        center = self.stage.place(pose.transform(self.stage.center_object_m))
-        self._ball(center, BALL, BLUE)
-        scene = self.shown.run.scene
-        drawn: list[tuple[float, _Faces]] = []
-        for face in (corners[list(face)] for corners in self._corners(pose) for face in _FACES):
-            drawn.append((float(face[:, 2].mean()), (face, None, SKY, SEE_THROUGH)))
-        for shape in scene.object.shapes:
-            faces = self._solid(shape, pose @ shape.pose_body_shape, BLUE)
-            drawn.append((float(faces[0][..., 2].mean()), (*faces, SKY, SEE_THROUGH)))
-        for hole in scene.object.holes:  # of which the surface of a part shows nothing
-            self._solid(hole, pose @ hole.pose_body_shape, BLUE)
-        for hole, hole_pose in zip(scene.cage.holes, self.hole_poses, strict=True):
-            self._solid(hole, hole_pose, BROWN)
-        for index, body in enumerate(scene.cage.shapes):
-            depth = float(self._pixels(self._middle(index))[2])
-            drawn.append((depth, (*self._solid(body, self.body_poses[index], BROWN), SAND, BODY_OPACITY)))
-        for _, (corners, lit, color, opacity) in sorted(drawn, key=lambda faces: faces[0]):
-            if lit is None:
-                self.raster.face(corners, color, opacity)
-            else:
-                self.raster.triangles(corners, lit, color, opacity)
+    def _draw_way(self, shot: Shot, pose: Pose) -> None:
+        """Draw the centre of gravity, and its way up to a shot."""
+        shots = self.shown.shots[: self.shown.shots.index(shot) + 1]
+        center = self.stage.center_object_m
+        poses = [self.stage.pose(before.pose_world_object, self._look(before)) for before in shots]
+        way = self.bodies.pixels(self.stage.place(np.stack([before.transform(center) for before in poses])))
+        self.raster.lines(way[:-1], way[1:], ink(PAINT["trace"]))
+        self._ball(self.stage.place(pose.transform(center)), look.BALL - 1.0, PAINT["trace"])
 
     def _middle(self, body: int) -> FloatArray:
         """Return the middle of what is shown of a shape of the cage, or the mouth of a hole behind these, (3,)."""
-        return self.stage.place(self.stage.middles_world[body] + self.shifts[len(self.points) + body])
-
-    def _solid(self, shape: Shape, pose: Pose, ink: Color) -> tuple[FloatArray, FloatArray]:
-        """Draw the outline of a shape; return the triangles that face the viewer, and how bright their corners are."""
-        solid, back = solid_of(shape), pose.rotation.T @ self.axes[2]
-        is_front = solid.normals @ back > 0.0
-        vertices = self._pixels(self.stage.place(pose.transform(solid.mesh.vertices_m)))
-        outline = solid.outline(is_front)
-        self.raster.lines(vertices[outline[:, 0]], vertices[outline[:, 1]], ink)
-        lit = DIM + (1.0 - DIM) * np.abs(solid.corner_normals[is_front] @ back)
-        return vertices[solid.mesh.triangles[is_front]], lit
-
-    def _draw_edges(self, pose: Pose, color: Color) -> None:
-        if len(self.corners_object) == 0:
-            return
-        starts, ends = (self._corners(pose)[:, which].reshape(-1, 3) for which in np.array(_EDGES).T)
-        self.raster.lines(starts, ends, color)
-
-    def _corners(self, pose: Pose) -> FloatArray:
-        """All boxes' corners on the raster, (n_boxes, 8, 3)."""
-        return self._pixels(self.stage.place(pose.transform(self.corners_object))).reshape(-1, 8, 3)
+        shift = self.stage.shifts(self.now)[len(self.shown.points_world) + body]
+        return self.stage.place(self.stage.middles_world[body] + shift)

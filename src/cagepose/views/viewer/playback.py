@@ -40,6 +40,8 @@ class Touches:
         Forces on the object, (n, 3), newtons or parts of the load; None: not known, as during a motion.
     places_world
         Where they touch, (n, 3), metres.
+    gaps_m
+        How far apart they are there, (n,), metres, within the touch tolerance; None: not known, as during a motion.
     """
 
     points: NDArray[np.int64]
@@ -47,6 +49,7 @@ class Touches:
     normals_object: FloatArray
     forces_object: FloatArray | None
     places_world: FloatArray
+    gaps_m: FloatArray | None = None
 
     def chosen(self, which: Sequence[bool]) -> Touches:
         """Return those of which ``which`` says so, without forces."""
@@ -215,6 +218,7 @@ class _Camera:
                     for element, contact in zip(elements.tolist(), contacts, strict=True)
                 ]
             ),
+            np.array([contact.gap_m for contact in contacts]),
         )
 
     def _indices(self, names: tuple[str, ...]) -> NDArray[np.int64]:

@@ -1,34 +1,79 @@
-"""The room that a playback is drawn in: its scale follows the scene's size, and small motions can be exaggerated.
+"""The room that a playback is drawn in: its scale follows the scene's size, and play can be exaggerated.
 
 Drawing coordinates have the scene's size as their unit and the middle of the scene as their origin, so that a scene in
 millimetres and one in metres look alike.
 
-Exaggeration by k shows the object k times as far from where it started, turned k times as much; a cage point is shown k
-times as far from the nearest place of the object at the start, a shape of the cage as a whole. To first order in the
-motion, the gaps on screen are then k times the true ones: what touches on screen touches. (Of a shape this holds where
-it comes to touch along the way on which it was nearest.)
+Exaggeration by k shows the object k times as far from a reference pose, turned k times as much; a cage point is shown k
+times as far from the nearest place of the object at the reference, a shape of the cage as a whole. A hole goes with
+what it is cut out of, and its play around what stands in it is k times as wide. To first order in the motion, the gaps
+on screen are then k times the true ones: what touches on screen touches. (Of a shape this holds where it comes to touch
+along the way on which it was nearest.)
+
+Each phase has an exaggeration of its own. A long travel, such as the way into the cage, is shown as it is, and what
+follows is measured from its end.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Sequence
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from cagepose.model.checks import FloatArray
+from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
+from cagepose.model.shapes import Shape
 from cagepose.views.solids import cut_off, outer_points, vertices_of
-from cagepose.views.viewer.playback import Playback
+from cagepose.views.viewer.playback import Playback, Touches
 from cagepose.views.viewer.surface import nearest_on_object
 
 EXAGGERATIONS = (1, 2, 5, 10, 20, 50, 100, 200)
 """What a slider offers."""
 MOST_TURN_RAD, MOST_WAY = math.radians(10.0), 0.15
-"""The exaggeration that is proposed shows no greater turn, and no longer way in sizes of the scene."""
+"""The exaggeration that is proposed shows no greater turn, and no longer way in sizes of the scene. A motion that would
+pass this at twice its size is a long one.
+"""
 MOST_ADDED = 0.5
 """A cage point is moved away from the object by at most this many sizes: one that is far off must stay in the picture.
 """
+STILL = 1e-7
+"""Radians, and sizes of the scene: what moves less stands still but for rounding."""
+EASE = 0.25
+"""Of a motion: how long an exaggeration takes to pass into another."""
+
+
+class PhaseView(NamedTuple):
+    """What a phase is measured from.
+
+    Attributes
+    ----------
+    first, last
+        Its first and its last shot.
+    start
+        The shot from which on motions are exaggerated: the end of its last long motion, else the end of the phase
+        before.
+    reference
+        The shot whose pose all is measured from.
+    proposed
+        The greatest of `EXAGGERATIONS` that keeps every turn and way small on screen; 1 where nothing moves.
+    """
+
+    first: int
+    last: int
+    start: int
+    reference: int
+    proposed: int
+
+
+class Look(NamedTuple):
+    """How one moment is shown: exaggerated by ``factor``, from the pose of the shot ``reference``."""
+
+    reference: int
+    factor: float
 
 
 class Stage:
@@ -40,26 +85,22 @@ class Stage:
         The origin of drawing coordinates, (3,), metres.
     size_m
         Their unit: the size of the scene, or of what is shown of it.
-    gaps_world
-        From the place of the object at the start that is nearest to each of the cage's points and shapes, to the place
-        there, (n, 3), metres.
     bodies_world
         Points whose hull is that of each shape of the cage, as far as they are shown: tuples of (n, 3), metres.
     middles_world
         Of each of these, and the mouth of each hole of the cage, (n, 3), metres.
     radius
         A sphere about the origin that holds the cage and the object at the start and the end, in drawing units.
+    phases
+        What each phase is measured from.
     """
 
     def __init__(self, shown: Playback) -> None:
         scene, held = shown.run.scene, shown.run.scene.object
         self.shown = shown
         self.center_object_m = held.center_of_gravity_m
-        self.reference = shown.shots[0].pose_world_object
-        nearest = nearest_on_object(held, self.reference, scene.cage)
-        still = np.zeros((len(scene.cage.holes), 3))  # a hole stays where it is
-        self.gaps_world: FloatArray = np.concatenate([nearest.places_world - nearest.feet_world, still])
-        ends = (self.reference, shown.shots[-1].pose_world_object)
+        self._gaps: dict[int, FloatArray] = {}
+        ends = (shown.shots[0].pose_world_object, shown.shots[-1].pose_world_object)
         everything = np.concatenate([shown.points_world, *(pose.transform(outer_points(held)) for pose in ends)])
         bodies = [scene.cage.pose_world_cage.transform(vertices_of([shape])) for shape in scene.cage.shapes]
         self.bodies_world = tuple(cut_off(body, everything, held.reach_m) for body in bodies)
@@ -77,26 +118,106 @@ class Stage:
         drawn: FloatArray = (point_world - self.middle_world) / self.size_m
         return drawn
 
-    def pose(self, pose_world_object: Pose, exaggeration: float) -> Pose:
+    @cached_property
+    def phases(self) -> tuple[PhaseView, ...]:
+        views: list[PhaseView] = []
+        for _, group in itertools.groupby(self.shown.rows, lambda row: row.phase):
+            rows = list(group)
+            before = views[-1] if views else PhaseView(0, 0, 0, 0, 1)
+            long = [row.last_shot for row in rows if self._is_long(row.first_shot - 1, row.last_shot)]
+            start, reference = (long[-1], long[-1]) if long else (before.last, before.reference)
+            last = rows[-1].last_shot
+            views.append(PhaseView(before.last, last, start, reference, self._proposed(reference, start, last)))
+        return tuple(views)
+
+    @property
+    def proposed(self) -> tuple[int, ...]:
+        """The exaggeration that is proposed for each phase."""
+        return tuple(phase.proposed for phase in self.phases)
+
+    def look(self, shot: int, exaggerations: Sequence[float]) -> Look:
+        """Return how a shot is shown, exaggerated by so much in each phase."""
+        index = next(index for index, phase in enumerate(self.phases) if shot <= phase.last)
+        phase = self.phases[index]
+        before = Look(0, exaggerations[0] if phase.start == 0 else 1.0)
+        if index > 0:
+            ended = self.phases[index - 1]
+            before = Look(ended.reference, exaggerations[index - 1] if ended.start < ended.last else 1.0)
+        if phase.start > phase.first:  # a long motion
+            if shot <= phase.start:
+                return Look(before.reference, self._passing(before.factor, 1.0, phase.first, phase.start, shot))
+            before = Look(phase.reference, 1.0)
+        factor = self._passing(before.factor, exaggerations[index], phase.start, phase.last, shot)
+        return Look(phase.reference, factor)
+
+    def _passing(self, factor: float, other: float, first: int, last: int, shot: int) -> float:
+        room = min(max(1.0, EASE * self.shown.shots_per_motion), last - first)
+        return factor + (other - factor) * (min(1.0, (shot - first) / room) if room else 1.0)
+
+    def pose(self, pose_world_object: Pose, look: Look) -> Pose:
         """Return the pose, in the world and in metres, at which the object is shown."""
-        if exaggeration == 1.0:
+        if look.factor == 1.0:
             return pose_world_object
-        before = self.reference.transform(self.center_object_m)
-        center = before + exaggeration * (pose_world_object.transform(self.center_object_m) - before)
-        turn = _turn_vector(self.reference, pose_world_object)
-        turned = _from_turn_vector(exaggeration * turn) @ Pose(quaternion_wxyz=self.reference.quaternion_wxyz)
+        reference = self.shown.shots[look.reference].pose_world_object
+        before = reference.transform(self.center_object_m)
+        center = before + look.factor * (pose_world_object.transform(self.center_object_m) - before)
+        turn = _turn_vector(reference, pose_world_object)
+        turned = _from_turn_vector(look.factor * turn) @ Pose(quaternion_wxyz=reference.quaternion_wxyz)
         return Pose(center - turned.transform(self.center_object_m), turned.quaternion_wxyz)
 
-    def shifts(self, exaggeration: float) -> FloatArray:
+    def gaps_world(self, reference: int) -> FloatArray:
+        """Return, from the place of the object at a reference that is nearest to each of the cage's points and shapes,
+        the way to the place there, (n, 3), metres; of a hole, that of what it is cut out of.
+        """
+        if reference not in self._gaps:
+            scene = self.shown.run.scene
+            nearest = nearest_on_object(scene.object, self.shown.shots[reference].pose_world_object, scene.cage)
+            gaps = nearest.places_world - nearest.feet_world
+            index = {name: number for number, name in enumerate(scene.cage.element_names)}
+            bodies = [next((index[name] for name in hole.in_), None) for hole in scene.cage.holes]
+            with_bodies = [np.zeros(3) if body is None else gaps[body] for body in bodies]
+            self._gaps[reference] = np.concatenate([gaps, np.array(with_bodies).reshape(-1, 3)])
+        return self._gaps[reference]
+
+    @cached_property
+    def plays(self) -> tuple[FloatArray, FloatArray]:
+        """How much wider each hole is than what stands in it at the end, metres, of the object's holes and of the
+        cage's; zero where nothing does.
+        """
+        scene, pose = self.shown.run.scene, self.shown.shots[-1].pose_world_object
+        others, held = scene.cage.pose_world_cage, scene.object
+        around = [_play(hole, pose.inverse() @ others, scene.cage.shapes) for hole in held.holes]
+        within = [_play(hole, others.inverse() @ pose, held.shapes) for hole in scene.cage.holes]
+        return np.array(around), np.array(within)
+
+    def shifts(self, look: Look) -> FloatArray:
         """Return how far each of the cage's points, shapes and holes is moved from its place, (n, 3), metres."""
-        lengths = np.linalg.norm(self.gaps_world, axis=1, keepdims=True)
+        if look.factor == 1.0:
+            return np.zeros((len(self.shown.run.scene.cage.element_names), 3))
+        gaps = self.gaps_world(look.reference)
+        lengths = np.linalg.norm(gaps, axis=1, keepdims=True)
         most = MOST_ADDED * self.size_m / np.maximum(lengths, np.finfo(np.float64).tiny)
-        moved: FloatArray = np.minimum(exaggeration - 1.0, most) * self.gaps_world
+        moved: FloatArray = np.minimum(look.factor - 1.0, most) * gaps
         return moved
 
-    def points(self, exaggeration: float) -> FloatArray:
+    def touch_shifts(self, touches: Touches, look: Look) -> FloatArray:
+        """Return how far each contact is shown from its place, (n, 3), metres; on the wall of a hole of the cage, as
+        far out as that.
+        """
+        cage = self.shown.run.scene.cage
+        shifts = self.shifts(look)[touches.points]
+        first = len(cage.names) + len(cage.shapes)
+        for row in np.nonzero(touches.points >= first)[0].tolist():
+            number = int(touches.points[row]) - first
+            hole = cage.pose_world_cage @ cage.holes[number].pose_body_shape
+            out = hole.inverse_transform(touches.places_world[row]) * [1.0, 1.0, 0.0]
+            aside = float(np.linalg.norm(out)) or 1.0
+            shifts[row] += hole.rotation @ out * ((look.factor - 1.0) * self.plays[1][number] / aside)
+        return shifts
+
+    def points(self, look: Look) -> FloatArray:
         """Return where the cage points are shown, (n, 3), metres in the world."""
-        moved: FloatArray = self.shown.points_world + self.shifts(exaggeration)[: len(self.shown.points_world)]
+        moved: FloatArray = self.shown.points_world + self.shifts(look)[: len(self.shown.points_world)]
         return moved
 
     def normal(self, normal_world: FloatArray, true: Pose, shown: Pose) -> FloatArray:
@@ -104,19 +225,33 @@ class Stage:
         turned: FloatArray = shown.rotation @ (true.rotation.T @ normal_world)
         return turned
 
-    @cached_property
-    def proposed(self) -> int:
-        """The greatest of `EXAGGERATIONS` that keeps every turn and way small on screen; 1 where nothing moves."""
-        turn = way = 0.0
-        start = self.reference.transform(self.center_object_m)
-        for row in self.shown.rows:
-            pose = self.shown.shots[row.last_shot].pose_world_object
-            turn = max(turn, float(np.linalg.norm(_turn_vector(self.reference, pose))))
-            way = max(way, float(np.linalg.norm(pose.transform(self.center_object_m) - start)))
-        if turn == way == 0.0:
+    def _moved(self, one: int, other: int) -> tuple[float, float]:
+        """Return by how much the object turns, radians, and how far its centre goes, metres, between two shots."""
+        start, end = (self.shown.shots[shot].pose_world_object for shot in (one, other))
+        way = end.transform(self.center_object_m) - start.transform(self.center_object_m)
+        return float(np.linalg.norm(_turn_vector(start, end))), float(np.linalg.norm(way))
+
+    def _fits(self, moved: tuple[float, float], exaggeration: int) -> bool:
+        return exaggeration * moved[0] <= MOST_TURN_RAD and exaggeration * moved[1] <= MOST_WAY * self.size_m
+
+    def _is_long(self, one: int, other: int) -> bool:
+        return not self._fits(self._moved(one, other), 2)
+
+    def _proposed(self, reference: int, start: int, last: int) -> int:
+        ends = [row.last_shot for row in self.shown.rows if start < row.last_shot <= last]
+        moves = [self._moved(reference, shot) for shot in ends]
+        if all(turn < STILL and way < STILL * self.size_m for turn, way in moves):
             return 1
-        fitting = [k for k in EXAGGERATIONS if k * turn <= MOST_TURN_RAD and k * way <= MOST_WAY * self.size_m]
-        return fitting[-1] if fitting else 1
+        return max((k for k in EXAGGERATIONS if all(self._fits(move, k) for move in moves)), default=1)
+
+
+def _play(hole: Hole, pose_hole_other: Pose, shapes: Sequence[Shape]) -> float:
+    """Return how much wider a hole is than what stands in it of shapes of the other body."""
+    in_hole = (hole.pose_body_shape.inverse() @ pose_hole_other).transform(vertices_of(shapes))
+    aside = np.hypot(in_hole[:, 0], in_hole[:, 1])
+    # What stands in a hole may come out of it at both ends, where a mesh has its vertices.
+    beside = aside[aside < 1.2 * hole.radius_m]
+    return max(0.0, hole.radius_m - float(beside.max())) if len(beside) else 0.0
 
 
 def _turn_vector(start: Pose, end: Pose) -> FloatArray:

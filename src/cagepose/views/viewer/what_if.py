@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
+import copy
+import math
 from pathlib import PurePath
 from typing import Any
 
+import numpy as np
+
 from cagepose.errors import CageposeError, SceneFileError
-from cagepose.files.key_path import value_at
-from cagepose.files.scene_edit import edited, edited_text, setting, with_cage_angles
-from cagepose.files.scene_file import SceneText
+from cagepose.files.key_path import parse_key_path, set_value, value_at
+from cagepose.files.parameters import evaluated
+from cagepose.files.scene_edit import ANGLE_DECIMALS, edited, edited_text, setting, with_cage_angles
+from cagepose.files.scene_file import SceneFile, SceneText
+from cagepose.files.units import from_metres, to_metres
+from cagepose.model.pose import Pose
 from cagepose.runs.solve import run
 from cagepose.views.viewer.controls import Control, controls
 from cagepose.views.viewer.page_data import page_data
 from cagepose.views.viewer.playback import playback
 
+LENGTH_DECIMALS = 12
+"""Of a start pose in the scene's unit."""
 SHOTS_PER_MOTION = 4
 """Fewer than in an exported page, whose maker need not wait for them; the page fills in what is between."""
 
 
 class WhatIf:
-    """Runs one scene file with values that somebody asks for.
+    """Runs one scene file with values that somebody asks for. The start pose goes with the cage.
 
     Attributes
     ----------
@@ -41,6 +50,7 @@ class WhatIf:
         self._text = with_cage_angles(edited(scene_text, changes))
         of = value_at(self._text.yaml.data, ("friction", "of"))
         self._friction_of = {"of": of} if of else {}
+        self._scene_file = self._text.scene_file()
         self.controls: list[Control] = controls(self._text)
         self.file_name = f"{PurePath(scene_text.yaml.source).stem}-changed.yaml"
 
@@ -54,8 +64,18 @@ class WhatIf:
         ValueError
             A key that no control has, or a value that is neither a number, a word nor a list of numbers.
         """
-        scene_file = self._text.scene_file(self._settings(values))
+        scene_file = self.scene(values)
         return page_data(playback(run(scene_file.scene), scene_file.length_unit, SHOTS_PER_MOTION))
+
+    def scene(self, values: object) -> SceneFile:
+        """Return the scene with ``values``.
+
+        Raises
+        ------
+        SceneFileError, ValueError
+            As `answer`.
+        """
+        return self._text.scene_file(self._settings(values))
 
     def saved(self, values: object) -> str:
         """Return the text of the scene file with ``values``.
@@ -85,7 +105,29 @@ class WhatIf:
                 raise ValueError(f"{key} is no number, no word and no list of numbers")
             given = {"coefficient": value, **self._friction_of} if key == "friction" else value
             settings.append(setting(key, given))
-        return tuple(settings)
+        start = self._start_with_cage(values) if any(key.startswith("cage.pose") for key in values) else None
+        return tuple(settings) if start is None else (*settings, setting("object.pose", start))
+
+    def _start_with_cage(self, values: dict[str, Any]) -> dict[str, list[float]] | None:
+        """Return the start pose that is to the changed cage as the file's start is to the file's cage: moved alone, the
+        cage would go into the object. None: the cage cannot be there, as will be told.
+        """
+        data = copy.deepcopy(self._text.yaml.data)
+        for key, value in values.items():
+            if key.startswith("cage.pose"):
+                set_value(data, parse_key_path(key), value)
+        pose: dict[str, Any] = value_at(evaluated(data)[0], ("cage", "pose"))
+        given = pose.get("position") or [0.0, 0.0, 0.0], pose.get("euler_zyx_deg") or [0.0, 0.0, 0.0]
+        if any(len(numbers) != 3 or not np.isfinite(numbers).all() for numbers in given):
+            return None
+        unit = self._scene_file.length_unit
+        changed = Pose(to_metres(given[0], unit), euler_zyx=[math.radians(angle) for angle in given[1]])
+        scene = self._scene_file.scene
+        start = changed @ scene.cage.pose_world_cage.inverse() @ scene.object.pose_world_object
+        return {
+            "position": np.round(from_metres(start.position_m, unit), LENGTH_DECIMALS).tolist(),
+            "euler_zyx_deg": np.round(np.degrees(start.euler_zyx), ANGLE_DECIMALS).tolist(),
+        }
 
 
 def _is_plain(value: object) -> bool:

@@ -1,20 +1,42 @@
 // The page: what time it is, how much motions are exaggerated, and everything that shows or changes that.
 
-const $ = (id) => document.getElementById(id);
+import { norm } from "./geometry.js";
+import { Drawing } from "./drawing.js";
+import { Card } from "./card.js";
+import { Panel } from "./panel.js";
+import { Plot } from "./plot.js";
+import { Stage } from "./stage.js";
+import { $, digits, element } from "./words.js";
+
 const MOTION_S = 1, PAUSE_S = 0.35;
 
 let data = JSON.parse($("data").textContent);
 let stage = new Stage(data);
 let end = stage.shots.length - 1;
-const player = { time: end, playing: false, exaggeration: data.exaggeration, drawn: 0, drawnTime: null, drawnExaggeration: null, answers: 0, drawnAnswers: 0, drawMs: null };
+const player = { time: end, playing: false, drawn: 0, drawnTime: null, drawnExaggeration: null, answers: 0, drawnAnswers: 0, drawMs: null };
+let exaggerations = data.phases.map((phase) => phase.proposed); // of each phase
 let drawing = null, waiting = false, resting = 0, lastTick = null;
 
 const plot = new Plot($("plot"), (time) => { pause(); seek(time); });
+const card = new Card((touch) => {
+  exaggerate(1); // what is exaggerated touches to first order only
+  drawing.zoomTo(touch);
+}, refresh);
 try {
-  drawing = new Drawing(stage, $("scene"), $("labels"), refresh);
+  drawing = new Drawing(stage, exaggerations, $("scene"), $("labels"), {
+    covered: () => $("bar").offsetTop + $("bar").offsetHeight, changed: refresh, clicked: (touch) => { card.pick(touch); refresh(); } });
 } catch (error) {
-  $("trouble").textContent = error.message;
+  $("trouble").textContent = `No picture: ${error.message}. All else on this page works.`;
   $("trouble").hidden = false;
+}
+
+// The exaggeration of the phase on screen.
+const phase = () => stage.phaseAt(player.time);
+
+function exaggerate(k) {
+  exaggerations[phase()] = k;
+  drawing?.fit();
+  refresh();
 }
 
 function refresh() {
@@ -64,19 +86,16 @@ function step(direction) {
   seek(target ?? (direction > 0 ? end : 0));
 }
 
-function element(tag, text, className) {
-  const made = document.createElement(tag);
-  made.textContent = text;
-  if (className) made.className = className;
-  return made;
-}
+const chosen = new Map(); // exaggerations that somebody has set, by phase
 
 // Shows another run of the same scene, at its end.
 function replaceRun(answer) {
   data = answer;
   stage = new Stage(data);
   end = stage.shots.length - 1;
-  drawing?.take(stage);
+  exaggerations = data.phases.map((phase, index) => chosen.get(index) ?? phase.proposed);
+  drawing?.take(stage, exaggerations);
+  card.pick(null);
   player.answers += 1;
   fill();
   pause();
@@ -118,11 +137,10 @@ function reveal(line) {
   list.scrollTop = Math.max(last, Math.min(first, list.scrollTop));
 }
 
-const digits = (value, noise) => (Math.abs(value) < noise ? 0 : +value.toPrecision(6));
-
 function show() {
   const start = performance.now();
-  const { time, exaggeration: k } = player;
+  const { time } = player;
+  const k = exaggerations[phase()], look = stage.look(time, exaggerations);
   const shot = stage.shot(time);
   const after = data.shots[Math.ceil(time)], before = data.shots[Math.floor(time)];
   const mixed = (key, noise) => after[key].map((value, i) => digits(before[key][i] + (time - Math.floor(time)) * (value - before[key][i]), noise)).join(", ");
@@ -131,8 +149,13 @@ function show() {
   $("time").value = time;
   $("play").textContent = player.playing ? "\u275A\u275A" : "\u25B6";
   $("times").textContent = `\u00D7${k}`;
-  $("badge").textContent = k === 1 ? "true scale" : `motions and gaps exaggerated \u00D7${k}`;
-  $("badge").className = k === 1 ? "" : "exaggerated";
+  $("exaggeration").value = data.exaggerations.indexOf(k);
+  const { start: from, last } = data.phases[phase()];
+  $("exaggeration").disabled = from >= last && from > 0;
+  $("exaggeration").title = $("exaggeration").disabled ? "this phase ends with a long motion, which is shown as it is" : "of the phase on screen";
+  const factor = digits(Math.round(look.factor), 0);
+  $("badge").textContent = factor === 1 ? "true scale" : `play and gaps exaggerated \u00D7${factor}`;
+  $("badge").className = factor === 1 ? "" : "exaggerated";
   [...$("events").tBodies[0].rows].forEach((line, index) => {
     if (index === shot.row && !line.classList.contains("now")) reveal(line);
     line.classList.toggle("now", index === shot.row);
@@ -144,6 +167,7 @@ function show() {
   $("forces").tBodies[0].replaceChildren(...forceRows(shot));
   player.drawn += 1;
   player.drawnTime = time;
+  card.show(data, stage, time);
   player.drawnExaggeration = k;
   player.drawnAnswers = player.answers;
   player.drawMs = performance.now() - start;
@@ -156,7 +180,7 @@ function whyNoForces(shot) {
 
 function forceRows(shot) {
   if (!shot.touches.some((touch) => touch.force)) return [element("tr", whyNoForces(shot))];
-  const loaded = shot.touches.filter((touch) => norm(touch.force) > LEAST_FORCE * data.greatestForce);
+  const loaded = shot.touches.filter((touch) => norm(touch.force) > data.look.least_force * data.greatestForce);
   const idle = shot.touches.length - loaded.length;
   const lines = loaded.map((touch) => {
     const size = norm(touch.force);
@@ -166,6 +190,7 @@ function forceRows(shot) {
     const cell = element("td", "");
     cell.style.width = "50%";
     cell.append(bar);
+    line.addEventListener("click", () => { card.pick(touch); refresh(); });
     line.append(element("td", `${data.names[touch.point]} on ${touch.box}`), element("td", size.toPrecision(4)), cell);
     return line;
   });
@@ -180,14 +205,16 @@ $("back").addEventListener("click", () => step(-1));
 $("next").addEventListener("click", () => step(1));
 $("time").addEventListener("input", () => { pause(); seek(Number($("time").value)); });
 $("exaggeration").addEventListener("input", () => {
-  player.exaggeration = data.exaggerations[$("exaggeration").value];
-  drawing?.exaggerate(player.exaggeration);
-  refresh();
+  chosen.set(phase(), data.exaggerations[$("exaggeration").value]);
+  exaggerate(data.exaggerations[$("exaggeration").value]);
 });
 $("names").addEventListener("change", () => { drawing.allNames = $("names").checked; refresh(); });
+$("glass").addEventListener("change", () => { drawing.glaze($("glass").checked); refresh(); });
+$("perspective").addEventListener("change", () => { drawing.camera.perspective = $("perspective").checked; drawing.fit(); });
+$("points").addEventListener("change", () => { drawing.pointLook = $("points").value; refresh(); });
 document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => drawing?.camera.home(button.dataset.view)));
 document.addEventListener("keydown", (event) => {
-  if (event.target.matches("input, button")) return;
+  if (event.target.matches("input, button, select, summary")) return;
   const act = { " ": toggle, ArrowLeft: () => step(-1), ArrowRight: () => step(1), Home: () => seek(0), End: () => seek(end) }[event.key];
   if (act) { event.preventDefault(); act(); }
 });
@@ -195,17 +222,25 @@ window.addEventListener("resize", refresh);
 
 // What is on screen, for other scripts and for tests.
 window.cagepose = {
-  state: () => ({ ...player, row: stage.shot(player.time).row, written: drawing?.written,
-    shownPose: stage.shownPose(stage.truePose(player.time), player.exaggeration),
-    points: data.points.map((_, index) => stage.point(index, player.exaggeration)),
-    touches: stage.shot(player.time).touches.map((touch) => stage.place(touch, player.exaggeration)),
-    bodies: data.bodies.map((_, index) => stage.bodyPose(index, player.exaggeration).p), perUnit: drawing?.camera.perUnit() }),
-  fitted: () => drawing?.content().map((place) => drawing.camera.project(place)), // apart: 12,000 places in a crowded scene
+  state: () => {
+    const look = stage.look(player.time, exaggerations), camera = drawing?.camera;
+    return { ...player, exaggeration: exaggerations[phase()], exaggerations, factor: look.factor, row: stage.shot(player.time).row, written: drawing?.written,
+      shownPose: stage.pose(stage.truePose(player.time), look),
+      points: data.points.map((_, index) => stage.point(index, look)),
+      touches: stage.shot(player.time).touches.map((touch) => stage.place(touch, look)),
+      bodies: data.bodies.map((_, index) => stage.bodyPose(index, look).p),
+      camera: camera && { target: camera.target, half: camera.half, back: camera.axes()[2], perspective: camera.perspective },
+      picked: card.touch && data.names[card.touch.point], hasShadows: drawing?.world.hasShadows };
+  },
+  fitted: () => drawing.content().map((place) => drawing.camera.project(place)), // apart: 12,000 places in a crowded scene
+  project: (place) => drawing.camera.project(place),
+  look: (place, back, half) => drawing.camera.lookAt(place, back, half),
 };
 
 fill();
 $("exaggeration").max = data.exaggerations.length - 1;
-$("exaggeration").value = data.exaggerations.indexOf(data.exaggeration);
+for (const option of ["names", "glass", "perspective", "points"]) $(option).disabled = !drawing;
 if (drawing) $("names").checked = drawing.allNames;
+if (!data.points.length) $("points").parentElement.hidden = true;
 if (data.controls) new Panel(data.controls, data.fileName, replaceRun);
 refresh();

@@ -1,6 +1,8 @@
 // The controls of a live page: what they say is sent to the server, and what it answers is shown.
 
-class Panel {
+import { $, element } from "./words.js";
+
+export class Panel {
   // `answered(data)` shows a new run.
   constructor(controls, fileName, answered) {
     this.controls = controls;
@@ -21,7 +23,7 @@ class Panel {
       if (!group || group.dataset.name !== control.group) {
         group = element("fieldset", "");
         group.dataset.name = control.group;
-        group.append(element("legend", control.group));
+        group.append(element("legend", control.group === "cage" ? "cage (the start goes with it)" : control.group));
         $("controls").append(group);
       }
       const row = element("label", "");
@@ -118,5 +120,6 @@ class Panel {
     const told = problems.length > 3 ? [...problems.slice(0, 2), `and ${problems.length - 2} more`] : problems;
     $("problems").replaceChildren(...told.map((problem) => element("p", problem)));
     if (problems.length) $("problems").append(element("p", "Shown is the last scene that could be run."));
+    $("problems").hidden = !problems.length;
   }
 }

@@ -1,11 +1,13 @@
 // Yaw, pitch and roll along the film, with a line at each event's end and one at the present time.
 
+import { digits } from "./words.js";
+
 const CURVES = [["yaw", "#0072b2", []], ["pitch", "#d55e00", [6, 3]], ["roll", "#009e73", [2, 2]]];
 
 const LEAST_RANGE = 1e-6; // degrees; what turns less than this stands still
 const LEFT = 56, RIGHT = 6; // pixels beside the curves
 
-class Plot {
+export class Plot {
   constructor(canvas, seek) {
     this.canvas = canvas;
     const move = (event) => seek(this.timeAt(event.offsetX));

@@ -1,0 +1,320 @@
+// Draws the stage at one time: the object, the cage, what touches and presses, what pushes, what it turns about.
+
+import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, LineSegments } from "three";
+import { add, carried, composed, cross, dot, norm, rotated, sub, times, turnedTo, unit } from "./geometry.js";
+import { Camera } from "./camera.js";
+import { color, Marks } from "./marks.js";
+import { Overlay } from "./overlay.js";
+import { Body, Holes, Walls } from "./solids.js";
+import { World } from "./world.js";
+
+const RING = 16; // pixels about a contact that is looked at closely
+const COILS = 7, COIL_POINTS = 8, STRAIGHT_ENDS = 0.15; // of a spring
+const CLOSE_UP = 0.008, TILT = 0.25; // half the height of a picture of one contact, and how far from along its plane
+const PICKED = 14; // pixels from a mark that is clicked
+
+export class Drawing {
+  constructor(stage, exaggerations, canvas, overlay, { covered, changed, clicked }) {
+    this.canvas = canvas;
+    this.sizes = stage.data.look; // sizes, in pixels unless look.py says otherwise
+    this.paint = Object.fromEntries(Object.entries(this.sizes.paint).map(([name, hex]) => [name, color(hex)]));
+    this.world = new World(canvas, stage.data);
+    this.marks = new Marks(this.sizes);
+    this.trace = new Line(new BufferGeometry(), new LineBasicMaterial({ color: this.paint.trace }));
+    this.ghost = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: this.paint.ghost }));
+    for (const line of [this.trace, this.ghost]) line.frustumCulled = false;
+    this.world.scene.add(this.marks.group, this.trace, this.ghost);
+    this.overlay = new Overlay(overlay);
+    this.time = stage.shots.length - 1;
+    this.pointLook = "pin";
+    this.isGlass = false;
+    this.take(stage, exaggerations);
+    this.allNames = stage.data.names.length <= this.sizes.few_names;
+    this.camera = new Camera(canvas, stage.data, { content: () => this.content(), under: (x, y) => this.under(x, y), covered, changed, clicked: (x, y) => clicked(this.touchAt(x, y)) });
+    this.camera.fit(); // with loads and forces, whose arrows have a camera by now
+  }
+
+  // Shows another run from now on.
+  take(stage, exaggerations) {
+    this.exaggerations = exaggerations; // of each phase; its owner changes them
+    const { data } = stage;
+    this.stage = stage;
+    this.world.data = data;
+    this.world.scene.remove(...(this.things ?? []).map((thing) => thing.group));
+    this.holes = new Holes(data.holes, data.forms);
+    this.cageHoles = new Holes(data.cageHoles, data.forms);
+    this.object = new Body(data.parts, data.forms, this.holes, { face: this.paint.object, edge: this.paint.objectEdge });
+    this.bodies = data.bodies.map(({ form }) => new Body([{ form, position: [0, 0, 0], quaternion: [1, 0, 0, 0] }], data.forms, this.cageHoles, { face: this.paint.cage, edge: this.paint.cageEdge }));
+    this.walls = new Walls(data.holes, data.forms, { face: this.paint.objectWall, edge: this.paint.objectEdge });
+    this.cageWalls = new Walls(data.cageHoles, data.forms, { face: this.paint.cageWall, edge: this.paint.cageEdge });
+    this.things = [this.object, ...this.bodies, this.walls, this.cageWalls];
+    this.world.scene.add(...this.things.map((thing) => thing.group));
+    this.out = stage.data.points.map((_, index) => {
+      const gap = data.gaps[data.phases[0].reference][index];
+      return norm(gap) > 1e-9 ? unit(gap) : null;
+    });
+    const middle = times(1 / (data.points.length || 1), data.points.reduce(add, [0, 0, 0]));
+    this.pin = Math.min(this.sizes.pin, this.sizes.pin_of_cage * Math.max(0, ...data.points.map((point) => norm(sub(point, middle)))) || this.sizes.pin);
+    this.glaze(this.isGlass);
+    this.layGround();
+  }
+
+  // Whether the object is seen through; bodies of the cage that would hide it always are.
+  glaze(isGlass) {
+    this.isGlass = isGlass;
+    this.object.seeThrough(isGlass ? this.sizes.seen_through : 1);
+    const reach = this.object.reach;
+    for (const body of this.bodies) body.seeThrough(body.reach > this.sizes.large * reach ? this.sizes.glass : 1);
+  }
+
+  layGround() {
+    const { stage } = this;
+    const corners = [0, stage.shots.length - 1].flatMap((time) => this.object.whole.corners.map((corner) => carried(this.shown(time).pose, corner)[2]));
+    const look = this.shown(stage.shots.length - 1).look;
+    const bodies = this.bodies.flatMap((body, index) => body.whole.corners.map((corner) => carried(stage.bodyPose(index, look), corner)[2]));
+    const points = stage.data.points.map((_, index) => stage.point(index, look)[2] - (this.pointLook === "pin" ? this.pin : 0));
+    const low = [...corners, ...bodies, ...points].reduce((least, height) => Math.min(least, height), 0);
+    this.world.layGround(low - this.sizes.below);
+  }
+
+  // The look of a time, and the pose of the object then.
+  shown(time) {
+    const look = this.stage.look(time, this.exaggerations);
+    return { look, pose: this.stage.pose(this.stage.truePose(time), look) };
+  }
+
+  draw(time) {
+    this.time = time;
+    const { stage, camera } = this;
+    const shot = stage.shot(time);
+    const { look, pose } = this.shown(time);
+    this.labels = [];
+    this.marks.begin(camera);
+    this.object.show(pose, camera);
+    this.bodies.forEach((body, index) => body.show(stage.bodyPose(index, look), camera));
+    this.showHoles(look, pose);
+    this.drawPoints(shot, look, pose);
+    this.drawTouches(shot, look, pose);
+    this.drawLoads(shot, pose);
+    this.drawMotion(shot, pose);
+    this.drawTrace(time, look);
+    if (!camera.isClose()) this.marks.ball(carried(pose, stage.data.center), this.sizes.ball - 1, this.paint.trace);
+    this.marks.end();
+    const scale = window.devicePixelRatio;
+    this.world.draw(camera, scale);
+    this.overlay.write(this.labels, camera, stage.data, scale);
+  }
+
+  get written() {
+    return this.overlay.written;
+  }
+
+  showHoles(look, pose) {
+    const { holes, cageHoles, bodies } = this.stage.data;
+    const wider = ({ play }) => (look.factor - 1) * play;
+    const poses = holes.map(({ position, quaternion }) => composed(pose, { p: position, q: quaternion }));
+    const cagePoses = cageHoles.map((_, index) => this.stage.bodyPose(bodies.length + index, look));
+    for (const [cuts, walls, at, list] of [[this.holes, this.walls, poses, holes], [this.cageHoles, this.cageWalls, cagePoses, cageHoles]]) {
+      cuts.place(at, list.map(wider), this.camera.target);
+      walls.show(at, list.map(wider), this.camera);
+    }
+  }
+
+  // Brings all into view, as it is exaggerated now.
+  fit() {
+    this.layGround();
+    this.camera.fit();
+  }
+
+  // All that a view is fitted to: corners at the start and each event's end, cage points, loads, forces at the end, and
+  // what lies near them of the cage's bodies.
+  content() {
+    const { stage } = this;
+    const { data } = stage;
+    const ends = [0, ...data.rows.map((row) => row.last)].map((shot) => this.shown(shot));
+    const { pose, look } = ends.at(-1);
+    const corners = ends.flatMap((end) => this.outer().map((corner) => carried(end.pose, corner)));
+    const needed = [...corners, ...data.points.map((_, index) => stage.point(index, look))];
+    const [low, high] = [Math.min, Math.max].map((pick) => [0, 1, 2].map((axis) => needed.reduce((best, place) => pick(best, place[axis]), needed[0][axis])));
+    this.cutOff = (place) => place.map((value, axis) => Math.max(low[axis] - data.reach, Math.min(high[axis] + data.reach, value)));
+    if (!this.camera) return needed;
+    const tails = data.phases.flatMap((phase) => phase.loads).flatMap((load) => this.loadEnds(load, pose));
+    const pressing = stage.shots.at(-1).touches.filter((touch) => touch.force).map((touch) => this.forceArrow(touch, pose, look)[0]);
+    const bodies = this.bodies.flatMap((body, index) => body.whole.corners.map((corner) => this.cutOff(carried(stage.bodyPose(index, look), corner))));
+    return [...needed, ...tails, ...pressing, ...bodies];
+  }
+
+  // Corners of the object, each once.
+  outer() {
+    if (this.outerOf !== this.object) {
+      const seen = new Map(this.object.whole.corners.map((corner) => [corner.map((value) => value.toFixed(6)).join(), corner]));
+      [this.outerOf, this.corners] = [this.object, [...seen.values()]];
+    }
+    return this.corners;
+  }
+
+  // Where a load's arrow starts and ends: that of a force ends where it acts, that of a moment starts at the centre of
+  // gravity; a spring leads to where it is held, or part of the way.
+  loadEnds(load, pose) {
+    const at = carried(pose, load.at);
+    if (load.kind === "spring") {
+      const way = sub(load.to, at);
+      return [at, add(at, times(Math.min(1, this.sizes.longest_spring / (norm(way) || 1)), way))];
+    }
+    const arrow = times(this.sizes.load * this.camera.pixel(at), load.follows ? rotated(pose.q, load.direction) : load.direction);
+    return load.kind === "moment" ? [at, add(at, arrow)] : [sub(at, arrow), at];
+  }
+
+  // Close by, an arrow ends where the ring about the contact begins.
+  forceArrow(touch, pose, look) {
+    const place = this.stage.place(touch, look);
+    const pixel = this.camera.pixel(place);
+    const force = times(this.sizes.force * pixel / this.stage.data.greatestForce, rotated(pose.q, touch.force));
+    const tip = this.camera.isClose() && norm(force) ? sub(place, times(RING * pixel / norm(force), force)) : place;
+    return [sub(tip, force), tip];
+  }
+
+  drawPoints(shot, look, pose) {
+    const { stage, marks } = this;
+    const { data } = stage;
+    const touching = new Set(shot.touches.map((touch) => touch.point));
+    const row = data.rows[shot.row];
+    const isEnd = row && stage.shots[row.last] === shot;
+    const pressing = new Set(shot.touches.filter((touch) => touch.force && norm(touch.force) > this.sizes.least_force * data.greatestForce).map((touch) => touch.point));
+    data.names.forEach((name, index) => {
+      const kind = isEnd && row.hit.includes(name) ? "reached" : touching.has(index) ? "touching" : "free";
+      const isPoint = index < data.points.length;
+      const point = isPoint && stage.point(index, look);
+      const places = isPoint ? [point] : shot.touches.filter((touch) => touch.point === index).map((touch) => stage.place(touch, look));
+      if (isPoint && this.pointLook === "pin") this.drawPin(point, this.outOf(index, shot, pose));
+      if (kind !== "free" || this.pointLook === "ball") places.forEach((place) => this.mark(place, kind));
+      const counts = kind === "reached" || (kind === "touching" && (touching.size <= this.sizes.few_names || pressing.has(index)));
+      if (counts || this.allNames) this.labels.push([places[0] ?? this.namedPlace(index - data.points.length, look), name, kind !== "free"]);
+    });
+  }
+
+  // Away from the object: along the gap, or along the normal where it touches.
+  outOf(index, shot, pose) {
+    this.out[index] ??= (() => {
+      const touch = shot.touches.find(({ point }) => point === index);
+      return touch ? rotated(pose.q, touch.normal) : null;
+    })();
+    return this.out[index] ?? [0, 0, -1];
+  }
+
+  drawPin(place, out) {
+    this.marks.put("pin", place, turnedTo(out), [this.sizes.pin_slope * this.pin, this.pin], this.paint.pin);
+  }
+
+  mark(place, kind) {
+    if (this.camera.isClose()) this.marks.ring(place, RING, this.paint[kind]);
+    else this.marks.ball(place, kind === "free" ? this.sizes.free_ball : this.sizes.ball, this.paint[kind]);
+  }
+
+  // Where a shape or a hole of the cage that touches nothing has its name: in the middle of what is shown of it.
+  namedPlace(index, look) {
+    const { bodies } = this.stage.data;
+    const pose = this.stage.bodyPose(index, look);
+    if (index >= bodies.length) return pose.p;
+    const places = this.bodies[index].whole.corners.map((corner) => (this.cutOff ?? ((place) => place))(carried(pose, corner)));
+    return times(1 / places.length, places.reduce(add));
+  }
+
+  drawTouches(shot, look, pose) {
+    for (const touch of shot.touches) {
+      const place = this.stage.place(touch, look);
+      const normal = times(this.sizes.normal * this.camera.pixel(place), rotated(pose.q, touch.normal));
+      if (!this.camera.isClose()) this.marks.rod(place, add(place, normal), this.sizes.thin, this.paint.normal);
+      if (!touch.force || norm(touch.force) < this.sizes.least_shown * this.stage.data.greatestForce) continue;
+      this.marks.arrow(...this.forceArrow(touch, pose, look), this.sizes.rod, this.paint.force);
+    }
+  }
+
+  drawLoads(shot, pose) {
+    for (const load of this.stage.data.phases[shot.phase].loads) {
+      const [start, end] = this.loadEnds(load, pose);
+      if (load.kind === "spring") this.drawCoil(start, end);
+      else this.marks.arrow(start, end, 1.3 * this.sizes.rod, this.paint.load);
+      // A moment's arrow has two heads.
+      if (load.kind === "moment") this.marks.arrow(start, add(start, times(this.sizes.second_head, sub(end, start))), 1.3 * this.sizes.rod, this.paint.load);
+      this.labels.push([load.kind === "spring" ? end : start, load.name, true]);
+    }
+  }
+
+  // A spring, as a line that winds.
+  drawCoil(start, end) {
+    const way = sub(end, start);
+    if (norm(way) === 0) return;
+    const aside = unit(cross(way, Math.abs(way[2]) < 0.9 * norm(way) ? [0, 0, 1] : [1, 0, 0]));
+    const up = unit(cross(way, aside));
+    const radius = this.sizes.coil * this.camera.pixel(start);
+    const on = (share) => add(start, times(share, way));
+    const wound = Array.from({ length: COILS * COIL_POINTS + 1 }, (_, k) => {
+      const turn = 2 * Math.PI * k / COIL_POINTS;
+      const axis = on(STRAIGHT_ENDS + (1 - 2 * STRAIGHT_ENDS) * k / (COILS * COIL_POINTS));
+      return add(axis, add(times(radius * Math.cos(turn), aside), times(radius * Math.sin(turn), up)));
+    });
+    const line = [start, on(STRAIGHT_ENDS), ...wound, on(1 - STRAIGHT_ENDS), end];
+    line.slice(1).forEach((place, index) => this.marks.rod(line[index], place, this.sizes.thin, this.paint.load));
+  }
+
+  drawMotion(shot, pose) {
+    const axis = this.stage.axis(shot.row, this.exaggerations);
+    if (!axis || this.camera.isClose()) return;
+    const { through, direction } = axis;
+    if (!axis.turns) {
+      const center = carried(pose, this.stage.data.center);
+      this.marks.arrow(center, add(center, times(this.sizes.travel * this.camera.pixel(center), direction)), this.sizes.rod, this.paint.axis);
+      return;
+    }
+    const middle = add(through, times(-dot(through, direction), direction));
+    const half = Math.sqrt(Math.max(0.04, this.stage.data.radius ** 2 - dot(middle, middle)));
+    this.marks.arrow(add(middle, times(-half, direction)), add(middle, times(half, direction)), 0.6 * this.sizes.rod, this.paint.axis);
+  }
+
+  // The way of the centre of gravity, and where the object started.
+  drawTrace(time, look) {
+    const { stage, camera } = this;
+    const way = stage.shots.slice(0, Math.floor(time) + 1).map((_, index) => this.shown(index).pose).concat([this.shown(time).pose]);
+    const places = way.map((pose) => sub(carried(pose, stage.data.center), camera.target));
+    const start = this.shown(0).pose;
+    const corners = this.object.whole.lines.map((corner) => sub(carried(start, corner), camera.target));
+    for (const [line, list] of [[this.trace, places], [this.ghost, corners]]) {
+      line.visible = !camera.isClose();
+      line.geometry.dispose();
+      line.geometry = new BufferGeometry();
+      line.geometry.setAttribute("position", new BufferAttribute(new Float32Array(list.flat()), 3));
+    }
+  }
+
+  // What is clicked: the contact whose mark is nearest to a pixel, or null.
+  touchAt(x, y) {
+    const { look } = this.shown(this.time);
+    const near = this.stage.shot(this.time).touches.map((touch) => {
+      const [across, down] = this.camera.project(this.stage.place(touch, look));
+      return { touch, apart: Math.hypot(across - x, down - y) };
+    }).sort((one, other) => one.apart - other.apart);
+    return near.length && near[0].apart < PICKED ? near[0].touch : null;
+  }
+
+  // What is seen at a pixel: a mark's place, or that of a body.
+  under(x, y) {
+    const touch = this.touchAt(x, y);
+    if (touch) return this.stage.place(touch, this.shown(this.time).look);
+    const [from, direction] = this.camera.ray(x, y);
+    const nearest = Math.min(...[this.object, ...this.bodies].map((body) => body.hit(from, direction)));
+    return Number.isFinite(nearest) ? add(this.camera.target, add(from, times(nearest, direction))) : null;
+  }
+
+  // Goes to a contact, and looks along its plane, from where the object and what it touches can both be seen.
+  zoomTo(touch) {
+    const { look, pose } = this.shown(this.time);
+    const place = this.stage.place(touch, look);
+    const normal = rotated(pose.q, touch.normal);
+    const flat = (way) => sub(way, times(dot(way, normal), normal));
+    const ways = [sub(place, carried(pose, this.stage.data.center)), this.camera.axes()[2], [0.3, -1, 0.2], [1, 0.3, 0]].map(flat);
+    const along = unit(ways.find((way) => norm(way) > 1e-3));
+    const isPoint = touch.point < this.stage.data.points.length;
+    this.camera.lookAt(place, unit(add(along, times(isPoint ? TILT : -TILT, normal))), CLOSE_UP);
+  }
+}
