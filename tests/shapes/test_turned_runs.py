@@ -60,6 +60,19 @@ def test_pegs_dropped_over_holes(cases, say):
     asked.check()
 
 
+def test_a_round_end_that_tips_over_in_a_narrower_hole_goes_no_deeper_than_it_touches():
+    """Its ball turns in the hole's mouth until its side comes to the rim, with no speed at first: there a lobe of the
+    distance along the rim is narrower than what is searched at once. It went 570 touch tolerances deep."""
+    asked = Asked()
+    plate, hole = Box((6, 6, 1.5), Pose((0, 0, -0.75)), "plate"), Hole(0.5, 0.5, in_=("plate",))
+    turn = (0.9999875002343701, -0.004425862351957992, -0.0010223931057448152, -0.0020894568180440947)
+    start = Pose((-0.1219897996460495, -0.0022608028876972774, 2.0), turn)
+    peg, oracle = Capsule(0.6, 2.0), plate_of(hole, False, 0.5 * WIDE)
+    scene = Scene(object_of(peg, start), Cage(shapes=[plate, hole]), [WEIGHT], friction_coefficient=0.0)
+    asked.ask(0, scene, run(scene), lambda pose: -pierced_plate.gap(peg, pose, oracle)[0])
+    assert not asked.wrong, asked.wrong
+
+
 def test_turned_parts_dropped_on_others(cases, say):
     rng, asked, number = np.random.default_rng(41), Asked(DEEP_ON_THE_WAY), 0
     while number < cases(20, 60):

@@ -27,6 +27,8 @@ SECTION = 2.0 * SEARCHED / SECTIONS
 COSINES = tuple(math.cos(-SEARCHED + section * SECTION) for section in range(SECTIONS + 1))
 SINES = tuple(math.sin(-SEARCHED + section * SECTION) for section in range(SECTIONS + 1))
 """At their ends."""
+EXTREME_STEPS = 12
+"""Of the search for where the way to the nearest point has most of a part along the tangent."""
 ITERATIONS, ROUNDING = 60, 2e-16
 """Of the search for a foot, radians."""
 REACH = 2.0 * math.sin(0.5 * SEARCHED)
@@ -154,24 +156,34 @@ def seen_from(rim: Feature, other: Feature) -> Seen:
 
 
 @kernel
-def rise(seen: Seen, other: Feature, cosine: float, sine: float) -> float:
-    """Return how the distance from an edge or another rim grows along a rim, at an angle from its arc's middle: of its
-    sign alone use is made.
+def rise(seen: Seen, other: Feature, cosine: float, sine: float) -> tuple[float, float]:
+    """Return how the distance from an edge or another rim grows along a rim, at an angle from its arc's middle, times
+    something above zero; and how that changes with the angle.
     """
     along = seen.aside * cosine - seen.ahead * sine  # of the way to the place on the rim, along the tangent there
+    outward = seen.ahead * cosine + seen.aside * sine
     tilt = seen.tilt_aside * cosine - seen.tilt_ahead * sine
-    height = seen.height + seen.radius * (seen.tilt_ahead * cosine + seen.tilt_aside * sine)
+    lean = seen.tilt_ahead * cosine + seen.tilt_aside * sine
+    height = seen.height + seen.radius * lean
+    level = along - height * tilt  # along, of what is across the direction
+    level_slope = -outward - seen.radius * tilt * tilt + height * lean
+    square = seen.square + seen.radius * (seen.radius + 2.0 * outward) - height * height
+    across = math.sqrt(max(square, 0.0))
     sense = math.copysign(1.0, seen.radius)
-    square = seen.square + seen.radius * (seen.radius + 2.0 * (seen.ahead * cosine + seen.aside * sine))
-    across = math.sqrt(max(square - height * height, 0.0))
     if other.kind == EDGE:
-        if other.taper != 0.0:
-            side = across / math.sqrt(1.0 - other.taper * other.taper)
-            height -= math.copysign(side, other.radius) * other.taper
-        return (along - height * tilt) * math.copysign(1.0, other.radius) * sense
+        side = sense * math.copysign(1.0, other.radius)
+        if other.taper != 0.0 and across > 0.0:  # nearest on a cone's axis is higher or lower than the foot on it
+            shift = math.copysign(1.0, other.radius) * other.taper / math.sqrt(1.0 - other.taper * other.taper)
+            level += shift * across * tilt
+            level_slope += shift * (seen.radius * (along - height * tilt) / across * tilt - across * lean)
+        return side * level, side * level_slope
     if across == 0.0:
-        return along * sense
-    return (along - (along - height * tilt) * abs(other.length) / across) * sense
+        return sense * along, -sense * outward
+    share = abs(other.length) / across
+    return (
+        sense * (along - share * level),
+        sense * (share * (seen.radius * level * level / square - level_slope) - outward),
+    )
 
 
 @kernel
@@ -205,7 +217,8 @@ class Feet(NamedTuple):
     n_feet
         How many places were found.
     first, last
-        Their least and greatest angle from the arc's middle; the middle: there is none.
+        Their least and greatest angle from the arc's middle, of more than two those of the nearest; the middle: there
+        is none.
     """
 
     n_feet: int
@@ -220,21 +233,81 @@ def feet_on(rim: Feature, other: Feature) -> Feet:
     n_feet, first, last, before = 0, 0.0, 0.0, rise(seen, other, COSINES[0], SINES[0])
     for section in range(SECTIONS):
         after = rise(seen, other, COSINES[section + 1], SINES[section + 1])
-        if before < 0.0 <= after:
-            low = -SEARCHED + section * SECTION
-            last = root_of_rise(seen, other, low, low + SECTION, before, after)
-            first = last if n_feet == 0 else first
+        low = -SEARCHED + section * SECTION
+        high = low + SECTION
+        at_low, at_high = before[0], after[0]
+        if may_cross_twice(before, after):
+            between = farthest_rise(seen, other, low, high, before, after)
+            if at_low < 0.0:
+                high, at_high = between
+            else:
+                low, at_low = between
+        if at_low < 0.0 <= at_high:
+            foot = root_of_rise(seen, other, low, high, at_low, at_high)
+            first, last = nearest_two(rim, other, n_feet, first, last, foot)
             n_feet += 1
         before = after
     return Feet(n_feet, first, last)
 
 
 @kernel
+def nearest_two(
+    rim: Feature, other: Feature, n_feet: int, first: float, last: float, foot: float
+) -> tuple[float, float]:
+    """Return the least and the greatest angle of one or two feet and another one, of three without the farthest."""
+    if n_feet < 2:
+        return (foot if n_feet == 0 else first), foot
+    one = distance_at(other, on_rim(rim, first, True).point)
+    two = distance_at(other, on_rim(rim, last, True).point)
+    three = distance_at(other, on_rim(rim, foot, True).point)
+    if three >= max(one, two):
+        return first, last
+    return (last, foot) if one >= two else (first, foot)
+
+
+@kernel
+def may_cross_twice(before: tuple[float, float], after: tuple[float, float]) -> bool:
+    """Whether `rise`, of one sign at both ends of a section, bends toward zero so much that its tangents cross there
+    beyond zero.
+    """
+    sign = -1.0 if before[0] < 0.0 else 1.0
+    if (after[0] < 0.0) != (before[0] < 0.0) or sign * before[1] >= 0.0 or sign * after[1] <= 0.0:
+        return False
+    way = (after[0] - before[0] - after[1] * SECTION) / (before[1] - after[1])
+    return sign * (before[0] + before[1] * way) <= 0.0
+
+
+@kernel
+def farthest_rise(
+    seen: Seen, other: Feature, low: float, high: float, before: tuple[float, float], after: tuple[float, float]
+) -> tuple[float, float]:
+    """Return an angle of a section at which `rise` is beyond zero, if there is one, and `rise` there."""
+    sign, slope_low, slope_high = (-1.0 if before[0] < 0.0 else 1.0), before[1], after[1]
+    angle, at = low, before
+    for _ in range(EXTREME_STEPS):
+        angle = low - slope_low * (high - low) / (slope_high - slope_low)
+        if not low < angle < high:
+            break
+        at = rise(seen, other, math.cos(angle), math.sin(angle))
+        if sign * at[0] <= 0.0:
+            break
+        if (at[1] < 0.0) == (slope_low < 0.0):
+            low, slope_low = angle, at[1]
+        else:
+            high, slope_high = angle, at[1]
+    return angle, at[0]
+
+
+@kernel
 def distance_from_arc(rim: Feature, other: Feature) -> float:
-    """Return how far an edge or another rim is from an arc that has one foot of it, or none."""
+    """Return how far an edge or another rim is from an arc."""
     ends = on_rim(rim, -SEARCHED, False).point, on_rim(rim, SEARCHED, False).point
     least, feet = min(distance_at(other, ends[0]), distance_at(other, ends[1])), feet_on(rim, other)
-    return least if feet.n_feet == 0 else min(least, distance_at(other, on_rim(rim, feet.first, True).point))
+    if feet.n_feet > 0:
+        least = min(least, distance_at(other, on_rim(rim, feet.first, True).point))
+    if feet.n_feet > 1:
+        least = min(least, distance_at(other, on_rim(rim, feet.last, True).point))
+    return least
 
 
 @kernel
@@ -243,7 +316,7 @@ def root_of_rise(seen: Seen, other: Feature, low: float, high: float, at_low: fl
     angle, last_side = low, 0.0
     for _ in range(ITERATIONS):  # false position; where one end stays, its value is halved (Illinois)
         before, angle = angle, min(max(low - at_low * (high - low) / (at_high - at_low), low), high)
-        at = rise(seen, other, math.cos(angle), math.sin(angle))
+        at, _ = rise(seen, other, math.cos(angle), math.sin(angle))
         if at == 0.0 or abs(angle - before) <= ROUNDING:
             break
         if at < 0.0:
