@@ -10,6 +10,7 @@ import pytest
 from cagepose import (
     Box,
     Cage,
+    Capsule,
     Cone,
     Cylinder,
     Force,
@@ -204,3 +205,18 @@ def test_a_peg_wedges_where_the_cones_of_friction_see_each_other() -> None:
     result = with_critical_friction(run(scene))
     found = result.phases[0].proof.critical_friction
     assert found == pytest.approx(math.tan(math.atan2(depth, wide) + t), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    "part", [Cylinder(0.005, 0.01), Sphere(0.005), Capsule(0.005, 0.01)], ids=lambda part: part.kind
+)
+@pytest.mark.parametrize("direction", [(-1, 0), (1, 0), (-1, 0.001), (1, 0.01), (-1, -0.001)])
+def test_a_part_that_lies_at_the_wall_of_a_bore_is_pushed_along_it_and_not_through(part, direction) -> None:
+    """Where it starts it touches the wall, and the push is along that: it slides around to where the wall faces it."""
+    bore = Hole(0.0051, 0.012, in_=["block"], pose_body_shape=Pose((0, 0, 0.006)), name="bore")
+    across = Force((*direction, 0), (0, 0, 0))
+    held = Object(shapes=[part], pose=Pose((0, -0.0001, 0)))
+    result = end_of(held, [Box((0.1, 0.1, 0.012), name="block"), bore], [Load("push", force=across)])
+    assert result.verdict == "rests"
+    ended = result.pose.position_m[:2]
+    assert ended == pytest.approx(0.0001 * np.array(direction) / np.hypot(*direction), abs=1e-9)

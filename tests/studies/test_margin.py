@@ -267,3 +267,14 @@ def test_a_can_tips_over_any_point_of_its_rim(turn: float) -> None:
     assert 0.998 * tips <= found.force_n <= tips
     assert found.force_n <= found.force_below_n <= tips * (1 + 1e-5)
     assert 0.998 * radius <= found.moment_nm <= radius * (1 + 1e-9)
+
+
+def test_places_of_a_rim_that_lie_beside_a_face_do_not_count() -> None:
+    """A can of radius r on a square stand of half width b, r cos(45 deg) < b < r: eight places of its rim lie on it,
+    those between them beside its sides. By hand it tips over a side at a moment of W b."""
+    radius, half = 0.01, 0.0093
+    turn = (math.cos(math.pi / 16), 0, 0, math.sin(math.pi / 16))
+    can = Object(shapes=[Cylinder(radius, 0.04)], pose=Pose((0, 0, 0.02), turn))
+    stand = Cage(shapes=[Box((2 * half, 2 * half, 0.02), Pose((0, 0, -0.01)), "stand")])
+    found = margin_of(run(Scene(can, stand, [Load("weight", gravity=(0, 0, -9.81))], friction_coefficient=5.0)))
+    assert found.moment_nm <= half * (1 + 1e-9)

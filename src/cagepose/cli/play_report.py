@@ -188,12 +188,12 @@ def _halving(end: PlayEnd) -> tuple[float, list[str]]:
     """Return by how much to close one gap, to first order, for half of the way from the start to an end, and the points
     of which each alone does it; none: no gap is so wide. Zero: there is nothing to halve.
     """
-    usable = [clearance for clearance in end.clearances if 0.0 < clearance.closing < math.inf]
+    usable = [gap for gap in end.clearances if 0.0 < gap.closing < math.inf and gap.gap_m is not None]
     if end.exact is None or abs(end.exact) < NO_PLAY or not usable:
         return 0.0, []
     best = max(clearance.closing for clearance in usable)
     by_m = 0.5 * abs(end.exact) / best
-    return by_m, [gap.point for gap in usable if gap.closing >= ALIKE * best and gap.gap_m >= ALIKE * by_m]
+    return by_m, [gap.point for gap in usable if gap.closing >= ALIKE * best and (gap.gap_m or 0.0) >= ALIKE * by_m]
 
 
 def _way_out(path: Sequence[PathStep], words: LengthWords) -> str:

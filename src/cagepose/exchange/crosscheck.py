@@ -10,6 +10,7 @@ from cagepose.errors import SceneError
 from cagepose.exchange.mujoco_run import WINDOW_LIMIT, MujocoRest, MujocoScene
 from cagepose.exchange.solids import Assembly, assembly_of
 from cagepose.model.checks import FloatArray
+from cagepose.model.load import Load, Spring
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -150,7 +151,7 @@ def _left(done: Run, index: int, there: MujocoRest, points: FloatArray) -> float
         again = Scene(
             moved,
             scene.cage,
-            [scene.loads[index]],
+            [_from(scene.loads[index], held.pose_world_object, there.pose)],
             friction_coefficient=scene.friction_coefficient,
             friction_of=scene.friction_of,
             metric=scene.metric,
@@ -158,7 +159,33 @@ def _left(done: Run, index: int, there: MujocoRest, points: FloatArray) -> float
         )
     except SceneError:
         return None
-    return _apart(points, run(again, done.method).pose, there.pose)
+    ended = run(again, done.method)
+    return None if ended.failed else _apart(points, ended.pose, there.pose)
+
+
+def _from(load: Load, start: Pose, other: Pose) -> Load:
+    """Return a load for another start: a spring's preload is its tension at the start."""
+
+    def length_m(spring: Spring, pose: Pose) -> float:
+        return float(np.linalg.norm(spring.to_world_m - pose.transform(spring.at_object_m)))
+
+    springs = [
+        Spring(
+            spring.at_object_m,
+            spring.to_world_m,
+            spring.stiffness_n_per_m,
+            spring.preload_n + spring.stiffness_n_per_m * (length_m(spring, other) - length_m(spring, start)),
+        )
+        for spring in load.springs
+    ]
+    return Load(
+        load.name,
+        gravity=load.gravity_world,
+        force=load.force,
+        forces=load.forces,
+        moments=load.moments,
+        springs=springs,
+    )
 
 
 def _apart(points: FloatArray, one: Pose, other: Pose) -> float:

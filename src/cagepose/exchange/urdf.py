@@ -82,7 +82,10 @@ def _add_geometry(parent: Element, label: str, shape: Primitive, stem: str, mesh
     else:
         assert isinstance(shape, Convex)
         file = f"{stem}-meshes/{re.sub('[^A-Za-z0-9_-]+', '-', label)}.stl"
-        meshes[file] = binary_stl(shape_mesh(shape, NO_SEGMENTS))
+        content = binary_stl(shape_mesh(shape, NO_SEGMENTS))
+        while meshes.get(file, content) != content:  # names may differ in what a file's name leaves out
+            file = f"{file.removesuffix('.stl')}-2.stl"
+        meshes[file] = content
         SubElement(geometry, "mesh", filename=file)
     # The vertices of a mesh are in the frame of the body.
     _add_origin(parent, Pose() if isinstance(shape, Convex) else shape.pose_body_shape)

@@ -77,7 +77,7 @@ def _limits(end: PlayEnd, is_length: bool, unit: LengthUnit) -> list[dict[str, A
         {
             "point": clearance.point,
             "box": clearance.box,
-            "gap": float(from_metres(clearance.gap_m, unit)),
+            "gap": None if clearance.gap_m is None else float(from_metres(clearance.gap_m, unit)),
             "closing": _gain(clearance.closing, is_length, unit),
             "opening": _gain(clearance.opening, is_length, unit),
         }

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from cagepose.kernels.algebra.record import empty_rows
-from cagepose.kernels.collision.geometry import empty_placement, place_object
 from cagepose.kernels.play.clearances import LimitingGap, find_limiting_gaps
 from cagepose.kernels.play.extreme import Extreme
 from cagepose.kernels.play.goal import SHIFT, Goal
@@ -27,9 +26,9 @@ class Clearance:
     Attributes
     ----------
     point, box
-        Names; of two boxes that are flush there, the first.
+        Names; of several boxes that touch the point or the shape, the first.
     gap_m
-        At the start, to the face that limits, metres.
+        At the start, to the face that limits, metres; None: not known, as of other shapes than boxes and points.
     closing, opening
         How much nearer the end comes for each metre that the gap is closed, and how much farther it goes for each
         metre that it is opened: radians or metres. They differ where other points limit the end as well.
@@ -37,13 +36,14 @@ class Clearance:
 
     point: str
     box: str
-    gap_m: float
+    gap_m: float | None
     closing: float
     opening: float
 
     def __repr__(self) -> str:
         worth = f"closing {self.closing:.4g}, opening {self.opening:.4g}"
-        return f"<Clearance of {self.point!r} to {self.box!r}: {self.gap_m:.6g} m; {worth}>"
+        gap = "" if self.gap_m is None else f"{self.gap_m:.6g} m; "
+        return f"<Clearance of {self.point!r} to {self.box!r}: {gap}{worth}>"
 
 
 def limiting_clearances(scene: Scene, frame: PlayFrame, goal: Goal, extreme: Extreme) -> tuple[Clearance, ...]:
@@ -85,16 +85,14 @@ def pressed_clearances(scene: Scene, pose: Pose, contacts: np.ndarray, push: Flo
     load = -push / np.repeat([1.0, cones.length_m], 3)
     size = float(np.linalg.norm(load))
     program, counts = ConeProgram(cones, 0.0), np.zeros(len(contacts))
-    placement = empty_placement(scene.geometry)
-    place_object(scene.geometry, *scene.object.pose_world_object.as_tuples(), placement)
     found = []
-    for point, box in sorted(set(zip(contacts["point"].tolist(), contacts["box"].tolist(), strict=True))):
-        together = np.flatnonzero((contacts["point"] == point) & (contacts["box"] == box))
+    for point in np.unique(contacts["point"]):
+        together = np.flatnonzero(contacts["point"] == point)
         greatest = greatest_normal_force(program, load / size, counts, together)
         if greatest <= PRICELESS:
             continue
         least = max(0.0, least_normal_force(program, load / size, counts, together))
-        gap = float(placement.meetings.gaps[box, point])
+        box = contacts["box"][together[0]]
         names = scene.cage.element_names[point], scene.object.element_names[box]
-        found.append(Clearance(*names, gap, size * greatest, size * least))
+        found.append(Clearance(*names, None, size * greatest, size * least))
     return tuple(sorted(found, key=lambda clearance: (-clearance.closing, -clearance.opening)))

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from time import perf_counter
 
 import numpy as np
 
+from cagepose.errors import SceneError
 from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.runs.run import motion_between
+from cagepose.runs.run import Motion, motion_between
 from cagepose.studies.cage_verdict import CageVerdict, PathStep
 from cagepose.studies.play_frame import FREEDOMS, LENGTHS
 from cagepose.studies.play_limits import Clearance, pressed_clearances
@@ -25,6 +27,8 @@ MOST_STEPS = 5_000
 """Of all pushes from ends of others, as many on any machine: a second or two, where shapes are many."""
 FARTHER = 1e-9
 """In sizes of the scene, or radians: an end that lies farther by less is the same."""
+AHEAD = (0.01, 0.03, 0.1, 0.3, 1.0)
+"""In sizes of the scene: how far ahead of an escape it is asked whether the way is free."""
 SEED = 20250101
 
 Chain = tuple[Pushed, ...]
@@ -101,13 +105,38 @@ class PushedPlay:
     def _push(self, place: int, sign: float, chain: Chain) -> None:
         freedom = self._freedoms[place]
         pushed = self._pushes.push(freedom, sign, chain[-1].pose if chain else self._pushes.start)
+        pushed = self._checked(freedom, sign, pushed)
         if pushed.verdict == "escapes":
             self._note_escape((*chain, pushed), _words(place, sign) if place < len(FREEDOMS) else "there")
-        value = math.inf if pushed.goes_on else sign * self._pushes.value(freedom, pushed.pose)
+        value = math.inf if pushed.goes_on else sign * self._pushes.value(freedom, (*chain, pushed))
         before = self._found.get((place, sign))
         unit = self.scene.size_m if freedom.angle is None else 1.0
         if before is None or value > before.value + FARTHER * unit:
             self._found[place, sign] = _Found(value, pushed, chain)
+
+    def _checked(self, freedom: Freedom, sign: float, pushed: Pushed) -> Pushed:
+        """Return a push as it is if its end is free of overlap, and if it escapes what is ahead of it; else as stalled.
+
+        Where parts have holes this is asked anew, by samples of their surfaces: a run may slide off a hole's wall into
+        it where it does not press against that.
+        """
+        if not (self.scene.cage.holes or self.scene.object.holes):
+            return pushed
+        places = [pushed.pose.position_m]
+        if pushed.verdict == "escapes" and freedom.angle is None:
+            way = sign * self.scene.size_m * (self.scene.cage.pose_world_cage.rotation @ freedom.direction_cage)
+            places += [pushed.pose.position_m + share * way for share in AHEAD]
+        if all(self._is_free(place, pushed.pose) for place in places):
+            return pushed
+        return replace(pushed, poses=pushed.poses[:0], verdict="stalled", passes_pole=False)
+
+    def _is_free(self, position_m: FloatArray, pose: Pose) -> bool:
+        place = {"position": position_m.tolist(), "quat_wxyz": pose.quaternion_wxyz.tolist()}
+        try:
+            self.scene.changed("object.pose", place)
+        except SceneError:
+            return False
+        return True
 
     def ranges(self) -> list[tuple[PlayEnd, PlayEnd]]:
         """Return the ends of all freedoms, then of all ways of points, least and greatest."""
@@ -150,6 +179,7 @@ class PushedPlay:
             aim = Freedom(center + reach * rng.uniform(-1.0, 1.0, 3), along / np.linalg.norm(along))
             chain = chains[rng.integers(len(chains))]
             pushed = self._pushes.push(aim, 1.0, chain[-1].pose if chain else self._pushes.start)
+            pushed = self._checked(aim, 1.0, pushed)
             n_tried += 1
             if pushed.verdict == "escapes":
                 self._note_escape((*chain, pushed), "at random")
@@ -175,7 +205,7 @@ class PushedPlay:
             for number in range(len(pushed.poses)):
                 before, after = pushed.pose_after(number), pushed.pose_after(number + 1)
                 motion = motion_between(before, after, held.center_of_gravity_m, self.scene.size_m)
-                if motion is not None:
+                if motion is not None and not _is_idle(motion, self.scene):
                     found.append(PathStep(motion, after))
         return tuple(found)
 
@@ -187,3 +217,8 @@ def _n_steps(chain: Chain) -> int:
 def _words(place: int, sign: float) -> str:
     """``along -x``, ``in +yaw``."""
     return f"{'along' if place < LENGTHS else 'in'} {'+' if sign > 0.0 else '-'}{FREEDOMS[place]}"
+
+
+def _is_idle(motion: Motion, scene: Scene) -> bool:
+    """Whether nothing moves by more than what counts as touching."""
+    return abs(motion.distance_m) + motion.angle_rad * scene.size_m <= scene.touch_m

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any, cast
 
 import numpy as np
@@ -21,10 +22,12 @@ from cagepose.runs.cases import cases_of, part_of
 from cagepose.runs.methods import REGISTRY
 from cagepose.runs.quasistatic import TURN_STEP_RAD
 
-STEP_LIMIT = 500
-"""Of one push: forty are many for one that comes to rest."""
-STEEPEST = 1.55
-"""Radians. Pitch beyond is next to the pole of the angles; what is pushed there, or almost half a turn, has no end."""
+STEP_LIMIT = 60
+"""Of one push: forty are many for one that comes to rest. What still turns then goes on."""
+TURNS_ON = 0.5
+"""Radians, in so many steps."""
+STEEPEST, TURN = 1.55, 2.0 * np.pi
+"""Radians. Pitch beyond is next to the pole of the angles; what is pushed there, or all around, has no end."""
 YAW, PITCH, ROLL = range(3)
 
 
@@ -58,7 +61,7 @@ class Pushed:
     is_saddle
         Whether it rests where a motion to the side would let the push go on.
     passes_pole
-        Whether an angle came to where it has no end.
+        Whether an angle came to where it has no end, or all around.
     contacts
         At the end, rows of `ContactRecord`.
     """
@@ -78,7 +81,7 @@ class Pushed:
     def pose_after(self, n_steps: int) -> Pose:
         if n_steps == 0:
             return self.start
-        return Pose.from_unit(self.poses[n_steps - 1, :3], self.poses[n_steps - 1, 3:])
+        return _pose(self.poses[n_steps - 1])
 
     @property
     def rests(self) -> bool:
@@ -140,7 +143,15 @@ class Pushes:
         The work of a force is how far its point goes along it; the work of a Cardan moment is how far its angle turns.
         """
         self._aim(freedom, sign)
-        return self._let_go(start, freedom.angle)
+        angle, pushed = freedom.angle, self._let_go(start, freedom.angle)
+        last = pushed
+        while angle is not None and last.verdict == "limit" and not pushed.passes_pole:
+            if abs(self._turned(angle, last.start, last.poses)) < TURNS_ON:
+                break
+            last = self._let_go(last.pose, angle)
+            poses = np.concatenate([pushed.poses, last.poses])
+            pushed = replace(last, start=start, poses=poses, passes_pole=self._pass_pole(angle, start, poses))
+        return pushed
 
     def settle(self) -> Pushed:
         """Let what acts beside pushes bring the object to rest, from the start."""
@@ -161,22 +172,28 @@ class Pushes:
             poses,
             VERDICT_NAMES[ended.verdict],
             STABILITY_NAMES[ended.stability] == "unstable",
-            angle is not None and self._pass_pole(angle, poses),
+            angle is not None and self._pass_pole(angle, start, poses),
             contacts[:n_contacts].copy(),
         )
 
-    def _pass_pole(self, angle: int, poses: FloatArray) -> bool:
-        """Whether an angle comes near half a turn, or the pitch to the pole, at one of the poses, (n, 7)."""
-        turns = [self._turn(Pose.from_unit(pose[:3], pose[3:])).euler_zyx for pose in poses]
-        return any(abs(turn[PITCH]) > STEEPEST or abs(turn[angle]) > 0.9 * np.pi for turn in turns)
+    def _pass_pole(self, angle: int, start: Pose, poses: FloatArray) -> bool:
+        """Whether an angle turns all around along poses, (n, 7), or the pitch comes to the pole at one of them."""
+        is_steep = any(abs(self._turn(_pose(row)).euler_zyx[PITCH]) > STEEPEST for row in poses)
+        return is_steep or abs(self._turned(angle, start, poses)) > TURN
+
+    def _turned(self, angle: int, start: Pose, poses: FloatArray) -> float:
+        """Return how far an angle turns from a start along poses, (n, 7)."""
+        return _unwound([self._turn(pose).euler_zyx[angle] for pose in (start, *map(_pose, poses))])
 
     def _turn(self, pose: Pose) -> Pose:
         return self._cage.inverse() @ pose @ self.start.inverse() @ self._cage
 
-    def value(self, freedom: Freedom, pose: Pose) -> float:
-        """Return how far a pose is from the start, metres or radians."""
+    def value(self, freedom: Freedom, chain: Sequence[Pushed]) -> float:
+        """Return how far pushes, one after the other, led from the start: metres, or radians with all turns around."""
         if freedom.angle is not None:
-            return float(self._turn(pose).euler_zyx[freedom.angle])
+            poses = [pushed.pose_after(number + 1) for pushed in chain for number in range(len(pushed.poses))]
+            return _unwound([0.0, *(self._turn(pose).euler_zyx[freedom.angle] for pose in poses)])
+        pose = chain[-1].pose
         way = pose.transform(freedom.at_object_m) - self.start.transform(freedom.at_object_m)
         return float(self._cage.rotation @ freedom.direction_cage @ way)
 
@@ -202,3 +219,13 @@ class Pushes:
 def unseated(scene: Scene) -> Pushes:
     """Return pushes from the scene's start, with nothing beside them."""
     return Pushes(scene, scene.object.pose_world_object, np.zeros(0, dtype_of(Action)))
+
+
+def _pose(row: FloatArray) -> Pose:
+    return Pose.from_unit(row[:3], row[3:])
+
+
+def _unwound(angles: Sequence[float]) -> float:
+    """Return how far angles turn from the first to the last, each less than half a turn from the one before."""
+    steps = np.diff(np.array(angles))
+    return float((steps - TURN * np.round(steps / TURN)).sum())

@@ -20,7 +20,7 @@ def seated(scene: Scene, phase: str) -> Pushes:
     Raises
     ------
     SceneError
-        There is no such phase, the scene's run does not come to rest in it, or it is friction that keeps it there.
+        There is no such phase, the scene's run does not come to rest in it, or no stable rest without friction is near.
     """
     names = [load.name for load in scene.loads]
     if phase not in names:
@@ -33,8 +33,10 @@ def seated(scene: Scene, phase: str) -> Pushes:
     unit_n = SHARE_OF_LOAD * load_size(scene, number, pose)
     pushes = Pushes(scene, pose, actions_of(scene)[number], unit_n, unit_n * scene.object.reach_m)
     settled = pushes.settle()
-    if not settled.rests:
-        says = f"is {phase!r}, in which friction alone keeps it ({settled.verdict} without); ask about another phase"
-        raise SceneError([Problem(("phase",), says)])
+    if not settled.rests or settled.is_saddle:
+        why = "no stable rest without friction is near"
+        if settled.verdict == "escapes":
+            why = "friction alone keeps it there"
+        raise SceneError([Problem(("phase",), f"is {phase!r}, and {why}; ask about another phase")])
     pushes.start = settled.pose
     return pushes

@@ -9,6 +9,7 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import (
     Vector,
     cross,
+    dot,
     matrix_from,
     norm,
     plus,
@@ -76,15 +77,22 @@ def straightened(velocity: Vector, spin: Vector, reach_m: float, terms: float) -
 
 @kernel
 def turn_of_normals(contacts: ContactSet, velocity: Vector, spin: Vector) -> float:
-    """Return how fast the normals of round shapes that slide or roll turn: the greatest |K v + L m|."""
+    """Return how fast the normals of round shapes that slide or roll turn: the greatest |K v + L m|.
+
+    A contact that carries nothing counts where a straight way would lead into it, as along the wall of a hole.
+    """
     fastest = 0.0
     for i in range(contacts.used[0] if len(contacts.bends) > 0 else 0):
         contact = contacts.rows[i]
-        if contact.feature >= 0 and stays_on_face(contacts, i):
-            way = plus(velocity, cross(spin, vector_from(contact.arm)))
-            bend, rolls = contacts.bends[i], cross(vector_from(contact.directions[0]), spin)
-            turn = plus(times(matrix_from(bend.relative), way), times(matrix_from(bend.share), rolls))
-            fastest = max(fastest, norm(turn))
+        if contact.feature < 0:
+            continue
+        way = plus(velocity, cross(spin, vector_from(contact.arm)))
+        bend, rolls = contacts.bends[i], cross(vector_from(contact.directions[0]), spin)
+        bent = times(matrix_from(bend.relative), way)
+        if not stays_on_face(contacts, i) and not dot(way, bent) < 0.0:
+            continue
+        turn = plus(bent, times(matrix_from(bend.share), rolls))
+        fastest = max(fastest, norm(turn))
     return fastest
 
 
