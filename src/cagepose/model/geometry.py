@@ -114,6 +114,6 @@ def body_limits(shapes: Sequence[Shape], points: FloatArray | None = None) -> Fl
 
 def cage_sizes(points: FloatArray) -> FloatArray:
     """The diameters of sets of points (..., n, 3), metres."""
-    distances = np.linalg.norm(points - points.mean(axis=-2, keepdims=True), axis=-1)
-    sizes: FloatArray = 2.0 * distances.max(axis=-1)
+    squares = (points - points.mean(axis=-2, keepdims=True)) ** 2
+    sizes: FloatArray = 2.0 * np.sqrt((squares[..., 0] + squares[..., 1] + squares[..., 2]).max(axis=-1))
     return sizes

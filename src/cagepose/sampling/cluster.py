@@ -13,20 +13,17 @@ from cagepose.errors import Problem, SceneError
 from cagepose.files.study_file import StudyFile
 from cagepose.model.checks import FloatArray
 from cagepose.sampling.outcome import Outcomes
-from cagepose.sampling.runner import Runner
+from cagepose.sampling.runner import Part, Runner, RunPart
 
 CONNECT_S, WORKERS_S = 10.0, 30.0
 """How long to wait for the scheduler, and for its first worker."""
 PARTS_OF_A_WORKER = 2
 """One that it runs and one that waits for it; no more are sent, so that memory does not grow with the rows."""
 
-Part = tuple[int, int]
-"""The first row, and the one behind the last."""
-
 
 def run_on_cluster(
     study: StudyFile, address: str, parts: Sequence[Part], values_of: Callable[[int, int], FloatArray]
-) -> Iterator[tuple[Part, FloatArray, Outcomes]]:
+) -> Iterator[RunPart]:
     """Yield parts of a study in the order in which they are done, with their varied numbers and where their runs ended.
 
     A worker that dies is no matter: Dask gives its part to another one.

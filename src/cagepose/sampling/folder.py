@@ -97,7 +97,8 @@ class StudyFolder:
             It cannot be written.
         """
         sink = pa.BufferOutputStream()
-        pq.write_table(table, sink, compression="zstd", compression_level=1)
+        texts = [field.name for field in table.schema if pa.types.is_dictionary(field.type)]  # numbers differ
+        pq.write_table(table, sink, compression="zstd", compression_level=1, use_dictionary=texts)
         write_whole(self._part(first, last), sink.getvalue())
 
     def batches(self, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:

@@ -27,6 +27,11 @@ ROWS_ONE_BY_ONE = 1_024
 """The same where scenes are built row by row: about a second of work."""
 ROWS_OF_A_TASK = 64
 
+Part = tuple[int, int]
+"""Of the rows: the first, and the one behind the last."""
+RunPart = tuple[Part, FloatArray, Outcomes]
+"""With its varied numbers, and where its runs ended."""
+
 
 class Runner:
     """Runs rows of one study: all at once in the batch kernel if that can vary the numbers, else scene by scene.

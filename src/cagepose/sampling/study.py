@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any
 
 from cagepose.errors import Problem, SceneError
 from cagepose.files.study_file import StudyFile, parse_study, read_study_file, study_text
@@ -12,8 +13,11 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.wording import few
 from cagepose.sampling.outcome import Outcomes
 from cagepose.sampling.results import StudyResults
-from cagepose.sampling.runner import Runner
+from cagepose.sampling.runner import Part, Runner, RunPart
 from cagepose.views.extra import require_dask, require_study
+
+if TYPE_CHECKING:
+    from cagepose.sampling.folder import StudyFolder
 
 Progress = Callable[[int, int, bool], None]
 """Called with how many rows are done, how many there are, and whether the last of them were run now."""
@@ -137,18 +141,28 @@ class Study:
         if progress is not None and n_done:
             progress(n_done, n_runs, False)
         try:
-            for (first, last), values, outcomes in self._outcomes(runner, missing, dask):
-                kept.write(first, last, self._columns.table(first, values, outcomes))
-                n_done += last - first
+            for n_rows in self._written(kept, self._outcomes(runner, missing, dask)):
+                n_done += n_rows
                 if progress is not None:
                     progress(n_done, n_runs, True)
         finally:
             runner.close()
         return StudyResults(folder)
 
-    def _outcomes(
-        self, runner: Runner, parts: Sequence[tuple[int, int]], dask: str | None
-    ) -> Iterator[tuple[tuple[int, int], FloatArray, Outcomes]]:
+    def _written(self, kept: StudyFolder, parts: Iterable[RunPart]) -> Iterator[int]:
+        """Write parts, each while the next one runs, and yield how many rows were written."""
+        with ThreadPoolExecutor(1) as writer:
+            before: list[Future[int]] = []
+            for part in parts:
+                yield from (future.result() for future in before)
+                before = [writer.submit(self._write, kept, *part)]
+            yield from (future.result() for future in before)
+
+    def _write(self, kept: StudyFolder, part: Part, values: FloatArray, outcomes: Outcomes) -> int:
+        kept.write(*part, self._columns.table(part[0], values, outcomes))
+        return len(values)
+
+    def _outcomes(self, runner: Runner, parts: Sequence[Part], dask: str | None) -> Iterator[RunPart]:
         """Yield parts with their varied numbers and where their runs ended, in any order."""
         if dask is not None:
             from cagepose.sampling.cluster import run_on_cluster
