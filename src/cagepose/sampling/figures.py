@@ -154,7 +154,7 @@ def _draw_map(panel: Axes, found: CaptureMap, shades: FloatArray) -> None:
     extent = (
         found.across[0] - half[0], found.across[-1] + half[0], found.up[0] - half[1], found.up[-1] + half[1],
     )  # fmt: skip
-    panel.imshow(shades, origin="lower", extent=extent, aspect="auto", interpolation="nearest")
+    panel.imshow(shades, origin="lower", extent=extent, aspect="auto", interpolation="none")
     if found.accepted.any() and not found.accepted.all():
         panel.contour(found.across, found.up, found.accepted.astype(float), [0.5], colors=[BLACK], linewidths=1.0)
     if found.box is not None:

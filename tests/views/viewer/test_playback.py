@@ -11,6 +11,7 @@ import pytest
 
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, load_scene, run
 from cagepose.kernels.outcome.trace import STALLED
+from cagepose.views.viewer import playback as playback_module
 from cagepose.views.viewer.page_data import notes
 from cagepose.views.viewer.playback import ESCAPE, playback
 from cagepose.views.viewer.stage import Look, Stage
@@ -43,6 +44,14 @@ def test_each_event_ends_at_its_pose_and_the_film_is_without_gaps(rail):
         assert shot.pose_world_object.position_m.tolist() == row.event.pose_world_object.position_m.tolist()
         assert {rail.scene.cage.names[point] for point in shot.touches.points} == set(row.event.contacts)
     assert [row.verdict for row in film.rows if row.verdict] == ["rests", "rests"]
+
+
+def test_a_run_of_many_motions_has_fewer_shots_for_each(rail, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(playback_module, "MOST_SHOTS", 30)
+    n_events = sum(len(phase.events) for phase in rail.phases)
+    film = playback(rail)
+    assert film.shots_per_motion == 30 // n_events == 3
+    assert len(film.shots) <= 1 + 30
 
 
 def test_contact_forces_and_load_balance_in_the_last_shot_of_each_phase(rail):

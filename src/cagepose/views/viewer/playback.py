@@ -20,6 +20,8 @@ from cagepose.views.viewer.surface import nearest_on_object
 
 SHOTS_PER_MOTION = 24
 """One second of film for each motion."""
+MOST_SHOTS = 4_800
+"""Of a run of thousands of motions each has fewer: a failed one of 3,000 took 29 MB and 6 s as a page."""
 ESCAPE = 0.6
 """How much of a travel without end is shown, in sizes of the scene; of a turn, in radians."""
 
@@ -137,7 +139,11 @@ class Playback:
 
 
 def playback(run: Run, length_unit: LengthUnit = "mm", shots_per_motion: int = SHOTS_PER_MOTION) -> Playback:
-    """Turn a run into shots and rows; each motion gets ``shots_per_motion`` of them, each finding one."""
+    """Turn a run into shots and rows; each motion gets ``shots_per_motion`` of them, or what `MOST_SHOTS` leaves, each
+    finding one.
+    """
+    n_events = sum(len(phase.events) for phase in run.phases)
+    shots_per_motion = max(1, min(shots_per_motion, MOST_SHOTS // max(n_events, 1)))
     camera = _Camera(run, shots_per_motion)
     for phase_index, phase in enumerate(run.phases):
         camera.shoot(phase_index, phase)
