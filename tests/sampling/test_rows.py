@@ -281,6 +281,20 @@ def test_points_of_a_file_go_with_the_study(run_study: RunStudy, scene_with: Cal
         run_study({"cage.points[0][1]": {"uniform": [0, 1]}}, 10, scene=scene, folder="other")
 
 
+def test_a_mesh_goes_with_the_study(run_study: RunStudy, tmp_path: Path) -> None:
+    ball = pytest.importorskip("trimesh").creation.icosphere(subdivisions=1, radius=5.0)
+    (tmp_path / "ball.stl").write_bytes(ball.export(file_type="stl"))
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(
+        "name: ball\nobject: {shapes: [{mesh: {file: ball.stl}}], pose: {position: [0, 0, 9]}}\n"
+        "cage: {points: [[2, 0, 0], [-1, 2, 0], [-1, -2, 0]]}\nloads: [{name: weight, gravity: [0, 0, -1]}]\n",
+        encoding="utf-8",
+    )
+    results = run_study({"cage.points.*[2]": {"normal": {"sigma": 0.05}}}, 10, scene=scene)
+    (tmp_path / "ball.stl").unlink()
+    assert compare_with_runs(StudyResults(results.folder.path))["rests"] == 10
+
+
 def test_rows_come_as_a_data_frame(run_study: RunStudy, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(runner, "ROWS_OF_A_BATCH", 512)
     results = run_study({**ANGLES, "cage.pose.position[2]": {"uniform": [-2, 2]}}, 1100)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,7 +30,7 @@ from cagepose.model.wording import few
 Model = TypeVar("Model", bound=RunsModel)
 
 ALL = "*"
-STUDY_NAME, SCENE_NAME, POINTS_NAME = "study.yaml", "scene.yaml", "points.csv"
+STUDY_NAME, SCENE_NAME = "study.yaml", "scene.yaml"
 """Of the copies in a study's folder."""
 
 
@@ -258,15 +258,23 @@ def refused_at(path: KeyPath, study: StudyFile, source: str, message: str) -> Sc
     return placed(parse_yaml(study.text, source), [Finding(Problem(path, message), False)])
 
 
-def copies(study: StudyFile) -> dict[str, str]:
-    """Return the study, its scene and the scene's points file as texts by their names in a folder of their own."""
-    found = {STUDY_NAME: with_values(study.text, {("scene",): SCENE_NAME}), SCENE_NAME: study.scene_text.text}
-    points = value_at(study.scene_text.yaml.data, POINTS_KEY)
-    if isinstance(points, str):
-        path = study.scene_text.folder / points
-        found[POINTS_NAME] = read_text(path, str(path), POINTS_KEY)
-        found[SCENE_NAME] = with_values(study.scene_text.text, {POINTS_KEY: POINTS_NAME})
-    return found
+def copies(study: StudyFile) -> dict[str, bytes]:
+    """Return the study, its scene and the files that this names, by their names in a folder of their own."""
+    text, found, names = study.scene_text.text, dict[str, bytes](), dict[KeyPath, object]()
+    for path, name in _files_named(study.scene_text.yaml.data, ()):
+        found[copy := "-".join(map(str, path[:-1])) + Path(name).suffix] = (study.scene_text.folder / name).read_bytes()
+        names[path] = copy
+    found[SCENE_NAME] = (with_values(text, names) if names else text).encode()
+    return {**found, STUDY_NAME: with_values(study.text, {("scene",): SCENE_NAME}).encode()}
+
+
+def _files_named(here: object, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:
+    """Yield where plain scene data name a file of points or of a mesh, and its name."""
+    if isinstance(here, str) and path[-1:] == ("file",) and path[0] in ("object", "cage"):
+        yield path, here
+    pairs = here.items() if isinstance(here, dict) else enumerate(here) if isinstance(here, list) else ()
+    for key, value in pairs:
+        yield from _files_named(value, (*path, key))
 
 
 def study_text(content: Mapping[str, object]) -> str:

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 from matplotlib.figure import Figure
 
 import cagepose
-from cagepose.files.key_path import Path as KeyPath
 from cagepose.files.scene_edit import with_values
-from cagepose.files.study_file import POINTS_NAME, SCENE_NAME, copies
+from cagepose.files.study_file import SCENE_NAME, STUDY_NAME, copies
 from cagepose.files.write import check_can_write, is_made_by_us, json_text, write_whole
 from cagepose.model.wording import percent
 from cagepose.runs.methods import chosen_method
@@ -132,17 +131,18 @@ def write_design(results: DesignResults, folder: str | os.PathLike[str]) -> list
     home, figure = Path(folder), trade_off_figure(results)
     contents = {f"design{suffix}": figure_bytes(figure, suffix) for suffix in (".svg", ".png")}
     contents["design.json"] = json_text({"about": "made by cagepose", **document(results)}).encode()
+    named = dict[str, bytes]()
     if results.loosest is not None:
         study = results.file.study
-        changes: dict[KeyPath, object] = {study.varied[-1].path: results.loosest}
-        texts = copies(study)
-        contents[LOOSEST_NAME] = f"{MARK}\n{with_values(texts[SCENE_NAME], changes)}".encode()
-        if POINTS_NAME in texts:
-            contents[POINTS_NAME] = texts[POINTS_NAME].encode()
+        named = copies(study)
+        text, _ = named.pop(SCENE_NAME).decode(), named.pop(STUDY_NAME)
+        loosest = with_values(text, {study.varied[-1].path: results.loosest})
+        contents[LOOSEST_NAME] = f"{MARK}\n{loosest}".encode()
     home.mkdir(exist_ok=True)
-    for name in contents:
-        is_same = partial(_holds, contents[name])
-        check_can_write(home / name, is_same if name == POINTS_NAME else is_made_by_us, "what cagepose design wrote")
+    for name in (*contents, *named):
+        is_ours = partial(_holds, named[name]) if name in named else is_made_by_us
+        check_can_write(home / name, is_ours, "what cagepose design wrote")
+    contents |= named
     for name, content in contents.items():
         write_whole(home / name, content)
     return [str(home / name) for name in contents]

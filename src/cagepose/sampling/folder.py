@@ -36,7 +36,7 @@ class StudyFolder:
         OSError
             It cannot be made or written.
         """
-        wanted = {name: text.encode() for name, text in copies(study).items()}
+        wanted = copies(study)
         if "\0" in str(self.path):
             raise self._refused("is not a folder's name; remove the unprintable character")
         if self.path.exists() and not self.path.is_dir():
