@@ -111,6 +111,10 @@ def _tornado_figure(
         sizes = np.abs(changes[order])
         panel.barh(np.arange(n_bars), 2.0 * sizes, left=-sizes, color=BLUE, height=0.6)
         panel.axvline(0.0, color=BLACK, linewidth=0.8)
+        reach = 1.1 * float(sizes.max()) or 1.0
+        panel.set_xlim(-reach, reach)
+        panel.locator_params(axis="x", nbins=5)
+        panel.xaxis.set_major_formatter("{x:g}")
         panel.set_yticks(np.arange(n_bars), [names[one] for one in order])
         panel.set_title(row.name)
         panel.set_xlabel("change from the middle to either end")
@@ -142,7 +146,8 @@ def _map_figure(maps: Sequence[CaptureMap]) -> Figure:
     handles = [Patch(color=colour, label=verdict) for verdict, colour in zip(verdicts, colours, strict=True)]
     if any(found.box is not None for found in maps):
         handles.append(Patch(fill=False, edgecolor=BLACK, linestyle="--", label="largest box of accepted runs"))
-    handles.append(Patch(facecolor=GREY, alpha=0.25, label="pale: not accepted"))
+    if not all(found.accepted.all() for found in maps):
+        handles.append(Patch(facecolor=GREY, alpha=0.25, label="pale: not accepted"))
     figure.legend(handles=handles, loc="outside lower center", ncols=4)
     return figure
 
