@@ -62,7 +62,7 @@ if TYPE_CHECKING:
     from cagepose.runs.solve import run as run
     from cagepose.runs.variation import Variation as Variation
     from cagepose.sampling.design import Design as Design
-    from cagepose.sampling.design import DesignResults as DesignResults
+    from cagepose.sampling.design_results import DesignResults as DesignResults
     from cagepose.sampling.results import StudyResults as StudyResults
     from cagepose.sampling.study import Study as Study
     from cagepose.studies.certificate import Certificate as Certificate
@@ -112,7 +112,8 @@ _HOMES = {
     "cagepose.runs.run": ("Contact", "Event", "Frame", "Motion", "PhaseRun", "Run"),
     "cagepose.runs.solve": ("run",),
     "cagepose.runs.variation": ("Variation",),
-    "cagepose.sampling.design": ("Design", "DesignResults"),
+    "cagepose.sampling.design": ("Design",),
+    "cagepose.sampling.design_results": ("DesignResults",),
     "cagepose.sampling.results": ("StudyResults",),
     "cagepose.sampling.study": ("Study",),
     "cagepose.studies.certificate": ("Certificate", "ChosenFaces", "ModeTree", "OtherOnset"),

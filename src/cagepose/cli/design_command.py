@@ -12,7 +12,7 @@ from cyclopts import Parameter
 from cagepose.cli.options import Switch
 
 if TYPE_CHECKING:
-    from cagepose.sampling.design import DesignResults
+    from cagepose.sampling.design_results import DesignResults
     from cagepose.sampling.trade_off import TradeOffPoint
 
 
@@ -65,15 +65,14 @@ def _tell(point: TradeOffPoint) -> None:
 def _print(results: DesignResults) -> None:
     from cagepose.cli.console import print_all
     from cagepose.cli.styles import plain_table
-    from cagepose.sampling.design_report import reached_text, wish_text
 
     study, wish = results.file.study, results.file.model.wish
     has_interval = wish.share is not None
     columns = ("yield", "95 % interval") if has_interval else ("capture range",)
     table = plain_table(study.varied[-1].key, *columns, "keeps the wish")
     for point in results.trade_off.points:
-        low, high = (reached_text(results, limit) for limit in (point.low, point.high))
+        low, high = (results.reached_text(limit) for limit in (point.low, point.high))
         limits = (f"{low} to {high}",) if has_interval else ()
         kept = "yes" if point.reached >= wish.at_least else "no"
-        table.add_row(f"{point.value:.5g}", reached_text(results, point.reached), *limits, kept)
-    print_all(f"{study.nominal.scene.name}: {wish_text(results)}", "", table, "", results.sentence())
+        table.add_row(f"{point.value:.5g}", results.reached_text(point.reached), *limits, kept)
+    print_all(f"{study.nominal.scene.name}: {results.wish_text()}", "", table, "", results.sentence())

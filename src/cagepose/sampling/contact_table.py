@@ -23,14 +23,14 @@ class ContactRow:
 
     Attributes
     ----------
-    name, share
+    name, touches
         In which share of the runs it touches at the end.
     mean_force, greatest_force
         Of the runs in which forces are known and it touches; NaN: none.
     """
 
     name: str
-    share: float
+    touches: float
     mean_force: float
     greatest_force: float
 

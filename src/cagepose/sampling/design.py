@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,9 +11,10 @@ import numpy as np
 from cagepose.files.design_file import DesignFile, parse_design, read_design_file
 from cagepose.files.study_file import refused_at, study_text
 from cagepose.model.checks import FloatArray
+from cagepose.sampling.design_results import DesignResults
 from cagepose.sampling.statistics import wilson
 from cagepose.sampling.study import scene_name
-from cagepose.sampling.trade_off import TradeOff, TradeOffPoint, captured_range, trade_off
+from cagepose.sampling.trade_off import TradeOffPoint, captured_range, trade_off
 from cagepose.views.extra import require_study
 
 if TYPE_CHECKING:
@@ -22,63 +22,6 @@ if TYPE_CHECKING:
 
 Progress = Callable[[TradeOffPoint], None]
 """Called with each value that was asked."""
-
-
-@dataclass(frozen=True)
-class DesignResults:
-    """What a design has found.
-
-    Attributes
-    ----------
-    file
-        What was asked.
-    trade_off
-        What is reached at each value that was asked, and the loosest that keeps the wish.
-    n_runs
-        How many runs it took.
-    """
-
-    file: DesignFile
-    trade_off: TradeOff
-    n_runs: int
-
-    def __repr__(self) -> str:
-        return f"<DesignResults: {self.sentence()}>"
-
-    @property
-    def loosest(self) -> float | None:
-        """The loosest value that keeps the wish, in the scene file's unit; None: none does."""
-        return self.trade_off.loosest
-
-    def sentence(self) -> str:
-        """Return what was found, in a line or two."""
-        from cagepose.sampling.design_report import sentence  # which reads results
-
-        return sentence(self)
-
-    def document(self) -> dict[str, Any]:
-        """Return all of it as plain data: dict, list, str, int, finite float, bool and None."""
-        from cagepose.sampling.design_report import document
-
-        return document(self)
-
-    def write(self, folder: str | os.PathLike[str]) -> list[str]:
-        """Write ``design.json``, the trade-off curve as ``design.svg`` and ``design.png``, and the scene with the
-        loosest value as ``loosest.yaml``, if there is one; return the files.
-
-        Parameters
-        ----------
-        folder
-            Made if it is not there. Files of these names in it must be ours.
-
-        Raises
-        ------
-        OSError
-            It cannot be written, or holds a file of such a name that is not ours.
-        """
-        from cagepose.sampling.design_report import write_design
-
-        return write_design(self, folder)
 
 
 class Design:

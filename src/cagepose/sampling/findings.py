@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -97,28 +97,11 @@ def document(findings: Findings) -> dict[str, Any]:
         "sensitivities": [_sensitivity(found, results) for found in findings.sensitivities],
         "contacts": {
             "forces_of_runs": findings.contacts.n_runs,
-            "rows": [
-                {
-                    "name": row.name,
-                    "touches": row.share,
-                    "mean_force": row.mean_force,
-                    "greatest_force": row.greatest_force,
-                }
-                for row in findings.contacts.rows
-            ],
+            "rows": [asdict(row) for row in findings.contacts.rows],
         },
         "maps": [_map(found) for found in findings.maps],
         "chosen_runs": [
-            {
-                "name": run.name,
-                "file": run.file,
-                "page": run.page,
-                "run": run.run,
-                "verdict": run.verdict,
-                "accepted": run.accepted,
-                "distance": run.distance,
-                "values": dict(zip(results.columns.varied, run.values.tolist(), strict=True)),
-            }
+            {**asdict(run), "values": dict(zip(results.columns.varied, run.values.tolist(), strict=True))}
             for run in findings.chosen
         ],
     }

@@ -16,8 +16,6 @@ TAIL = 0.00135
 """Share of a normal distribution that lies more than three standard deviations above its mean."""
 BINS = 20_000
 """Of the range of a quantity: its quantiles are exact to that."""
-Z_95 = 1.959963984540054
-"""Standard deviations on both sides of the mean within which 95 % of a normal distribution lies."""
 
 
 @dataclass
@@ -126,10 +124,9 @@ def wilson(n_good: int, n_runs: int) -> tuple[float, float]:
     >>> [round(limit, 4) for limit in wilson(0, 100)]
     [0.0, 0.037]
     """
+    from scipy.stats import binomtest  # of the extra, which importing a class does not need
+
     if n_runs == 0:
         return 0.0, 1.0
-    share, squared = n_good / n_runs, Z_95**2
-    middle = share + squared / (2.0 * n_runs)
-    half = Z_95 * math.sqrt(share * (1.0 - share) / n_runs + squared / (4.0 * n_runs**2))
-    whole = 1.0 + squared / n_runs
-    return max((middle - half) / whole, 0.0), min((middle + half) / whole, 1.0)
+    found = binomtest(n_good, n_runs).proportion_ci(0.95, "wilson")
+    return float(found.low), float(found.high)
