@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,8 +13,13 @@ import pytest
 
 from cagepose import SceneFileError, Study, StudyResults, run
 from cagepose.files.scene_edit import with_values
+from cagepose.files.study_file import parse_study, study_text
 from cagepose.paper.planar import play_angle_rad, small_play_angle_rad
-from cagepose.sampling.capture_map import largest_box, refined_map
+from cagepose.sampling import capture_map
+from cagepose.sampling.capture_map import capture_maps, largest_box, refined_map
+from cagepose.sampling.distribution import distribution_of
+from cagepose.sampling.row_columns import RowColumns
+from cagepose.sampling.runner import Runner
 from our_studies import RAIL, RunStudy
 
 HEIGHTS = {"cage.pose.position[2]": {"normal": {"sigma": 0.1}}, "object.pose.position[0]": {"uniform": [-0.05, 0.05]}}
@@ -59,6 +65,27 @@ def test_a_refined_map_is_the_whole_grid_by_few_runs() -> None:
             assert n_runs == times_asked.sum()
             assert times_asked.max() == 1
             assert n_runs <= (0.1 * count**2 if count == 1000 else count**2)
+
+
+def test_a_refined_map_of_a_rail_is_its_whole_grid(
+    monkeypatch: pytest.MonkeyPatch, scene_with: Callable[..., Path], cases: Callable[[int, int], int]
+) -> None:
+    """Cell by cell: from which pitch and yaw the push, by the paper's rules, takes the rail past level."""
+    count, keys = cases(150, 1_000), ["cage.pose.euler_zyx_deg[1]", "cage.pose.euler_zyx_deg[0]"]
+    accept = "pitch_deg < 0 and abs(yaw_deg) < 0.3"
+    content = {"scene": str(scene_with("method=stepwise")), "vary": {key: {"uniform": [-0.5, 0.5]} for key in keys}}
+    content |= {"sample": {"runs": 1}, "accept": accept, "map": {"over": keys, "count": count}}
+    study = parse_study(study_text(content))
+    asked = Runner(study), RowColumns(study), [distribution_of(one) for one in study.varied]
+    (refined,) = capture_maps(*asked)
+    monkeypatch.setattr(capture_map, "LINES", count)
+    (whole,) = capture_maps(*asked)
+    assert whole.n_runs == count**2
+    assert refined.n_runs < count**2 / (10 if count == 1_000 else 2)
+    assert 0.1 < whole.accepted.mean() < 0.9
+    assert np.array_equal(refined.accepted, whole.accepted)
+    assert np.array_equal(refined.verdicts, whole.verdicts)
+    assert refined.box == whole.box
 
 
 @pytest.mark.usefixtures("small_designs")
