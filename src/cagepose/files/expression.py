@@ -180,7 +180,7 @@ class _Evaluator(SimpleEval):  # type: ignore[misc]  # it has no types
         raise NameNotDefined(name, self.expr)
 
     def _eval_call(self, node: ast.Call) -> Any:
-        if not isinstance(node.func, ast.Name) or node.func.id not in FUNCTIONS or node.keywords or not node.args:
+        if not isinstance(node.func, ast.Name) or node.func.id not in FUNCTIONS or node.keywords:
             raise FunctionNotDefined(ast.unparse(node.func), self.expr)
         name, values = node.func.id, [self._eval(argument) for argument in node.args]
         if (name == "abs") != (len(values) == 1):
