@@ -278,7 +278,7 @@ def _files_named(here: object, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:
 
 
 def study_text(content: Mapping[str, object]) -> str:
-    """Return the text of a study that is given as plain data.
+    """Return the text of a study that is given as plain data; what is None is left out.
 
     Raises
     ------
@@ -286,7 +286,8 @@ def study_text(content: Mapping[str, object]) -> str:
         It is no plain data.
     """
     try:
-        return json.dumps(content, indent=1, default=_plain)
+        given = {key: value for key, value in content.items() if value is not None}
+        return json.dumps(given, indent=1, default=_plain)
     except (TypeError, ValueError) as error:
         raise SceneFileError([FileProblem((), f"is no plain data ({error}); give numbers and text", "study")]) from None
 

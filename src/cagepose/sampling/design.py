@@ -58,10 +58,9 @@ class Design:
         watch: Mapping[str, Any] | None = None,
         accept: str | None = None,
     ) -> None:
-        content = {"scene": scene_name(scene), "change": change, "wish": wish, "vary": vary}
-        given = {"sample": sample, "watch": watch, "accept": accept}
-        text = study_text({**content, **{key: value for key, value in given.items() if value is not None}})
-        self._begin(parse_design(text, "design"), "design")
+        content: dict[str, Any] = {"scene": scene_name(scene), "change": change, "wish": wish, "vary": vary}
+        content |= {"sample": sample, "watch": watch, "accept": accept}
+        self._begin(parse_design(study_text(content), "design"), "design")
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Design:

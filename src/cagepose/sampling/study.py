@@ -56,10 +56,9 @@ class Study:
         forces: bool | None = None,
         map: Mapping[str, Any] | None = None,
     ) -> None:
-        content = {"scene": scene_name(scene), "vary": vary, "sample": sample}
-        given = {"watch": watch, "accept": accept, "forces": forces, "map": map}
-        text = study_text({**content, **{key: value for key, value in given.items() if value is not None}})
-        self._begin(parse_study(text, "study"), "study")
+        content: dict[str, Any] = {"scene": scene_name(scene), "vary": vary, "sample": sample}
+        content |= {"watch": watch, "accept": accept, "forces": forces, "map": map}
+        self._begin(parse_study(study_text(content), "study"), "study")
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Study:
