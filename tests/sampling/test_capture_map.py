@@ -68,12 +68,14 @@ def test_a_refined_map_is_the_whole_grid_by_few_runs() -> None:
 
 
 def test_a_refined_map_of_a_rail_is_its_whole_grid(
-    monkeypatch: pytest.MonkeyPatch, scene_with: Callable[..., Path], cases: Callable[[int, int], int]
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, cases: Callable[[int, int], int]
 ) -> None:
     """Cell by cell: from which pitch and yaw the push, by the paper's rules, takes the rail past level."""
-    count, keys = cases(150, 1_000), ["cage.pose.euler_zyx_deg[1]", "cage.pose.euler_zyx_deg[0]"]
+    count, keys, scene = cases(150, 1_000), ["parameters.pitch", "parameters.yaw"], tmp_path / "scene.yaml"
+    text = (RAIL.parent / "studies" / "rail.yaml").read_text(encoding="utf-8")
+    scene.write_text(with_values(text, {("method",): "stepwise"}), encoding="utf-8")
     accept = "pitch_deg < 0 and abs(yaw_deg) < 0.3"
-    content = {"scene": str(scene_with("method=stepwise")), "vary": {key: {"uniform": [-0.5, 0.5]} for key in keys}}
+    content: dict[str, Any] = {"scene": str(scene), "vary": {key: {"uniform": [-0.5, 0.5]} for key in keys}}
     content |= {"sample": {"runs": 1}, "accept": accept, "map": {"over": keys, "count": count}}
     study = parse_study(study_text(content))
     asked = Runner(study), RowColumns(study), [distribution_of(one) for one in study.varied]
