@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from cagepose.files.units import LengthUnit, from_metres
-from cagepose.files.words import components
 from cagepose.model.checks import FloatArray
+from cagepose.model.wording import components
 from cagepose.studies.margin import ContactMargin, Margin
 
 SHOWN = 1e-9

@@ -16,8 +16,8 @@ from cagepose.cli.margin_report import margin_lines
 from cagepose.cli.styles import verdict_style
 from cagepose.errors import printable
 from cagepose.files.units import LengthUnit
-from cagepose.files.words import LengthWords, components
-from cagepose.model.wording import short
+from cagepose.files.words import LengthWords
+from cagepose.model.wording import components, short
 from cagepose.runs.run import AT_REST, FAILURES, PhaseRun, Run
 from cagepose.studies.margin import Margin
 

@@ -6,8 +6,7 @@ import math
 from collections.abc import Iterable
 
 from cagepose.files.units import LengthUnit, from_metres
-from cagepose.model.checks import FloatArray
-from cagepose.model.wording import short
+from cagepose.model.wording import components, short
 from cagepose.runs.run import Motion
 
 
@@ -37,11 +36,6 @@ def line_of(motion: Motion) -> str:
     """Return the direction that a motion goes along or turns about."""
     along = motion.direction_world if motion.axis_world is None else motion.axis_world
     return "" if along is None else f"({components(along)})"
-
-
-def components(direction: FloatArray) -> str:
-    """Return a unit vector to four digits."""
-    return ", ".join(short(value, 4, 5e-5) for value in direction.tolist())
 
 
 def names_of(names: Iterable[str]) -> str:

@@ -17,6 +17,11 @@ def short(value: float, digits: int, noise: float) -> str:
     return "0" if abs(value) < noise else f"{value:.{digits}g}"
 
 
+def components(direction: FloatArray) -> str:
+    """Return a unit vector to four digits."""
+    return ", ".join(short(value, 4, 5e-5) for value in direction.tolist())
+
+
 def number_or_dash(value: float | None) -> str:
     """Return a number as people read it; a dash where there is none.
 

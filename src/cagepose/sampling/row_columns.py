@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -70,14 +70,10 @@ class RowColumns:
     def _measured(self, outcomes: Outcomes) -> dict[str, FloatArray]:
         """Return the same of all runs that ended at a pose, wherever they were on their way."""
         unit = self._study.nominal.length_unit
-        found = dict(zip(self.quantities, self._places(outcomes, unit), strict=True))
-        return {name: column + 0.0 for name, column in found.items()}  # -0.0 becomes 0.0
-
-    def _places(self, outcomes: Outcomes, unit: Any) -> Iterator[FloatArray]:
-        yield from from_metres(outcomes.position_m, unit).T
-        yield from np.degrees(outcomes.euler_zyx).T
-        for point in self._watched.values():
-            yield from from_metres(outcomes.points_world_m(point), unit).T
+        watched = [outcomes.points_world_m(point) for point in self._watched.values()]
+        position, *points = (from_metres(places, unit).T for places in (outcomes.position_m, *watched))
+        found = np.concatenate([position, np.degrees(outcomes.euler_zyx).T, *points])
+        return dict(zip(self.quantities, found + 0.0, strict=True))  # -0.0 becomes 0.0
 
     def columns(self, values: FloatArray, outcomes: Outcomes) -> dict[str, NDArray[Any]]:
         """Return all columns but ``run``, ``error`` and ``solve_us``."""

@@ -9,19 +9,17 @@ from typing import get_args
 
 import numpy as np
 
-from cagepose.model.checks import FloatArray, expect
+from cagepose.model.checks import expect
 from cagepose.model.methods import DEFAULT_FRICTION, Metric
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.model.scope import check_boxes_and_points
-from cagepose.model.wording import counted
+from cagepose.model.wording import components, counted
 from cagepose.runs.run import AT_REST, Event, Motion, PhaseRun, Run, Verdict
 from cagepose.runs.solve import run
 
 SAME_POSE_OF_SIZE = 1e-6
 """Two poses are one where no corner of a box is farther apart than this fraction of the scene's size."""
-HARDLY = 5e-5
-"""Components of a direction below this are shown as 0."""
 GROUNDS = {
     "free": "nothing holds it back",
     "escapes": "nothing is ahead",
@@ -187,12 +185,8 @@ def _moves(motion: Motion) -> str:
     """``turns about (0, 1, 0) by 19.23 deg``; lengths are left out, they would need the scene's unit."""
     if motion.axis_world is None:
         assert motion.direction_world is not None
-        return f"travels along ({_components(motion.direction_world)})"
+        return f"travels along ({components(motion.direction_world)})"
     return (
-        f"{'turns' if motion.kind == 'turn' else 'moves by a screw'} about ({_components(motion.axis_world)})"
+        f"{'turns' if motion.kind == 'turn' else 'moves by a screw'} about ({components(motion.axis_world)})"
         f" by {np.degrees(motion.angle_rad):.4g} deg"
     )
-
-
-def _components(direction: FloatArray) -> str:
-    return ", ".join("0" if abs(value) < HARDLY else f"{value:.4g}" for value in direction)
