@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
@@ -82,26 +82,15 @@ class Solid:
 
 def solid_of(shape: Shape) -> Solid:
     """Return the solid of a shape; shapes of the same kind and size share one."""
-    numbers = tuple(
-        value.tobytes() if isinstance(value, np.ndarray) else value
-        for name, value in sorted(vars(shape).items())
-        if name.endswith("_m")
-    )
-    return _shared(_Sized(shape, (shape.kind, *numbers)))
+    return _shared(_Sized(shape.form, shape))
 
 
 @dataclass(frozen=True)
 class _Sized:
     """A shape that equals all others of its kind and size."""
 
-    shape: Shape
-    key: tuple[object, ...]
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Sized) and self.key == other.key
-
-    def __hash__(self) -> int:
-        return hash(self.key)
+    form: tuple[object, ...]
+    shape: Shape = field(compare=False)
 
 
 @lru_cache(maxsize=256)
