@@ -38,8 +38,8 @@ const phase = () => stage.phaseAt(player.time);
 
 function exaggerate(k) {
   exaggerations[phase()] = k;
+  show(); // what the bar says tells how much of the picture it covers
   drawing?.fit();
-  refresh();
 }
 
 function refresh() {
@@ -258,4 +258,5 @@ for (const option of ["names", "glass", "perspective", "points"]) $(option).disa
 if (drawing) $("names").checked = drawing.allNames;
 if (!data.points.length) $("points").parentElement.hidden = true;
 if (data.controls) new Panel(data.controls, data.fileName, replaceRun);
-refresh();
+show();
+drawing?.fit();
