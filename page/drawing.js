@@ -14,7 +14,7 @@ const CLOSE_UP = 0.008, TILT = 0.25; // half the height of a picture of one cont
 const PICKED = 14; // pixels from a mark that is clicked
 
 export class Drawing {
-  constructor(stage, exaggerations, canvas, overlay, { covered, changed, clicked }) {
+  constructor(stage, exaggerations, canvas, overlay, { covered, changed, clicked, grabbed }) {
     this.canvas = canvas;
     this.sizes = stage.data.look; // sizes, in pixels unless look.py says otherwise
     this.paint = Object.fromEntries(Object.entries(this.sizes.paint).map(([name, hex]) => [name, color(hex)]));
@@ -30,7 +30,8 @@ export class Drawing {
     this.isGlass = false;
     this.take(stage, exaggerations);
     this.allNames = stage.data.names.length <= this.sizes.few_names;
-    this.camera = new Camera(canvas, stage.data, { content: () => this.content(), under: (x, y) => this.under(x, y), covered, changed, clicked: (x, y) => clicked(this.touchAt(x, y)) });
+    this.camera = new Camera(canvas, stage.data, { content: () => this.content(), under: (x, y) => this.under(x, y), covered, changed, clicked: (x, y) => clicked(this.touchAt(x, y)),
+      grabbed: (x, y) => (Number.isFinite(this.object.hit(...this.camera.ray(x, y))) ? grabbed() : null) });
     this.camera.fit(); // with loads and forces, whose arrows have a camera by now
   }
 
@@ -38,6 +39,10 @@ export class Drawing {
   take(stage, exaggerations) {
     this.exaggerations = exaggerations; // of each phase; its owner changes them
     const { data } = stage;
+    if (this.stage) { // where the origin of drawing coordinates was, and their unit
+      const [before, size] = [this.stage.middle(), this.stage.data.unitsPerDrawing];
+      this.camera.rebase((place) => times(1 / data.unitsPerDrawing, sub(add(before, times(size, place)), stage.middle())), size / data.unitsPerDrawing);
+    }
     this.stage = stage;
     this.world.data = data;
     const { forms, parts, holes, bodies, cageHoles } = data;

@@ -1,6 +1,6 @@
 // The page: what time it is, how much motions are exaggerated, and everything that shows or changes that.
 
-import { norm } from "./geometry.js";
+import { add, norm, times } from "./geometry.js";
 import { Drawing } from "./drawing.js";
 import { Card } from "./card.js";
 import { Panel } from "./panel.js";
@@ -17,6 +17,7 @@ let end = stage.shots.length - 1;
 const player = { time: end, playing: false, drawn: 0, drawnTime: null, drawnExaggeration: null, answers: 0, drawnAnswers: 0, drawMs: null };
 let exaggerations = data.phases.map((phase) => phase.proposed); // of each phase
 let drawing = null, waiting = false, resting = 0, lastTick = null;
+let panel = null, carries = false; // the object's start, which follows the pointer
 let shownAt = -Infinity;
 let told = null; // on what that depends which stands around the picture now
 
@@ -27,7 +28,7 @@ const card = new Card((touch) => {
 }, refresh);
 try {
   drawing = new Drawing(stage, exaggerations, $("scene"), $("labels"), {
-    covered: () => $("bar").offsetTop + $("bar").offsetHeight, changed: refresh, clicked: (touch) => { card.pick(touch); refresh(); } });
+    covered: () => $("bar").offsetTop + $("bar").offsetHeight, changed: refresh, clicked: (touch) => { card.pick(touch); refresh(); }, grabbed: () => (panel && $("start").checked ? carryStart() : null) });
 } catch (error) {
   $("trouble").textContent = `No picture: ${error.message}. All else on this page works.`;
   $("trouble").hidden = false;
@@ -102,7 +103,21 @@ function replaceRun(answer) {
   player.answers += 1;
   fill();
   pause();
-  seek(end);
+  seek(carries ? 0 : end);
+}
+
+// Takes the way of the pointer, bit by bit: the start goes along it, and the run from there is shown when it is let go.
+function carryStart() {
+  let way = panel.start;
+  carries = true;
+  pause();
+  seek(0);
+  return (bit) => {
+    carries = bit !== null;
+    if (!carries) return seek(end);
+    way = add(way, times(data.unitsPerDrawing, bit));
+    panel.moveStart(way);
+  };
 }
 
 function fill() {
@@ -254,9 +269,9 @@ window.cagepose = {
 
 fill();
 $("exaggeration").max = data.exaggerations.length - 1;
-for (const option of ["names", "glass", "perspective", "points"]) $(option).disabled = !drawing;
+for (const option of ["names", "start", "glass", "perspective", "points"]) $(option).disabled = !drawing;
 if (drawing) $("names").checked = drawing.allNames;
 if (!data.points.length) $("points").parentElement.hidden = true;
-if (data.controls) new Panel(data.controls, data.fileName, replaceRun);
+if (data.controls) panel = new Panel(data.controls, data.fileName, replaceRun);
 show();
 drawing?.fit();

@@ -73,6 +73,38 @@ def test_a_value_that_cannot_be_is_told_in_the_page_and_the_last_scene_stays(wat
     wait_until(page, "problems.innerText === ''")
 
 
+def test_the_start_can_be_dragged_and_the_picture_stays_where_it_is(watched, tmp_path):
+    """The start follows the pointer, and the run from there is that of the scene which is saved."""
+    with served(SCENES / "sample.yaml") as server:
+        page = opened(watched, server)
+        before = load_scene(SCENES / "sample.yaml").object.pose_world_object.position_m
+        page.locator("#start").check()
+        page.locator("#first").click()
+        points = page.evaluate("cagepose.state().points.map(cagepose.project)")
+        box = page.locator("#scene").bounding_box()
+        x, y = page.evaluate("cagepose.project(cagepose.state().shownPose.p)")
+        page.mouse.move(box["x"] + x, box["y"] + y)
+        page.mouse.down()
+        page.mouse.move(box["x"] + x + 10, box["y"] + y - 20)
+        wait_until(page, "cagepose.state().drawnAnswers === 1")
+        assert page.evaluate("cagepose.state().drawnTime") == 0
+        moved = page.evaluate("cagepose.project(cagepose.state().shownPose.p)")
+        assert np.array(moved) - (x, y) == pytest.approx(
+            [10, -20], abs=2.0
+        )  # perspective: it is beside what one looks at
+        assert np.array(page.evaluate("cagepose.state().points.map(cagepose.project)")) == pytest.approx(
+            np.array(points), abs=1.0
+        )
+        page.mouse.up()
+        wait_until(page, "cagepose.state().drawnTime > 0")
+        with page.expect_download() as saved:
+            page.locator("#save").click()
+        saved.value.save_as(tmp_path / "dragged.yaml")
+        scene = load_scene(tmp_path / "dragged.yaml")
+        assert np.linalg.norm(scene.object.pose_world_object.position_m - before) > 1e-4
+        assert shown_angles(page) == pytest.approx(np.degrees(run(scene).pose.euler_zyx).tolist(), rel=1e-5)
+
+
 def test_two_windows_do_not_disturb_each_other(watched, server):
     one = opened(watched, server)
     other = one.context.new_page()
