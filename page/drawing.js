@@ -60,6 +60,7 @@ export class Drawing {
 
   build(data) {
     const { paint } = this;
+    this.built = (this.built ?? 0) + 1;
     this.world.scene.remove(...(this.things ?? []).map((thing) => thing.group));
     this.holes = new Holes(data.holes, data.forms);
     this.cageHoles = new Holes(data.cageHoles, data.forms);

@@ -260,7 +260,7 @@ window.cagepose = {
       touches: stage.shot(player.time).touches.map((touch) => stage.place(touch, look)),
       bodies: data.bodies.map((_, index) => stage.bodyPose(index, look).p),
       camera: camera && { target: camera.target, half: camera.half, back: camera.axes()[2], perspective: camera.perspective },
-      picked: card.touch && data.names[card.touch.point], hasShadows: drawing?.world.hasShadows };
+      picked: card.touch && data.names[card.touch.point], hasShadows: drawing?.world.hasShadows, built: drawing?.built };
   },
   fitted: () => drawing.content().map((place) => drawing.camera.project(place)), // apart: 12,000 places in a crowded scene
   project: (place) => drawing.camera.project(place),

@@ -109,8 +109,9 @@ class Stage:
         self.middles_world = np.array([*(body.mean(axis=0) for body in self.bodies_world), *mouths]).reshape(-1, 3)
         self.middle_world: FloatArray = (everything.min(axis=0) + everything.max(axis=0)) / 2.0
         radius_m = float(np.linalg.norm(everything - self.middle_world, axis=1).max())
-        # Of a ball on a large table the scene's size is that of the table, of which little is shown.
-        self.size_m = min(scene.size_m, 2.0 * radius_m) if bodies else scene.size_m
+        # Of a ball on a large table the scene's size is that of the table, of which little is shown. A round number: a
+        # page need not build its shapes anew for each slider.
+        self.size_m = min(scene.size_m, float(f"{2.0 * radius_m:.1e}")) if bodies else scene.size_m
         self.radius = radius_m / self.size_m
 
     def place(self, point_world: FloatArray) -> FloatArray:
