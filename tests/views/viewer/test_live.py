@@ -216,3 +216,22 @@ def test_a_server_that_is_gone_is_told_and_the_last_answer_stays(watched, server
     page.locator("#first").click()
     assert state(page)["time"] == 0
     watched.complaints.clear()  # the browser notes the lost connection itself
+
+
+def test_shadows_go_where_pictures_come_slowly(watched):
+    """A machine that says it has a graphics card, and takes 60 ms more for each picture."""
+    watched.page.add_init_script("""
+        const told = WebGL2RenderingContext.prototype.getParameter;
+        WebGL2RenderingContext.prototype.getParameter = function (name) {
+            return name === 0x9246 ? "some graphics card" : told.call(this, name);
+        };
+        const next = window.requestAnimationFrame.bind(window);
+        window.requestAnimationFrame = (draw) => next(() => setTimeout(() => draw(performance.now()), 60));
+    """)
+    with served(SCENES / "sample.yaml") as server:
+        page = opened(watched, server)
+        assert state(page)["hasShadows"]
+        page.locator("#play").click()
+        wait_until(page, "!cagepose.state().hasShadows")
+        before = state(page)["drawn"]
+        wait_until(page, f"cagepose.state().drawn > {before}")
