@@ -12,9 +12,10 @@ const CLICK = 4; // pixels: the most that a click moves
 
 export class Camera {
   // `content()` returns the places that a view is fitted to, `under(x, y)` the place that is seen at a pixel or null, and
-  // `covered()` the height in pixels that something else covers from above.
-  constructor(canvas, { radius, look }, { content, under, covered, changed, clicked }) {
-    Object.assign(this, { canvas, radius, look, content, under, covered, changed, clicked, perspective: true, pointers: new Map(), travelled: 0 });
+  // `covered()` the height in pixels that something else covers from above. `grabbed(x, y)` returns what takes the way of
+  // a pointer that is pressed there, in drawing units, and null when it is let go; null: the pointer turns the view.
+  constructor(canvas, { radius, look }, { content, under, covered, changed, clicked, grabbed }) {
+    Object.assign(this, { canvas, radius, look, content, under, covered, changed, clicked, grabbed, carry: null, perspective: true, pointers: new Map(), travelled: 0 });
     this.cameras = [new OrthographicCamera(), new PerspectiveCamera()];
     this.home("corner");
     canvas.addEventListener("pointerdown", (event) => this.press(event));
@@ -29,7 +30,10 @@ export class Camera {
 
   press(event) {
     this.canvas.setPointerCapture(event.pointerId);
-    if (!this.pointers.size) this.travelled = 0;
+    if (!this.pointers.size) {
+      this.travelled = 0;
+      this.carry = this.grabbed(event.offsetX, event.offsetY);
+    }
     this.pointers.set(event.pointerId, [event.offsetX, event.offsetY]);
   }
 
@@ -45,7 +49,8 @@ export class Camera {
       const apart = (place) => Math.max(1, Math.hypot(place[0] - other[0], place[1] - other[1]));
       this.pan(x / 2, y / 2);
       this.zoomAt((now[0] + other[0]) / 2, (now[1] + other[1]) / 2, apart(before) / apart(now));
-    } else if (event.shiftKey || event.buttons === 2) this.pan(x, y);
+    } else if (this.carry) this.carry(this.across(x, y));
+    else if (event.shiftKey || event.buttons === 2) this.pan(x, y);
     else {
       this.azimuth -= 0.4 * x;
       this.elevation = Math.max(-90, Math.min(90, this.elevation + 0.4 * y));
@@ -56,12 +61,25 @@ export class Camera {
   release(event) {
     const isClick = event.type === "pointerup" && this.pointers.size === 1 && this.travelled < CLICK && event.button === 0;
     this.pointers.delete(event.pointerId);
+    if (this.carry) this.carry(null);
+    this.carry = null;
     if (isClick) this.clicked(event.offsetX, event.offsetY);
   }
 
   pan(x, y) {
+    this.target = sub(this.target, this.across(x, y));
+  }
+
+  // The way of so many pixels to the right and down, at the depth that one looks at.
+  across(x, y) {
     const [right, up] = this.axes();
-    this.target = add(this.target, add(times(-x * this.pixel(), right), times(y * this.pixel(), up)));
+    return add(times(x * this.pixel(), right), times(-y * this.pixel(), up));
+  }
+
+  // What was at a place and of a size in other drawing coordinates is seen as before.
+  rebase(place, scale) {
+    this.target = place(this.target);
+    this.half *= scale;
   }
 
   home(name) {

@@ -14,7 +14,7 @@ const CLOSE_UP = 0.008, TILT = 0.25; // half the height of a picture of one cont
 const PICKED = 14; // pixels from a mark that is clicked
 
 export class Drawing {
-  constructor(stage, exaggerations, canvas, overlay, { covered, changed, clicked }) {
+  constructor(stage, exaggerations, canvas, overlay, { covered, changed, clicked, grabbed }) {
     this.canvas = canvas;
     this.sizes = stage.data.look; // sizes, in pixels unless look.py says otherwise
     this.paint = Object.fromEntries(Object.entries(this.sizes.paint).map(([name, hex]) => [name, color(hex)]));
@@ -30,7 +30,8 @@ export class Drawing {
     this.isGlass = false;
     this.take(stage, exaggerations);
     this.allNames = stage.data.names.length <= this.sizes.few_names;
-    this.camera = new Camera(canvas, stage.data, { content: () => this.content(), under: (x, y) => this.under(x, y), covered, changed, clicked: (x, y) => clicked(this.touchAt(x, y)) });
+    this.camera = new Camera(canvas, stage.data, { content: () => this.content(), under: (x, y) => this.under(x, y), covered, changed, clicked: (x, y) => clicked(this.touchAt(x, y)),
+      grabbed: (x, y) => (Number.isFinite(this.object.hit(...this.camera.ray(x, y))) ? grabbed() : null) });
     this.camera.fit(); // with loads and forces, whose arrows have a camera by now
   }
 
@@ -38,25 +39,38 @@ export class Drawing {
   take(stage, exaggerations) {
     this.exaggerations = exaggerations; // of each phase; its owner changes them
     const { data } = stage;
+    if (this.stage) { // where the origin of drawing coordinates was, and their unit
+      const [before, size] = [this.stage.middle(), this.stage.data.unitsPerDrawing];
+      this.camera.rebase((place) => times(1 / data.unitsPerDrawing, sub(add(before, times(size, place)), stage.middle())), size / data.unitsPerDrawing);
+    }
     this.stage = stage;
     this.world.data = data;
-    this.world.scene.remove(...(this.things ?? []).map((thing) => thing.group));
-    this.holes = new Holes(data.holes, data.forms);
-    this.cageHoles = new Holes(data.cageHoles, data.forms);
-    this.object = new Body(data.parts, data.forms, this.holes, { face: this.paint.object, edge: this.paint.objectEdge });
-    this.bodies = data.bodies.map(({ form }) => new Body([{ form, position: [0, 0, 0], quaternion: [1, 0, 0, 0] }], data.forms, this.cageHoles, { face: this.paint.cage, edge: this.paint.cageEdge }));
-    this.walls = new Walls(data.holes, data.forms, { face: this.paint.objectWall, edge: this.paint.objectEdge });
-    this.cageWalls = new Walls(data.cageHoles, data.forms, { face: this.paint.cageWall, edge: this.paint.cageEdge });
-    this.things = [this.object, ...this.bodies, this.walls, this.cageWalls];
-    this.world.scene.add(...this.things.map((thing) => thing.group));
+    const { forms, parts, holes, bodies, cageHoles } = data;
+    const made = JSON.stringify([forms, parts, ...[holes, bodies, cageHoles].map((list) => list.map(({ form, open }) => [form, open]))]);
+    if (made !== this.made) this.build(data); // most sliders leave all shapes as they are
+    this.made = made;
     this.out = stage.data.points.map((_, index) => {
       const gap = data.gaps[data.phases[0].reference][index];
       return norm(gap) > 1e-9 ? unit(gap) : null;
     });
     const middle = times(1 / (data.points.length || 1), data.points.reduce(add, [0, 0, 0]));
     this.pin = Math.min(this.sizes.pin, this.sizes.pin_of_cage * Math.max(0, ...data.points.map((point) => norm(sub(point, middle)))) || this.sizes.pin);
-    this.glaze(this.isGlass);
     this.layGround();
+  }
+
+  build(data) {
+    const { paint } = this;
+    this.built = (this.built ?? 0) + 1;
+    this.world.scene.remove(...(this.things ?? []).map((thing) => thing.group));
+    this.holes = new Holes(data.holes, data.forms);
+    this.cageHoles = new Holes(data.cageHoles, data.forms);
+    this.object = new Body(data.parts, data.forms, this.holes, { face: paint.object, edge: paint.objectEdge });
+    this.bodies = data.bodies.map(({ form }) => new Body([{ form, position: [0, 0, 0], quaternion: [1, 0, 0, 0] }], data.forms, this.cageHoles, { face: paint.cage, edge: paint.cageEdge }));
+    this.walls = new Walls(data.holes, data.forms, { face: paint.objectWall, edge: paint.objectEdge });
+    this.cageWalls = new Walls(data.cageHoles, data.forms, { face: paint.cageWall, edge: paint.cageEdge });
+    this.things = [this.object, ...this.bodies, this.walls, this.cageWalls];
+    this.world.scene.add(...this.things.map((thing) => thing.group));
+    this.glaze(this.isGlass);
   }
 
   // Whether the object is seen through; bodies of the cage that would hide it always are.
@@ -69,9 +83,10 @@ export class Drawing {
 
   layGround() {
     const { stage } = this;
-    const corners = [0, stage.shots.length - 1].flatMap((time) => this.object.whole.corners.map((corner) => carried(this.shown(time).pose, corner)[2]));
+    const heights = (body, pose) => body.outer.map((corner) => carried(pose, corner)[2]);
+    const corners = [0, stage.shots.length - 1].flatMap((time) => heights(this.object, this.shown(time).pose));
     const look = this.shown(stage.shots.length - 1).look;
-    const bodies = this.bodies.flatMap((body, index) => body.whole.corners.map((corner) => carried(stage.bodyPose(index, look), corner)[2]));
+    const bodies = this.bodies.flatMap((body, index) => heights(body, stage.bodyPose(index, look)));
     const points = stage.data.points.map((_, index) => stage.point(index, look)[2] - (this.pointLook === "pin" ? this.pin : 0));
     const low = [...corners, ...bodies, ...points].reduce((least, height) => Math.min(least, height), 0);
     this.world.layGround(low - this.sizes.below);
@@ -133,24 +148,18 @@ export class Drawing {
     const { data } = stage;
     const ends = [0, ...data.rows.map((row) => row.last)].map((shot) => this.shown(shot));
     const { pose, look } = ends.at(-1);
-    const corners = ends.flatMap((end) => this.outer().map((corner) => carried(end.pose, corner)));
+    const corners = ends.flatMap((end) => this.object.outer.map((corner) => carried(end.pose, corner)));
     const needed = [...corners, ...data.points.map((_, index) => stage.point(index, look))];
     const [low, high] = [Math.min, Math.max].map((pick) => [0, 1, 2].map((axis) => needed.reduce((best, place) => pick(best, place[axis]), needed[0][axis])));
     this.cutOff = (place) => place.map((value, axis) => Math.max(low[axis] - data.reach, Math.min(high[axis] + data.reach, value)));
     if (!this.camera) return needed;
     const tails = data.phases.flatMap((phase) => phase.loads).flatMap((load) => this.loadEnds(load, pose));
     const pressing = stage.shots.at(-1).touches.filter((touch) => touch.force).map((touch) => this.forceArrow(touch, pose, look)[0]);
-    const bodies = this.bodies.flatMap((body, index) => body.whole.corners.map((corner) => this.cutOff(carried(stage.bodyPose(index, look), corner))));
+    const bodies = this.bodies.flatMap((body, index) => {
+      const at = stage.bodyPose(index, look);
+      return body.outer.map((corner) => this.cutOff(carried(at, corner)));
+    });
     return [...needed, ...tails, ...pressing, ...bodies];
-  }
-
-  // Corners of the object, each once.
-  outer() {
-    if (this.outerOf !== this.object) {
-      const seen = new Map(this.object.whole.corners.map((corner) => [corner.map((value) => value.toFixed(6)).join(), corner]));
-      [this.outerOf, this.corners] = [this.object, [...seen.values()]];
-    }
-    return this.corners;
   }
 
   // Where a load's arrow starts and ends: that of a force ends where it acts, that of a moment starts at the centre of
@@ -216,7 +225,7 @@ export class Drawing {
     const { bodies } = this.stage.data;
     const pose = this.stage.bodyPose(index, look);
     if (index >= bodies.length) return pose.p;
-    const places = this.bodies[index].whole.corners.map((corner) => (this.cutOff ?? ((place) => place))(carried(pose, corner)));
+    const places = this.bodies[index].ends.map((corner) => (this.cutOff ?? ((place) => place))(carried(pose, corner)));
     return times(1 / places.length, places.reduce(add));
   }
 

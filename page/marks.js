@@ -6,10 +6,10 @@ import { add, norm, sub, times, turnedTo, unit } from "./geometry.js";
 
 const standing = (geometry) => geometry.rotateX(Math.PI / 2); // along z instead of y
 const SHAPES = {
-  ball: new SphereGeometry(1, 10, 6),
+  ball: new SphereGeometry(1, 8, 5),
   rod: standing(new CylinderGeometry(1, 1, 1, 6, 1, true).translate(0, 0.5, 0)),
   tip: standing(new ConeGeometry(1, 1, 10).translate(0, 0.5, 0)),
-  pin: standing(new ConeGeometry(1, 1, 12).rotateX(Math.PI).translate(0, 0.5, 0)), // its tip at the origin
+  pin: standing(new ConeGeometry(1, 1, 8).rotateX(Math.PI).translate(0, 0.5, 0)), // its tip at the origin
   ring: new TorusGeometry(1, 0.12, 8, 32),
 };
 

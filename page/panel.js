@@ -9,6 +9,7 @@ export class Panel {
     this.fileName = fileName;
     this.answered = answered;
     this.values = controls.map((control) => control.value);
+    this.start = [0, 0, 0]; // how far the start was dragged
     this.asking = this.stale = false;
     this.inputs = [];
     this.build();
@@ -61,7 +62,13 @@ export class Panel {
     this.ask();
   }
 
+  moveStart(way) {
+    this.start = way;
+    this.ask();
+  }
+
   undo() {
+    this.start = [0, 0, 0];
     this.controls.forEach((control, which) => {
       this.values[which] = control.value;
       this.inputs[which].forEach((input) => { input.value = control.value; });
@@ -72,7 +79,7 @@ export class Panel {
   // Only what differs from the file; of a vector all components.
   changed() {
     const keys = new Set(this.controls.filter((control, which) => this.values[which] !== control.value).map((control) => control.key));
-    const values = {};
+    const values = this.start.some((value) => value) ? { start: this.start } : {};
     this.controls.forEach((control, which) => {
       if (!keys.has(control.key)) return;
       if (control.index === null) values[control.key] = this.values[which];

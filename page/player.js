@@ -1,6 +1,6 @@
 // The page: what time it is, how much motions are exaggerated, and everything that shows or changes that.
 
-import { norm } from "./geometry.js";
+import { add, norm, times } from "./geometry.js";
 import { Drawing } from "./drawing.js";
 import { Card } from "./card.js";
 import { Panel } from "./panel.js";
@@ -9,6 +9,7 @@ import { Stage } from "./stage.js";
 import { $, digits, element } from "./words.js";
 
 const MOTION_S = 1, PAUSE_S = 0.35;
+const IN_A_ROW_MS = 400; // pictures farther apart than this were asked for one by one
 
 let data = JSON.parse($("data").textContent);
 let stage = new Stage(data);
@@ -16,6 +17,9 @@ let end = stage.shots.length - 1;
 const player = { time: end, playing: false, drawn: 0, drawnTime: null, drawnExaggeration: null, answers: 0, drawnAnswers: 0, drawMs: null };
 let exaggerations = data.phases.map((phase) => phase.proposed); // of each phase
 let drawing = null, waiting = false, resting = 0, lastTick = null;
+let panel = null, carries = false; // the object's start, which follows the pointer
+let shownAt = -Infinity;
+let told = null; // on what that depends which stands around the picture now
 
 const plot = new Plot($("plot"), (time) => { pause(); seek(time); });
 const card = new Card((touch) => {
@@ -24,7 +28,7 @@ const card = new Card((touch) => {
 }, refresh);
 try {
   drawing = new Drawing(stage, exaggerations, $("scene"), $("labels"), {
-    covered: () => $("bar").offsetTop + $("bar").offsetHeight, changed: refresh, clicked: (touch) => { card.pick(touch); refresh(); } });
+    covered: () => $("bar").offsetTop + $("bar").offsetHeight, changed: refresh, clicked: (touch) => { card.pick(touch); refresh(); }, grabbed: () => (panel && $("start").checked ? carryStart() : null) });
 } catch (error) {
   $("trouble").textContent = `No picture: ${error.message}. All else on this page works.`;
   $("trouble").hidden = false;
@@ -35,8 +39,8 @@ const phase = () => stage.phaseAt(player.time);
 
 function exaggerate(k) {
   exaggerations[phase()] = k;
+  show(); // what the bar says tells how much of the picture it covers
   drawing?.fit();
-  refresh();
 }
 
 function refresh() {
@@ -99,7 +103,21 @@ function replaceRun(answer) {
   player.answers += 1;
   fill();
   pause();
-  seek(end);
+  seek(carries ? 0 : end);
+}
+
+// Takes the way of the pointer, bit by bit: the start goes along it, and the run from there is shown when it is let go.
+function carryStart() {
+  let way = panel.start;
+  carries = true;
+  pause();
+  seek(0);
+  return (bit) => {
+    carries = bit !== null;
+    if (!carries) return seek(end);
+    way = add(way, times(data.unitsPerDrawing, bit));
+    panel.moveStart(way);
+  };
 }
 
 function fill() {
@@ -125,8 +143,9 @@ function fill() {
 
 // Names in a cell: those of a crowd can be read when the mouse rests on it.
 function namesCell(names) {
-  const cell = element("td", names.length > 9 ? `${names.slice(0, 6).join(" ")} and ${names.length - 6} more` : names.join(" "));
-  cell.title = names.join(" ");
+  const between = names.some((name) => name.includes(" ")) ? ", " : " ";
+  const cell = element("td", names.length > 9 ? `${names.slice(0, 6).join(between)} and ${names.length - 6} more` : names.join(between));
+  cell.title = names.join(between);
   return cell;
 }
 
@@ -139,12 +158,25 @@ function reveal(line) {
 
 function show() {
   const start = performance.now();
+  if (drawing) drawing.draw(player.time);
+  if (drawing && start - shownAt < IN_A_ROW_MS) drawing.world.paced(start - shownAt);
+  shownAt = start;
+  card.show(data, stage, player.time);
+  const now = [stage, player.time, player.playing, exaggerations[phase()], window.innerWidth, window.devicePixelRatio];
+  if (!told || now.some((value, i) => value !== told[i])) tell(); // turning the picture leaves the rest as it is: laying it out costs more than the picture
+  told = now;
+  player.drawn += 1;
+  player.drawnAnswers = player.answers;
+  player.drawMs = performance.now() - start;
+}
+
+// What stands around the picture.
+function tell() {
   const { time } = player;
   const k = exaggerations[phase()], look = stage.look(time, exaggerations);
   const shot = stage.shot(time);
   const after = data.shots[Math.ceil(time)], before = data.shots[Math.floor(time)];
   const mixed = (key, noise) => after[key].map((value, i) => digits(before[key][i] + (time - Math.floor(time)) * (value - before[key][i]), noise)).join(", ");
-  if (drawing) drawing.draw(time);
   plot.draw(time);
   $("time").value = time;
   $("play").textContent = player.playing ? "\u275A\u275A" : "\u25B6";
@@ -165,17 +197,15 @@ function show() {
     element("dt", "yaw, pitch, roll"), element("dd", `${mixed("angles", 1e-10)} deg`),
     element("dt", "phase"), element("dd", data.phases[shot.phase].name));
   $("forces").tBodies[0].replaceChildren(...forceRows(shot));
-  player.drawn += 1;
   player.drawnTime = time;
-  card.show(data, stage, time);
   player.drawnExaggeration = k;
-  player.drawnAnswers = player.answers;
-  player.drawMs = performance.now() - start;
 }
 
 function whyNoForces(shot) {
   if (!shot.touches.length) return "nothing touches";
-  return data.rows[shot.row]?.verdictKind === "failure" && player.time === end ? "not known, since no rest was found" : "known where a phase ends";
+  const row = data.rows[shot.row];
+  if (!row?.verdict || stage.shots[row.last] !== shot) return "known where a phase ends";
+  return row.verdictKind === "failure" ? "not known, since no rest was found" : "none balance the load";
 }
 
 function forceRows(shot) {
@@ -230,7 +260,7 @@ window.cagepose = {
       touches: stage.shot(player.time).touches.map((touch) => stage.place(touch, look)),
       bodies: data.bodies.map((_, index) => stage.bodyPose(index, look).p),
       camera: camera && { target: camera.target, half: camera.half, back: camera.axes()[2], perspective: camera.perspective },
-      picked: card.touch && data.names[card.touch.point], hasShadows: drawing?.world.hasShadows };
+      picked: card.touch && data.names[card.touch.point], hasShadows: drawing?.world.hasShadows, built: drawing?.built };
   },
   fitted: () => drawing.content().map((place) => drawing.camera.project(place)), // apart: 12,000 places in a crowded scene
   project: (place) => drawing.camera.project(place),
@@ -239,8 +269,9 @@ window.cagepose = {
 
 fill();
 $("exaggeration").max = data.exaggerations.length - 1;
-for (const option of ["names", "glass", "perspective", "points"]) $(option).disabled = !drawing;
+for (const option of ["names", "start", "glass", "perspective", "points"]) $(option).disabled = !drawing;
 if (drawing) $("names").checked = drawing.allNames;
 if (!data.points.length) $("points").parentElement.hidden = true;
-if (data.controls) new Panel(data.controls, data.fileName, replaceRun);
-refresh();
+if (data.controls) panel = new Panel(data.controls, data.fileName, replaceRun);
+show();
+drawing?.fit();

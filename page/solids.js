@@ -85,6 +85,9 @@ export class Body {
     this.whole = { corners: [], normals: [], lines: [] };
     for (const part of this.parts) placed(part.surface, part.pose, carried, rotated, this.whole);
     this.reach = Math.max(0, ...this.whole.corners.map(norm));
+    this.outer = [...new Map(this.whole.corners.map((corner) => [corner.map((value) => value.toFixed(6)).join(), corner])).values()]; // each corner once
+    const [low, high] = [Math.min, Math.max].map((pick) => [0, 1, 2].map((axis) => this.outer.map((corner) => corner[axis]).reduce((one, other) => pick(one, other))));
+    this.ends = [low[0], high[0]].flatMap((x) => [low[1], high[1]].flatMap((y) => [low[2], high[2]].map((z) => [x, y, z]))); // of the box around it
     this.group = new Group();
     this.far = [geometryOf(this.whole.corners, this.whole.normals), geometryOf(this.whole.lines)];
     this.front = new Mesh(this.far[0], faceMaterial({ color: face, side: FrontSide }, holes));

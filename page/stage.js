@@ -11,6 +11,12 @@ export class Stage {
     this.shots = data.shots.map((s) => ({ row: s.row, phase: s.phase, pose: { p: s.position, q: s.quaternion }, touches: touches[s.touches] }));
   }
 
+  // The origin of drawing coordinates, in the scene's own.
+  middle() {
+    const { origin, position } = this.data.shots[0];
+    return sub(origin, times(this.data.unitsPerDrawing, position));
+  }
+
   // The true pose at a time that may lie between two shots.
   truePose(time) {
     const before = Math.floor(time);

@@ -6,6 +6,7 @@ import { sub } from "./geometry.js";
 import { color } from "./marks.js";
 
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i; // there, shadows and smooth edges would cost more than all else
+const SLOW_MS = 45, SLOW_IN_A_ROW = 6; // under 22 pictures a second
 
 function graphicsCard() {
   const gl = document.createElement("canvas").getContext("webgl2");
@@ -48,6 +49,15 @@ export class World {
     this.floor = new Mesh(new PlaneGeometry(12 * this.data.radius, 12 * this.data.radius), new ShadowMaterial({ opacity: 0.16, depthWrite: false }));
     this.floor.receiveShadow = true;
     this.scene.add(this.floor);
+  }
+
+  // Called for each of a row of pictures, with the time since the one before: where they come too slowly, shadows go.
+  paced(passed) {
+    this.slow = passed > SLOW_MS ? (this.slow ?? 0) + 1 : 0;
+    if (this.slow < SLOW_IN_A_ROW || !this.hasShadows) return;
+    this.hasShadows = false;
+    this.scene.remove(this.floor);
+    this.floor = null;
   }
 
   // A grid of round lengths on the ground, which lies at a height.

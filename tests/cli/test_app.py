@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import subprocess
 from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
@@ -109,3 +110,12 @@ def test_schema_prints_the_json_schema(command: Command) -> None:
     answer = command("schema")
     assert answer.code == 0
     assert json.loads(answer.out) == scene_json_schema()
+
+
+def test_a_shell_completes_commands_and_options(command: Command, tmp_path: Path) -> None:
+    script = tmp_path / "cagepose"
+    assert command("--install-completion", "--shell", "bash", "--output", str(script)).code == 0
+    for words, offered in ((["pl"], "play plot"), (["run", "--ma"], "--margin")):
+        line = f"COMP_WORDS=(cagepose {' '.join(words)}); COMP_CWORD={len(words)}; _cagepose; echo ${{COMPREPLY[@]}}"
+        asked = subprocess.run(["bash", "-c", f"source {script}; {line}"], capture_output=True, text=True, check=True)
+        assert asked.stdout.split() == offered.split()

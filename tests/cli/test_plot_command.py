@@ -38,8 +38,8 @@ def test_our_own_picture_is_replaced_and_nobody_elses(command: Command, sample: 
     answer = command("plot", sample, "--out", "photo.png")
     assert (answer.code, answer.out) == (2, "")
     assert answer.err == (
-        "--out photo.png: holds something else than a picture that cagepose made; name another file, or remove it"
-        " first\n"
+        "--out photo.png: holds something else than a page or picture that cagepose made; name another file, or"
+        " remove it first\n"
     )
     assert Path("photo.png").read_bytes() == b"a photo"
 
@@ -47,8 +47,8 @@ def test_our_own_picture_is_replaced_and_nobody_elses(command: Command, sample: 
 @pytest.mark.parametrize(
     ("out", "reason"),
     [
-        ("figure.bmp", ".bmp is no known kind of picture; use one of: .png, .svg, .pdf"),
-        ("figure", "has no suffix that names a kind of picture; use one of: .png, .svg, .pdf"),
+        ("figure.bmp", ".bmp is no known kind of file; use one of: .png, .svg, .pdf"),
+        ("figure", "has no suffix that names its kind; use one of: .png, .svg, .pdf"),
         ("no/figure.png", "its folder does not exist; make the folder first"),
         ("folder.png", "is a directory; name a file in it"),
     ],
@@ -71,7 +71,7 @@ def test_problems_of_all_arguments_come_at_once(command: Command, in_folder: Pat
     lines = answer.err.splitlines()
     assert lines[0] == "nothing.yaml: does not exist; check the name and the folder"
     assert lines[1].startswith("--method magic: is no known method; use one of: ")
-    assert lines[2] == "--out x.gif: .gif is no known kind of picture; use one of: .png, .svg, .pdf"
+    assert lines[2] == "--out x.gif: .gif is no known kind of file; use one of: .png, .svg, .pdf"
 
 
 @pytest.mark.parametrize("flags", [("--set", "name=other"), ("--method", "stepwise")])

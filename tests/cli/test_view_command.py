@@ -38,7 +38,7 @@ def test_a_saved_run_gives_the_same_page_as_its_scene_but_for_the_time_it_took(c
 @pytest.mark.parametrize(
     ("export", "reason"),
     [
-        ("run.gltf", ".gltf is nothing that a run can be exported to; use one of: .html, .png, .gif"),
+        ("run.gltf", ".gltf is no known kind of file; use one of: .html, .png, .gif"),
         ("run", "has no suffix that names its kind; use one of: .html, .png, .gif"),
         ("no/run.html", "its folder does not exist; make the folder first"),
     ],

@@ -23,6 +23,16 @@ ORDER = "angles about axes in another order are other angles: give quat_wxyz, or
 ZYX = "did you mean euler_zyx_deg, the angles in degrees about z, then y, then x? known keys"
 
 SLIPS: list[tuple[str, str, str]] = [
+    (
+        "position: [0, 0, 0]}]",
+        "position: [0, 0, 0], euler_xyz_deg: [0, 0, 9]}]",
+        "other angles: give those about z, then y, then x as euler_zyx_deg;",
+    ),
+    (
+        BOXES,
+        "  shapes: [{sphere: {radius: 1}, euler_xyz: [0, 0, 9]}]\n  boxes:",
+        "object.shapes[0].euler_xyz: is no known shape; angles about axes in another order are other angles",
+    ),
     (UNIT, "units: mm", "units: is text 'mm'; write units: {length: mm}"),
     (UNIT, "units: {length: millimetres}", "units.length: is text 'millimetres'; write mm"),
     (UNIT, "units: inches", "units: is text 'inches'; write units: {length: in}"),

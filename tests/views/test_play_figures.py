@@ -10,8 +10,12 @@ from matplotlib.patches import Rectangle
 
 from cagepose import Box, Cage, Load, Object, Pose, Scene, load_scene, play
 from cagepose.studies.play_outline import point_outlines
-from cagepose.views.extreme_figure import extreme_figure
+from cagepose.views.extreme_figure import PICTURE, extreme_figure
 from cagepose.views.play_figure import play_figure
+from cagepose.views.viewer.caption import LOUD_INK
+from cagepose.views.viewer.picture import PictureMaker
+from cagepose.views.viewer.playback import single_motion
+from cagepose.views.viewer.stage import Stage
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 RAIL = str(SCENES / "rail-pitch.yaml")
@@ -71,6 +75,12 @@ def test_the_pose_of_each_end_is_drawn_with_the_points_that_limit_it() -> None:
     figure = extreme_figure(found)
     assert len(figure.axes) == 12
     assert figure.axes[9].get_title() == "greatest pitch: 0.3131 deg"
-    named = {name for text in figure.axes[9].texts for name in text.get_text().split()}
-    assert {clearance.point for clearance in found.freedoms["pitch"].high.clearances} == named
-    assert any("motions drawn 20 times as large" in text.get_text() for text in figure.texts)
+    end = found.freedoms["pitch"].high
+    limits = tuple(clearance.point for clearance in end.clearances)
+    assert end.pose_world_object is not None
+    film = single_motion(found.scene, end.pose_world_object, limits, "mm")
+    maker = PictureMaker(Stage(film), size=PICTURE, is_near=True)
+    drawn = np.asarray(maker.picture(film.shots[-1]))
+    assert np.array_equal(figure.axes[9].images[0].get_array(), drawn)
+    assert {label.text for label in maker.labels if label.ink == LOUD_INK} == set(limits)
+    assert maker.now.factor == 20.0

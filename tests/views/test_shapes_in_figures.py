@@ -1,4 +1,4 @@
-"""Shapes in matplotlib's pictures: where they are, marked where they touch, and none of it beyond the panel's block."""
+"""Shapes in matplotlib's pictures: where they are, marked where they touch."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import pytest
 from cagepose import Scene, run
 from cagepose.views.event_figure import event_figure
 from cagepose.views.pose_figure import pose_figure
-from cagepose.views.solid_drawing import _cut_face, _cut_line
 from cagepose.views.style import figure_bytes
 from shaped_scenes import ball_on_points, ball_on_table, bar_between_bars, block_on_balls
 
@@ -35,16 +34,3 @@ def test_all_kinds_of_pictures_can_be_written(scene: Callable[[], Scene]) -> Non
     found = run(scene())
     assert len(figure_bytes(event_figure(found), ".svg")) < 900_000
     assert len(figure_bytes(pose_figure(found), ".png")) > 10_000
-
-
-def test_faces_and_lines_are_cut_at_a_block() -> None:
-    low, high = np.zeros(3), np.ones(3)
-    square = np.array([[-1.0, -1, 0.5], [3, -1, 0.5], [3, 3, 0.5], [-1, 3, 0.5]])
-    cut = _cut_face(square, low, high)
-    assert {tuple(corner) for corner in cut.tolist()} == {(0, 0, 0.5), (1, 0, 0.5), (1, 1, 0.5), (0, 1, 0.5)}
-    assert len(_cut_face(square + np.array([0, 0, 1]), low, high)) == 0
-    assert _cut_line(np.array([[-1.0, 0.5, 0.5], [3.0, 0.5, 0.5]]), low, high).tolist() == [
-        [0, 0.5, 0.5],
-        [1, 0.5, 0.5],
-    ]
-    assert len(_cut_line(np.array([[-1.0, 2.0, 0.5], [3.0, 2.0, 0.5]]), low, high)) == 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cagepose import Box, Pose
+from cagepose import Box, Chamfer, Hole, Pose
 from cagepose.model.shapes import AnyShape, Capsule, Cone, Convex, Cylinder, Disc, Sphere
 from cagepose.model.volume import BOX_SIGNS
 from cagepose.views.solids import SEGMENTS, cut_off, solid_of
@@ -44,26 +44,6 @@ def test_a_balls_outline_is_a_circle_across_the_view(eye) -> None:
     assert across == pytest.approx(0.01, rel=0.03)
 
 
-@pytest.mark.parametrize("shape", ALL, ids=lambda shape: shape.kind)
-def test_the_lines_around_what_faces_the_eye_bound_it(shape) -> None:
-    """The area that the loops enclose on the screen is that of the triangles inside them."""
-    solid, is_front = solid_of(shape), fronts(shape, (0.0, 0.0, 1.0))
-    flat = solid.mesh.vertices_m[:, :2]
-
-    def area(loop: list[int]) -> float:
-        x, y = flat[loop].T
-        return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
-
-    inside = sum(area(list(corners)) for corners in solid.mesh.triangles[is_front].tolist())
-    assert sum(area(loop) for loop in solid.loops(is_front)) == pytest.approx(inside, rel=1e-12)
-    by_patch = (solid.loops(is_front & (solid.patches == patch)) for patch in range(solid.patches.max() + 1))
-    assert sum(area(loop) for loops in by_patch for loop in loops) == pytest.approx(inside, rel=1e-12)
-
-
-def test_smooth_surfaces_are_one_patch_and_edges_part_them() -> None:
-    assert [int(solid_of(shape).patches.max()) + 1 for shape in ALL] == [6, 1, 1, 3, 2, 2, 1]
-
-
 def test_what_is_round_is_shaded_smoothly_and_what_is_flat_is_not() -> None:
     ball, block = solid_of(Sphere(0.01)), solid_of(BLOCK)
     outwards = ball.mesh.vertices_m[ball.mesh.triangles] / 0.01
@@ -76,6 +56,12 @@ def test_shapes_of_one_kind_and_size_share_a_mesh_wherever_they_are() -> None:
     assert solid_of(here) is solid_of(there)
     assert solid_of(here) is not solid_of(Capsule(0.01, 0.06))
     assert solid_of(Cylinder(0.01, 0.05)) is not solid_of(here)
+
+
+def test_a_chamfer_makes_another_hole() -> None:
+    plain, wide = Hole(0.004, 0.01), Hole(0.004, 0.01, Chamfer(0.001, 0.5))
+    assert solid_of(plain) is not solid_of(wide)
+    assert solid_of(wide) is solid_of(Hole(0.004, 0.01, Chamfer(0.001, 0.5), pose_body_shape=Pose((1, 0, 0))))
 
 
 def test_of_a_large_body_only_what_is_near_counts() -> None:

@@ -141,6 +141,7 @@ def _dispatch(tokens: list[str]) -> int:
     )
     for name, (home, summary) in COMMANDS.items():
         app.command(home, name=name, help=summary)
+    app.register_install_completion_command(add_to_startup=False)
     try:
         code = app(tokens, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
@@ -194,6 +195,7 @@ def overview() -> str:
             f"  {'--help':{width}}  Print this, or the help of a command: cagepose run --help",
             "",
             "Begin with: cagepose init myscene, then cagepose run myscene.yaml",
+            "Let your shell complete all this: cagepose --install-completion",
             "",
         )
     )

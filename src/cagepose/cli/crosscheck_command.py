@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import MethodOption, SceneArgument, SetOption, Switch
+from cagepose.cli.options import MethodOption, SceneArgument, SetOption, Switch, unknown_method
 
 if TYPE_CHECKING:
     from cagepose.exchange.crosscheck import Crosscheck
@@ -24,17 +24,16 @@ def crosscheck_command(
     json: Annotated[bool, Switch, Parameter(help="Print one JSON document instead of the table.")] = False,
 ) -> int:
     """Compare final poses phase by phase; return 0 if they agree, 1 if not."""
-    from cagepose.errors import SceneError, printable
+    from cagepose.errors import SceneError
     from cagepose.exchange.crosscheck import crosscheck
     from cagepose.exchange.extra import mujoco
     from cagepose.files.scene_file import read_scene_file
-    from cagepose.model.methods import METHODS
     from cagepose.runs.solve import run
 
     mujoco()
     scene_file = read_scene_file(scene, set_values)
-    if method is not None and method not in METHODS:
-        sys.stderr.write(printable(f"--method {method}: is no known method; use one of: {', '.join(METHODS)}") + "\n")
+    if problems := unknown_method(method):
+        sys.stderr.write(problems[0] + "\n")
         return 2
     try:
         found = crosscheck(run(scene_file.scene, method))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import Switch
+from cagepose.cli.options import Switch, refusal
 
 if TYPE_CHECKING:
     from cagepose.sampling.design_results import DesignResults
@@ -44,7 +44,7 @@ def design_command(
         try:
             written = results.write(out)
         except OSError as error:
-            sys.stderr.write(printable(f"--out {out}: {error.strerror or error}") + "\n")
+            sys.stderr.write(refusal(f"--out {out}", error) + "\n")
             return 2
     if json:
         sys.stdout.write(json_text(results.document()))

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import MethodOption, SetOption
+from cagepose.cli.options import MethodOption, SetOption, refusal
 from cagepose.cli.run_source import RunOrSceneArgument, read_run_or_scene, run_of
 
 
@@ -53,7 +53,7 @@ def export_command(
         sys.stderr.write("".join(f"{run_or_scene}: {problem}\n" for problem in error.problems))
         return 2
     except OSError as error:
-        sys.stderr.write(printable(f"{option}: {error.strerror or error}") + "\n")
+        sys.stderr.write(refusal(option, error) + "\n")
         return 2
     beside = len(found.files) - 1
     files = f"{out} and {beside} meshes beside it" if beside else out

@@ -7,6 +7,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from cagepose.cli.options import refusal
+
 
 def import_command(
     file: Annotated[str, Parameter(help="MJCF or URDF file.")],
@@ -36,7 +38,7 @@ def import_command(
         found = imported(file, object, cage)
         save_scene(found.scene, out)
     except OSError as error:
-        sys.stderr.write(printable(f"--out {out}: {error.strerror or error}") + "\n")
+        sys.stderr.write(refusal(f"--out {out}", error) + "\n")
         return 2
     contents = f"{found.scene.object!r} {found.scene.cage!r}".replace("<", "").replace(">", ";").rstrip(";")
     sys.stdout.write(printable(f"wrote {out}: {contents}") + "\n")

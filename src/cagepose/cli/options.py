@@ -6,6 +6,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from cagepose.errors import printable
 from cagepose.model.methods import METHODS
 
 SceneArgument = Annotated[str, Parameter(help="Scene file (YAML or JSON).")]
@@ -32,3 +33,15 @@ MethodOption = Annotated[
     str | None, Parameter(help=f"How to run the scene: {' or '.join(METHODS)}; left out: as the scene says.")
 ]
 Switch = Parameter(negative="", show_default=False)
+
+
+def unknown_method(method: str | None) -> list[str]:
+    """Return the problem of a method that there is not; none of one that there is."""
+    if method is None or method in METHODS:
+        return []
+    return [printable(f"--method {method}: is no known method; use one of: {', '.join(METHODS)}")]
+
+
+def refusal(option: str, error: Exception) -> str:
+    """Return why what ``option`` names cannot be used."""
+    return printable(f"{option}: {getattr(error, 'strerror', None) or error}")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import AtOption, MethodOption, SetOption
+from cagepose.cli.options import AtOption, MethodOption, SetOption, refusal
 from cagepose.cli.run_source import RunOrSceneArgument, read_run_or_scene, run_of
 
 if TYPE_CHECKING:
@@ -35,20 +35,22 @@ def plot_command(
     from cagepose.cli.triples import read_triple
     from cagepose.errors import printable
     from cagepose.views.extra import require_matplotlib
-    from cagepose.views.figure_files import check_can_draw, figure_suffix
+    from cagepose.views.output_files import FIGURES, check_output, output_suffix
 
     require_matplotlib()
     problems = list[str]()
     if at and kind != "play":
         problems.append("--at: says whose play is drawn; give --kind play with it")
     points = [read_triple("--at", text, problems) for text in at]
-    source = read_run_or_scene(run_or_scene, set_values, method, lambda: check_can_draw(out), f"--out {out}", problems)
+    source = read_run_or_scene(
+        run_or_scene, set_values, method, lambda: check_output(out, FIGURES), f"--out {out}", problems
+    )
     if source is None:
         return 2
 
     from cagepose.files.write import write_whole
 
-    suffix = figure_suffix(out)
+    suffix = output_suffix(out, FIGURES)
     if kind in ("play", "extremes"):
         picture, said = _play_picture(kind, source, points, suffix)
     else:
@@ -56,7 +58,7 @@ def plot_command(
     try:
         write_whole(out, picture)
     except OSError as error:
-        sys.stderr.write(printable(f"--out {out}: {error.strerror or error}") + "\n")
+        sys.stderr.write(refusal(f"--out {out}", error) + "\n")
         return 2
     sys.stdout.write(printable(f"wrote {out}: {said}") + "\n")
     return 0

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from cagepose.cli.options import refusal
+
 if TYPE_CHECKING:
     from rich.table import Table
 
@@ -32,7 +34,7 @@ def reproduce_command(
         reproduction = reproduce(METHODS, progress)
         written = write_report(out, reproduction, progress)
     except OSError as error:
-        sys.stderr.write(printable(f"--out {out}: {error.strerror or error}") + "\n")
+        sys.stderr.write(refusal(f"--out {out}", error) + "\n")
         return 2
     from cagepose.cli.console import print_all
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from cagepose.cli.app import STANDARD_INPUT
-from cagepose.cli.options import MethodOption, SetOption, Switch
+from cagepose.cli.options import MethodOption, SetOption, Switch, refusal, unknown_method
 
 if TYPE_CHECKING:
     from cagepose.files.scene_file import SceneFile
@@ -97,7 +97,7 @@ def _run(scene_file: SceneFile, asked: _Asked) -> int:
         try:
             save_run(result, asked.out, scene_file.length_unit, margins)
         except OSError as error:
-            sys.stderr.write(_cannot_write(asked.out, error))
+            sys.stderr.write(refusal(f"--out {asked.out}", error) + "\n")
             code = 2
     if asked.json:
         from cagepose.files.document import run_document
@@ -118,8 +118,7 @@ def _read(
     """Check all that the user gave before anything runs; problems of every argument are printed at once."""
     from os.path import realpath
 
-    from cagepose.errors import SceneFileError, printable
-    from cagepose.model.methods import METHODS
+    from cagepose.errors import SceneFileError
 
     problems = _misplaced(scenes, out)
     found: list[SceneFile] = []
@@ -127,9 +126,8 @@ def _read(
         try:
             found.append(_scene_file(scene, set_values))
         except SceneFileError as error:
-            problems.append(f"{error}\n")
-    if method is not None and method not in METHODS:
-        problems.append(printable(f"--method {method}: is no known method; use one of: {', '.join(METHODS)}") + "\n")
+            problems.append(str(error))
+    problems += unknown_method(method)
     if out is not None and len(scenes) == 1:
         from cagepose.files.run_file import check_can_save
 
@@ -138,8 +136,8 @@ def _read(
                 raise OSError("is the scene file itself; name another")
             check_can_save(out)
         except OSError as error:
-            problems.append(_cannot_write(out, error))
-    sys.stderr.write("".join(problems))
+            problems.append(refusal(f"--out {out}", error))
+    sys.stderr.write("".join(f"{problem}\n" for problem in problems))
     return None if problems else found
 
 
@@ -148,7 +146,7 @@ def _misplaced(scenes: Sequence[str], out: str | None) -> list[str]:
     from cagepose.errors import printable
 
     def told(message: str) -> list[str]:
-        return [printable(f"cagepose: {message} See: cagepose run --help") + "\n"]
+        return [printable(f"cagepose: {message} See: cagepose run --help")]
 
     changes = [name for name in scenes[1:] if "=" in name and not exists(name)]
     if changes:
@@ -169,9 +167,3 @@ def _scene_file(scene: str, set_values: tuple[str, ...]) -> SceneFile:
 
     content = sys.stdin.buffer.read(MAX_FILE_BYTES + 1)
     return scene_text_of(decoded(content, STANDARD_INPUT), STANDARD_INPUT).scene_file(set_values)
-
-
-def _cannot_write(out: str, error: OSError) -> str:
-    from cagepose.errors import printable
-
-    return printable(f"--out {out}: {error.strerror or error}") + "\n"

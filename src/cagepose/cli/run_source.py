@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from cagepose.cli.options import refusal, unknown_method
+
 if TYPE_CHECKING:
     from cagepose.files.run_file import RunFile
     from cagepose.files.scene_file import SceneFile
@@ -32,7 +34,6 @@ def read_run_or_scene(
     from cagepose.files.read import looks_like_run
     from cagepose.files.run_file import read_run_file
     from cagepose.files.scene_file import read_scene_file
-    from cagepose.model.methods import METHODS
 
     problems = list(problems_of_others)
     source: RunFile | SceneFile | None = None
@@ -44,12 +45,12 @@ def read_run_or_scene(
     if is_run and (set_values or method is not None):
         flag = "--set" if set_values else "--method"
         problems.append(printable(f"{flag}: changes a scene, but {run_or_scene} is a saved run; name the scene file"))
-    elif method is not None and method not in METHODS:
-        problems.append(printable(f"--method {method}: is no known method; use one of: {', '.join(METHODS)}"))
+    else:
+        problems += unknown_method(method)
     try:
         check_out()
     except (OSError, ValueError) as error:
-        problems.append(printable(f"{option}: {getattr(error, 'strerror', None) or error}"))
+        problems.append(refusal(option, error))
     sys.stderr.write("".join(f"{problem}\n" for problem in problems))
     return None if problems else source
 

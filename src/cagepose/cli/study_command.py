@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import Switch
+from cagepose.cli.options import Switch, refusal
 
 if TYPE_CHECKING:
     from cagepose.sampling.results import StudyResults
@@ -113,7 +113,7 @@ def _write_csv(results: StudyResults, path: str) -> int:
     try:
         results.to_csv(path)
     except OSError as error:
-        sys.stderr.write(printable(f"--csv {path}: {error.strerror or error}") + "\n")
+        sys.stderr.write(refusal(f"--csv {path}", error) + "\n")
         return 2
     sys.stdout.write(printable(f"wrote {path}: {len(results):,} rows") + "\n")
     return 0

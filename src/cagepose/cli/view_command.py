@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import MethodOption, SetOption
+from cagepose.cli.options import MethodOption, SetOption, refusal
 from cagepose.cli.run_source import RunOrSceneArgument, read_run_or_scene, run_of
 
 if TYPE_CHECKING:
@@ -38,12 +38,12 @@ def view_command(
     """Show the object in its cage, the timeline, the events and the forces; a scene is run first."""
     from cagepose.errors import printable
     from cagepose.views.extra import require_pillow
-    from cagepose.views.viewer.export_files import check_can_export, export_suffix
+    from cagepose.views.output_files import EXPORTS, check_output, output_suffix
 
     def check_out() -> None:
         if export is not None:
-            check_can_export(export)
-            if export_suffix(export) != ".html":
+            check_output(export, EXPORTS)
+            if output_suffix(export, EXPORTS) != ".html":
                 require_pillow()
 
     if not 0 < port < 2**16:
@@ -64,9 +64,9 @@ def view_command(
         what_if = None if isinstance(source, RunFile) else _what_if(run_or_scene, set_values, method)
         return _serve(shown, what_if, host, port)
     try:
-        write_whole(export, _content(shown, export_suffix(export)))
+        write_whole(export, _content(shown, output_suffix(export, EXPORTS)))
     except OSError as error:
-        sys.stderr.write(printable(f"{option}: {error.strerror or error}") + "\n")
+        sys.stderr.write(refusal(option, error) + "\n")
         return 2
     sys.stdout.write(printable(f"wrote {export}: {run.scene.name}, {run.verdict} ({run.method})") + "\n")
     return 0
@@ -99,7 +99,7 @@ def _serve(shown: Playback, what_if: WhatIf | None, host: str, port: int) -> int
     try:
         server = open_server(page(shown, what_if), what_if, host, port)
     except OSError as error:
-        sys.stderr.write(printable(f"--host {host} --port {port}: {error.strerror or error}") + "\n")
+        sys.stderr.write(refusal(f"--host {host} --port {port}", error) + "\n")
         return 2
     with server:
         if server.server_port != port:

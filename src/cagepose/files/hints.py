@@ -82,10 +82,10 @@ def meant_by_key(key: str, known: list[str]) -> str | None:
     kind = lower.removesuffix("s")
     if kind in KINDS and "shapes" in known:
         return f"shapes are listed: shapes: [{{{kind}: ...}}]"
-    if (match := _EULER.fullmatch(lower)) and match[1] != "zyx" and "quat_wxyz" in known:
+    if (match := _EULER.fullmatch(lower)) and match[1] != "zyx" and "euler_zyx_deg" in known:
+        give = "quat_wxyz, or the angles" if "quat_wxyz" in known else "those"
         return (
-            "angles about axes in another order are other angles: give quat_wxyz, or the angles about z, then y, then x"
-            " as euler_zyx_deg"
+            f"angles about axes in another order are other angles: give {give} about z, then y, then x as euler_zyx_deg"
         )
     if lower in ("rpy", "rpy_deg") and "euler_zyx_deg" in known:
         return "give the same angles in the other order, in degrees: euler_zyx_deg: [yaw, pitch, roll]"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
@@ -12,6 +13,7 @@ from cagepose.kernels.shapes.features import NO_SHAPES, Shapes, copied, place_sh
 from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
 from cagepose.model.features import shapes_of
+from cagepose.model.hole import Hole
 from cagepose.model.parts import Object
 from cagepose.model.seams import PlacedBox, Seams, close_seams
 from cagepose.model.shapes import Shape
@@ -49,7 +51,7 @@ def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox], touch_m: 
         box_rotations=np.array([box.rotation for box in placed]).reshape(-1, 3, 3),
         n_own_boxes=len(held.boxes),
         points_world=np.ascontiguousarray(cage.points_world()),
-        held=shapes_of((*held.parts, *held.holes)) if _has_shapes(held, cage) else NO_SHAPES,
+        held=_features((*held.parts, *held.holes)) if _has_shapes(held, cage) else NO_SHAPES,
         cage=in_world,
         touch_m=touch_m,
     )
@@ -59,7 +61,32 @@ def cage_shapes(held: Object, cage: Cage) -> Shapes:
     """Return all parts of the cage as features, its points first, in its frame; none where there are boxes and points
     alone.
     """
-    return shapes_of([*cage.points_cage, *cage.shapes, *cage.holes]) if _has_shapes(held, cage) else NO_SHAPES
+    return _features((*cage.points_cage, *cage.shapes, *cage.holes)) if _has_shapes(held, cage) else NO_SHAPES
+
+
+def _features(parts: tuple[Shape | FloatArray, ...]) -> Shapes:
+    """Return the features of a body. Those of the last few bodies are remembered, as seams are."""
+    keys = (
+        part.tobytes()
+        if isinstance(part, np.ndarray)
+        else (part.form, part.name, *(row.tobytes() for row in vars(part.pose_body_shape).values()))
+        for part in parts
+    )
+    holes = tuple(part.in_ for part in parts if isinstance(part, Hole))
+    return _features_of(_Body((*keys, *holes), parts))
+
+
+@dataclass(frozen=True)
+class _Body:
+    """The parts of a body, and all that their features depend on."""
+
+    key: tuple[object, ...]
+    parts: tuple[Shape | FloatArray, ...] = field(compare=False)
+
+
+@lru_cache(maxsize=8)
+def _features_of(body: _Body) -> Shapes:
+    return shapes_of(body.parts)
 
 
 def _has_shapes(held: Object, cage: Cage) -> bool:

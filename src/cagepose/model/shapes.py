@@ -62,6 +62,12 @@ class Shape(ABC):
         _set_field(self, "pose_body_shape", pose)
         _set_field(self, "name", name)
 
+    @property
+    def form(self) -> tuple[object, ...]:
+        """Kind and measures: shapes of the same form differ in place and name alone."""
+        measures = (value for key, value in sorted(vars(self).items()) if key.endswith("_m") or key == "chamfer")
+        return self.kind, *(value.tobytes() if isinstance(value, np.ndarray) else value for value in measures)
+
     @abstractmethod
     def nodes_body(self) -> FloatArray:
         """Points that tell where the shape lies, in its body's frame, (n, 3), metres: the core's, the rims' centres."""

@@ -19,7 +19,6 @@ from cagepose.runs.run import Event, Run
 from cagepose.studies.ending import ending
 from cagepose.studies.support import convex_hull, load_view
 from cagepose.studies.support_region import SupportRegion, support_region
-from cagepose.views.scene_drawing import POINT_LOOKS
 from cagepose.views.solids import cut_off, outer_points, vertices_of
 from cagepose.views.style import (
     BLACK,
@@ -28,6 +27,7 @@ from cagepose.views.style import (
     GREEN,
     GREY,
     PAGE_WIDTH_IN,
+    POINT_LOOKS,
     PURPLE,
     SAND,
     SKY,
@@ -35,7 +35,7 @@ from cagepose.views.style import (
     styled,
 )
 from cagepose.views.viewer.picture import PictureMaker
-from cagepose.views.viewer.playback import Playback, playback
+from cagepose.views.viewer.playback import playback
 from cagepose.views.viewer.stage import Stage
 
 COLUMNS = 2
@@ -127,7 +127,7 @@ def _snapshots(run: Run, length_unit: LengthUnit) -> tuple[list[tuple[int, str]]
 
 def _snapshot(stage: Stage, row: int) -> FloatArray:
     """Return the pixels of one event's end, with the outline of where its motion began."""
-    shown: Playback = stage.shown
+    shown = stage.shown
     before, after = (0, 0) if row < 0 else (shown.rows[row].first_shot - 1, shown.rows[row].last_shot)
     maker = PictureMaker(stage, size=PICTURE, seen=(before, after), is_near=True)
     return np.asarray(maker.picture(shown.shots[after], is_captioned=False))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
@@ -41,8 +41,6 @@ class Solid:
         Indices of the two triangles beside each edge, (e, 2).
     is_sharp
         Whether an edge is one of the shape, not of the mesh, (e,).
-    patches
-        Which smooth part of the surface, bounded by sharp edges, each triangle belongs to: numbers from 0, (m,).
     """
 
     mesh: Mesh
@@ -51,7 +49,6 @@ class Solid:
     edges: NDArray[np.int64]
     sides: NDArray[np.int64]
     is_sharp: NDArray[np.bool_]
-    patches: NDArray[np.int64]
 
     def outline(self, is_front: NDArray[np.bool_]) -> NDArray[np.int64]:
         """Return the edges, (n, 2), that an eye sees as lines: sharp ones, and those where the shape ends for it.
@@ -62,46 +59,18 @@ class Solid:
         seen: NDArray[np.int64] = self.edges[(one != other) | (self.is_sharp & (one | other))]
         return seen
 
-    def loops(self, chosen: NDArray[np.bool_]) -> list[list[int]]:
-        """Return the vertices around the chosen triangles, (m,), loop by loop, counter-clockwise seen from outside."""
-        one, other = chosen[self.sides].T
-        ahead: dict[int, list[int]] = {}
-        for start, end in [*self.edges[one & ~other].tolist(), *self.edges[other & ~one, ::-1].tolist()]:
-            ahead.setdefault(start, []).append(end)
-        found = []
-        while ahead:
-            loop = [next(iter(ahead))]
-            while (ends := ahead.get(loop[-1])) is not None:
-                end = ends.pop()
-                if not ends:
-                    del ahead[loop[-1]]
-                loop.append(end)
-            found.append(loop[:-1])
-        return found
-
 
 def solid_of(shape: Shape) -> Solid:
     """Return the solid of a shape; shapes of the same kind and size share one."""
-    numbers = tuple(
-        value.tobytes() if isinstance(value, np.ndarray) else value
-        for name, value in sorted(vars(shape).items())
-        if name.endswith("_m")
-    )
-    return _shared(_Sized(shape, (shape.kind, *numbers)))
+    return _shared(_Sized(shape.form, shape))
 
 
 @dataclass(frozen=True)
 class _Sized:
     """A shape that equals all others of its kind and size."""
 
-    shape: Shape
-    key: tuple[object, ...]
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Sized) and self.key == other.key
-
-    def __hash__(self) -> int:
-        return hash(self.key)
+    form: tuple[object, ...]
+    shape: Shape = field(compare=False)
 
 
 @lru_cache(maxsize=256)
@@ -112,8 +81,7 @@ def _shared(sized: _Sized) -> Solid:
     normals = unit_rows(areas)
     edges, sides = _edges(mesh.triangles)
     is_sharp = np.einsum("ij,ij->i", normals[sides[:, 0]], normals[sides[:, 1]]) < CREASE
-    patches = _joined(len(normals), sides[~is_sharp])
-    return Solid(mesh, normals, _corner_normals(mesh, areas, normals), edges, sides, is_sharp, patches)
+    return Solid(mesh, normals, _corner_normals(mesh, areas, normals), edges, sides, is_sharp)
 
 
 def _edges(triangles: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -123,20 +91,6 @@ def _edges(triangles: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.
     edges = np.stack([starts, ends], axis=1)[starts < ends]
     sides = [(owner[start, end], owner[end, start]) for start, end in edges.tolist()]
     return edges, np.array(sides, dtype=np.int64)
-
-
-def _joined(n: int, pairs: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the number of the set that each of n things is in, if those of each pair are in one, (n,)."""
-    first = list(range(n))
-
-    def leader(thing: int) -> int:
-        while first[thing] != thing:
-            first[thing] = thing = first[first[thing]]
-        return thing
-
-    for one, other in pairs.tolist():
-        first[leader(one)] = leader(other)
-    return np.unique([leader(thing) for thing in range(n)], return_inverse=True)[1]
 
 
 def _corner_normals(mesh: Mesh, areas: FloatArray, normals: FloatArray) -> FloatArray:

@@ -32,6 +32,13 @@ SERIES: tuple[Look, ...] = (
 )
 """Three lines in one panel: yaw, pitch, roll, or x, y, z."""
 
+POINT_LOOKS: Mapping[str, Look] = {
+    "free": {"color": GREY, "markerfacecolor": "white", "markersize": 3.0},
+    "touching": {"color": VERMILLION, "markerfacecolor": ORANGE, "markersize": 5.0},
+    "reached": {"color": VERMILLION, "markersize": 5.0},
+}
+"""Cage points, by what they do at the end of an event."""
+
 PAGE_WIDTH_IN = 7.5
 """Fits a page of A4 or letter paper at full size, so that the letters below keep their size in print."""
 

@@ -73,6 +73,51 @@ def test_a_value_that_cannot_be_is_told_in_the_page_and_the_last_scene_stays(wat
     wait_until(page, "problems.innerText === ''")
 
 
+def test_the_start_can_be_dragged_and_the_picture_stays_where_it_is(watched, tmp_path):
+    """The start follows the pointer, and the run from there is that of the scene which is saved."""
+    with served(SCENES / "sample.yaml") as server:
+        page = opened(watched, server)
+        before = load_scene(SCENES / "sample.yaml").object.pose_world_object.position_m
+        page.locator("#start").check()
+        page.locator("#first").click()
+        points = page.evaluate("cagepose.state().points.map(cagepose.project)")
+        box = page.locator("#scene").bounding_box()
+        x, y = page.evaluate("cagepose.project(cagepose.state().shownPose.p)")
+        page.mouse.move(box["x"] + x, box["y"] + y)
+        page.mouse.down()
+        page.mouse.move(box["x"] + x + 10, box["y"] + y - 20)
+        wait_until(page, "cagepose.state().drawnAnswers === 1")
+        assert page.evaluate("cagepose.state().drawnTime") == 0
+        moved = page.evaluate("cagepose.project(cagepose.state().shownPose.p)")
+        assert np.array(moved) - (x, y) == pytest.approx(
+            [10, -20], abs=2.0
+        )  # perspective: it is beside what one looks at
+        assert np.array(page.evaluate("cagepose.state().points.map(cagepose.project)")) == pytest.approx(
+            np.array(points), abs=1.0
+        )
+        page.mouse.up()
+        wait_until(page, "cagepose.state().drawnTime > 0")
+        with page.expect_download() as saved:
+            page.locator("#save").click()
+        saved.value.save_as(tmp_path / "dragged.yaml")
+        scene = load_scene(tmp_path / "dragged.yaml")
+        assert np.linalg.norm(scene.object.pose_world_object.position_m - before) > 1e-4
+        assert shown_angles(page) == pytest.approx(np.degrees(run(scene).pose.euler_zyx).tolist(), rel=1e-5)
+
+
+def test_sliders_that_leave_shapes_alone_build_none_anew(watched):
+    """Building them took half of the time from a slider to its picture."""
+    with served(SCENES / "drawer.yaml") as server:
+        page = opened(watched, server)
+        for pitch in (0.1, 0.2, -0.1):
+            slide(page, "cage: pitch", pitch)
+        assert state(page)["built"] == 1
+    with served(SCENES / "peg-in-hole.yaml") as server:
+        page = opened(watched, server)
+        slide(page, "adjustable: radius of the hole", 6.5)
+        assert state(page)["built"] == 2
+
+
 def test_two_windows_do_not_disturb_each_other(watched, server):
     one = opened(watched, server)
     other = one.context.new_page()
@@ -171,3 +216,22 @@ def test_a_server_that_is_gone_is_told_and_the_last_answer_stays(watched, server
     page.locator("#first").click()
     assert state(page)["time"] == 0
     watched.complaints.clear()  # the browser notes the lost connection itself
+
+
+def test_shadows_go_where_pictures_come_slowly(watched):
+    """A machine that says it has a graphics card, and takes 60 ms more for each picture."""
+    watched.page.add_init_script("""
+        const told = WebGL2RenderingContext.prototype.getParameter;
+        WebGL2RenderingContext.prototype.getParameter = function (name) {
+            return name === 0x9246 ? "some graphics card" : told.call(this, name);
+        };
+        const next = window.requestAnimationFrame.bind(window);
+        window.requestAnimationFrame = (draw) => next(() => setTimeout(() => draw(performance.now()), 60));
+    """)
+    with served(SCENES / "sample.yaml") as server:
+        page = opened(watched, server)
+        assert state(page)["hasShadows"]
+        page.locator("#play").click()
+        wait_until(page, "!cagepose.state().hasShadows")
+        before = state(page)["drawn"]
+        wait_until(page, f"cagepose.state().drawn > {before}")

@@ -8,10 +8,11 @@ from typing import NamedTuple
 from PIL import Image, ImageDraw, ImageFont
 
 from cagepose.files.words import LengthWords
+from cagepose.runs.run import Run
 from cagepose.views.viewer.labels import Pair, laid_out
 from cagepose.views.viewer.look import PAPER
 from cagepose.views.viewer.page_data import verdict_kind
-from cagepose.views.viewer.playback import Playback, Shot
+from cagepose.views.viewer.playback import Film, Playback, Shot
 
 LOUD_INK, QUIET_INK = "#000000", "#777777"
 """Of names: loads and contacts, and cage points that do not touch."""
@@ -43,7 +44,7 @@ class Label(NamedTuple):
 class Caption:
     """Writes on the pictures of one playback."""
 
-    def __init__(self, shown: Playback, size: tuple[int, int], units_per_pixel: float) -> None:
+    def __init__(self, shown: Film, size: tuple[int, int], units_per_pixel: float) -> None:
         """``size`` is that of a picture in pixels, ``units_per_pixel`` the length of one in the scene's unit."""
         self.shown = shown
         self.width, self.height = size
@@ -54,17 +55,16 @@ class Caption:
         """Write on a picture in which play is so many times as large; None for the shot: no words above it."""
         pen = ImageDraw.Draw(image)
         self._write_names(pen, labels)
-        if shot is not None:
-            self._write_head(pen, shot)
+        if shot is not None and isinstance(self.shown, Playback):
+            self._write_head(pen, self.shown.run, shot)
         self._write_exaggeration(pen, round(exaggeration))
         self._write_scale(pen)
 
-    def _write_head(self, pen: ImageDraw.ImageDraw, shot: Shot) -> None:
-        run = self.shown.run
+    def _write_head(self, pen: ImageDraw.ImageDraw, run: Run, shot: Shot) -> None:
         pen.text((14.0, 10.0), run.scene.name, TITLE_INK, self.large)
         across = 24.0 + pen.textlength(run.scene.name, self.large)
         pen.text((across, 10.0), run.verdict, VERDICT_INK[verdict_kind(run.verdict)], self.large)
-        pen.text((14.0, 34.0), self._happening(shot), SOFT_INK, self.small)
+        pen.text((14.0, 34.0), self._happening(run, shot), SOFT_INK, self.small)
 
     def _write_names(self, pen: ImageDraw.ImageDraw, labels: list[Label]) -> None:
         size = (self.width, self.height)
@@ -76,15 +76,15 @@ class Caption:
             if corner is not None:
                 self._text(pen, corner, label.text, label.ink)
 
-    def _happening(self, shot: Shot) -> str:
+    def _happening(self, run: Run, shot: Shot) -> str:
         if shot.row < 0:
             return "start"
         row = self.shown.rows[shot.row]
-        words = LengthWords(self.shown.length_unit, self.shown.run.scene.size_m)
+        words = LengthWords(self.shown.length_unit, self.shown.scene.size_m)
         motion = row.event.motion
         what = None if motion is None else f"{motion.kind} {words.amount(motion)}"
         told = ", ".join(word for word in (row.event.rule, what, row.verdict) if word)
-        return f"{self.shown.run.phases[row.phase].name}, event {shot.row + 1}: {told}"
+        return f"{run.phases[row.phase].name}, event {shot.row + 1}: {told}"
 
     def _write_exaggeration(self, pen: ImageDraw.ImageDraw, times: int) -> None:
         if times == 1:

@@ -7,14 +7,16 @@ cores, and the radius is taken off at the end.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus
 from cagepose.model.box import Box
-from cagepose.model.checks import FloatArray
+from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Rounded, Shape, Turned
 
@@ -107,16 +109,30 @@ def _nearest_subset(pairs: list[_Pair]) -> tuple[list[_Pair], FloatArray]:
     """Return the points of a simplex, the last one among them, that bear its point nearest to the origin, and their
     shares in it.
     """
-    points = np.array([place - foot for place, foot in pairs])
-    last, best = len(pairs) - 1, (np.inf, [len(pairs) - 1], np.ones(1))
+    points = [as_vector(place - foot) for place, foot in pairs]
+    last, best = len(pairs) - 1, (math.inf, [len(pairs) - 1], [1.0])
     for size in range(min(len(pairs), 4)):
         for others in combinations(range(last), size):
-            chosen = [*others, last]
-            ways = points[list(others)] - points[last]
-            shares = np.linalg.lstsq(ways.T, -points[last], rcond=None)[0] if others else np.zeros(0)
-            all_shares = np.append(shares, 1.0 - shares.sum())
-            if all_shares.min() < 0.0:
+            shares = _shares([minus(points[index], points[last]) for index in others], points[last])
+            all_shares = [*shares, 1.0 - sum(shares)]
+            if min(all_shares) < 0.0:
                 continue
-            nearest = all_shares @ points[chosen]
-            best = min(best, (float(nearest @ nearest), chosen, all_shares), key=lambda found: found[0])
-    return [pairs[index] for index in best[1]], best[2]
+            chosen = [*others, last]
+            weighted = list(zip(all_shares, [points[index] for index in chosen], strict=True))
+            nearest = [sum(share * point[axis] for share, point in weighted) for axis in range(3)]
+            best = min(best, (math.hypot(*nearest), chosen, all_shares), key=lambda found: found[0])
+    return [pairs[index] for index in best[1]], np.array(best[2])
+
+
+def _shares(ways: list[Vector], base: Vector) -> list[float]:
+    """Return how much of each of up to three ways leads from a place nearest to the origin, by Cramer's rule; where
+    there are two, their normal is the third. Ways in one line or plane get none: fewer of them lead there, too.
+    """
+    if len(ways) < 2:
+        return [-dot(base, way) / (dot(way, way) or math.inf) for way in ways]
+    one, other = ways[:2]
+    normal = cross(one, other)
+    third = ways[2] if len(ways) == 3 else normal
+    volume = dot(normal, third) or math.inf
+    volumes = dot(cross(base, other), third), dot(cross(one, base), third), dot(normal, base)
+    return [-part / volume for part in volumes[: len(ways)]]

@@ -51,7 +51,7 @@ class PictureMaker:
         self.stage, self.shown = stage, stage.shown
         self.width, self.height = size
         self.exaggerations = stage.proposed if exaggerations is None else tuple(exaggerations)
-        self.scene = self.shown.run.scene
+        self.scene = self.shown.scene
         self.seen = (0, *(row.last_shot for row in self.shown.rows)) if seen is None else tuple(seen)
         self.is_near = is_near
         self.eye = Eye(size, FAR * stage.radius if is_near else 0.0)

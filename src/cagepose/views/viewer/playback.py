@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from cagepose.files.units import LengthUnit
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
 from cagepose.studies.acts import Act, acts_of
 from cagepose.studies.touching import TouchFinder
@@ -106,12 +107,12 @@ class Row:
 
 
 @dataclass(frozen=True, eq=False)
-class Playback:
-    """All that a viewer shows of a run.
+class Film:
+    """The object on its way, as pictures show it.
 
     Attributes
     ----------
-    run, length_unit
+    scene, length_unit
         What is shown, and the unit of lengths on screen.
     points_world
         The cage, (n, 3), metres.
@@ -123,7 +124,7 @@ class Playback:
         For each phase that was run, what acts.
     """
 
-    run: Run
+    scene: Scene
     length_unit: LengthUnit
     points_world: FloatArray
     shots: tuple[Shot, ...]
@@ -138,6 +139,21 @@ class Playback:
         return max((float(np.linalg.norm(forces, axis=1).max()) for forces in known), default=0.0)
 
 
+@dataclass(frozen=True, eq=False)
+class Playback(Film):
+    """All that a viewer shows of a run."""
+
+    run: Run
+
+
+def single_motion(scene: Scene, end: Pose, touching: tuple[str, ...], length_unit: LengthUnit) -> Film:
+    """Return the object's way from its start to a pose, where what has these names touches; without loads."""
+    at, start = _TouchesAt(scene), scene.object.pose_world_object
+    shots = (Shot(-1, 0, start, at.of(start, ())), Shot(0, 0, end, at.of(end, touching)))
+    rows = (Row(0, Event("", None, (), touching, end, None), None, 1, 1),)
+    return Film(scene, length_unit, scene.cage.points_world(), shots, rows, 1, ((),))
+
+
 def playback(run: Run, length_unit: LengthUnit = "mm", shots_per_motion: int = SHOTS_PER_MOTION) -> Playback:
     """Turn a run into shots and rows; each motion gets ``shots_per_motion`` of them, or what `MOST_SHOTS` leaves, each
     finding one.
@@ -148,51 +164,21 @@ def playback(run: Run, length_unit: LengthUnit = "mm", shots_per_motion: int = S
     for phase_index, phase in enumerate(run.phases):
         camera.shoot(phase_index, phase)
     loads = tuple(acts_of(run.scene, load) for load in run.scene.loads[: len(run.phases)])
-    return Playback(
-        run, length_unit, camera.points_world, tuple(camera.shots), tuple(camera.rows), shots_per_motion, loads
-    )
+    shots, rows = tuple(camera.shots), tuple(camera.rows)
+    return Playback(run.scene, length_unit, camera.points_world, shots, rows, shots_per_motion, loads, run)
 
 
-class _Camera:
-    def __init__(self, run: Run, shots_per_motion: int) -> None:
-        self.run = run
-        self.shots_per_motion = shots_per_motion
-        self.points_world = run.scene.cage.points_world()
-        self.index = {name: index for index, name in enumerate(run.scene.cage.element_names)}
-        self.finder = TouchFinder(run.scene) if run.scene.has_other_shapes else None
-        start = run.phases[0].start_pose
-        self.shots: list[Shot] = [Shot(-1, 0, start, self._touches(start, ()))]
-        self.rows: list[Row] = []
+class _TouchesAt:
+    """Finds what touches at poses of one scene."""
 
-    def shoot(self, phase_index: int, phase: PhaseRun) -> None:
-        pose, before = phase.start_pose, frozenset[str]()
-        for event in phase.events:
-            last = event is phase.events[-1]
-            first_shot, row = len(self.shots), len(self.rows)
-            escape = _escape(phase, self.run.scene.size_m) if last else None
-            end = event.pose_world_object if escape is None else escape.pose_at(pose, 1.0)
-            is_held = last and escape is None
-            touches = self._touches(end, event.contacts)
-            stays = tuple(name for name in event.contacts if name in before)
-            kept = touches if self.finder else touches.chosen([name in before for name in event.contacts])
-            for way in self._way(pose, event, escape):  # places on what is round move along
-                self.shots.append(Shot(row, phase_index, way, self._touches(way, stays) if self.finder else kept))
-            self.shots.append(Shot(row, phase_index, end, self._held(end, phase.contacts) if is_held else touches))
-            verdict = phase.verdict if last else None
-            self.rows.append(Row(phase_index, event, verdict, first_shot, len(self.shots) - 1))
-            pose, before = event.pose_world_object, frozenset(event.contacts)
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.index = {name: index for index, name in enumerate(scene.cage.element_names)}
+        self.finder = TouchFinder(scene) if scene.has_other_shapes else None
 
-    def _way(self, start: Pose, event: Event, escape: Motion | None) -> list[Pose]:
-        fractions = [step / self.shots_per_motion for step in range(1, self.shots_per_motion)]
-        if escape is not None:
-            return [escape.pose_at(start, fraction) for fraction in fractions]
-        if event.motion is None:
-            return []
-        return [self.run.pose_on_the_way(start, event, fraction) for fraction in fractions]
-
-    def _touches(self, pose: Pose, names: tuple[str, ...]) -> Touches:
+    def of(self, pose: Pose, names: tuple[str, ...]) -> Touches:
         """Return what touches of what has these names."""
-        elements, scene = self._indices(names), self.run.scene
+        elements, scene = self.indices(names), self.scene
         part_names, n_solid = scene.object.element_names, len(scene.cage.names) + len(scene.cage.shapes)
         found = None if self.finder is None else self.finder.at(pose)
         is_asked = np.isin([] if found is None else found.elements, elements)
@@ -208,11 +194,51 @@ class _Camera:
         boxes = tuple(part_names[part] for part in parts.tolist())
         return Touches(left, boxes, normals @ pose.rotation, None, places)
 
+    def indices(self, names: tuple[str, ...]) -> NDArray[np.int64]:
+        return np.array([self.index[name] for name in names], dtype=np.int64)
+
+
+class _Camera:
+    def __init__(self, run: Run, shots_per_motion: int) -> None:
+        self.run = run
+        self.shots_per_motion = shots_per_motion
+        self.points_world = run.scene.cage.points_world()
+        self.at = _TouchesAt(run.scene)
+        start = run.phases[0].start_pose
+        self.shots: list[Shot] = [Shot(-1, 0, start, self.at.of(start, ()))]
+        self.rows: list[Row] = []
+
+    def shoot(self, phase_index: int, phase: PhaseRun) -> None:
+        pose, before = phase.start_pose, frozenset[str]()
+        for event in phase.events:
+            last = event is phase.events[-1]
+            first_shot, row = len(self.shots), len(self.rows)
+            escape = _escape(phase, self.run.scene.size_m) if last else None
+            end = event.pose_world_object if escape is None else escape.pose_at(pose, 1.0)
+            is_held = last and escape is None
+            touches = self.at.of(end, event.contacts)
+            stays = tuple(name for name in event.contacts if name in before)
+            kept = touches if self.at.finder else touches.chosen([name in before for name in event.contacts])
+            for way in self._way(pose, event, escape):  # places on what is round move along
+                self.shots.append(Shot(row, phase_index, way, self.at.of(way, stays) if self.at.finder else kept))
+            self.shots.append(Shot(row, phase_index, end, self._held(end, phase.contacts) if is_held else touches))
+            verdict = phase.verdict if last else None
+            self.rows.append(Row(phase_index, event, verdict, first_shot, len(self.shots) - 1))
+            pose, before = event.pose_world_object, frozenset(event.contacts)
+
+    def _way(self, start: Pose, event: Event, escape: Motion | None) -> list[Pose]:
+        fractions = [step / self.shots_per_motion for step in range(1, self.shots_per_motion)]
+        if escape is not None:
+            return [escape.pose_at(start, fraction) for fraction in fractions]
+        if event.motion is None:
+            return []
+        return [self.run.pose_on_the_way(start, event, fraction) for fraction in fractions]
+
     def _held(self, pose: Pose, contacts: tuple[Contact, ...]) -> Touches:
         if not contacts:
-            return self._touches(pose, ())
+            return self.at.of(pose, ())
         forces = [_force(contact) for contact in contacts]
-        elements = self._indices(tuple(contact.point for contact in contacts))
+        elements = self.at.indices(tuple(contact.point for contact in contacts))
         return Touches(
             elements,
             tuple(contact.box for contact in contacts),
@@ -226,9 +252,6 @@ class _Camera:
             ),
             np.array([contact.gap_m for contact in contacts]),
         )
-
-    def _indices(self, names: tuple[str, ...]) -> NDArray[np.int64]:
-        return np.array([self.index[name] for name in names], dtype=np.int64)
 
 
 def _escape(phase: PhaseRun, size_m: float) -> Motion | None:

@@ -69,6 +69,7 @@ def open_server(page: str, what_if: WhatIf | None, host: str, port: int) -> View
 class _Answers(BaseHTTPRequestHandler):
     server: ViewServer
     protocol_version = "HTTP/1.1"
+    disable_nagle_algorithm = True  # else head and body are sent 40 ms apart
     timeout = 60.0
 
     def do_GET(self) -> None:

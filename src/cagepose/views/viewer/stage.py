@@ -28,7 +28,7 @@ from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Shape
 from cagepose.views.solids import cut_off, outer_points, vertices_of
-from cagepose.views.viewer.playback import Playback, Touches
+from cagepose.views.viewer.playback import Film, Touches
 from cagepose.views.viewer.surface import nearest_on_object
 
 EXAGGERATIONS = (1, 2, 5, 10, 20, 50, 100, 200)
@@ -95,8 +95,8 @@ class Stage:
         What each phase is measured from.
     """
 
-    def __init__(self, shown: Playback) -> None:
-        scene, held = shown.run.scene, shown.run.scene.object
+    def __init__(self, shown: Film) -> None:
+        scene, held = shown.scene, shown.scene.object
         self.shown = shown
         self.center_object_m = held.center_of_gravity_m
         self._gaps: dict[int, FloatArray] = {}
@@ -109,8 +109,9 @@ class Stage:
         self.middles_world = np.array([*(body.mean(axis=0) for body in self.bodies_world), *mouths]).reshape(-1, 3)
         self.middle_world: FloatArray = (everything.min(axis=0) + everything.max(axis=0)) / 2.0
         radius_m = float(np.linalg.norm(everything - self.middle_world, axis=1).max())
-        # Of a ball on a large table the scene's size is that of the table, of which little is shown.
-        self.size_m = min(scene.size_m, 2.0 * radius_m) if bodies else scene.size_m
+        # Of a ball on a large table the scene's size is that of the table, of which little is shown. A round number: a
+        # page need not build its shapes anew for each slider.
+        self.size_m = min(scene.size_m, float(f"{2.0 * radius_m:.1e}")) if bodies else scene.size_m
         self.radius = radius_m / self.size_m
 
     def place(self, point_world: FloatArray) -> FloatArray:
@@ -170,7 +171,7 @@ class Stage:
         the way to the place there, (n, 3), metres; of a hole, that of what it is cut out of.
         """
         if reference not in self._gaps:
-            scene = self.shown.run.scene
+            scene = self.shown.scene
             nearest = nearest_on_object(scene.object, self.shown.shots[reference].pose_world_object, scene.cage)
             gaps = nearest.places_world - nearest.feet_world
             index = {name: number for number, name in enumerate(scene.cage.element_names)}
@@ -184,7 +185,7 @@ class Stage:
         """How much wider each hole is than what stands in it at the end, metres, of the object's holes and of the
         cage's; zero where nothing does.
         """
-        scene, pose = self.shown.run.scene, self.shown.shots[-1].pose_world_object
+        scene, pose = self.shown.scene, self.shown.shots[-1].pose_world_object
         others, held = scene.cage.pose_world_cage, scene.object
         around = [_play(hole, pose.inverse() @ others, scene.cage.shapes) for hole in held.holes]
         within = [_play(hole, others.inverse() @ pose, held.shapes) for hole in scene.cage.holes]
@@ -193,7 +194,7 @@ class Stage:
     def shifts(self, look: Look) -> FloatArray:
         """Return how far each of the cage's points, shapes and holes is moved from its place, (n, 3), metres."""
         if look.factor == 1.0:
-            return np.zeros((len(self.shown.run.scene.cage.element_names), 3))
+            return np.zeros((len(self.shown.scene.cage.element_names), 3))
         gaps = self.gaps_world(look.reference)
         lengths = np.linalg.norm(gaps, axis=1, keepdims=True)
         most = MOST_ADDED * self.size_m / np.maximum(lengths, np.finfo(np.float64).tiny)
@@ -204,7 +205,7 @@ class Stage:
         """Return how far each contact is shown from its place, (n, 3), metres; on the wall of a hole of the cage, as
         far out as that.
         """
-        cage = self.shown.run.scene.cage
+        cage = self.shown.scene.cage
         shifts = self.shifts(look)[touches.points]
         first = len(cage.names) + len(cage.shapes)
         for row in np.nonzero(touches.points >= first)[0].tolist():

@@ -21,6 +21,8 @@ from cagepose.views.viewer.controls import Control, controls
 from cagepose.views.viewer.page_data import page_data
 from cagepose.views.viewer.playback import playback
 
+START = "start"
+"""What a page calls the way, (3,) in the scene's unit, by which somebody dragged the start."""
 LENGTH_DECIMALS = 12
 """Of a start pose in the scene's unit."""
 SHOTS_PER_MOTION = 4
@@ -96,36 +98,41 @@ class WhatIf:
     def _settings(self, values: object) -> tuple[str, ...]:
         if not isinstance(values, dict):
             raise ValueError("the values are no mapping")
-        keys = {control.key for control in self.controls}
+        keys = {START, *(control.key for control in self.controls)}
         settings = []
         for key, value in values.items():
             if key not in keys:
                 raise ValueError(f"{key} cannot be changed here")
             if not _is_plain(value):
                 raise ValueError(f"{key} is no number, no word and no list of numbers")
+            if key == START:
+                continue
             given = {"coefficient": value, **self._friction_of} if key == "friction" else value
             settings.append(setting(key, given))
-        start = self._start_with_cage(values) if any(key.startswith("cage.pose") for key in values) else None
+        moves = any(key == START or key.startswith("cage.pose") for key in values)
+        start = self._start(values) if moves else None
         return tuple(settings) if start is None else (*settings, setting("object.pose", start))
 
-    def _start_with_cage(self, values: dict[str, Any]) -> dict[str, list[float]] | None:
+    def _start(self, values: dict[str, Any]) -> dict[str, list[float]] | None:
         """Return the start pose that is to the changed cage as the file's start is to the file's cage: moved alone, the
-        cage would go into the object. None: the cage cannot be there, as will be told.
+        cage would go into the object. Where it was dragged, it is as far from there. None: the cage cannot be there, as
+        will be told.
         """
         data = copy.deepcopy(self._text.yaml.data)
         for key, value in values.items():
             if key.startswith("cage.pose"):
                 set_value(data, parse_key_path(key), value)
-        pose: dict[str, Any] = value_at(evaluated(data)[0], ("cage", "pose"))
-        given = pose.get("position") or [0.0, 0.0, 0.0], pose.get("euler_zyx_deg") or [0.0, 0.0, 0.0]
-        if any(len(numbers) != 3 or not np.isfinite(numbers).all() for numbers in given):
+        pose: dict[str, Any] = value_at(evaluated(data)[0], ("cage", "pose")) or {}
+        place, angles = (pose.get(key) or [0.0, 0.0, 0.0] for key in ("position", "euler_zyx_deg"))
+        dragged = values.get(START, [0.0, 0.0, 0.0])
+        if any(np.shape(numbers) != (3,) or not np.isfinite(numbers).all() for numbers in (place, angles, dragged)):
             return None
         unit = self._scene_file.length_unit
-        changed = Pose(to_metres(given[0], unit), euler_zyx=[math.radians(angle) for angle in given[1]])
+        changed = Pose(to_metres(place, unit), euler_zyx=[math.radians(angle) for angle in angles])
         scene = self._scene_file.scene
         start = changed @ scene.cage.pose_world_cage.inverse() @ scene.object.pose_world_object
         return {
-            "position": np.round(from_metres(start.position_m, unit), LENGTH_DECIMALS).tolist(),
+            "position": np.round(from_metres(start.position_m, unit) + dragged, LENGTH_DECIMALS).tolist(),
             "euler_zyx_deg": np.round(np.degrees(start.euler_zyx), ANGLE_DECIMALS).tolist(),
         }
 
