@@ -16,7 +16,7 @@ from cagepose.exchange.extra import mujoco
 from cagepose.exchange.model_bodies import WORLD, ModelBodies
 from cagepose.exchange.model_friction import scene_friction
 from cagepose.exchange.model_text import ModelText, read_model_text
-from cagepose.files.mesh_file import MOST_CORNERS
+from cagepose.files.meshes.mesh_shapes import MOST_CORNERS
 from cagepose.files.scene_document import pose_angles
 from cagepose.files.scene_file import SceneText
 from cagepose.files.yaml_source import YamlSource

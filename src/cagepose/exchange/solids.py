@@ -16,9 +16,8 @@ import numpy as np
 from cagepose.errors import Problem, SceneError
 from cagepose.exchange.pierced import AROUND, OUTSIDE, pierced_pieces
 from cagepose.model.box import Box
-from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.hole import Hole
-from cagepose.model.pose import Pose
+from cagepose.model.pose import Pose, turn_from_z
 from cagepose.model.scene import Scene
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Disc, Rounded, Shape, Sphere, Turned
 from cagepose.model.surface import shape_mesh
@@ -207,14 +206,4 @@ def _rounded_pieces(shape: Convex) -> Iterator[Primitive]:
         face = hull.vertices_m[list(loop)]
         yield Convex(place.transform(np.concatenate([face, face + radius * normal])))
     for start, end in place.transform(hull.vertices_m)[hull.edges]:
-        yield Capsule(radius, float(np.linalg.norm(end - start)), Pose((start + end) / 2.0, _turn_to(end - start)))
-
-
-def _turn_to(axis: FloatArray) -> FloatArray:
-    """Return a quaternion that turns z to the direction of ``axis``."""
-    along = unit_rows(axis[None])[0]
-    halfway = along + np.array((0.0, 0.0, 1.0))
-    if float(np.linalg.norm(halfway)) < 1e-8:
-        return np.array((0.0, 1.0, 0.0, 0.0))
-    x, y, z = unit_rows(halfway[None])[0].tolist()
-    return np.array((z, -y, x, 0.0))  # half a turn about the line between them, after half a turn about z
+        yield Capsule(radius, float(np.linalg.norm(end - start)), Pose((start + end) / 2.0, turn_from_z(end - start)))
