@@ -283,7 +283,7 @@ def test_the_command_writes_files_and_says_what_they_do_not_hold(tmp_path, monke
     scene = str(next(path for path in SCENES if path.stem == "phone-dock"))
     assert main(["export", scene, "--to", "urdf", "-o", "dock.urdf"]) == 0
     out = capsys.readouterr().out
-    assert out.startswith("wrote dock.urdf and 7 meshes beside it: phone in a dock, rests (quasistatic)\n")
+    assert out.startswith("wrote dock.urdf and 7 files beside it: phone in a dock, rests (quasistatic)\n")
     assert "note: URDF has no friction" in out
     assert len(list(Path("dock-meshes").iterdir())) == 7
     assert main(["export", scene, "--to", "urdf", "-o", "dock.urdf"]) == 0  # over its own files

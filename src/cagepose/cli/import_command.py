@@ -9,13 +9,16 @@ from cyclopts import Parameter
 
 
 def import_command(
-    file: Annotated[str, Parameter(help="MJCF or URDF file.")],
+    file: Annotated[str, Parameter(help="MJCF, URDF, STEP, STL, OBJ, PLY or GLB file.")],
     /,
     *,
     out: Annotated[str, Parameter(name=("--out", "-o"), help="Scene file to write, such as scene.yaml.")],
     object: Annotated[
         str | None,
-        Parameter(help="The body that is held, with all that hangs on it; left out: the one that moves freely."),
+        Parameter(
+            help="The body that is held, with all that hangs on it; left out: the one that moves freely. Of solids, one"
+            " by its name, or all by what their names begin with before a /; left out: object."
+        ),
     ] = None,
     cage: Annotated[
         tuple[str, ...],

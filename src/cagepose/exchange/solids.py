@@ -155,7 +155,7 @@ class _Body:
             )
             yield Convex(shape_mesh(shape, AROUND).vertices_m)
         elif isinstance(shape, Convex) and shape.radius_m > 0.0:
-            yield from _rounded_pieces(shape)
+            yield from rounded_pieces(shape)
         elif isinstance(shape, Box | Sphere | Capsule | Cylinder | Convex):
             yield shape
 
@@ -192,7 +192,7 @@ def _sagitta_m(shape: Turned, sides: int) -> float:
     return max(radius for _, radius in shape.rims) * (1.0 - math.cos(math.pi / sides))
 
 
-def _rounded_pieces(shape: Convex) -> Iterator[Primitive]:
+def rounded_pieces(shape: Convex) -> Iterator[Primitive]:
     """A hull blown up by a radius is exactly its core, a slab on each face, a bar along each edge and a ball at each
     corner, which the bars have at their ends.
     """

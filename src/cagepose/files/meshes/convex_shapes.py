@@ -33,7 +33,9 @@ class Recognised(NamedTuple):
 
 
 def convex_shape(hull: Triangles) -> Recognised | None:
-    """Return the box, cylinder, cone, ball or capsule that a convex body stands for; None: it is none of these."""
+    """Return the box, cylinder, cone, ball or capsule that a body with its corners on its hull stands for; None: it is
+    none of these.
+    """
     box = box_of_corners(hull.vertices)
     if box is not None:
         return Recognised(box, 0.0)
@@ -56,8 +58,6 @@ def _turned(hull: Triangles, allowed: float) -> Recognised | None:
         axis = -axis
     along = hull.vertices @ axis
     ends = [along < along.min() + allowed, along > along.max() - allowed]
-    if not (ends[0] | ends[1]).all():
-        return None
     rims = []
     for end in ends:
         if end.sum() == 1:
@@ -71,7 +71,21 @@ def _turned(hull: Triangles, allowed: float) -> Recognised | None:
     if float(np.linalg.norm(np.cross(high - low, axis))) > 2.0 * allowed:
         return None
     pose, length = Pose((low + high) / 2.0, turn_from_z(axis)), float(axis @ (high - low))
-    error = max(low_off, high_off)
+    slope = (high_radius - low_radius) / length
+
+    def depths(points: FloatArray) -> FloatArray:
+        """How far points are within the shape."""
+        above = (points - low) @ axis
+        away = np.linalg.norm(points - low - np.outer(above, axis), axis=1)
+        within_side = (low_radius + slope * above - away) / math.hypot(1.0, slope)
+        found: FloatArray = np.minimum(within_side, np.minimum(above, length - above))
+        return found
+
+    if np.abs(depths(hull.vertices)).max() > 3.0 * allowed:
+        return None
+    error = max(low_off, high_off, float(depths(hull.face_points()).max()))
+    if error > 2.0 * DEEPEST * max(low_radius, high_radius):
+        return None
     if abs(low_radius - high_radius) <= allowed:
         return Recognised(Cylinder((low_radius + high_radius) / 2.0, length, pose), error)
     return Recognised(Cone(low_radius, high_radius, length, pose), error)

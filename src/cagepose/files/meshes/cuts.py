@@ -1,15 +1,17 @@
-"""A body with flat sides as convex pieces, exactly: cut along the faces at its hollow edges: `convex_pieces`."""
+"""A body with flat sides as convex pieces, exactly: cut along the faces at its hollow edges: `cut_until`."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 
 from cagepose.files.meshes.edges import reflex_edges
 from cagepose.files.meshes.manifolds import ROUNDING, Triangles, manifold3d
 from cagepose.model.checks import FloatArray
+
+Piece = TypeVar("Piece")
 
 NOT_CONVEX = 1e-5
 """Of a hull's volume: a body that is less by more is not convex."""
@@ -30,16 +32,21 @@ def is_convex(body: Any) -> bool:
     return bool(body.volume() >= (1.0 - NOT_CONVEX) * body.hull().volume())
 
 
-def convex_pieces(parts: Sequence[Any]) -> list[Any] | None:
-    """Return convex bodies that are some bodies together and share no volume; None: it needs too many."""
+def cut_until(parts: Sequence[Any], known: Callable[[Any], Piece | None]) -> list[Piece] | None:
+    """Return what is known of bodies that are some bodies together and share no volume; None: it needs too many.
+
+    ``known`` says it of a convex body, and maybe of another; None: it has to be cut.
+    """
     least = NOTHING * sum(part.volume() for part in parts)
-    pieces, waiting = [], [*parts]
+    pieces: list[Piece] = []
+    waiting = [*parts]
     while waiting:
         part = waiting.pop()
         if part.volume() <= least:
             continue
-        if is_convex(part):
-            pieces.append(part)
+        found = known(part)
+        if found is not None:
+            pieces.append(found)
         else:
             sides = _cut(part, least)
             if sides is None:

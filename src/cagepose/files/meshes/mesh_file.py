@@ -17,6 +17,7 @@ from cagepose.files.meshes.decomposed import kept_beside
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes, tidied
 from cagepose.files.units import LengthUnit, to_metres
+from cagepose.model.shapes import Shape
 
 SUFFIXES = (".stl", ".obj", ".ply", ".glb")
 UNIT_OF_GLB: LengthUnit = "m"
@@ -63,8 +64,12 @@ def _shapes(file: str, _changed: int, _n_bytes: int, unit: LengthUnit, name: str
     solids = read_solids(Path(file), split=False)
     found = mesh_shapes(solids[""], name, unit, partial(kept_beside, Path(file)))
     metres = float(to_metres(1.0, unit))
-    shapes = tuple(tidied(shape, metres, np.zeros(3)) for shape in found.shapes)
-    return MeshShapes(shapes, metres * found.error, found.notes)
+    return MeshShapes(tuple(scaled(shape, metres) for shape in found.shapes), metres * found.error, found.notes)
+
+
+def scaled(shape: Shape, factor: float) -> Shape:
+    """Return a shape whose lengths are so many times as long."""
+    return tidied(shape, factor, np.zeros(3))
 
 
 def read_solids(path: Path, *, split: bool = True) -> dict[str, Triangles]:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cagepose.files.meshes.convex_shapes import Recognised, convex_shape
-from cagepose.files.meshes.cuts import convex_pieces, cut_above, is_convex, separate
+from cagepose.files.meshes.cuts import cut_above, cut_until, is_convex, separate
 from cagepose.files.meshes.decomposed import Decomposition
 from cagepose.files.meshes.manifolds import ROUNDING, Triangles
 from cagepose.files.meshes.round_holes import RoundHole, filled
@@ -30,6 +30,8 @@ MOST_TRIANGLES = 10_000
 """Of a body that is not convex: more of them are simplified first."""
 FIRST = 1e-5
 """Of the size: by how much triangles are moved first."""
+HOLLOW = 0.97
+"""Of its hull's volume: what is round has more."""
 DIGITS = 11
 """Of the size that numbers are written with; what follows is the rounding of double precision."""
 SAMPLES = 4
@@ -85,7 +87,7 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str, decompose: Decompose) -> 
             )
             errors.append(tolerance)
         whole, of_part = filled(simple)
-        pieces = convex_pieces(_cut_at_steps(whole, of_part))
+        pieces = cut_until(_cut_at_steps(whole, of_part), _recognised)
         if pieces is None:
             made = decompose(Triangles.of(whole))
             off = _words(scale * made.error, unit)
@@ -97,7 +99,7 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str, decompose: Decompose) -> 
                 )
             found += [Recognised(Convex(corners), made.error) for corners in made.parts]
         else:
-            found += [_recognised(piece) for piece in pieces]
+            found += pieces
         holes += of_part
     of_shapes = max([*(one.error for one in found), *(one.error for one in holes)])
     error = scale * (of_shapes + max(errors))
@@ -126,14 +128,11 @@ def tidied(shape: Shape, scale: float, origin: FloatArray) -> Shape:
         return Box(lengths(shape.size_m), pose, shape.name)
     if isinstance(shape, Convex):
         return Convex(lengths(shape.vertices_m + origin / scale), 0.0, None, shape.name)
-    others = {key: value for key, value in vars(shape).items() if not key.startswith("pose")}
-    numbers: dict[str, Any] = {
-        key: float(lengths(value)) if key.endswith("_m") else value for key, value in others.items()
-    }
+    numbers: dict[str, Any] = {key: float(lengths(value)) for key, value in vars(shape).items() if key.endswith("_m")}
     if isinstance(shape, Hole):
-        return Hole(numbers["radius_m"], numbers["depth_m"], None, shape.in_, pose, shape.name)
+        return Hole(**numbers, in_=shape.in_, pose_body_shape=pose, name=shape.name)
     assert isinstance(shape, Sphere | Capsule | Cylinder | Cone)
-    return type(shape)(**numbers, pose_body_shape=pose)
+    return type(shape)(**numbers, pose_body_shape=pose, name=shape.name)
 
 
 def _cut_at_steps(whole: Any, holes: Sequence[RoundHole]) -> list[Any]:
@@ -169,14 +168,20 @@ def _fewer(body: Any, is_enough: Callable[[Any], bool]) -> tuple[Any, float]:
     return body, moved
 
 
-def _recognised(piece: Any) -> Recognised:
-    """Return the shape of a convex piece; with fewer corners, where it has too many."""
-    whole = piece.hull()
-    whole = whole.simplify(ROUNDING * Triangles.of(whole).size)
-    found = convex_shape(Triangles.of(whole))
-    if found is not None:
+def _recognised(piece: Any) -> Recognised | None:
+    """Return the shape of a convex piece, with fewer corners where it has too many; None: it is not convex.
+
+    Triangles between the corners of a cone may be a little hollow.
+    """
+    hull = piece.hull()
+    is_full = is_convex(piece)
+    if not is_full and piece.volume() < HOLLOW * hull.volume():
+        return None
+    surface = hull.simplify(ROUNDING * Triangles.of(hull).size) if is_full else piece
+    found = convex_shape(Triangles.of(surface))
+    if found is not None or not is_full:
         return found
-    fewer, moved = _fewer(whole, lambda simple: simple.num_vert() <= MOST_CORNERS)
+    fewer, moved = _fewer(surface, lambda simple: simple.num_vert() <= MOST_CORNERS)
     return Recognised(Convex(Triangles.of(fewer.hull()).vertices), moved)
 
 

@@ -16,7 +16,10 @@ from cagepose.model.pose import Pose, turn_from_z
 
 PARALLEL = 1e-4
 """Sine between edges of one wall at most."""
+SHARP = 0.99
+"""Cosine between the triangles of the wall and those of its flat ends, less."""
 NEAR_WALL = 0.95
+"""Of the radius: there the ends are asked whether they are open, as in the middle there may be a narrower hole."""
 BESIDE = 1e-4
 """Of a hole's radius: so far beyond its ends it is asked whether they are open."""
 
@@ -50,7 +53,10 @@ def _walls(mesh: Triangles) -> list[FloatArray]:
     if len(edges) < FEWEST_SIDES:
         return []
     links: dict[int, set[int]] = {}
-    for one, other in edges_of(mesh).corners.tolist():
+    all_edges = edges_of(mesh)
+    one_side, other_side = np.moveaxis(mesh.normals[all_edges.faces], 1, 0)
+    is_sharp = np.einsum("ij,ij->i", one_side, other_side) < SHARP  # two holes are joined by edges within flat ends
+    for one, other in all_edges.corners[is_sharp].tolist():
         links.setdefault(one, set()).add(other)
         links.setdefault(other, set()).add(one)
     spans = mesh.vertices[edges[:, 1]] - mesh.vertices[edges[:, 0]]
@@ -71,7 +77,7 @@ def _walls(mesh: Triangles) -> list[FloatArray]:
         start = next(bottom for bottom, row in row_of.items() if row == seed)
         ring, waiting = {start}, [start]
         while waiting:
-            beside = (links[waiting.pop()] & row_of.keys()) - ring
+            beside = (links.get(waiting.pop(), set()) & row_of.keys()) - ring
             ring |= beside
             waiting += beside
         of_ring = [row_of[bottom] for bottom in ring]
@@ -95,7 +101,7 @@ def _hole(body: Any, wall: FloatArray) -> RoundHole | None:
     if circle is None or circle.n_sides < FEWEST_SIDES - 0.5 or circle.off > allowed:
         return None
     step = BESIDE * circle.radius
-    near_wall = NEAR_WALL * wall[0] + (1.0 - NEAR_WALL) * circle.center  # in the middle there may be a narrower hole
+    near_wall = NEAR_WALL * wall[0] + (1.0 - NEAR_WALL) * circle.center
     near_wall = near_wall - (near_wall @ axis) * axis
     is_open = [not _holds(body, near_wall + height * axis) for height in (low - step, high + step)]
     if not any(is_open) or _holds(body, circle.center + (low + high) / 2.0 * axis):

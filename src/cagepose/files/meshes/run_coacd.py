@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import subprocess
 import sys
+from typing import Any
 
 import numpy as np
 
@@ -59,7 +60,8 @@ def main() -> None:
         max_ch_vertex=CORNERS_OF_PART,
     )
     found = io.BytesIO()
-    np.savez(found, **{str(index): np.asarray(corners) for index, (corners, _) in enumerate(parts)})
+    arrays: dict[str, Any] = {str(index): np.asarray(corners) for index, (corners, _) in enumerate(parts)}
+    np.savez(found, **arrays)
     sys.stdout.buffer.write(found.getvalue())
 
 
