@@ -176,7 +176,7 @@ def solids_of(text: str) -> dict[str, Mesh]:
     found = {}
     for name, body in re.findall(r"^solid ([^,]*),.*?\n(.*?)^endsolid", text, re.MULTILINE | re.DOTALL):
         numbers = [line.split()[1:] for line in body.splitlines() if line.startswith("vertex")]
-        corners = np.array(numbers, dtype=np.float64)
+        corners = np.array(numbers, dtype=np.float64) / 1e3
         found[name] = Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
     return found
 

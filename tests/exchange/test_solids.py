@@ -1,4 +1,4 @@
-"""Scenes as STEP and STL come back as the scenes that they were; foreign solids are chosen by name, and broken ones refused."""
+"""Scenes as STEP and STL come back as the scenes that they were; foreign solids are chosen by name."""
 
 from __future__ import annotations
 
@@ -48,11 +48,16 @@ def test_step_gives_the_same_final_pose(name, tmp_path):
     assert apart(scene, found.scene) < 1e-9
     assert found.notes == ()
     for ours, theirs in ((scene.object, found.scene.object), (scene.cage, found.scene.cage)):
-        shapes = {shape.name: shape.kind for shape in getattr(theirs, "parts", theirs.shapes if ours is scene.cage else ())}
-        wanted = {shape.name: shape.kind for shape in getattr(ours, "parts", ours.shapes if ours is scene.cage else ())}
         drilled = {part for hole in ours.holes for part in hole.in_}
-        assert shapes == {part: "convex" if kind == "box" and part in drilled else kind for part, kind in wanted.items()}
+        kinds = {
+            part.name: "convex" if part.name in drilled and part.kind == "box" else part.kind for part in parts(ours)
+        }
+        assert {part.name: part.kind for part in parts(theirs)} == kinds
         assert len(theirs.holes) == len(ours.holes)
+
+
+def parts(body: Object | Cage):
+    return body.parts if isinstance(body, Object) else body.shapes
 
 
 @pytest.mark.parametrize("name", ["rollers", "rail-pitch", "v-groove"])
@@ -101,13 +106,14 @@ def test_foreign_solids_are_chosen_by_name(tmp_path, monkeypatch, capsys):
     assert "has no solid 'black'; its solids: block, table, lid" in capsys.readouterr().err
 
 
-BOMB = b"ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n" + b"#1=ADVANCED_FACE('',(#1),#1,.T.);\n" * 1000
+BOMB = b"HEADER;\nENDSEC;\nDATA;\n" + b"#1=ADVANCED_FACE('',(#1),#1,.T.);\n" * 1000
+GOOD = b"'block'"
 HOSTILE = {
-    "truncated": (lambda content: content[: len(content) // 3], "parts.step"),
-    "garbage": (lambda content: bytes(range(256)) * 400, "parts.step"),
-    "empty": (lambda content: b"", "parts.step"),
-    "itself": (lambda content: BOMB, "parts.step"),
-    "folder": (lambda content: content.replace(b"'block'", b"'../../etc/x'"), None),
+    "truncated": lambda content: content[: len(content) // 3],
+    "garbage": lambda content: content[:20] + bytes(range(256)) * 400,
+    "empty": lambda content: content[:0],
+    "itself": lambda content: content[:14] + BOMB,
+    "folder": lambda content: content.replace(GOOD, b"'../../etc/x'"),
 }
 
 
@@ -116,15 +122,14 @@ def test_hostile_step_files_are_clear_errors_and_nothing_is_written(name, tmp_pa
     pytest.importorskip("OCP")
     monkeypatch.chdir(tmp_path)
     source = Path(assembly(tmp_path))
-    change, error = HOSTILE[name]
-    source.write_bytes(change(source.read_bytes()))
+    source.write_bytes(HOSTILE[name](source.read_bytes()))
     before = sorted(tmp_path.iterdir())
     began = time.process_time()
     assert main(["import", str(source), "--object", "block", "-o", "scene.yaml"]) == 2
     assert time.process_time() - began < 10.0
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 1
-    assert error is None or lines[0].startswith(str(source))
+    assert lines[0].startswith(str(source))
     assert sorted(tmp_path.iterdir()) == before
 
 

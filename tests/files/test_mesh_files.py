@@ -144,7 +144,10 @@ HOSTILE = {
     "inverted.stl": (inside_out, "is inside out: its triangles face inwards; flip them"),
     "crossing.stl": (lambda: trimesh.creation.torus(2.0, 3.0), "crosses itself; repair it"),
     "flat.stl": (lambda: trimesh.Trimesh(CORNERS[:4] * (1, 1, 0), [(0, 1, 2), (0, 2, 3)]), "encloses no volume"),
-    "zero.stl": (lambda: trimesh.Trimesh(np.zeros((3, 3)), [(0, 1, 2)], process=False), "encloses no volume"),
+    "zero.stl": (
+        lambda: trimesh.Trimesh(np.zeros((3, 3)), [(0, 1, 2)], process=False),
+        "holds no triangles with an area",
+    ),
 }
 BYTES = {
     "empty.stl": (b"", "holds no triangles"),

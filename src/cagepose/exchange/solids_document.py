@@ -11,7 +11,8 @@ import numpy as np
 
 from cagepose.errors import FileProblem, SceneError, SceneFileError
 from cagepose.exchange.solids_note import read_solids_note
-from cagepose.exchange.step_solids import MM, read_step
+from cagepose.exchange.step_solids import read_step
+from cagepose.exchange.stl import MM
 from cagepose.files.meshes import mesh_file
 from cagepose.files.meshes.decomposed import kept_beside
 from cagepose.files.meshes.manifolds import Triangles
@@ -114,12 +115,12 @@ def _of_step(path: Path, notes: list[str]) -> dict[str, Data]:
 
 
 def _of_mesh(path: Path, is_ours: bool, notes: list[str]) -> dict[str, Data]:
-    """Return bodies of a mesh file in millimetres, or in metres as numbers of ours are."""
-    unit = "m" if is_ours or path.suffix.lower() == ".glb" else "mm"
-    if unit == "mm":
+    """Return bodies of a mesh file in millimetres."""
+    is_glb = path.suffix.lower() == ".glb"
+    if not (is_glb or is_ours):
         notes.append("the file does not say its unit: here, millimetres")
     found = mesh_file.read_solids(path)
-    scale = MM if unit == "m" else 1.0
+    scale = MM if is_glb else 1.0
     return {
         name.partition(", made by")[0]: {"vertices": scale * mesh.vertices, "faces": mesh.faces}
         for name, mesh in found.items()

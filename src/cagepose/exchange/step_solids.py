@@ -21,8 +21,6 @@ from cagepose.exchange.compile_model import limit_memory
 from cagepose.exchange.extra import open_cascade
 
 Data = dict[str, Any]
-MM = 1e3
-"""Millimetres of a metre."""
 
 CPU_SECONDS, WALL_SECONDS = 10, 60.0
 """Of the process; the start of Open CASCADE is one second of it."""

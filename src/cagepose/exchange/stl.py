@@ -1,4 +1,4 @@
-"""Bodies as triangles: `stl_text` of a scene, and `binary_stl` of one mesh. Lengths are metres."""
+"""Bodies as triangles: `stl_text` of a scene, in millimetres, and `binary_stl` of one mesh, in metres."""
 
 from __future__ import annotations
 
@@ -23,6 +23,8 @@ POINT_SEGMENTS = 4
 """Of the ball that stands for a cage point."""
 
 
+MM = 1e3
+"""Millimetres of a metre."""
 NOTE_BESIDE = "loads, mass, friction and the start pose are in the note for cagepose alone"
 
 
@@ -41,16 +43,16 @@ def stl_text(scene: Scene, pose_world_object: Pose) -> tuple[str, tuple[str, ...
     for part in parts:
         segments = POINT_SEGMENTS if part.is_point else SEGMENTS
         mesh = _drilled(part.shape, part.holes) if part.holes else shape_mesh(part.shape, segments)
-        lines.append(_solid_text(part.name, Mesh(part.pose.transform(mesh.vertices_m), mesh.triangles)))
+        lines.append(_solid_text(part.name, Mesh(MM * part.pose.transform(mesh.vertices_m), mesh.triangles)))
     widest_m = max(_radius_m(shape) for part in parts if not part.is_point for shape in (part.shape, *part.holes))
     if widest_m > 0.0:
         sagitta_m = widest_m * (1.0 - math.cos(math.pi / SEGMENTS))
         notes.append(f"what is round has {SEGMENTS} chords, at most {sagitta_m:.3g} m within it")
-    return "".join(lines), ("lengths in metres, which an STL file cannot say", NOTE_BESIDE, *notes)
+    return "".join(lines), ("lengths in millimetres, which an STL file cannot say", NOTE_BESIDE, *notes)
 
 
 def binary_stl(mesh: Mesh) -> bytes:
-    """Return a mesh as a binary STL file."""
+    """Return a mesh as a binary STL file, in metres."""
     corners = mesh.vertices_m[mesh.triangles]
     record = np.zeros(len(corners), np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("unused", "<u2")]))
     record["normal"], record["corners"] = _normals(corners), corners

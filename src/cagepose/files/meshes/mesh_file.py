@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from cagepose.errors import Problem, SceneError
 from cagepose.files.extra import files_library
@@ -24,8 +25,8 @@ UNIT_OF_GLB: LengthUnit = "m"
 """By its standard; the other formats do not say theirs."""
 MAX_MESH_BYTES = 32 * 1024 * 1024
 """Of one file: 650,000 triangles of a binary STL."""
-FLAT = 1e-5
-"""Of the cube of its size: a mesh whose hull has less volume is flat."""
+FLAT = 1e-6
+"""Of its size: what is thinner is flat."""
 KEPT = 64
 """Meshes that are not read again for each scene of a study."""
 
@@ -62,7 +63,7 @@ def read_mesh(path: Path, given: LengthUnit | None, of_scene: LengthUnit, name: 
 @lru_cache(maxsize=KEPT)
 def _shapes(file: str, _changed: int, _n_bytes: int, unit: LengthUnit, name: str) -> MeshShapes:
     solids = read_solids(Path(file), split=False)
-    found = mesh_shapes(solids[""], name, unit, partial(kept_beside, Path(file)))
+    found = mesh_shapes(checked(solids[""], ""), name, unit, partial(kept_beside, Path(file)))
     metres = float(to_metres(1.0, unit))
     return MeshShapes(tuple(scaled(shape, metres) for shape in found.shapes), metres * found.error, found.notes)
 
@@ -73,12 +74,12 @@ def scaled(shape: Shape, factor: float) -> Shape:
 
 
 def read_solids(path: Path, *, split: bool = True) -> dict[str, Triangles]:
-    """Return the closed bodies of a mesh file by their names, in its unit; ``split=False``: all as one, "".
+    """Return the surfaces of a mesh file by their names, in its unit; ``split=False``: all as one, "".
 
     Raises
     ------
     SceneError
-        As `read_mesh`.
+        A file that cannot be used.
     MissingExtraError
         trimesh is not installed.
     """
@@ -92,21 +93,24 @@ def read_solids(path: Path, *, split: bool = True) -> dict[str, Triangles]:
         raise refused(f"is larger than {MAX_MESH_BYTES // 1024**2} MiB; simplify it")
     content = io.BytesIO(path.read_bytes())
     # No resolver: a file may name others, such as textures, which are not opened.
-    given: dict[str, Any] = {"file_type": suffix[1:], "skip_materials": True}
+    given: dict[str, Any] = {"file_type": suffix[1:], "skip_materials": True, "process": False}
     try:
         if split:
             scene = trimesh.load_scene(content, **given, **({"split_objects": True} if suffix == ".obj" else {}))
             meshes = {str(mesh.metadata["name"]): mesh for mesh in scene.dump()}
         else:
             meshes = {"": trimesh.load_mesh(content, **given)}
-        arrays = {
-            name: (np.array(mesh.vertices, dtype=np.float64), np.array(mesh.faces, dtype=np.int64))
-            for name, mesh in meshes.items()
-        }
+        return {name: _merged(mesh.vertices, mesh.faces) for name, mesh in meshes.items()}
     except Exception as error:  # whatever trimesh's readers raise on a damaged file
         words = " ".join(str(error).split())[:80] or type(error).__name__
         raise refused(f"cannot be read as a mesh ({words}); export it again") from None
-    return {name: checked(Triangles(*found), f"{name!r} " if name else "") for name, found in arrays.items()}
+
+
+def _merged(vertices: ArrayLike, faces: ArrayLike) -> Triangles:
+    """Return triangles whose corners are one where they are at the same place; those with two such are left out."""
+    points, same = np.unique(np.array(vertices, dtype=np.float64), axis=0, return_inverse=True)
+    corners = same.ravel()[np.array(faces, dtype=np.int64).reshape(-1, 3)]
+    return Triangles(points, corners[(corners != np.roll(corners, 1, axis=1)).all(axis=1)])
 
 
 def checked(mesh: Triangles, which: str) -> Triangles:
@@ -118,14 +122,13 @@ def checked(mesh: Triangles, which: str) -> Triangles:
         It is empty, flat, open, inside out, or crosses itself.
     """
     if len(mesh.faces) == 0 or not np.isfinite(mesh.vertices).all():
-        raise refused(f"{which}holds no triangles, or points that are no numbers; export it again")
-    distinct = (mesh.faces != np.roll(mesh.faces, 1, axis=1)).all(axis=1)
-    mesh = Triangles(mesh.vertices, mesh.faces[distinct])
+        raise refused(f"{which}holds no triangles with an area, or points that are no numbers; export it again")
     size = mesh.size
     centered = Triangles((mesh.vertices - mesh.vertices.mean(axis=0)) / (size or 1.0), mesh.faces)
-    if size == 0.0 or manifold3d().Manifold.hull_points(centered.vertices).volume() <= FLAT:
+    spread = np.linalg.svd(centered.vertices, compute_uv=False)
+    if size == 0.0 or len(spread) < 3 or spread[2] <= FLAT * spread[0]:
         raise refused(f"{which}encloses no volume: its points lie in one plane; give it a thickness")
-    if centered.body().status() != manifold3d().Error.NoError:
+    if not _is_closed(mesh) or centered.body().status() != manifold3d().Error.NoError:
         raise refused(
             f"{which}is not closed: triangles are missing or meet no neighbour; repair it, or export it as a solid"
         )
@@ -134,6 +137,13 @@ def checked(mesh: Triangles, which: str) -> Triangles:
     if crosses_itself(centered):
         raise refused(f"{which}crosses itself; repair it, as by a union of its parts")
     return mesh
+
+
+def _is_closed(mesh: Triangles) -> bool:
+    """Whether each side of a triangle is as often one the other way round: what is not can crash libraries."""
+    sides = np.stack([mesh.faces, np.roll(mesh.faces, -1, axis=1)], axis=2).reshape(-1, 2)
+    there, back = (np.sort(side @ (len(mesh.vertices), 1)) for side in (sides, sides[:, ::-1]))
+    return bool((there == back).all())
 
 
 def refused(message: str) -> SceneError:
