@@ -36,7 +36,7 @@ def import_command(
 
     try:
         check_can_save_scene(out)
-        found = imported(file, object, cage)
+        found = imported(file, object, cage, _show)
         save_scene(found.scene, out)
     except OSError as error:
         sys.stderr.write(printable(f"--out {out}: {error.strerror or error}") + "\n")
@@ -45,3 +45,9 @@ def import_command(
     sys.stdout.write(printable(f"wrote {out}: {contents}") + "\n")
     sys.stdout.write("".join(printable(f"note: {note}") + "\n" for note in found.notes))
     return 0
+
+
+def _show(told: str) -> None:
+    if sys.stderr.isatty():
+        sys.stderr.write(f"\r{told[:70]:70}\r")
+        sys.stderr.flush()

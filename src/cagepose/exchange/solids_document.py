@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -27,6 +27,7 @@ from cagepose.model.shapes import Convex, Shape, Sphere
 from cagepose.model.wording import few
 
 Data = dict[str, Any]
+Progress = Callable[[str], None]
 
 STEP = (".step", ".stp")
 SOLIDS = (*STEP, *mesh_file.SUFFIXES)
@@ -35,8 +36,10 @@ SAME_VOLUME = 1e-7
 """Of itself: shapes that have it are the solid, and its triangles alone are off."""
 
 
-def solids_document(source: str, object_name: str | None, cage_names: Sequence[str]) -> tuple[Data, list[str]]:
-    """Return the data of a scene of solids, and what is not in it as in the file.
+def solids_document(
+    source: str, object_name: str | None, cage_names: Sequence[str], progress: Progress
+) -> tuple[Data, list[str]]:
+    """Return the data of a scene of solids, and what is not in it as in the file; ``progress`` is told of each.
 
     Raises
     ------
@@ -57,10 +60,12 @@ def solids_document(source: str, object_name: str | None, cage_names: Sequence[s
         walls = [name for name in walls if name not in points]
         of_object, of_cage = _pose(note.get("object", {}).get("pose")), _pose(note.get("cage"))
         shown = Pose(*note["shown"]) if note else Pose()
-        shapes = {
-            body: [data for name in names for data in _shapes(path, _short(name, names), solids[name], frame, notes)]
-            for body, names, frame in (("object", held, shown.inverse()), ("cage", walls, of_cage.inverse()))
-        }
+        shapes: dict[str, list[Data]] = {"object": [], "cage": []}
+        listed = [("object", name, held, shown.inverse()) for name in held]
+        listed += [("cage", name, walls, of_cage.inverse()) for name in walls]
+        for number, (body, name, names, frame) in enumerate(listed):
+            progress(f"solid {number + 1} of {len(listed)}: {name}")
+            shapes[body] += _shapes(path, _short(name, names), solids[name], frame, notes)
     except SceneError as error:
         raise SceneFileError([FileProblem((), problem.message, source) for problem in error.problems]) from None
     found: Data = {"name": note.get("name") or path.stem, "units": {"length": "m"}}
@@ -74,8 +79,8 @@ def solids_document(source: str, object_name: str | None, cage_names: Sequence[s
         notes.append("the object has no mass there: here, uniform density")
         notes.append("loads: the weight alone, with a gravity of (0, 0, -9.81) m/s^2; no friction")
     found["loads"] = note.get("loads") or [{"name": "weight", "gravity": [0.0, 0.0, -9.81]}]
-    names = [*(shape["name"] for body in shapes.values() for shape in body), *found["cage"].get("points", ())]
-    found |= kept_friction(note, names) if note else {}
+    elements = [*(shape["name"] for body in shapes.values() for shape in body), *found["cage"].get("points", ())]
+    found |= kept_friction(note, elements) if note else {}
     return found | {key: note[key] for key in ("method", "metric", "tolerances") if key in note}, notes
 
 
