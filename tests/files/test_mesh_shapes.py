@@ -8,7 +8,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cagepose import Box, Capsule, Cone, Convex, Cylinder, Hole, Pose, Scene, SceneFileError, Sphere, load_scene
+from cagepose import (
+    Box,
+    Capsule,
+    Cone,
+    Convex,
+    Cylinder,
+    Hole,
+    Pose,
+    Scene,
+    SceneError,
+    SceneFileError,
+    Sphere,
+    load_scene,
+)
 from cagepose.cli.app import main
 from cagepose.exchange.stl import binary_stl
 from cagepose.files.meshes import decomposed, mesh_file, run_coacd
@@ -227,3 +240,11 @@ def test_numbers_of_a_mesh_of_several_shapes_cannot_be_adjusted(tmp_path):
     text += 'adjustable: {x: {key: "object.shapes[0].position[0]", range: [0, 1]}}\n'
     with pytest.raises(SceneFileError, match=r"adjustable.x.key: points into a mesh that is several shapes"):
         scene_with(tmp_path, UNIONS["boss"][0], (), text)
+
+
+def test_a_long_thin_rod_is_no_flat_mesh():
+    """Its volume is a millionth of the cube of its length."""
+    (rod,) = shapes_of(body(Box((1000.0, 1.0, 1.0)))).shapes
+    assert sorted(rod.size_m) == pytest.approx([1.0, 1.0, 1000.0], abs=1e-8)
+    with pytest.raises(SceneError, match="encloses no volume"):
+        shapes_of(body(Box((1000.0, 1.0, 1e-5))))
