@@ -60,6 +60,21 @@ def parts(body: Object | Cage):
     return body.parts if isinstance(body, Object) else body.shapes
 
 
+@pytest.mark.parametrize(("to", "n_notes"), [("step", 0), ("stl", 2)])
+def test_a_taper_and_a_chamfer_come_back(to, n_notes, tmp_path):
+    """Their numbers; the pin may turn about its axis as it likes, so that its final poses are no measure."""
+    pytest.importorskip("OCP")
+    scene = load_scene(FILES["tapered-pin"])
+    found = there_and_back(scene, f"scene.{to}", tmp_path)
+    (hole,), (wanted,) = found.scene.cage.holes, scene.cage.holes
+    (pin,), (pin_wanted,) = found.scene.object.shapes, scene.object.shapes
+    assert [hole.radius_m, hole.depth_m, hole.chamfer.width_m, hole.chamfer.angle_rad] == pytest.approx(
+        [wanted.radius_m, wanted.depth_m, wanted.chamfer.width_m, wanted.chamfer.angle_rad], rel=1e-9
+    )
+    assert sorted(radius for _, radius in pin.rims) == pytest.approx(sorted(r for _, r in pin_wanted.rims), rel=1e-9)
+    assert len(found.notes) == n_notes
+
+
 @pytest.mark.parametrize("name", ["rollers", "rail-pitch", "v-groove"])
 def test_stl_gives_the_same_final_pose_within_its_error(name, tmp_path):
     """Here far within, as all corners of the triangles are on the true surface and have all their digits."""

@@ -200,4 +200,7 @@ def _data(shape: Shape, frame: Pose) -> Data:
         numbers = {key.removesuffix("_m"): value for key, value in vars(shape).items() if key.endswith("_m")}
     if isinstance(shape, Hole):
         numbers["in"] = list(shape.in_)
+        if shape.chamfer is not None:
+            width, angle_deg = shape.chamfer.width_m, float(np.degrees(shape.chamfer.angle_rad))
+            numbers["chamfer"] = {"width": width, "angle_deg": angle_deg}
     return {"name": shape.name, shape.kind: numbers, **pose_data(place, of_part=True)}

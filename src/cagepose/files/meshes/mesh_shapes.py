@@ -20,7 +20,7 @@ from cagepose.files.meshes.manifolds import ROUNDING, Triangles
 from cagepose.files.meshes.round_holes import RoundHole, filled
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray
-from cagepose.model.hole import Hole
+from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Shape, Sphere
 
@@ -130,7 +130,8 @@ def tidied(shape: Shape, scale: float, origin: FloatArray) -> Shape:
         return Convex(lengths(shape.vertices_m + origin / scale), 0.0, None, shape.name)
     numbers: dict[str, Any] = {key: float(lengths(value)) for key, value in vars(shape).items() if key.endswith("_m")}
     if isinstance(shape, Hole):
-        return Hole(**numbers, in_=shape.in_, pose_body_shape=pose, name=shape.name)
+        chamfer = shape.chamfer and Chamfer(float(lengths(shape.chamfer.width_m)), shape.chamfer.angle_rad)
+        return Hole(**numbers, chamfer=chamfer, in_=shape.in_, pose_body_shape=pose, name=shape.name)
     assert isinstance(shape, Sphere | Capsule | Cylinder | Cone)
     return type(shape)(**numbers, pose_body_shape=pose, name=shape.name)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,7 +12,7 @@ from cagepose.files.meshes.convex_shapes import FEWEST_SIDES
 from cagepose.files.meshes.edges import edges_of, reflex_edges
 from cagepose.files.meshes.manifolds import ROUNDING, Triangles, circle_through, manifold3d
 from cagepose.model.checks import FloatArray
-from cagepose.model.hole import Hole
+from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.pose import Pose, turn_from_z
 
 PARALLEL = 1e-4
@@ -38,8 +39,9 @@ def filled(body: Any) -> tuple[Any, list[RoundHole]]:
     for wall in _walls(mesh):
         hole = _hole(body, wall)
         if hole is not None:
-            found.append(hole)
-            plugs.append(manifold3d().Manifold.hull_points(wall))
+            chamfered, cone = _with_chamfer(mesh, wall, hole)
+            found.append(chamfered)
+            plugs.append(manifold3d().Manifold.hull_points(np.concatenate([wall, cone])))
     if not plugs:
         return body, []
     whole = manifold3d().Manifold.batch_boolean([body, *plugs], manifold3d().OpType.Add)
@@ -109,6 +111,50 @@ def _hole(body: Any, wall: FloatArray) -> RoundHole | None:
     up, mouth = (axis, high) if is_open[1] else (-axis, low)
     pose = Pose(circle.center + mouth * axis, turn_from_z(up))
     return RoundHole(Hole(circle.radius, high - low, None, (), pose), circle.sagitta + circle.off)
+
+
+def _with_chamfer(mesh: Triangles, wall: FloatArray, found: RoundHole) -> tuple[RoundHole, FloatArray]:
+    """Return a hole with the cone that widens its mouth, and the corners of that; without one, it as it is and none."""
+    hole, error = found.hole, found.error
+    local = hole.pose_body_shape.inverse_transform(mesh.vertices)
+    rims = [(hole.radius_m, 0.0)]
+    corners = [wall[:0]]
+    while (ring := _ring_above(mesh, local, *rims[-1])) is not None:
+        (radius, height), of_ring, off = ring
+        angle = math.atan2(radius - hole.radius_m, height)
+        if len(rims) > 1 and abs(angle - math.atan2(rims[1][0] - hole.radius_m, rims[1][1])) > PARALLEL:
+            break
+        rims.append((radius, height))
+        corners.append(of_ring)
+        error = max(error, off)
+    if len(rims) == 1:
+        return found, wall[:0]
+    width, height = rims[-1][0] - hole.radius_m, rims[-1][1]
+    pose = hole.pose_body_shape @ Pose((0.0, 0.0, height))
+    chamfer = Chamfer(width, math.atan2(width, height))
+    wider = Hole(hole.radius_m, hole.depth_m + height, chamfer, (), pose)
+    return RoundHole(wider, error), np.concatenate(corners)
+
+
+def _ring_above(
+    mesh: Triangles, local: FloatArray, radius: float, height: float
+) -> tuple[tuple[float, float], FloatArray, float] | None:
+    """Return the circle at which all edges end that go up from a circle about a hole's axis: its radius and height, its
+    corners, and how far its sides are off. None: it is none, or no wider.
+    """
+    allowed = 3.0 * SINGLE_PRECISION * mesh.size
+    is_rim = (np.abs(local[:, 2] - height) <= allowed) & (np.abs(np.hypot(*local[:, :2].T) - radius) <= allowed)
+    edges = edges_of(mesh).corners
+    leaving = edges[is_rim[edges].sum(axis=1) == 1]
+    ends = np.unique(leaving[~is_rim[leaving]])
+    ends = ends[local[ends, 2] > height + allowed]
+    circle = circle_through(local[ends], np.array((0.0, 0.0, 1.0)))
+    if circle is None or circle.n_sides < FEWEST_SIDES - 0.5:
+        return None
+    x, y, top = circle.center.tolist()
+    if max(circle.off, float(np.ptp(local[ends, 2])), math.hypot(x, y)) > allowed or circle.radius <= radius + allowed:
+        return None
+    return (circle.radius, top), mesh.vertices[ends], circle.sagitta + circle.off
 
 
 def _holds(body: Any, point: FloatArray) -> bool:
