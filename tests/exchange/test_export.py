@@ -176,7 +176,7 @@ def solids_of(text: str) -> dict[str, Mesh]:
     found = {}
     for name, body in re.findall(r"^solid ([^,]*),.*?\n(.*?)^endsolid", text, re.MULTILINE | re.DOTALL):
         numbers = [line.split()[1:] for line in body.splitlines() if line.startswith("vertex")]
-        corners = np.array(numbers, dtype=np.float64)
+        corners = np.array(numbers, dtype=np.float64) / 1e3
         found[name] = Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
     return found
 
@@ -283,7 +283,7 @@ def test_the_command_writes_files_and_says_what_they_do_not_hold(tmp_path, monke
     scene = str(next(path for path in SCENES if path.stem == "phone-dock"))
     assert main(["export", scene, "--to", "urdf", "-o", "dock.urdf"]) == 0
     out = capsys.readouterr().out
-    assert out.startswith("wrote dock.urdf and 7 meshes beside it: phone in a dock, rests (quasistatic)\n")
+    assert out.startswith("wrote dock.urdf and 7 files beside it: phone in a dock, rests (quasistatic)\n")
     assert "note: URDF has no friction" in out
     assert len(list(Path("dock-meshes").iterdir())) == 7
     assert main(["export", scene, "--to", "urdf", "-o", "dock.urdf"]) == 0  # over its own files

@@ -43,6 +43,7 @@ def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int
         f"cage {_extent(body_limits((*cage.shapes, *cage.holes), cage.points_cage), unit)}\n"
         f"size {size:.6g} {unit}, touch tolerance {touch:.3g} {unit}; no problems found\n"
     )
+    sys.stdout.write("".join(printable(f"note: {note}") + "\n" for note in scene_file.notes))
     for remark in remarks(found):
         sys.stdout.write(printable(f"remark: {remark}") + "\n")
     return 0

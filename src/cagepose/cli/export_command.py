@@ -16,10 +16,11 @@ def export_command(
     /,
     *,
     to: Annotated[
-        Literal["mjcf", "urdf", "stl", "csv"],
+        Literal["mjcf", "urdf", "step", "stl", "csv"],
         Parameter(
             help="mjcf: a MuJoCo model, a keyframe at the end of each phase. urdf: a ROS model at the start pose, its"
-            " meshes in a folder beside. stl: triangles, at the end of the run. csv: the poses alone."
+            " meshes in a folder beside. step: solids for CAD, and stl: triangles, both at the end of the run. csv: the"
+            " poses alone."
         ),
     ],
     out: Annotated[str, Parameter(name=("--out", "-o"), help="File to write, such as rollers.xml.")],
@@ -56,7 +57,7 @@ def export_command(
         sys.stderr.write(refusal(option, error) + "\n")
         return 2
     beside = len(found.files) - 1
-    files = f"{out} and {beside} meshes beside it" if beside else out
+    files = f"{out} and {beside} files beside it" if beside else out
     sys.stdout.write(printable(f"wrote {files}: {run.scene.name}, {run.verdict} ({run.method})") + "\n")
     sys.stdout.write("".join(printable(f"note: {note}") + "\n" for note in found.notes))
     return 0

@@ -11,13 +11,16 @@ from cagepose.cli.options import refusal
 
 
 def import_command(
-    file: Annotated[str, Parameter(help="MJCF or URDF file.")],
+    file: Annotated[str, Parameter(help="MJCF, URDF, STEP, STL, OBJ, PLY or GLB file.")],
     /,
     *,
     out: Annotated[str, Parameter(name=("--out", "-o"), help="Scene file to write, such as scene.yaml.")],
     object: Annotated[
         str | None,
-        Parameter(help="The body that is held, with all that hangs on it; left out: the one that moves freely."),
+        Parameter(
+            help="The body that is held, with all that hangs on it; left out: the one that moves freely. Of solids, one"
+            " by its name, or all by what their names begin with before a /; left out: object."
+        ),
     ] = None,
     cage: Annotated[
         tuple[str, ...],
@@ -35,7 +38,7 @@ def import_command(
 
     try:
         check_can_save_scene(out)
-        found = imported(file, object, cage)
+        found = imported(file, object, cage, _show)
         save_scene(found.scene, out)
     except OSError as error:
         sys.stderr.write(refusal(f"--out {out}", error) + "\n")
@@ -44,3 +47,9 @@ def import_command(
     sys.stdout.write(printable(f"wrote {out}: {contents}") + "\n")
     sys.stdout.write("".join(printable(f"note: {note}") + "\n" for note in found.notes))
     return 0
+
+
+def _show(told: str) -> None:
+    if sys.stderr.isatty():
+        sys.stderr.write(f"\r{told[:70]:70}\r")
+        sys.stderr.flush()

@@ -8,17 +8,16 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from cagepose.exchange.solids import Assembly
 from cagepose.files.scene_document import scene_document
+from cagepose.model.scene import Scene
 
 VERSION = 1
 KEPT = ("name", "loads", "method", "metric", "tolerances")
 """Keys of the scene file that stand in the note as they are."""
 
 
-def beside_text(assembly: Assembly, *, with_friction: bool = False) -> str:
+def beside_text(scene: Scene, *, with_friction: bool = False) -> str:
     """Return the note; ``with_friction``: that of the scene too, where the format has none."""
-    scene = assembly.scene
     document = scene_document(scene, "m")
     note: dict[str, Any] = {"version": VERSION, **{key: document[key] for key in KEPT if key in document}}
     if with_friction:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Literal, NamedTuple
 
 from cagepose.exchange.mjcf import mjcf_notes, mjcf_text
 from cagepose.exchange.poses import poses_csv
 from cagepose.exchange.solids import assembly_of
+from cagepose.exchange.solids_note import file_beside, solids_note, with_note
+from cagepose.exchange.step import step_bytes
 from cagepose.exchange.stl import stl_text
 from cagepose.exchange.urdf import urdf_files, urdf_notes
 from cagepose.runs.run import Run
 
-Format = Literal["mjcf", "urdf", "stl", "csv"]
+Format = Literal["mjcf", "urdf", "step", "stl", "csv"]
 
 
 class Export(NamedTuple):
@@ -29,13 +32,17 @@ def exported(run: Run, to: Format, name: str) -> Export:
     SceneError
         The format cannot hold a part of the scene, which is named.
     MissingExtraError
-        Parts with holes need manifold3d.
+        Parts with holes need manifold3d, STEP files Open CASCADE.
     """
     if to == "csv":
         return Export({name: poses_csv(run).encode()}, ())
     if to == "stl":
         text, notes = stl_text(run.scene, run.pose)
-        return Export({name: text.encode()}, notes)
+        beside = file_beside(Path(name)).name
+        return Export({beside: solids_note(run.scene, run.pose).encode(), name: text.encode()}, notes)
+    if to == "step":
+        content, notes = step_bytes(run.scene, run.pose)
+        return Export({name: with_note(content, solids_note(run.scene, run.pose))}, notes)
     assembly = assembly_of(run.scene)
     if to == "mjcf":
         return Export({name: mjcf_text(assembly, run.phases).encode()}, mjcf_notes(assembly))

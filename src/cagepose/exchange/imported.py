@@ -1,4 +1,4 @@
-"""An MJCF or URDF file as a scene: `imported`. A body is the object, others are the cage, joints stay as they are."""
+"""A model or solids of another program as a scene: `imported`. A body is the object, others are the cage."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from cagepose.exchange.extra import mujoco
 from cagepose.exchange.model_bodies import WORLD, ModelBodies
 from cagepose.exchange.model_friction import scene_friction
 from cagepose.exchange.model_text import ModelText, read_model_text
-from cagepose.files.mesh_file import MOST_CORNERS
-from cagepose.files.scene_document import pose_angles
+from cagepose.exchange.solids_document import SOLIDS, Progress, kept_friction, pose_data, solids_document
+from cagepose.files.meshes.mesh_shapes import MOST_CORNERS
 from cagepose.files.scene_file import SceneText
 from cagepose.files.yaml_source import YamlSource
 from cagepose.model.pose import Pose
@@ -42,7 +42,12 @@ class Import(NamedTuple):
     notes: tuple[str, ...]
 
 
-def imported(source: str, object_name: str | None = None, cage_names: Sequence[str] = ()) -> Import:
+def imported(
+    source: str,
+    object_name: str | None = None,
+    cage_names: Sequence[str] = (),
+    progress: Progress = lambda told: None,  # noqa: ARG005
+) -> Import:
     """Read a model.
 
     Parameters
@@ -50,23 +55,32 @@ def imported(source: str, object_name: str | None = None, cage_names: Sequence[s
     source
         The file.
     object_name
-        The body that is held, with all that hangs on it; None: the only one that moves freely.
+        The body that is held, with all that hangs on it; None: the only one that moves freely. Of solids, one of their
+        names, or what they begin with before a "/".
     cage_names
         Bodies that hold it, each with all that hangs on it; none: all others.
+    progress
+        Is told which solid is being recognised, as large ones take seconds.
 
     Raises
     ------
     SceneFileError
         A file that cannot be used, a body that is not there, or a scene that cannot be right.
     MissingExtraError
-        There is no MuJoCo.
+        There is no MuJoCo, or what reads solids.
     """
+    if Path(source).suffix.lower() in SOLIDS:
+        document, notes = solids_document(source, object_name, cage_names, progress)
+        return _import(source, document, notes)
     mujoco()
     text = read_model_text(source)
     reader = _Reader(source, ModelBodies(source, compiled(source)), _beside(text), is_urdf=text.is_urdf)
-    document = reader.document(object_name, cage_names)
+    return _import(source, reader.document(object_name, cage_names), reader.notes)
+
+
+def _import(source: str, document: Data, notes: Sequence[str]) -> Import:
     scene = SceneText("", YamlSource(document, source), Path(source).parent).scene_file().scene
-    return Import(scene, tuple(dict.fromkeys(reader.notes)))
+    return Import(scene, tuple(dict.fromkeys(notes)))
 
 
 def _beside(text: ModelText) -> Data:
@@ -108,10 +122,10 @@ class _Reader:
         others = [self.shape(geom, frame, reach_m) for geom in walls if geom["label"] not in points]
         found: Data = {"name": beside.get("name") or Path(self.source).stem, "units": {"length": "m"}}
         found["object"] = {"shapes": [shape for shape in shapes if shape], **self.inertial(of_object, held)}
-        found["object"]["pose"] = _pose_data(bodies.pose(held))
+        found["object"]["pose"] = pose_data(bodies.pose(held))
         found["cage"] = {"points": points, "shapes": [shape for shape in others if shape]}
         found["cage"] = {key: value for key, value in found["cage"].items() if value}
-        found["cage"]["pose"] = _pose_data(bodies.pose(frame))
+        found["cage"]["pose"] = pose_data(bodies.pose(frame))
         for body, what in ((found["object"], "the object"), (found["cage"], "the cage")):
             if not body.get("shapes") and not body.get("points"):
                 message = f"has nothing that touches in what is {what}; choose other bodies with --object and --cage"
@@ -149,7 +163,7 @@ class _Reader:
         else:
             numbers = {}
             self.notes.append(f"left out: {label!r}, as it is neither box, ball, capsule, cylinder, plane nor mesh")
-        return {"name": label, **numbers, **_pose_data(place, of_part=True)} if numbers else None
+        return {"name": label, **numbers, **pose_data(place, of_part=True)} if numbers else None
 
     def hull(self, geom: Data, label: str) -> Data:
         if len(geom["vertices"]) > MOST_CORNERS:
@@ -181,11 +195,7 @@ class _Reader:
 
     def friction(self, parts: Sequence[Data], walls: Sequence[Data]) -> Data:
         if "friction" in self.beside:
-            kept = self.beside["friction"]
-            names = [geom["label"] for geom in (*parts, *walls)]
-            of = {name: mu for name in names for element, mu in kept["of"].items() if _is_of(name, element)}
-            coefficient = {} if kept["coefficient"] is None else {"coefficient": kept["coefficient"]}
-            return {"friction": {**coefficient, "of": of}} if of or coefficient else {}
+            return kept_friction(self.beside, [geom["label"] for geom in (*parts, *walls)])
         if self.is_urdf:
             self.notes.append("friction: none, as URDF has none")
             return {}
@@ -201,18 +211,6 @@ def name_them(geoms: Sequence[Data]) -> None:
     for number, geom in enumerate(geoms):
         short = geom["name"].partition("/")[2] or geom["name"]
         geom["label"] = (short if counts[short] == 1 else geom["name"]) or f"geom {number + 1}"
-
-
-def _is_of(name: str, element: str) -> bool:
-    return name == element or name.startswith(f"{element}/")
-
-
-def _pose_data(pose: Pose, *, of_part: bool = False) -> Data:
-    """Return a pose as a scene file has it; that of a part has angles, whatever their last digits."""
-    angles = pose_angles(pose)
-    if angles is None and not of_part:
-        return {"position": pose.position_m.tolist(), "quat_wxyz": pose.quaternion_wxyz.tolist()}
-    return {"position": pose.position_m.tolist(), "euler_zyx_deg": angles or np.degrees(pose.euler_zyx).tolist()}
 
 
 def _reach_m(shape: Data) -> float:

@@ -40,7 +40,7 @@ def mjcf_text(assembly: Assembly, phases: Sequence[PhaseRun] = ()) -> str:
     add_comments(root, scene, mjcf_notes(assembly))
     SubElement(root, "compiler", angle="radian", autolimits="true")
     SubElement(root, "option", gravity=numbers(_gravity(scene)))
-    SubElement(SubElement(root, "custom"), "text", name=NOTE, data=beside_text(assembly))
+    SubElement(SubElement(root, "custom"), "text", name=NOTE, data=beside_text(scene))
     assets, world = Element("asset"), Element("worldbody")
     cage = SubElement(world, "body", {"name": "cage", **_place(scene.cage.pose_world_cage)})
     held = SubElement(world, "body", {"name": "object", **_place(scene.object.pose_world_object)})

@@ -16,9 +16,8 @@ import numpy as np
 from cagepose.errors import Problem, SceneError
 from cagepose.exchange.pierced import AROUND, OUTSIDE, pierced_pieces
 from cagepose.model.box import Box
-from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.hole import Hole
-from cagepose.model.pose import Pose
+from cagepose.model.pose import Pose, turn_from_z
 from cagepose.model.scene import Scene
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Disc, Rounded, Shape, Sphere, Turned
 from cagepose.model.surface import shape_mesh
@@ -156,7 +155,7 @@ class _Body:
             )
             yield Convex(shape_mesh(shape, AROUND).vertices_m)
         elif isinstance(shape, Convex) and shape.radius_m > 0.0:
-            yield from _rounded_pieces(shape)
+            yield from rounded_pieces(shape)
         elif isinstance(shape, Box | Sphere | Capsule | Cylinder | Convex):
             yield shape
 
@@ -193,7 +192,7 @@ def _sagitta_m(shape: Turned, sides: int) -> float:
     return max(radius for _, radius in shape.rims) * (1.0 - math.cos(math.pi / sides))
 
 
-def _rounded_pieces(shape: Convex) -> Iterator[Primitive]:
+def rounded_pieces(shape: Convex) -> Iterator[Primitive]:
     """A hull blown up by a radius is exactly its core, a slab on each face, a bar along each edge and a ball at each
     corner, which the bars have at their ends.
     """
@@ -207,14 +206,4 @@ def _rounded_pieces(shape: Convex) -> Iterator[Primitive]:
         face = hull.vertices_m[list(loop)]
         yield Convex(place.transform(np.concatenate([face, face + radius * normal])))
     for start, end in place.transform(hull.vertices_m)[hull.edges]:
-        yield Capsule(radius, float(np.linalg.norm(end - start)), Pose((start + end) / 2.0, _turn_to(end - start)))
-
-
-def _turn_to(axis: FloatArray) -> FloatArray:
-    """Return a quaternion that turns z to the direction of ``axis``."""
-    along = unit_rows(axis[None])[0]
-    halfway = along + np.array((0.0, 0.0, 1.0))
-    if float(np.linalg.norm(halfway)) < 1e-8:
-        return np.array((0.0, 1.0, 0.0, 0.0))
-    x, y, z = unit_rows(halfway[None])[0].tolist()
-    return np.array((z, -y, x, 0.0))  # half a turn about the line between them, after half a turn about z
+        yield Capsule(radius, float(np.linalg.norm(end - start)), Pose((start + end) / 2.0, turn_from_z(end - start)))

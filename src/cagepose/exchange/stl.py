@@ -1,4 +1,4 @@
-"""Bodies as triangles: `stl_text` of a scene, and `binary_stl` of one mesh. Lengths are metres."""
+"""Bodies as triangles: `stl_text` of a scene, in millimetres, and `binary_stl` of one mesh, in metres."""
 
 from __future__ import annotations
 
@@ -7,15 +7,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cagepose.errors import Problem, SceneError
 from cagepose.exchange.extra import manifold3d
-from cagepose.exchange.solids import POINT_OF_SIZE
+from cagepose.exchange.world_parts import world_parts
 from cagepose.files.write import MADE_BY
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.model.shapes import Disc, Rounded, Shape, Sphere, Turned
+from cagepose.model.shapes import Rounded, Shape, Turned
 from cagepose.model.surface import Mesh, shape_mesh
 
 SEGMENTS = 64
@@ -24,54 +23,36 @@ POINT_SEGMENTS = 4
 """Of the ball that stands for a cage point."""
 
 
+MM = 1e3
+"""Millimetres of a metre."""
+NOTE_BESIDE = "loads, mass, friction and the start pose are in the note for cagepose alone"
+
+
 def stl_text(scene: Scene, pose_world_object: Pose) -> tuple[str, tuple[str, ...]]:
     """Return a solid for each part of object and cage, in the world, and what the file cannot say, in sentences.
 
     Raises
     ------
     SceneError
-        Discs, which enclose nothing, and holes that stand alone, which are solid without end; by their names.
+        A part that is no solid, see `world_parts`.
     MissingExtraError
         Parts with holes need manifold3d.
     """
-    problems = []
-    notes = ["lengths in metres, which an STL file cannot say", "no masses, loads or friction"]
-    radius_m = POINT_OF_SIZE * scene.size_m
-    points = [
-        Sphere(radius_m, Pose(point), name)
-        for point, name in zip(scene.cage.points_cage, scene.cage.names, strict=True)
-    ]
-    if points:
-        notes.append(f"cage points are balls of radius {radius_m:.3g} m")
+    parts, notes = world_parts(scene, pose_world_object)
     lines = []
-    widest_m = 0.0
-    for body, pose, shapes, holes in (
-        ("cage", scene.cage.pose_world_cage, (*points, *scene.cage.shapes), scene.cage.holes),
-        ("object", pose_world_object, scene.object.parts, scene.object.holes),
-    ):
-        for shape in (*shapes, *(hole for hole in holes if not hole.in_)):
-            if isinstance(shape, Disc | Hole):
-                what = (
-                    "is a disc, which encloses nothing" if isinstance(shape, Disc) else "stands alone, without an end"
-                )
-                problems.append(Problem((body, str(shape.name)), f"{what}; no STL can hold it: leave it out"))
-                continue
-            cuts = [hole for hole in holes if shape.name in hole.in_]
-            is_point = any(shape is point for point in points)
-            if not is_point:
-                widest_m = max(widest_m, *(_radius_m(round_one) for round_one in (shape, *cuts)))
-            mesh = _drilled(shape, cuts) if cuts else shape_mesh(shape, POINT_SEGMENTS if is_point else SEGMENTS)
-            lines.append(_solid_text(f"{body}/{shape.name}", Mesh(pose.transform(mesh.vertices_m), mesh.triangles)))
-    if problems:
-        raise SceneError(problems)
+    for part in parts:
+        segments = POINT_SEGMENTS if part.is_point else SEGMENTS
+        mesh = _drilled(part.shape, part.holes) if part.holes else shape_mesh(part.shape, segments)
+        lines.append(_solid_text(part.name, Mesh(MM * part.pose.transform(mesh.vertices_m), mesh.triangles)))
+    widest_m = max(_radius_m(shape) for part in parts if not part.is_point for shape in (part.shape, *part.holes))
     if widest_m > 0.0:
         sagitta_m = widest_m * (1.0 - math.cos(math.pi / SEGMENTS))
         notes.append(f"what is round has {SEGMENTS} chords, at most {sagitta_m:.3g} m within it")
-    return "".join(lines), tuple(notes)
+    return "".join(lines), ("lengths in millimetres, which an STL file cannot say", NOTE_BESIDE, *notes)
 
 
 def binary_stl(mesh: Mesh) -> bytes:
-    """Return a mesh as a binary STL file."""
+    """Return a mesh as a binary STL file, in metres."""
     corners = mesh.vertices_m[mesh.triangles]
     record = np.zeros(len(corners), np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("unused", "<u2")]))
     record["normal"], record["corners"] = _normals(corners), corners
@@ -116,4 +97,4 @@ def _solid_text(name: str, mesh: Mesh) -> str:
 
 
 def _numbers(values: list[float]) -> str:
-    return " ".join(f"{value:.9g}" for value in values)
+    return " ".join(repr(value) for value in values)

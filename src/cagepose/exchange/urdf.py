@@ -40,7 +40,7 @@ def urdf_files(assembly: Assembly, name: str) -> dict[str, bytes]:
     root = Element("robot", name=scene.name)
     add_comments(root, scene, urdf_notes(assembly))
     SubElement(SubElement(root, "mujoco"), "compiler", strippath="false", fusestatic="false")
-    SubElement(root, NOTE).text = beside_text(assembly, with_friction=True)
+    SubElement(root, NOTE).text = beside_text(scene, with_friction=True)
     SubElement(root, "link", name="world")
     for body, solids, pose, kind in (
         ("cage", assembly.cage, scene.cage.pose_world_cage, "fixed"),

@@ -5,20 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import ParamSpec, TypeVar
+from typing import NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 
 from cagepose.errors import Key, Problem, SceneError
-from cagepose.files.box_corners import box_of_corners
-from cagepose.files.mesh_file import read_mesh
+from cagepose.files.meshes.mesh_file import read_mesh
 from cagepose.files.points_file import PointsTable
 from cagepose.files.schema import BoxModel, ForceModel, LoadModel, MomentModel, PoseModel, SceneModel, SpringModel
-from cagepose.files.schema_shapes import CoefficientModel, MeshModel, ShapeModel
+from cagepose.files.schema_shapes import CoefficientModel, ShapeModel
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
-from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.load import Force, Load, Moment, Spring
 from cagepose.model.parts import Object
@@ -34,7 +32,14 @@ CURRENT = Path()
 """The folder that names of files start from where there is no scene file."""
 
 
-def build_scene(model: SceneModel, table: PointsTable | None, folder: Path = CURRENT) -> Scene:
+class Built(NamedTuple):
+    """A scene, and what of its meshes is not in it as it is in their files, in sentences."""
+
+    scene: Scene
+    notes: tuple[str, ...]
+
+
+def build_scene(model: SceneModel, table: PointsTable | None, folder: Path = CURRENT) -> Built:
     """Make the scene that ``model`` describes; ``table`` holds the points if they stand in a file of their own, and
     ``folder`` its meshes.
 
@@ -49,9 +54,10 @@ def build_scene(model: SceneModel, table: PointsTable | None, folder: Path = CUR
     loads = [builder.make(("loads", index), builder.load, load, index) for index, load in enumerate(model.loads)]
     tolerances = builder.make(("tolerances",), builder.tolerances, model)
     friction_of = builder.friction_of(model, held, cage) if held is not None and cage is not None else {}
+    builder.check_adjustable(model)
     if builder.problems or held is None or cage is None or tolerances is None:
         raise SceneError(builder.problems)
-    return Scene(
+    scene = Scene(
         held,
         cage,
         [load for load in loads if load is not None],
@@ -66,6 +72,7 @@ def build_scene(model: SceneModel, table: PointsTable | None, folder: Path = CUR
             for name, entry in (model.adjustable or {}).items()
         ],
     )
+    return Built(scene, tuple(dict.fromkeys(builder.notes)))
 
 
 class _Builder:
@@ -73,6 +80,8 @@ class _Builder:
         self.unit: LengthUnit = unit
         self.folder = folder
         self.problems: list[Problem] = []
+        self.notes: list[str] = []
+        self.pieces: dict[tuple[str, int], list[str]] = {}  # names of what meshes are, by body and index
 
     def make(
         self, prefix: tuple[Key, ...], maker: Callable[Given, Noun], *args: Given.args, **kwargs: Given.kwargs
@@ -106,14 +115,31 @@ class _Builder:
         return Box(to_metres(model.size, self.unit), pose, model.name)
 
     def shapes(self, body: str, models: list[ShapeModel]) -> list[Shape | None]:
+        """Return the shapes of a body. Of a mesh that is several, all but the first stand last, so that numbers of
+        others stay where their keys say.
+        """
+        first: list[Shape | None] = []
+        others: list[Shape] = []
+        for index, model in enumerate(models):
+            place: tuple[Key, ...] = (body, "shapes", index, *model.kinds_given())
+            if model.mesh is None:
+                first.append(self.make(place, self.shape, model))
+            elif (found := self.make(place, self.mesh, model, index)) is None:
+                first.append(None)
+            else:
+                self.pieces[body, index] = [str(piece.name) for piece in found if not isinstance(piece, Hole)]
+                first.append(found[0])
+                others += found[1:]
+        meshes = {models[index].name: names for (of, index), names in self.pieces.items() if of == body}
         return [
-            self.make((body, "shapes", index, *model.kinds_given()), self.shape, model)
-            for index, model in enumerate(models)
+            shape.cut_out_of([piece for name in shape.in_ for piece in meshes.get(name, [name])])
+            if isinstance(shape, Hole)
+            else shape
+            for shape in (*first, *others)
         ]
 
     def shape(self, model: ShapeModel) -> Shape:
-        pose = Pose(to_metres(model.position or [0.0, 0.0, 0.0], self.unit), euler_zyx=_radians(model.euler_zyx_deg))
-        length = self.length
+        pose, length = self.shape_pose(model), self.length
         if model.box is not None:
             return Box(to_metres(model.box.size, self.unit), pose, model.name)
         if model.sphere is not None:
@@ -128,12 +154,6 @@ class _Builder:
         if model.convex is not None:
             vertices = to_metres(model.convex.vertices, self.unit)
             return Convex(vertices, length(model.convex.radius or 0.0), pose, model.name)
-        if model.mesh is not None:
-            corners = self.mesh(model.mesh)
-            box = box_of_corners(corners)
-            if box is not None:
-                return Box(box.size_m, pose @ box.pose_body_shape, model.name)
-            return Convex(corners, 0.0, pose, model.name)
         if model.disc is not None:
             return Disc(length(model.disc.radius), pose, model.name)
         assert model.hole is not None, "the schema lets no shape pass that has no kind"
@@ -144,12 +164,20 @@ class _Builder:
             length(model.hole.radius), length(model.hole.depth), chamfer, model.hole.in_ or (), pose, model.name
         )
 
-    def mesh(self, model: MeshModel) -> FloatArray:
-        path = self.folder / model.file
+    def mesh(self, model: ShapeModel, index: int) -> list[Shape]:
+        """Return what a mesh is, in its body's frame."""
+        assert model.mesh is not None
+        path, name = self.folder / model.mesh.file, model.name or f"mesh{index + 1}"
         try:
-            return read_mesh(path, model.unit, self.unit)
+            found = read_mesh(path, model.mesh.unit, self.unit, name)
         except SceneError as error:
             raise SceneError([Problem(("file",), f"{path} {error.problems[0].message}")]) from None
+        self.notes += found.notes
+        pose = self.shape_pose(model)
+        return [shape.moved(pose @ shape.pose_body_shape) for shape in found.shapes]
+
+    def shape_pose(self, model: ShapeModel) -> Pose:
+        return Pose(to_metres(model.position or [0.0, 0.0, 0.0], self.unit), euler_zyx=_radians(model.euler_zyx_deg))
 
     def length(self, length: float) -> float:
         return float(to_metres(length, self.unit))
@@ -183,18 +211,28 @@ class _Builder:
             ("cage", model.cage.shapes, in_cage),
         ):
             for index, shape in enumerate(shapes or []):
-                name = names["shapes", index]
                 if (coefficient := _coefficient(shape.friction)) is None:
                     continue
                 place = (body, "shapes", index, "friction")
-                if name in shared:
-                    found_twice = f"is that of {name!r}, a name in the cage and in the object; rename one of the two"
-                    self.problems.append(Problem(place, found_twice))
-                elif name in found:
-                    self.problems.append(Problem(place, f"stands in friction.of.{name}, too; keep one of the two"))
-                else:
-                    found[name] = coefficient
+                for name in self.pieces.get((body, index), [names["shapes", index]]):
+                    if name in shared:
+                        found_twice = (
+                            f"is that of {name!r}, a name in the cage and in the object; rename one of the two"
+                        )
+                        self.problems.append(Problem(place, found_twice))
+                    elif name in found:
+                        self.problems.append(Problem(place, f"stands in friction.of.{name}, too; keep one of the two"))
+                    else:
+                        found[name] = coefficient
         return found
+
+    def check_adjustable(self, model: SceneModel) -> None:
+        """Note numbers that would move one piece of a mesh alone."""
+        several = [f"{body}.shapes[{index}]." for (body, index), names in self.pieces.items() if len(names) > 1]
+        for name, entry in (model.adjustable or {}).items():
+            if entry.key.startswith(tuple(several)):
+                message = "points into a mesh that is several shapes, which do not move together; move its body instead"
+                self.problems.append(Problem(("adjustable", name, "key"), message))
 
     def load(self, model: LoadModel, index: int) -> Load | None:
         springs = [

@@ -52,7 +52,7 @@ def changed_scene(scene: Scene, changes: Mapping[str, object]) -> Scene:
         model = SceneModel.model_validate(data)
     except ValidationError as error:
         raise SceneError([finding.problem for finding in schema_findings(error, data)]) from None
-    return build_scene(model, None)
+    return build_scene(model, None).scene
 
 
 def _by_index(scene: Scene, data: dict[str, Any], path: Path) -> Path:

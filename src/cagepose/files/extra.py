@@ -9,7 +9,18 @@ from cagepose.errors import MissingExtraError
 
 
 def files_library(module: str, need: str) -> Any:
-    """Return a module; ``need`` says what needs it: "meshes need trimesh".
+    """Return a module of the files extra, see `extra_library`.
+
+    Raises
+    ------
+    MissingExtraError
+        It is not installed.
+    """
+    return extra_library(module, need, "files")
+
+
+def extra_library(module: str, need: str, extra: str) -> Any:
+    """Return a module of an extra; ``need`` says what needs it: "meshes need trimesh".
 
     Raises
     ------
@@ -19,5 +30,5 @@ def files_library(module: str, need: str) -> Any:
     try:
         return import_module(module)
     except ImportError as error:
-        message = f"{need}, which is not installed; install the files extra: pip install 'cagepose[files]'"
+        message = f"{need}, which is not installed; install the {extra} extra: pip install 'cagepose[{extra}]'"
         raise MissingExtraError(message) from error

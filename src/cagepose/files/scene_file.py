@@ -27,10 +27,11 @@ from cagepose.model.scene import Scene
 
 @dataclass(frozen=True)
 class SceneFile:
-    """A scene, and the unit that its file gives lengths in."""
+    """A scene, the unit that its file gives lengths in, and what of its meshes is not in it as in their files."""
 
     scene: Scene
     length_unit: LengthUnit
+    notes: tuple[str, ...] = ()
 
 
 def load_scene(path: str | os.PathLike[str], set_values: Sequence[str] = ()) -> Scene:
@@ -224,12 +225,12 @@ class _Attempt:
         if self.table is None and isinstance(model.cage.points, PointsFileModel):
             return
         try:
-            scene = build_scene(model, self.table, folder)
+            scene, notes = build_scene(model, self.table, folder)
         except SceneError as error:
             self.findings += [Finding(problem, False) for problem in error.problems]
             return
         if not self.findings:
-            self.scene_file = SceneFile(scene, model.units.length if model.units else "mm")
+            self.scene_file = SceneFile(scene, model.units.length if model.units else "mm", notes)
 
     def _read_table(self, name: object, folder: Path) -> PointsTable | None:
         if not isinstance(name, str) or not name:

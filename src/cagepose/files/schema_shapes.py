@@ -82,10 +82,10 @@ class ConvexModel(Mapping):
 
 
 class MeshModel(Mapping):
-    """A convex body of triangles in a file of its own."""
+    """A body of triangles in a file of its own."""
 
     file: str = Field(
-        min_length=1, description="STL, OBJ, PLY or GLB file beside this one; closed and convex.", examples=["part.stl"]
+        min_length=1, description="STL, OBJ, PLY or GLB file beside this one; closed.", examples=["part.stl"]
     )
     unit: LengthUnit | None = Field(
         None, description="Of the file's lengths; left out: that of this scene, and metres of a GLB.", examples=["mm"]
@@ -160,7 +160,7 @@ class ShapeModel(Mapping):
         description="The convex hull of some points.",
         examples=[{"vertices": [[0, 0, 0], [10, 0, 0], [0, 10, 0], [0, 0, 10]]}],
     )
-    mesh: MeshModel | None = Field(None, description="A convex mesh.", examples=[{"file": "part.stl"}])
+    mesh: MeshModel | None = Field(None, description="A mesh.", examples=[{"file": "part.stl"}])
     disc: DiscModel | None = Field(None, description="A flat round disc.", examples=[{"radius": 3}])
     hole: HoleModel | None = Field(None, description="A round hole.", examples=[{"radius": 3, "depth": 10}])
     position: Vector | None = Field(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -48,6 +48,9 @@ class Box(Shape):
         self._place(pose_object_box, name, problems)
         object.__setattr__(self, "size_m", size)
         object.__setattr__(self, "pose_object_box", self.pose_body_shape)
+
+    def moved(self, pose_body_shape: Pose) -> Self:
+        return self._with(pose_body_shape=pose_body_shape, pose_object_box=pose_body_shape)
 
     def _measures(self) -> str:
         return " x ".join(f"{length:.6g}" for length in self.size_m.tolist()) + " m"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -90,6 +90,10 @@ class Hole(Turned):
         names = (in_,) if isinstance(in_, str) else check_kinds(in_, str, "in", problems)
         object.__setattr__(self, "in_", names)
         self._place(pose_body_shape, name, problems)
+
+    def cut_out_of(self, names: Sequence[str]) -> Self:
+        """Return the same hole in other parts."""
+        return self._with(in_=tuple(names))
 
     @property
     def rims(self) -> tuple[tuple[float, float], ...]:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from cagepose.errors import Problem, SceneError
 from cagepose.kernels.algebra import pose as kernel
 from cagepose.kernels.algebra.vector import Vector
-from cagepose.model.checks import FloatArray, as_vector, finite_array
+from cagepose.model.checks import FloatArray, as_vector, finite_array, unit_rows
 from cagepose.model.wording import coordinates
 
 
@@ -132,3 +132,13 @@ def placed(points: FloatArray, position_m: FloatArray, quaternion_wxyz: FloatArr
     across = 2.0 * np.cross(vector, points)
     found: FloatArray = points + scalar * across + np.cross(vector, across) + position_m
     return found
+
+
+def turn_from_z(axis: FloatArray) -> FloatArray:
+    """Return a quaternion that turns z to the direction of ``axis``, (3,), which is not zero."""
+    along = unit_rows(axis[None])[0]
+    halfway = along + np.array((0.0, 0.0, 1.0))
+    if float(np.linalg.norm(halfway)) < 1e-8:
+        return np.array((0.0, 1.0, 0.0, 0.0))
+    x, y, z = unit_rows(halfway[None])[0].tolist()
+    return np.array((z, -y, x, 0.0))  # half a turn about the line between them, after half a turn about z

@@ -93,8 +93,15 @@ class Shape(ABC):
 
     def renamed(self, name: str) -> Self:
         """Return the same shape with another name."""
+        return self._with(name=name)
+
+    def moved(self, pose_body_shape: Pose) -> Self:
+        """Return the same shape elsewhere in its body."""
+        return self._with(pose_body_shape=pose_body_shape)
+
+    def _with(self, **changes: object) -> Self:
         other = object.__new__(type(self))
-        other.__dict__.update(self.__dict__, name=name)
+        other.__dict__.update(self.__dict__, **changes)
         return other
 
 

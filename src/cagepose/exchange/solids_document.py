@@ -1,0 +1,206 @@
+"""Solids of STEP and mesh files as the data of a scene file: `solids_document`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cagepose.errors import FileProblem, SceneError, SceneFileError
+from cagepose.exchange.solids_note import read_solids_note
+from cagepose.exchange.step_solids import read_step
+from cagepose.exchange.stl import MM
+from cagepose.files.meshes import mesh_file
+from cagepose.files.meshes.decomposed import kept_beside
+from cagepose.files.meshes.manifolds import Triangles
+from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
+from cagepose.files.scene_document import pose_angles
+from cagepose.model.box import Box
+from cagepose.model.checks import FloatArray
+from cagepose.model.hole import Hole
+from cagepose.model.pose import Pose
+from cagepose.model.shape_moments import shape_moments
+from cagepose.model.shapes import Convex, Shape, Sphere
+from cagepose.model.wording import few
+
+Data = dict[str, Any]
+Progress = Callable[[str], None]
+
+STEP = (".step", ".stp")
+SOLIDS = (*STEP, *mesh_file.SUFFIXES)
+MAX_STEP_BYTES = 32 * 1024 * 1024
+SAME_VOLUME = 1e-7
+"""Of itself: shapes that have it are the solid, and its triangles alone are off."""
+
+
+def solids_document(
+    source: str, object_name: str | None, cage_names: Sequence[str], progress: Progress
+) -> tuple[Data, list[str]]:
+    """Return the data of a scene of solids, and what is not in it as in the file; ``progress`` is told of each.
+
+    Raises
+    ------
+    SceneFileError
+        A file that cannot be used, or names that no solids have.
+    MissingExtraError
+        What reads it is not installed.
+    """
+    path, notes = Path(source), list[str]()
+    note = read_solids_note(path)
+    try:
+        solids = _of_step(path, notes) if path.suffix.lower() in STEP else _of_mesh(path, bool(note), notes)
+        held, walls = _chosen(list(solids), object_name, cage_names)
+        left = [name for name in solids if name not in (*held, *walls)]
+        if left:
+            notes.append(f"solids left out: {few(left, 12)}")
+        points = [name for name in walls if _short(name, walls) in note.get("points", ())]
+        walls = [name for name in walls if name not in points]
+        of_object, of_cage = _pose(note.get("object", {}).get("pose")), _pose(note.get("cage"))
+        shown = Pose(*note["shown"]) if note else Pose()
+        shapes: dict[str, list[Data]] = {"object": [], "cage": []}
+        listed = [("object", name, held, shown.inverse()) for name in held]
+        listed += [("cage", name, walls, of_cage.inverse()) for name in walls]
+        for number, (body, name, names, frame) in enumerate(listed):
+            progress(f"solid {number + 1} of {len(listed)}: {name}")
+            shapes[body] += _shapes(path, _short(name, names), solids[name], frame, notes)
+    except SceneError as error:
+        raise SceneFileError([FileProblem((), problem.message, source) for problem in error.problems]) from None
+    found: Data = {"name": note.get("name") or path.stem, "units": {"length": "m"}}
+    found["object"] = {**note.get("object", {}), "shapes": shapes["object"], "pose": pose_data(of_object)}
+    found["cage"] = {"shapes": shapes["cage"], "pose": pose_data(of_cage)}
+    found["cage"]["points"] = {
+        _short(name, points): of_cage.inverse_transform(_middle(solids[name])).tolist() for name in points
+    }
+    found["cage"] = {key: value for key, value in found["cage"].items() if value}
+    if not note:
+        notes.append("the object has no mass there: here, uniform density")
+        notes.append("loads: the weight alone, with a gravity of (0, 0, -9.81) m/s^2; no friction")
+    found["loads"] = note.get("loads") or [{"name": "weight", "gravity": [0.0, 0.0, -9.81]}]
+    elements = [*(shape["name"] for body in shapes.values() for shape in body), *found["cage"].get("points", ())]
+    found |= kept_friction(note, elements) if note else {}
+    return found | {key: note[key] for key in ("method", "metric", "tolerances") if key in note}, notes
+
+
+def kept_friction(note: Data, names: Sequence[str]) -> Data:
+    """Return the friction of a note as a scene file has it, for the elements that there are."""
+    kept = note["friction"]
+    of = {name: mu for name in names for element, mu in kept["of"].items() if is_of(name, element)}
+    coefficient = {} if kept["coefficient"] is None else {"coefficient": kept["coefficient"]}
+    return {"friction": {**coefficient, "of": of}} if of or coefficient else {}
+
+
+def is_of(name: str, element: str) -> bool:
+    return name == element or name.startswith(f"{element}/")
+
+
+def pose_data(pose: Pose, *, of_part: bool = False) -> Data:
+    """Return a pose as a scene file has it; that of a part has angles, whatever their last digits."""
+    angles = pose_angles(pose)
+    if angles is None and not of_part:
+        return {"position": pose.position_m.tolist(), "quat_wxyz": pose.quaternion_wxyz.tolist()}
+    return {"position": pose.position_m.tolist(), "euler_zyx_deg": angles or np.degrees(pose.euler_zyx).tolist()}
+
+
+def _of_step(path: Path, notes: list[str]) -> dict[str, Data]:
+    if not path.is_file():
+        raise mesh_file.refused("is no file; check the name and the folder")
+    if path.stat().st_size > MAX_STEP_BYTES:
+        raise mesh_file.refused(f"is larger than {MAX_STEP_BYTES // 1024**2} MiB; export the parts that touch alone")
+    found = read_step(path)
+    if found["out"]:
+        notes.append(f"left out: {few(found['out'], 12)}")
+    solids: dict[str, Data] = {}
+    for solid in found["solids"]:
+        name = solid["name"]
+        solids[name if name not in solids else f"{name} {len(solids) + 1}"] = solid
+    return solids
+
+
+def _of_mesh(path: Path, is_ours: bool, notes: list[str]) -> dict[str, Data]:
+    """Return bodies of a mesh file in millimetres."""
+    is_glb = path.suffix.lower() == ".glb"
+    if not (is_glb or is_ours):
+        notes.append("the file does not say its unit: here, millimetres")
+    found = mesh_file.read_solids(path)
+    scale = MM if is_glb else 1.0
+    return {
+        name.partition(", made by")[0]: {"vertices": scale * mesh.vertices, "faces": mesh.faces}
+        for name, mesh in found.items()
+    }
+
+
+def _chosen(names: list[str], object_name: str | None, cage_names: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Return the names of the solids of the object and of the cage."""
+
+    def of(wanted: str) -> list[str]:
+        found = [name for name in names if is_of(name, wanted)]
+        if not found:
+            raise mesh_file.refused(f"has no solid {wanted!r}; its solids: {few(names, 12) or 'none'}")
+        return found
+
+    if object_name is None and not any(is_of(name, "object") for name in names):
+        raise mesh_file.refused(f"does not say which solid is held; give --object and one of: {few(names, 12)}")
+    held = of(object_name or "object")
+    chosen = [name for wanted in cage_names for name in of(wanted)] or names
+    walls = [name for name in dict.fromkeys(chosen) if name not in held]
+    if not walls:
+        raise mesh_file.refused("has no solid but the object; give that as a `mesh` in a scene file with its cage")
+    return held, walls
+
+
+def _short(name: str, names: Sequence[str]) -> str:
+    """Return a name without that of its body before it, unless two would be one then."""
+    short = name.partition("/")[2] or name
+    return short if sum((other.partition("/")[2] or other) == short for other in names) == 1 else name
+
+
+def _middle(solid: Data) -> FloatArray:
+    if "center" in solid:
+        return np.array(solid["center"]) / MM
+    corners = np.asarray(solid["vertices"])
+    middle: FloatArray = (corners.max(axis=0) + corners.min(axis=0)) / 2.0 / MM
+    return middle
+
+
+def _shapes(path: Path, name: str, solid: Data, frame: Pose, notes: list[str]) -> list[Data]:
+    """Return a solid as shapes of a scene file, in the frame of its body, in metres."""
+    if "center" in solid:
+        return [_data(Sphere(solid["radius"] / MM, Pose(_middle(solid)), name), frame)]
+    mesh = mesh_file.checked(Triangles(np.array(solid["vertices"]), np.array(solid["faces"])), f"{name!r} ")
+    found = mesh_shapes(mesh, name, "mm", partial(kept_beside, path))
+    if not _is_exact(found, solid):
+        notes += found.notes
+    return [_data(mesh_file.scaled(shape, 1.0 / MM), frame) for shape in found.shapes]
+
+
+def _is_exact(found: MeshShapes, solid: Data) -> bool:
+    """Whether shapes have the volume of the surfaces that the triangles stand for."""
+    volume = sum((-1.0 if isinstance(shape, Hole) else 1.0) * shape_moments(shape).volume_m3 for shape in found.shapes)
+    return "volume" in solid and abs(volume - solid["volume"]) <= SAME_VOLUME * volume
+
+
+def _pose(data: Data | None) -> Pose:
+    if data is None:
+        return Pose()
+    angles = data.get("euler_zyx_deg")
+    return Pose(data["position"], data.get("quat_wxyz"), euler_zyx=None if angles is None else np.radians(angles))
+
+
+def _data(shape: Shape, frame: Pose) -> Data:
+    """Return a shape as a scene file has it."""
+    place = frame @ shape.pose_body_shape
+    if isinstance(shape, Box):
+        numbers: Data = {"size": shape.size_m.tolist()}
+    elif isinstance(shape, Convex):
+        numbers, place = {"vertices": place.transform(shape.vertices_m).tolist()}, Pose()
+    else:
+        numbers = {key.removesuffix("_m"): value for key, value in vars(shape).items() if key.endswith("_m")}
+    if isinstance(shape, Hole):
+        numbers["in"] = list(shape.in_)
+        if shape.chamfer is not None:
+            width, angle_deg = shape.chamfer.width_m, float(np.degrees(shape.chamfer.angle_rad))
+            numbers["chamfer"] = {"width": width, "angle_deg": angle_deg}
+    return {"name": shape.name, shape.kind: numbers, **pose_data(place, of_part=True)}

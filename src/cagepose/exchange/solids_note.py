@@ -1,0 +1,58 @@
+"""What a file of solids in the world does not hold, kept beside them: our note, with mass and poses.
+
+In STEP it is a comment of the file, beside STL a file of its own.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+from cagepose.exchange.beside import beside_text, read_beside
+from cagepose.files.scene_document import scene_document
+from cagepose.files.write import MADE_BY
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
+
+OF_OBJECT = ("mass", "center_of_gravity", "inertia", "pose")
+"""Keys of the scene file's object that stand in the note as they are."""
+MOST_BYTES = 4 * 1024 * 1024
+IN_STEP = re.compile(r"/\* cagepose (.*?) \*/", re.DOTALL)
+
+
+def solids_note(scene: Scene, pose_world_object: Pose) -> str:
+    """Return the note for solids that show the object at a pose."""
+    document = scene_document(scene, "m")
+    note = json.loads(beside_text(scene, with_friction=True))
+    note |= {"what": f"a scene's loads, points and poses, {MADE_BY}", "cage": document["cage"]["pose"]}
+    note["object"] = {key: document["object"][key] for key in OF_OBJECT if key in document["object"]}
+    note["shown"] = [pose_world_object.position_m.tolist(), pose_world_object.quaternion_wxyz.tolist()]
+    return json.dumps(note)
+
+
+def with_note(step: bytes, note: str) -> bytes:
+    """Return a STEP file with the note as a comment."""
+    start, _, rest = step.partition(b"\n")
+    escaped = note.replace("*/", "*\\/")  # the same in JSON, and no end of the comment
+    return b"\n".join([start, f"/* cagepose {escaped} */".encode(), rest])
+
+
+def file_beside(path: Path) -> Path:
+    """Return the file in which the note of an STL file stands."""
+    return path.with_name(f"{path.name}.json")
+
+
+def read_solids_note(path: Path) -> dict[str, Any]:
+    """Return the note of a file; nothing, of those of other programs."""
+    kept = path if path.suffix.lower() in (".step", ".stp") else file_beside(path)
+    if not kept.is_file():
+        return {}
+    with kept.open("rb") as stream:
+        text = stream.read(MOST_BYTES).decode(errors="replace")
+    if kept == path:
+        found = IN_STEP.search(text)
+        text = found.group(1) if found else ""
+    note = read_beside(text) or {}
+    return note if {"object", "cage", "shown", "points"} <= note.keys() else {}

@@ -1,0 +1,111 @@
+"""Convex parts of a body that is not convex, by coacd, and how far they are from it: `decomposed`."""
+
+from __future__ import annotations
+
+import json
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cagepose.files.extra import files_library
+from cagepose.files.meshes import run_coacd
+from cagepose.files.meshes.cuts import together
+from cagepose.files.meshes.manifolds import Triangles, manifold3d
+from cagepose.files.write import MADE_BY, check_can_write, is_made_by_us, json_line, write_whole
+from cagepose.model.checks import FloatArray
+
+TRIANGLES = 4000
+"""Of what coacd is given, which takes it some ten seconds."""
+SAMPLES = 4000
+"""Points of each surface that are asked how far they are from the other."""
+MOST_KEPT = 8
+"""Bodies of one mesh."""
+VERSION = 2
+
+
+class Decomposition(NamedTuple):
+    """Corners of convex parts, (n, 3) each, and the largest distance between their surface and the body's."""
+
+    parts: list[FloatArray]
+    error: float
+
+
+def decomposed(mesh: Triangles) -> Decomposition:
+    """Return convex parts of a body.
+
+    Raises
+    ------
+    SceneError
+        It takes too long.
+    MissingExtraError
+        coacd is not installed.
+    """
+    hulls = [manifold3d().Manifold.hull_points(corners) for corners in run_coacd.convex_parts(_simplified(mesh))]
+    union = Triangles.of(together(hulls))
+    error = max(_from(mesh, union, outside=False), _from(union, mesh, outside=True))
+    return Decomposition([Triangles.of(hull).vertices for hull in hulls], error)
+
+
+def kept_beside(mesh_file: Path, mesh: Triangles) -> Decomposition:
+    """As `decomposed`; what was found is kept in a file beside the mesh, and taken from there while that is the same.
+
+    A folder that cannot be written keeps nothing.
+    """
+    settings = f"{VERSION} {run_coacd.CONCAVITY}".encode()
+    key = sha256(mesh.vertices.tobytes() + mesh.faces.tobytes() + settings).hexdigest()
+    path = mesh_file.with_name(f"{mesh_file.name}.parts.json")
+    kept = _kept(path)
+    if key in kept:
+        try:
+            corners = [np.array(part, dtype=np.float64).reshape(-1, 3) for part in kept[key]["parts"]]
+            return Decomposition(corners, float(kept[key]["error"]))
+        except (TypeError, ValueError, KeyError):
+            pass  # somebody changed it: found anew, and written over
+    found = decomposed(mesh)
+    kept |= {key: {"parts": [part.tolist() for part in found.parts], "error": found.error}}
+    last = dict(list(kept.items())[-MOST_KEPT:])
+    document = {"what": f"convex parts of {mesh_file.name}, {MADE_BY}", "parts_of": last}
+    try:
+        check_can_write(path, is_made_by_us, "parts of a mesh that cagepose kept")
+        write_whole(path, json_line(document).encode())
+    except OSError:
+        pass
+    return found
+
+
+def _kept(path: Path) -> dict[str, Any]:
+    try:
+        found = json.loads(path.read_text()) if path.is_file() else {}
+    except (OSError, ValueError):
+        return {}
+    return dict(found.get("parts_of") or {}) if isinstance(found, dict) else {}
+
+
+def _simplified(mesh: Triangles) -> Triangles:
+    """Return a body of few triangles near a body of many."""
+    body, tolerance = mesh.body(), 1e-4 * mesh.size
+    while body.num_tri() > TRIANGLES:
+        body = body.simplify(tolerance)
+        tolerance *= 1.5
+    return Triangles.of(body)
+
+
+def _from(one: Triangles, other: Triangles, *, outside: bool) -> float:
+    """Return how far points of one surface, spread evenly and at its corners, are from another at most.
+
+    ``outside``: of those alone that are outside of it, as between the parts of a body there may be gaps within it.
+    """
+    trimesh = files_library("trimesh", "a mesh that is not convex needs trimesh")
+    files_library("rtree", "a mesh that is not convex needs rtree")
+    random = np.random.default_rng(0)
+    doubled = np.linalg.norm(one.areas, axis=1)
+    chosen = one.vertices[one.faces[random.choice(len(one.faces), SAMPLES, p=doubled / doubled.sum())]]
+    inside = np.einsum("ij,ijk->ik", random.dirichlet(np.ones(3), SAMPLES), chosen)
+    corners = one.vertices[:: max(1, len(one.vertices) // SAMPLES)]
+    surface = trimesh.Trimesh(other.vertices, other.faces, process=False)
+    points = np.concatenate([inside, corners])
+    nearest, distances, faces = trimesh.proximity.closest_point(surface, points)
+    is_outside = np.einsum("ij,ij->i", points - nearest, other.normals[faces]) > 0.0
+    return float(distances[is_outside].max(initial=0.0) if outside else distances.max())

@@ -1,0 +1,42 @@
+"""Edges at which a body is not convex: `reflex_edges`."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.files.meshes.manifolds import Triangles
+
+
+class Edges(NamedTuple):
+    """Edges of a surface, (n, 2): their corners; and the two triangles at each."""
+
+    corners: NDArray[np.int64]
+    faces: NDArray[np.int64]
+
+    def of(self, chosen: NDArray[np.bool_]) -> Edges:
+        """Return some of them."""
+        return Edges(self.corners[chosen], self.faces[chosen])
+
+
+def edges_of(mesh: Triangles) -> Edges:
+    """Return all edges of a closed surface."""
+    sides = np.stack([mesh.faces, np.roll(mesh.faces, -1, axis=1)], axis=2).reshape(-1, 2)
+    face = np.repeat(np.arange(len(mesh.faces)), 3)
+    order = np.lexsort((sides.max(axis=1), sides.min(axis=1)))
+    pairs = order.reshape(-1, 2)  # each edge is a side of two triangles
+    return Edges(np.sort(sides[pairs[:, 0]], axis=1), face[pairs])
+
+
+def reflex_edges(mesh: Triangles, allowed: float) -> Edges:
+    """Return the edges that are hollow: on either side, the other triangle stands out by more than ``allowed``."""
+    edges = edges_of(mesh)
+    third = mesh.faces[edges.faces].sum(axis=2) - edges.corners.sum(axis=1)[:, None]
+    start = mesh.vertices[edges.corners[:, 0]]
+    out = [
+        np.einsum("ij,ij->i", mesh.normals[edges.faces[:, side]], mesh.vertices[third[:, 1 - side]] - start)
+        for side in (0, 1)
+    ]
+    return edges.of(np.minimum(*out) > allowed)

@@ -1,0 +1,151 @@
+"""Bodies from STL, OBJ, PLY and GLB files, read by trimesh; what is no body is refused: `read_mesh`, `read_solids`."""
+
+from __future__ import annotations
+
+import io
+import os
+from functools import lru_cache, partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cagepose.errors import Problem, SceneError
+from cagepose.files.extra import files_library
+from cagepose.files.meshes.crossings import crosses_itself
+from cagepose.files.meshes.decomposed import kept_beside
+from cagepose.files.meshes.manifolds import Triangles, manifold3d
+from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes, tidied
+from cagepose.files.units import LengthUnit, to_metres
+from cagepose.model.shapes import Shape
+
+SUFFIXES = (".stl", ".obj", ".ply", ".glb")
+UNIT_OF_GLB: LengthUnit = "m"
+"""By its standard; the other formats do not say theirs."""
+MAX_MESH_BYTES = 32 * 1024 * 1024
+"""Of one file: 650,000 triangles of a binary STL."""
+FLAT = 1e-6
+"""Of its size: what is thinner is flat."""
+KEPT = 64
+"""Meshes that are not read again for each scene of a study."""
+
+
+def read_mesh(path: Path, given: LengthUnit | None, of_scene: LengthUnit, name: str) -> MeshShapes:
+    """Return the shapes that a mesh file is, in metres; see `mesh_shapes`.
+
+    Parameters
+    ----------
+    path
+        The file.
+    given, of_scene
+        The unit that the scene gives it in; None: that of a GLB file is the metre, of others that of the scene.
+    name
+        Of the shapes.
+
+    Raises
+    ------
+    SceneError
+        A file that cannot be used, or no closed body; the message begins with what is wrong.
+    MissingExtraError
+        trimesh is not installed.
+    """
+    unit = given or (UNIT_OF_GLB if path.suffix.lower() == ".glb" else of_scene)
+    try:
+        found = path.stat()
+        return _shapes(os.fspath(path), found.st_mtime_ns, found.st_size, unit, name)
+    except FileNotFoundError:
+        raise refused("is no file; check the name and the folder") from None
+    except OSError as error:
+        raise refused(f"cannot be read ({error.strerror or error}); check its permissions") from None
+
+
+@lru_cache(maxsize=KEPT)
+def _shapes(file: str, _changed: int, _n_bytes: int, unit: LengthUnit, name: str) -> MeshShapes:
+    solids = read_solids(Path(file), split=False)
+    found = mesh_shapes(checked(solids[""], ""), name, unit, partial(kept_beside, Path(file)))
+    metres = float(to_metres(1.0, unit))
+    return MeshShapes(tuple(scaled(shape, metres) for shape in found.shapes), metres * found.error, found.notes)
+
+
+def scaled(shape: Shape, factor: float) -> Shape:
+    """Return a shape whose lengths are so many times as long."""
+    return tidied(shape, factor, np.zeros(3))
+
+
+def read_solids(path: Path, *, split: bool = True) -> dict[str, Triangles]:
+    """Return the surfaces of a mesh file by their names, in its unit; ``split=False``: all as one, "".
+
+    Raises
+    ------
+    SceneError
+        A file that cannot be used.
+    MissingExtraError
+        trimesh is not installed.
+    """
+    trimesh = files_library("trimesh", "meshes need trimesh")
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise refused(f"has the suffix {path.suffix!r}; give a file of one of: {', '.join(SUFFIXES)}")
+    if not path.is_file():
+        raise refused("is no file; check the name and the folder")
+    if path.stat().st_size > MAX_MESH_BYTES:
+        raise refused(f"is larger than {MAX_MESH_BYTES // 1024**2} MiB; simplify it")
+    content = io.BytesIO(path.read_bytes())
+    # No resolver: a file may name others, such as textures, which are not opened.
+    given: dict[str, Any] = {"file_type": suffix[1:], "skip_materials": True, "process": False}
+    try:
+        if split:
+            scene = trimesh.load_scene(content, **given, **({"split_objects": True} if suffix == ".obj" else {}))
+            meshes = {str(mesh.metadata["name"]): mesh for mesh in scene.dump()}
+        else:
+            meshes = {"": trimesh.load_mesh(content, **given)}
+        return {name: _merged(mesh.vertices, mesh.faces) for name, mesh in meshes.items()}
+    except Exception as error:  # whatever trimesh's readers raise on a damaged file
+        words = " ".join(str(error).split())[:80] or type(error).__name__
+        raise refused(f"cannot be read as a mesh ({words}); export it again") from None
+
+
+def _merged(vertices: ArrayLike, faces: ArrayLike) -> Triangles:
+    """Return triangles whose corners are one where they are at the same place; those with two such are left out."""
+    points, same = np.unique(np.array(vertices, dtype=np.float64), axis=0, return_inverse=True)
+    corners = same.ravel()[np.array(faces, dtype=np.int64).reshape(-1, 3)]
+    return Triangles(points, corners[(corners != np.roll(corners, 1, axis=1)).all(axis=1)])
+
+
+def checked(mesh: Triangles, which: str) -> Triangles:
+    """Return a surface that encloses a body; ``which`` begins the messages about others.
+
+    Raises
+    ------
+    SceneError
+        It is empty, flat, open, inside out, or crosses itself.
+    """
+    if len(mesh.faces) == 0 or not np.isfinite(mesh.vertices).all():
+        raise refused(f"{which}holds no triangles with an area, or points that are no numbers; export it again")
+    size = mesh.size
+    centered = Triangles((mesh.vertices - mesh.vertices.mean(axis=0)) / (size or 1.0), mesh.faces)
+    spread = np.linalg.svd(centered.vertices, compute_uv=False)
+    if size == 0.0 or len(spread) < 3 or spread[2] <= FLAT * spread[0]:
+        raise refused(f"{which}encloses no volume: its points lie in one plane; give it a thickness")
+    if not _is_closed(mesh) or centered.body().status() != manifold3d().Error.NoError:
+        raise refused(
+            f"{which}is not closed: triangles are missing or meet no neighbour; repair it, or export it as a solid"
+        )
+    if centered.body().volume() < 0.0:
+        raise refused(f"{which}is inside out: its triangles face inwards; flip them")
+    if crosses_itself(centered):
+        raise refused(f"{which}crosses itself; repair it, as by a union of its parts")
+    return mesh
+
+
+def _is_closed(mesh: Triangles) -> bool:
+    """Whether each side of a triangle is as often one the other way round: what is not can crash libraries."""
+    sides = np.stack([mesh.faces, np.roll(mesh.faces, -1, axis=1)], axis=2).reshape(-1, 2)
+    there, back = (np.sort(side @ (len(mesh.vertices), 1)) for side in (sides, sides[:, ::-1]))
+    return bool((there == back).all())
+
+
+def refused(message: str) -> SceneError:
+    """Return the error that says so of a file."""
+    return SceneError([Problem((), message)])

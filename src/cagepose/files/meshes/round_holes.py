@@ -1,0 +1,166 @@
+"""Round holes of a body with flat sides: found, filled, and told as what they are: `filled`."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cagepose.files.meshes.box_corners import SINGLE_PRECISION
+from cagepose.files.meshes.convex_shapes import FEWEST_SIDES
+from cagepose.files.meshes.edges import edges_of, reflex_edges
+from cagepose.files.meshes.manifolds import ROUNDING, Triangles, circle_through, manifold3d
+from cagepose.model.checks import FloatArray
+from cagepose.model.hole import Chamfer, Hole
+from cagepose.model.pose import Pose, turn_from_z
+
+PARALLEL = 1e-4
+"""Sine between edges of one wall at most."""
+SHARP = 0.99
+"""Cosine between the triangles of the wall and those of its flat ends, less."""
+NEAR_WALL = 0.95
+"""Of the radius: there the ends are asked whether they are open, as in the middle there may be a narrower hole."""
+BESIDE = 1e-4
+"""Of a hole's radius: so far beyond its ends it is asked whether they are open."""
+
+
+class RoundHole(NamedTuple):
+    """A hole, and by how much its wall is off at most."""
+
+    hole: Hole
+    error: float
+
+
+def filled(body: Any) -> tuple[Any, list[RoundHole]]:
+    """Return a body without its round holes with flat ends, and these."""
+    mesh = Triangles.of(body)
+    found, plugs = [], []
+    for wall in _walls(mesh):
+        hole = _hole(body, wall)
+        if hole is not None:
+            chamfered, cone = _with_chamfer(mesh, wall, hole)
+            found.append(chamfered)
+            plugs.append(manifold3d().Manifold.hull_points(np.concatenate([wall, cone])))
+    if not plugs:
+        return body, []
+    whole = manifold3d().Manifold.batch_boolean([body, *plugs], manifold3d().OpType.Add)
+    return whole.simplify(ROUNDING * mesh.size), found
+
+
+def _walls(mesh: Triangles) -> list[FloatArray]:
+    """Return the corners of each wall: those of hollow edges that are parallel, equally long and in a ring."""
+    allowed = ROUNDING * mesh.size
+    edges = reflex_edges(mesh, allowed).corners
+    if len(edges) < FEWEST_SIDES:
+        return []
+    links: dict[int, set[int]] = {}
+    all_edges = edges_of(mesh)
+    one_side, other_side = np.moveaxis(mesh.normals[all_edges.faces], 1, 0)
+    is_sharp = np.einsum("ij,ij->i", one_side, other_side) < SHARP  # two holes are joined by edges within flat ends
+    for one, other in all_edges.corners[is_sharp].tolist():
+        links.setdefault(one, set()).add(other)
+        links.setdefault(other, set()).add(one)
+    spans = mesh.vertices[edges[:, 1]] - mesh.vertices[edges[:, 0]]
+    lengths = np.linalg.norm(spans, axis=1)
+    left, walls = np.ones(len(edges), bool), []
+    for seed in np.argsort(-lengths).tolist():
+        if not left[seed]:
+            continue
+        axis = spans[seed] / lengths[seed]
+        across = np.linalg.norm(np.cross(spans, axis), axis=1)
+        low, high = np.sort(mesh.vertices[edges] @ axis, axis=1).T
+        slack = 3.0 * SINGLE_PRECISION * mesh.size
+        is_level = (np.abs(low - low[seed]) < slack) & (np.abs(high - high[seed]) < slack)
+        alike = left & is_level & (across <= PARALLEL * lengths)
+        rows = np.flatnonzero(alike)
+        bottoms = np.where((spans[rows] @ axis > 0.0)[:, None], edges[rows], edges[rows][:, ::-1])
+        row_of = {int(bottom): int(row) for row, bottom in zip(rows, bottoms[:, 0], strict=True)}
+        start = next(bottom for bottom, row in row_of.items() if row == seed)
+        ring, waiting = {start}, [start]
+        while waiting:
+            beside = (links.get(waiting.pop(), set()) & row_of.keys()) - ring
+            ring |= beside
+            waiting += beside
+        of_ring = [row_of[bottom] for bottom in ring]
+        left[of_ring] = False
+        if len(ring) >= FEWEST_SIDES:
+            walls.append(mesh.vertices[edges[of_ring]].reshape(-1, 3))
+    return walls
+
+
+def _hole(body: Any, wall: FloatArray) -> RoundHole | None:
+    """Return the hole of a wall; None: it is not round all around, or is closed at both ends."""
+    size = float(np.ptp(wall, axis=0).max())
+    half = len(wall) // 2
+    spans = wall[1::2] - wall[::2]
+    axis = np.sum(np.where((spans @ spans[0] > 0.0)[:, None], spans, -spans), axis=0)
+    axis = axis / np.linalg.norm(axis)
+    heights = (wall @ axis).reshape(half, 2)
+    low, high = float(heights.min(axis=1).mean()), float(heights.max(axis=1).mean())
+    circle = circle_through(wall - np.outer(wall @ axis, axis), axis)
+    allowed = 3.0 * SINGLE_PRECISION * max(size, high - low)
+    if circle is None or circle.n_sides < FEWEST_SIDES - 0.5 or circle.off > allowed:
+        return None
+    step = BESIDE * circle.radius
+    near_wall = NEAR_WALL * wall[0] + (1.0 - NEAR_WALL) * circle.center
+    near_wall = near_wall - (near_wall @ axis) * axis
+    is_open = [not _holds(body, near_wall + height * axis) for height in (low - step, high + step)]
+    if not any(is_open) or _holds(body, circle.center + (low + high) / 2.0 * axis):
+        return None
+    up, mouth = (axis, high) if is_open[1] else (-axis, low)
+    pose = Pose(circle.center + mouth * axis, turn_from_z(up))
+    return RoundHole(Hole(circle.radius, high - low, None, (), pose), circle.sagitta + circle.off)
+
+
+def _with_chamfer(mesh: Triangles, wall: FloatArray, found: RoundHole) -> tuple[RoundHole, FloatArray]:
+    """Return a hole with the cone that widens its mouth, and the corners of that; without one, it as it is and none."""
+    hole, error = found.hole, found.error
+    local = hole.pose_body_shape.inverse_transform(mesh.vertices)
+    rims = [(hole.radius_m, 0.0)]
+    corners = [wall[:0]]
+    while (ring := _ring_above(mesh, local, *rims[-1])) is not None:
+        (radius, height), of_ring, off = ring
+        angle = math.atan2(radius - hole.radius_m, height)
+        if len(rims) > 1 and abs(angle - math.atan2(rims[1][0] - hole.radius_m, rims[1][1])) > PARALLEL:
+            break
+        rims.append((radius, height))
+        corners.append(of_ring)
+        error = max(error, off)
+    if len(rims) == 1:
+        return found, wall[:0]
+    width, height = rims[-1][0] - hole.radius_m, rims[-1][1]
+    pose = hole.pose_body_shape @ Pose((0.0, 0.0, height))
+    chamfer = Chamfer(width, math.atan2(width, height))
+    wider = Hole(hole.radius_m, hole.depth_m + height, chamfer, (), pose)
+    return RoundHole(wider, error), np.concatenate(corners)
+
+
+def _ring_above(
+    mesh: Triangles, local: FloatArray, radius: float, height: float
+) -> tuple[tuple[float, float], FloatArray, float] | None:
+    """Return the circle at which all edges end that go up from a circle about a hole's axis: its radius and height, its
+    corners, and how far its sides are off. None: it is none, or no wider.
+    """
+    allowed = 3.0 * SINGLE_PRECISION * mesh.size
+    is_rim = (np.abs(local[:, 2] - height) <= allowed) & (np.abs(np.hypot(*local[:, :2].T) - radius) <= allowed)
+    edges = edges_of(mesh).corners
+    leaving = edges[is_rim[edges].sum(axis=1) == 1]
+    ends = np.unique(leaving[~is_rim[leaving]])
+    ends = ends[local[ends, 2] > height + allowed]
+    circle = circle_through(local[ends], np.array((0.0, 0.0, 1.0)))
+    if circle is None or circle.n_sides < FEWEST_SIDES - 0.5:
+        return None
+    x, y, top = circle.center.tolist()
+    if max(circle.off, float(np.ptp(local[ends, 2])), math.hypot(x, y)) > allowed or circle.radius <= radius + allowed:
+        return None
+    return (circle.radius, top), mesh.vertices[ends], circle.sagitta + circle.off
+
+
+def _holds(body: Any, point: FloatArray) -> bool:
+    """Whether a point is in a body: a ray from there leaves it once more often than it enters."""
+    box = body.bounding_box()
+    end = np.array(box[3:]) + (np.array(box[3:]) - np.array(box[:3])) * (1.01, 1.37, 1.73)
+    span = end - point
+    hits = body.ray_cast(point.tolist(), end.tolist())
+    return sum(1 if float(np.dot(hit.normal, span)) > 0.0 else -1 for hit in hits) > 0

@@ -1,0 +1,166 @@
+"""Scenes as STEP and STL come back as the scenes that they were; foreign solids are chosen by name."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cagepose import Box, Cage, Convex, Cylinder, Load, MissingExtraError, Object, Pose, Scene, load_scene, run
+from cagepose.cli.app import main
+from cagepose.exchange import step_solids
+from cagepose.exchange.crosscheck import surface_points
+from cagepose.exchange.export import exported
+from cagepose.exchange.imported import imported
+from cagepose.exchange.step import step_solid
+from cagepose.exchange.step_solids import write_step
+from our_scenes import SCENES
+
+FILES = {path.stem: path for path in SCENES}
+
+
+def there_and_back(scene: Scene, name: str, folder: Path):
+    for file, content in exported(run(scene), name.rpartition(".")[2], name).files.items():
+        (folder / file).write_bytes(content)
+    return imported(str(folder / name))
+
+
+def apart(one: Scene, other: Scene) -> float:
+    """How far poses of two scenes with the same object are apart, in sizes, phase by phase at most."""
+    points, ours, theirs = surface_points(one.object), run(one), run(other)
+    assert [phase.verdict for phase in ours.phases] == [phase.verdict for phase in theirs.phases]
+    gaps = [
+        np.linalg.norm(a.pose.transform(points) - b.pose.transform(points), axis=1).max()
+        for a, b in zip(ours.phases, theirs.phases, strict=True)
+    ]
+    return max(gaps) / one.size_m
+
+
+@pytest.mark.parametrize("name", ["rollers", "peg-in-hole", "plate-on-pins", "v-groove"])
+def test_step_gives_the_same_final_pose(name, tmp_path):
+    """Balls, bars, pins, points, and holes through and blind: to a billionth of the size."""
+    pytest.importorskip("OCP")
+    scene = load_scene(FILES[name])
+    found = there_and_back(scene, "scene.step", tmp_path)
+    assert apart(scene, found.scene) < 1e-9
+    assert found.notes == ()
+    for ours, theirs in ((scene.object, found.scene.object), (scene.cage, found.scene.cage)):
+        drilled = {part for hole in ours.holes for part in hole.in_}
+        kinds = {
+            part.name: "convex" if part.name in drilled and part.kind == "box" else part.kind for part in parts(ours)
+        }
+        assert {part.name: part.kind for part in parts(theirs)} == kinds
+        assert len(theirs.holes) == len(ours.holes)
+
+
+def parts(body: Object | Cage):
+    return body.parts if isinstance(body, Object) else body.shapes
+
+
+@pytest.mark.parametrize(("to", "n_notes"), [("step", 0), ("stl", 2)])
+def test_a_taper_and_a_chamfer_come_back(to, n_notes, tmp_path):
+    """Their numbers; the pin may turn about its axis as it likes, so that its final poses are no measure."""
+    pytest.importorskip("OCP")
+    scene = load_scene(FILES["tapered-pin"])
+    found = there_and_back(scene, f"scene.{to}", tmp_path)
+    (hole,), (wanted,) = found.scene.cage.holes, scene.cage.holes
+    (pin,), (pin_wanted,) = found.scene.object.shapes, scene.object.shapes
+    assert [hole.radius_m, hole.depth_m, hole.chamfer.width_m, hole.chamfer.angle_rad] == pytest.approx(
+        [wanted.radius_m, wanted.depth_m, wanted.chamfer.width_m, wanted.chamfer.angle_rad], rel=1e-9
+    )
+    assert sorted(radius for _, radius in pin.rims) == pytest.approx(sorted(r for _, r in pin_wanted.rims), rel=1e-9)
+    assert len(found.notes) == n_notes
+
+
+@pytest.mark.parametrize("name", ["rollers", "rail-pitch", "v-groove"])
+def test_stl_gives_the_same_final_pose_within_its_error(name, tmp_path):
+    """Here far within, as all corners of the triangles are on the true surface and have all their digits."""
+    scene = load_scene(FILES[name])
+    found = there_and_back(scene, "scene.stl", tmp_path)
+    assert apart(scene, found.scene) < 1e-9
+    assert all("flat sides where it is round" in note for note in found.notes)
+
+
+def test_a_rounded_hull_is_one_solid_of_step(tmp_path):
+    """Of volume: that of its core, of its faces moved out, of its edges and its corners (Steiner)."""
+    pytest.importorskip("OCP")
+    corners = np.array([(x, y, z) for x in (-0.02, 0.02) for y in (-0.01, 0.01) for z in (-0.005, 0.005)])
+    write_step([step_solid("part", Convex(corners, 0.003), [], Pose())], tmp_path / "part.step")
+    (solid,) = step_solids.read_step(tmp_path / "part.step")["solids"]
+    edges, faces, core = 4 * (40 + 20 + 10), 2 * (40 * 20 + 40 * 10 + 20 * 10), 40 * 20 * 10
+    wanted = core + 3 * faces + np.pi / 4 * 9 * edges + 4 / 3 * np.pi * 27
+    assert solid["volume"] == pytest.approx(wanted, rel=1e-6)
+
+
+def assembly(folder: Path) -> str:
+    """Solids of another program: names of its own, no note."""
+    block, pin = Box((0.03, 0.03, 0.02), Pose((0, 0, 0.0101))), Cylinder(0.05, 0.01, Pose((0, 0, -0.005)))
+    cover = Box((0.01, 0.01, 0.01), Pose((0, 0, 0.2)))
+    solids = [step_solid(name, shape, [], Pose()) for name, shape in (("block", block), ("table", pin), ("lid", cover))]
+    write_step(solids, folder / "parts.step")
+    return str(folder / "parts.step")
+
+
+def test_foreign_solids_are_chosen_by_name(tmp_path, monkeypatch, capsys):
+    pytest.importorskip("OCP")
+    monkeypatch.chdir(tmp_path)
+    source = assembly(tmp_path)
+    assert main(["import", source, "-o", "scene.yaml"]) == 2
+    assert "does not say which solid is held; give --object and one of: block, table, lid" in capsys.readouterr().err
+    assert main(["import", source, "--object", "block", "--cage", "table", "-o", "scene.yaml"]) == 0
+    out = capsys.readouterr().out
+    assert "note: solids left out: lid" in out
+    assert "note: loads: the weight alone" in out
+    found = run(load_scene("scene.yaml"))
+    assert found.verdict == "rests"
+    assert found.pose.position_m[2] == pytest.approx(-1e-4, abs=1e-10)
+    assert main(["import", source, "--object", "black", "-o", "other.yaml"]) == 2
+    assert "has no solid 'black'; its solids: block, table, lid" in capsys.readouterr().err
+
+
+BOMB = b"HEADER;\nENDSEC;\nDATA;\n" + b"#1=ADVANCED_FACE('',(#1),#1,.T.);\n" * 1000
+GOOD = b"'block'"
+HOSTILE = {
+    "truncated": lambda content: content[: len(content) // 3],
+    "garbage": lambda content: content[:20] + bytes(range(256)) * 400,
+    "empty": lambda content: content[:0],
+    "itself": lambda content: content[:14] + BOMB,
+    "folder": lambda content: content.replace(GOOD, b"'../../etc/x'"),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_hostile_step_files_are_clear_errors_and_nothing_is_written(name, tmp_path, monkeypatch, capsys):
+    pytest.importorskip("OCP")
+    monkeypatch.chdir(tmp_path)
+    source = Path(assembly(tmp_path))
+    source.write_bytes(HOSTILE[name](source.read_bytes()))
+    before = sorted(tmp_path.iterdir())
+    began = time.process_time()
+    assert main(["import", str(source), "--object", "block", "-o", "scene.yaml"]) == 2
+    assert time.process_time() - began < 10.0
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1
+    assert lines[0].startswith(str(source))
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_a_solid_that_takes_too_long_is_stopped(tmp_path, monkeypatch):
+    pytest.importorskip("OCP")
+    source = assembly(tmp_path)
+    monkeypatch.setattr(step_solids, "WALL_SECONDS", 0.2)
+    with pytest.raises(Exception, match=r"takes Open CASCADE more than 0.2 s; simplify it"):
+        imported(source, "block")
+
+
+def test_a_missing_extra_is_named(tmp_path, monkeypatch):
+    (tmp_path / "x.step").write_text("ISO-10303-21;")
+    monkeypatch.setitem(sys.modules, "OCP", None)
+    with pytest.raises(MissingExtraError, match=r"STEP files need Open CASCADE.*pip install 'cagepose\[cad\]'"):
+        imported(str(tmp_path / "x.step"))
+    scene = Scene(Object([Box((1, 1, 1))]), Cage([(0, 0, -0.5)]), [Load("weight", gravity=(0, 0, -1))])
+    with pytest.raises(MissingExtraError, match=r"pip install 'cagepose\[cad\]'"):
+        exported(run(scene), "step", "x.step")

@@ -1,0 +1,250 @@
+"""Bodies of triangles are recognised as what they stand for: known shapes, and a hand answer for each error."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cagepose import (
+    Box,
+    Capsule,
+    Cone,
+    Convex,
+    Cylinder,
+    Hole,
+    Pose,
+    Scene,
+    SceneError,
+    SceneFileError,
+    Sphere,
+    load_scene,
+)
+from cagepose.cli.app import main
+from cagepose.exchange.stl import binary_stl
+from cagepose.files.meshes import decomposed, mesh_file, run_coacd
+from cagepose.files.meshes.manifolds import Triangles
+from cagepose.files.meshes.mesh_file import checked
+from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
+from cagepose.model.shapes import Shape
+from cagepose.model.surface import Mesh, shape_mesh
+from cagepose.model.union import body_moments
+
+manifold3d = pytest.importorskip("manifold3d")
+pytest.importorskip("trimesh")
+
+PLACE = Pose((3.0, 4.0, 5.0), euler_zyx=(0.4, -0.7, 1.1))
+SEGMENTS = 64
+
+
+def refuse(mesh: Triangles) -> None:
+    raise AssertionError(f"{mesh!r} needs no decomposition")
+
+
+def body(*added: Shape, without: tuple[Shape, ...] = ()):
+    """A body of manifold3d: shapes, less others."""
+
+    def of(shape: Shape):
+        mesh = shape_mesh(shape, SEGMENTS)
+        return manifold3d.Manifold(manifold3d.Mesh64(mesh.vertices_m, mesh.triangles.astype(np.uint64)))
+
+    union = manifold3d.Manifold.batch_boolean([of(shape) for shape in added], manifold3d.OpType.Add)
+    return manifold3d.Manifold.batch_boolean([union, *map(of, without)], manifold3d.OpType.Subtract)
+
+
+def shapes_of(solid, *, single: bool = False, decompose=refuse) -> MeshShapes:
+    """What is recognised of a body that is turned and, as in an STL file, in single precision."""
+    mesh = Triangles.of(solid)
+    vertices = PLACE.transform(mesh.vertices)
+    if single:
+        vertices = vertices.astype(np.float32).astype(np.float64)
+    return mesh_shapes(checked(Triangles(vertices, mesh.faces), ""), "part", "mm", decompose)
+
+
+@pytest.mark.parametrize(("single", "rounding"), [(False, 1e-9), (True, 3e-6)])
+@pytest.mark.parametrize(
+    "shape",
+    [
+        Cylinder(2.0, 7.0),
+        Cylinder(2.0, 0.05),
+        Cylinder(2.0, 2.0 * math.sqrt(3.0)),  # no axis stands out by its inertia
+        Cone(3.0, 1.0, 4.0),
+        Cone(3.0, 0.0, 4.0),
+        Sphere(2.0),
+        Capsule(2.0, 9.0),
+        Capsule(2.0, 0.5),
+    ],
+    ids=lambda shape: repr(shape),
+)
+def test_what_is_round_is_recognised_with_the_sagitta_as_its_error(shape, single, rounding):
+    """A chord of 1/64 of a circle is r (1 - cos(pi / 64)) within it; a ball's faces, a little more."""
+    found = shapes_of(body(shape), single=single)
+    (one,) = found.shapes
+    assert type(one) is type(shape)
+    lengths, wanted = (
+        sorted(value for key, value in vars(each).items() if key.endswith("_m")) for each in (one, shape)
+    )  # a cone may stand on its head
+    assert lengths == pytest.approx(wanted, abs=10 * rounding)
+    assert one.pose_body_shape.position_m == pytest.approx(PLACE.position_m, abs=10 * rounding)
+    axis = one.pose_body_shape.rotation[:, 2] @ PLACE.rotation[:, 2]
+    assert isinstance(shape, Sphere) or abs(axis) == pytest.approx(1.0, abs=1e-9 if not single else 1e-6)
+    radius = max(getattr(shape, key) for key in vars(shape) if key.startswith("radius"))
+    sagitta = radius * (1.0 - math.cos(math.pi / SEGMENTS))
+    assert sagitta * (1.0 - 1e-3) < found.error < 2.1 * sagitta
+    assert found.notes == (f"'part' has flat sides where it is round here, up to {found.error:.2g} mm off",)
+
+
+def test_prisms_and_what_is_nearly_round_stay_as_they_are():
+    octagon = Convex(shape_mesh(Cylinder(2.0, 5.0), 8).vertices_m)
+    flattened = shape_mesh(Cylinder(2.0, 5.0), 64).vertices_m * (1.0, 1.001, 1.0)
+    side = shape_mesh(Cylinder(2.0, 5.0), 64).vertices_m
+    for shape in (octagon, Convex(flattened), Convex(side[side[:, 0] < 1.5])):
+        found = shapes_of(body(shape))
+        assert isinstance(found.shapes[0], Convex)
+        assert found.error == 0.0
+
+
+PLATE = Box((60.0, 40.0, 10.0))
+UNIONS = {
+    "L": ((Box((40, 10, 10)), Box((10, 30, 10), Pose((-15, 10, 0)))), (), "box box"),
+    "channel": ((PLATE,), (Box((70, 20, 12), Pose((0, 0, 5))),), "box box box"),
+    "frame": ((PLATE,), (Box((40, 20, 20)),), "box box box box"),
+    "cavity": ((PLATE,), (Box((40, 20, 6)),), "box box box box box box"),
+    "boss": ((PLATE, Cylinder(8, 20, Pose((5, 0, 10)))), (), "box cylinder"),
+    "apart": ((PLATE, Sphere(5, Pose((0, 0, 40)))), (), "box sphere"),
+    "through": ((PLATE,), (Cylinder(5, 30),), "convex hole"),
+    "blind": ((PLATE,), (Cylinder(5, 10, Pose((9, 0, 5))),), "convex hole"),
+    "ring": ((Cylinder(20, 10),), (Cylinder(10, 30),), "cylinder hole"),
+    "bored boss": (
+        (PLATE, Cylinder(8, 20, Pose((5, 0, 10)))),
+        (Cylinder(5, 60, Pose((5, 0, 0))),),
+        "convex cylinder hole",
+    ),
+    "counterbore": ((PLATE,), (Cylinder(5, 60), Cylinder(9, 8, Pose((0, 0, 5)))), "convex convex hole hole"),
+    "two holes": (
+        (PLATE,),
+        (Cylinder(5, 30, Pose((12, 0, 0))), Cylinder(6, 30, Pose((-12, 0, 0)))),
+        "convex hole hole",
+    ),
+}
+
+
+@pytest.mark.parametrize("single", [False, True])
+@pytest.mark.parametrize("name", UNIONS)
+def test_unions_come_back_as_their_parts(name, single):
+    """Which fill the same volume: that of the mesh but for what its chords cut off."""
+    added, without, kinds = UNIONS[name]
+    solid = body(*added, without=without)
+    found = shapes_of(solid, single=single)
+    assert " ".join(sorted(shape.kind for shape in found.shapes)) == kinds
+    parts = [shape for shape in found.shapes if not isinstance(shape, Hole)]
+    holes = [shape for shape in found.shapes if isinstance(shape, Hole)]
+    assert all(hole.in_ for hole in holes)
+    moments = body_moments(parts, holes)
+    is_round = any(not isinstance(shape, Box) for shape in (*added, *without))
+    assert moments.volume_m3 == pytest.approx(solid.volume(), rel=2e-3 if is_round else 3e-6)
+    assert moments.centroid_m == pytest.approx(PLACE.transform(centroid_of(solid)), abs=0.02 if is_round else 1e-5)
+
+
+def centroid_of(solid):
+    from cagepose.model.union import mesh_sums
+
+    mesh = Triangles.of(solid)
+    sums = mesh_sums(Mesh(mesh.vertices, mesh.faces), np.zeros(3))
+    return sums.first / sums.volume
+
+
+def gap_of(shape: Convex, point) -> float:
+    """How far a point is from a convex shape: the nearest mean of its corners, by SciPy's NNLS."""
+    from scipy.optimize import nnls
+
+    large = 1e3
+    rows = np.vstack([shape.vertices_m.T, large * np.ones(len(shape.vertices_m))])
+    weights = nnls(rows, np.append(point, large))[0]
+    return float(np.linalg.norm(shape.vertices_m.T @ weights / weights.sum() - point))
+
+
+def torus() -> Triangles:
+    section = manifold3d.CrossSection.circle(3.0, 16).translate((10.0, 0.0))
+    return Triangles.of(manifold3d.Manifold.revolve(section, 32))
+
+
+def test_what_cannot_be_cut_is_decomposed_with_its_error_and_kept(tmp_path, monkeypatch):
+    """The error is at least what any point of the mesh is off, and the parts are found once."""
+    pytest.importorskip("coacd")
+    pytest.importorskip("rtree")
+    monkeypatch.setattr(run_coacd, "CONCAVITY", 0.2)
+    calls = []
+    plain = decomposed.decomposed
+    monkeypatch.setattr(decomposed, "decomposed", lambda mesh: calls.append(1) or plain(mesh))
+    (tmp_path / "ring.stl").write_bytes(binary_stl(Mesh(torus().vertices, torus().faces)))
+    first = mesh_file.read_mesh(tmp_path / "ring.stl", "mm", "mm", "ring")
+    assert all(isinstance(shape, Convex) for shape in first.shapes)
+    assert len(first.shapes) > 3
+    assert f"here, {len(first.shapes)} convex parts, up to {1e3 * first.error:.2g} mm off" in first.notes[0]
+    assert "'ring' has 1 openings that are not round with flat ends" in first.notes[1]
+    within = [shape.holds(torus().vertices / 1e3) for shape in first.shapes]
+    outside = torus().vertices[~np.any(within, axis=0)] / 1e3
+    assert 1e-4 < first.error < 3e-3
+    gaps = [min(gap_of(shape, point) for shape in first.shapes) for point in outside]
+    assert max(gaps) < 1.01 * first.error
+    mesh_file._shapes.cache_clear()
+    again = mesh_file.read_mesh(tmp_path / "ring.stl", "mm", "mm", "ring")
+    assert len(calls) == 1
+    assert [shape.vertices_m.tolist() for shape in again.shapes] == [s.vertices_m.tolist() for s in first.shapes]
+    (tmp_path / "ring.stl.parts.json").write_text("{")
+    mesh_file._shapes.cache_clear()
+    mesh_file.read_mesh(tmp_path / "ring.stl", "mm", "mm", "ring")
+    assert len(calls) == 2
+
+
+SCENE = """\
+name: bored plate on a peg
+object:
+  shapes:
+    - {mesh: {file: plate.stl}, name: plate, friction: 0.3}
+    - {sphere: {radius: 3}, position: [20, 0, 8], name: knob}
+    - {hole: {radius: 4, depth: 10, in: [plate]}, position: [-20, 0, 5], name: drilled}
+  mass: 1
+cage: {points: [[20, 15, -5.1], [20, -15, -5.1], [-25, 0, -5.1]]}
+loads: [{name: weight, gravity: [0, 0, -9.81]}]
+"""
+
+
+def scene_with(folder: Path, added, without, text=SCENE) -> Scene:
+    solid = Triangles.of(body(*added, without=without))
+    (folder / "plate.stl").write_bytes(binary_stl(Mesh(solid.vertices, solid.faces)))
+    (folder / "scene.yaml").write_text(text)
+    return load_scene(folder / "scene.yaml")
+
+
+def test_a_mesh_of_several_shapes_stands_in_a_scene(tmp_path, capsys):
+    """Its friction and holes in it are those of all its pieces; the shapes after it keep their numbers."""
+    scene = scene_with(tmp_path, UNIONS["boss"][0], (Cylinder(5, 60, Pose((5, 0, 0))),))
+    assert scene.object.element_names == ("plate/1", "knob", "plate/2", "drilled", "plate/hole 1")
+    assert scene.friction_of == {"plate/1": 0.3, "plate/2": 0.3}
+    assert {hole.name: hole.in_ for hole in scene.object.holes} == {
+        "plate/hole 1": ("plate/1", "plate/2"),
+        "drilled": ("plate/1", "plate/2"),
+    }
+    assert main(["run", str(tmp_path / "scene.yaml")]) == 0
+    capsys.readouterr()
+    assert main(["check", str(tmp_path / "scene.yaml")]) == 0
+    assert "note: 'plate' has flat sides where it is round here, up to 0.0096 mm off" in capsys.readouterr().out
+
+
+def test_numbers_of_a_mesh_of_several_shapes_cannot_be_adjusted(tmp_path):
+    text = SCENE.replace(".stl}", ".stl}, position: [0, 0, 0]")
+    text += 'adjustable: {x: {key: "object.shapes[0].position[0]", range: [0, 1]}}\n'
+    with pytest.raises(SceneFileError, match=r"adjustable.x.key: points into a mesh that is several shapes"):
+        scene_with(tmp_path, UNIONS["boss"][0], (), text)
+
+
+def test_a_long_thin_rod_is_no_flat_mesh():
+    """Its volume is a millionth of the cube of its length."""
+    (rod,) = shapes_of(body(Box((1000.0, 1.0, 1.0)))).shapes
+    assert sorted(rod.size_m) == pytest.approx([1.0, 1.0, 1000.0], abs=1e-8)
+    with pytest.raises(SceneError, match="encloses no volume"):
+        shapes_of(body(Box((1000.0, 1.0, 1e-5))))
