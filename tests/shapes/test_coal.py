@@ -19,6 +19,8 @@ coal = pytest.importorskip("coal")
 
 ACCURACY = 1e-6
 """Of coal's distances, in sizes; parts nearer or deeper than that are passed over."""
+ASIDE = 1e-8
+"""Of a size: so much beside the line, or two sharp tips would pass each other, which do not touch as two points."""
 N_PARTS = 60
 
 
@@ -85,7 +87,8 @@ def test_parts_touch_after_the_distance_that_coal_tells(cases, say):
         if away > ACCURACY:
             n_apart += 1
             motion = motion_of(np.zeros(3), np.array(result.normal), 0.0, np.zeros(3))
-            hit = Hit(*first(geometry, placed(geometry, pose), motion, 2.0 * away + 1.0, 0.0, 0.0))
+            beside = Pose(offset + ASIDE * rng.normal(size=3), pose.quaternion_wxyz)
+            hit = Hit(*first(geometry, placed(geometry, beside), motion, 2.0 * away + 1.0, 0.0, 0.0))
             worst = max(worst, abs(hit.amount - away))
             if not abs(hit.amount - away) <= ACCURACY:
                 wrong.append(f"{told} by coal, {hit.amount} by us")
@@ -97,4 +100,4 @@ def test_parts_touch_after_the_distance_that_coal_tells(cases, say):
     say(f"{n_pairs} pairs against coal: {n_apart} apart, worst {worst:.1e}; {n_in} in each other; {len(wrong)} wrong")
     assert n_apart > n_pairs // 4
     assert n_in > n_pairs // 20
-    assert not wrong, "\n".join([f"{len(wrong)} wrong", *wrong[:5]])
+    assert not wrong, "\n".join([f"{len(wrong)} wrong", *wrong[:15]])

@@ -184,11 +184,11 @@ def lie_flat(one: Feature, other: Feature, touch_m: float) -> bool:
 
 
 @kernel
-def run_side_by_side(one: Feature, other: Feature, met: Meeting) -> bool:
-    """Whether two rims touch corner on corner, with one tangent: the sides beside the corners tell their normals, to all
-    digits. Those of circles in one plane that nearly coincide would be a guess.
+def lies_in_mouth(one: Feature, other: Feature, met: Meeting) -> bool:
+    """Whether a rim touches the mouth of a hole with one tangent, as at the same height: the wall below, or the side that
+    ends at the rim, tells the normal to all digits, which circles that nearly coincide would leave to rounding.
     """
-    if one.kind != RIM or other.kind != RIM:
+    if one.kind != RIM or other.kind != RIM or (one.length > 0.0 and other.length > 0.0):
         return False
     along = cross(vector_from(one.direction), outward_at(one, met.place))
     others = cross(vector_from(other.direction), outward_at(other, met.place))
@@ -224,7 +224,7 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
             least_gap = on_far_side(max(separation, at_least_m), touch_m) if deepest == -math.inf else deepest
             if met.gap < least_gap or lie_flat(a.features[i], b.features[j], touch_m):
                 continue
-            if run_side_by_side(a.features[i], b.features[j], met):
+            if lies_in_mouth(a.features[i], b.features[j], met):
                 nearest = min(nearest, met.gap)
                 continue
             if found.used[0] == len(found.rows):
