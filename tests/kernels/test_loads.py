@@ -99,7 +99,7 @@ def test_stiffness_is_what_the_wrench_loses(kind: int) -> None:
         add_load_curvature(acts, *at, frame, symmetric)
         write_circulation(acts, *at, frame, circulation)
         assert np.array_equal(symmetric, symmetric.T) or np.allclose(symmetric, symmetric.T, atol=1e-14)
-        assert np.allclose(circulation, -circulation.T, atol=1e-15)
+        assert np.allclose(circulation, -circulation.T, atol=1e-14)
         found = np.zeros((6, 6))
         for k, unit in enumerate(np.eye(6)):
             for j, other in enumerate(np.eye(6)):

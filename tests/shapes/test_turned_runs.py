@@ -15,8 +15,10 @@ from shapes.turned_bodies import circles_of, gap, random_turned
 
 WEIGHT = Load("weight", gravity=(0, 0, -1))
 WIDE = 6.0
-DEEP_ON_THE_WAY = 150.0
-"""Touch tolerances. Known: sharp rims that cross at a small angle go in each other by so much for some steps."""
+DEEP_ON_THE_WAY = 40.0
+"""Touch tolerances. Known: sharp rims of two solid parts that cross at a small angle go in each other by so much for some
+steps.
+"""
 
 
 def object_of(part: Shape, pose: Pose) -> Object:
@@ -36,7 +38,7 @@ def round_peg(rng: np.random.Generator, radius: float) -> Shape:
 
 
 def test_pegs_dropped_over_holes(cases, say):
-    rng, asked = np.random.default_rng(40), Asked(DEEP_ON_THE_WAY)
+    rng, asked = np.random.default_rng(40), Asked()
     for number in range(cases(20, 60)):
         chamfer = Chamfer(0.1, float(rng.choice([0.5, np.pi / 4, 1.0]))) if rng.random() < 0.5 else None
         depth, is_open = float(rng.choice([0.5, 1.0, 1.5])), bool(rng.random() < 0.5)

@@ -18,9 +18,9 @@ from cagepose.kernels.shapes.advancement import (
 )
 from cagepose.kernels.shapes.along_motion import ahead, can_touch, clear_step, first_touch, safe_step
 from cagepose.kernels.shapes.body import place_asked
-from cagepose.kernels.shapes.features import EDGE, HOLE, SOLID, Shapes, is_end
-from cagepose.kernels.shapes.meeting import both_reach, meeting
-from cagepose.kernels.shapes.meetings import Meetings, balls_apart, lie_flat, slack_of
+from cagepose.kernels.shapes.features import EDGE, HOLE, RIM, SOLID, Feature, Shapes, is_end
+from cagepose.kernels.shapes.meeting import Meeting, both_reach, meeting
+from cagepose.kernels.shapes.meetings import SAME_PLACE, Meetings, balls_apart, lie_flat, slack_of
 from cagepose.kernels.shapes.motion import Motion, velocity_at
 
 SAFE = 1.0 + 1e-9
@@ -28,6 +28,8 @@ THIN = 0.1
 """Of the reach of a part: nothing may go deeper into it, or it could come out on the other side."""
 LEAVES = 1e-6
 """Of the fastest speed of a part: features that touch and move apart faster leave each other, and may meet again."""
+ALMOST_STRAIGHT, PAST = 0.25, 1.01
+"""Radians; of an arc that turns by no more, no less than so much less is its chord."""
 LEAST_SLACK = 1e-12
 """Sine, of rounding."""
 
@@ -65,16 +67,39 @@ def greatest_speed(motion: Motion, middle: Vector, reach: float) -> float:
 
 
 @kernel
-def until_past(held: Shapes, one: int, cage: Shapes, other: int, speed: float) -> float:
-    """Return an amount of a travel after which two parts move apart for ever."""
-    between = minus(vector_from(held.parts[one].middle), vector_from(cage.parts[other].middle))
-    return SAFE * (norm(between) + held.parts[one].reach + cage.parts[other].reach) / speed
+def until_past(held: Shapes, one: int, cage: Shapes, other: int, motion: Motion, end: float) -> float:
+    """Return an amount, up to ``end``, after which two parts do not meet: on a motion that turns little they are past
+    each other then.
+    """
+    middle = vector_from(held.parts[one].middle)
+    speed = norm(velocity_at(motion, middle))
+    if speed == 0.0 or motion.rate * end > ALMOST_STRAIGHT:
+        return end
+    between = norm(minus(middle, vector_from(cage.parts[other].middle)))
+    return min(end, PAST * (between + held.parts[one].reach + cage.parts[other].reach) / speed)
 
 
 @kernel
 def are_convex(held: Shapes, one: int, cage: Shapes, other: int) -> bool:
     """Whether two parts have no holes: convex ones that leave each other on a travel do not meet again."""
     return held.parts[one].kind == SOLID and cage.parts[other].kind == SOLID
+
+
+@kernel
+def is_hollow(feature: Feature) -> bool:
+    """Whether a feature is the wall or the mouth of a hole: what leaves it straight ahead may meet it again."""
+    return feature.radius < 0.0 or (feature.kind == RIM and feature.length < 0.0)
+
+
+@kernel
+def is_kept(meetings: Meetings, met: Meeting, touch_m: float) -> bool:
+    """Whether features meet where a contact carries."""
+    found = False
+    for at in range(meetings.used[0]):
+        row = meetings.rows[at]
+        if row.is_kept and dot(vector_from(row.normal), met.normal) > 0.0:
+            found = found or norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
+    return found
 
 
 @kernel
@@ -108,24 +133,35 @@ def first_meeting(
             if motion.rate == 0.0 and are_convex(held, one, cage, other) and touch(placement.meetings, one, other):
                 continue
             place_asked(geometry.held, one, placement.body)
-            until = end if motion.rate > 0.0 else min(end, until_past(held, one, cage, other, speed))
+            until = until_past(held, one, cage, other, motion, end)
             first = earliest_touch(held, one, cage, other, motion, until)
             if first < until:
                 earliest[one, other] = max(first, gap / speed)
     hit = NO_HIT
     one, other = next_pair(earliest, end)
     while one >= 0:
-        until = min(end, hit.amount)
+        until = until_past(held, one, cage, other, motion, min(end, hit.amount))
         speed = greatest_speed(motion, vector_from(held.parts[one].middle), held.parts[one].reach)
-        if motion.rate == 0.0:
-            until = min(until, until_past(held, one, cage, other, speed))
         depth = min(near_depth_m, THIN * min(held.parts[one].reach, max(cage.parts[other].reach, touch_m)))
         slack = slack_of(held, one, cage, other, touch_m)
         exact = max(LEAST_SLACK, touch_m / (held.parts[one].reach + cage.parts[other].reach))
         for i in range(held.parts[one].first, held.parts[one].last):
             for j in range(cage.parts[other].first, cage.parts[other].last):
                 found = first_of_features(
-                    held, i, cage, j, motion, until, near_m, depth, slack, exact, speed, touch_m, placement.moved
+                    held,
+                    i,
+                    cage,
+                    j,
+                    motion,
+                    until,
+                    near_m,
+                    depth,
+                    slack,
+                    exact,
+                    speed,
+                    touch_m,
+                    placement.meetings,
+                    placement.moved,
                 )
                 if found[0] < until:
                     until = found[0]
@@ -201,6 +237,7 @@ def first_of_features(
     exact: float,
     speed: float,
     touch_m: float,
+    meetings: Meetings,
     moved: Shapes,
 ) -> tuple[float, float]:
     """Return when two features that do not touch, or leave each other, reach each other, inf if they do not, and how
@@ -225,15 +262,19 @@ def first_of_features(
     met = meeting(held, i, cage, j)
     touches = met.is_one and abs(met.gap) <= touch_m
     leaves = touches and both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
-    if leaves and motion.rate == 0.0 and min(held.features[i].radius, cage.features[j].radius) >= 0.0:
+    is_hollow_pair = is_hollow(held.features[i]) or is_hollow(cage.features[j])
+    curls = is_hollow_pair and (held.features[i].kind != RIM or cage.features[j].kind != RIM)
+    curls = curls and leaves and not is_kept(meetings, met, touch_m)
+    closing = dot(met.normal, velocity_at(motion, met.place)) if leaves else -math.inf
+    if leaves and motion.rate == 0.0 and not is_hollow_pair:
         return math.inf, math.inf
-    if leaves and dot(met.normal, velocity_at(motion, met.place)) >= -LEAVES * speed:
+    if closing >= (1.0 if curls else -1.0) * LEAVES * speed:  # a contact that carries, or it would not go into it
         return math.inf, math.inf
     level, side = 0.0, 0.0
     if met.is_one and abs(met.gap) <= max(near_m, touch_m):
         level = near_depth_m if leaves or abs(met.gap) <= near_m else 0.0
-        if not leaves:
-            level = max(level, 2.0 * touch_m)  # they do not reach there now, but might
+        if not leaves or closing >= -LEAVES * speed:
+            level = max(level, 2.0 * touch_m)  # they do not reach there now, but might; or a wall bends into the way
         if held.features[i].kind == EDGE and cage.features[j].kind == EDGE:
             crossed = cross(vector_from(held.features[i].direction), vector_from(cage.features[j].direction))
             side = -math.copysign(1.0, dot(met.normal, crossed))

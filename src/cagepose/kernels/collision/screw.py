@@ -96,10 +96,10 @@ def next_below(wave: Wave, s_from: float, s_end: float) -> float:
     """Return the first s in [s_from, s_end) from which on f < 0; inf: none."""
     if s_from >= s_end:
         return math.inf
-    value = wave_at(wave, s_from)
-    if value < 0.0:
+    at_start = wave_at(wave, s_from) if s_from > 0.0 else wave[0]
+    if at_start < 0.0:
         return s_from
-    if value > SAFE * steepest_slope(wave) * (s_end - s_from):
+    if at_start > SAFE * steepest_slope(wave) * (s_end - s_from):
         return math.inf
     turning_points = first_turning_points(wave)
     piece = 2 * int(s_from // (2.0 * math.pi))  # two pieces to a turn; those that ended before are passed over below
@@ -109,12 +109,10 @@ def next_below(wave: Wave, s_from: float, s_end: float) -> float:
         piece += 1
         if end <= start:
             continue
-        at_start = wave_at(wave, start)
-        if at_start < 0.0:
-            return start
-        if wave_at(wave, end) < 0.0:
+        at_end = wave_at(wave, end)
+        if at_end < 0.0:
             return start if at_start == 0.0 else crossing(wave, start, end)
-        start = end
+        start, at_start = end, at_end
     return math.inf
 
 
@@ -126,8 +124,7 @@ def last_not_below(wave: Wave, s_until: float) -> float:
     turning_points = first_turning_points(wave)
     found = -math.inf
     piece = 0
-    start = 0.0
-    at_start = wave_at(wave, 0.0)
+    start, at_start = 0.0, wave[0]
     while start < s_until:
         end = min(monotone_end(turning_points, piece), s_until)
         piece += 1
@@ -200,6 +197,9 @@ def screw_entry(
     u_perp = cross(w, axis_box)
 
     inner_waves = face_waves(point_box, u_perp, w, rise, half_size, -allowed_depth_m)
+    for wave in inner_waves:  # too far beyond one face to cross it: nothing need be asked of the others
+        if wave[0] > SAFE * steepest_slope(wave) * angle_end_rad:
+            return math.inf
     inner = 0.0
     moved = True
     while moved:  # each pass moves on to another crossing, of which there are finitely many before the end

@@ -127,9 +127,10 @@ def first_contact(
     hit = first_point(setting, placement, contacts, position, quaternion, twist)
     if len(setting.geometry.held.parts) == 0:
         return hit
+    note_kept(placement, contacts)
     motion = motion_of(position, twist.velocity, twist.spin)
     end = min(hit.amount, twist.end)
-    if motion.rate == 0.0:
+    if end == math.inf:  # straight ahead
         other = first_meeting(setting.geometry, placement, motion, end, 0.0, 0.0)
         return other if other.amount < hit.amount else hit
     astray = strayed(setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end, placement.moved)
@@ -145,6 +146,19 @@ def first_contact(
             break
         near = reach
     return other if other.amount < hit.amount else hit
+
+
+@kernel
+def note_kept(placement: Placement, contacts: ContactSet) -> None:
+    """Note which meetings a motion keeps."""
+    for at in range(placement.meetings.used[0]):
+        placement.meetings.rows[at].is_kept = False
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        for at in range(placement.meetings.used[0] if contact.feature >= 0 and stays_on_face(contacts, i) else 0):
+            row = placement.meetings.rows[at]
+            if row.feature == contact.feature and row.cage_feature == contact.cage_feature:
+                row.is_kept = True
 
 
 @kernel

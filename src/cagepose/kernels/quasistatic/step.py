@@ -154,6 +154,7 @@ def next_twist(
             ):
                 break
             velocity, spin = twist_of(scratch.stiff.delta, frame)
+            spin = straightened(velocity, spin, setting.body.reach_m, 0.0)
             longest = min(
                 longest_step(contacts, velocity, spin, carries, turn_step_rad, size_m),
                 longest_pull(load, position, quaternion, velocity, spin, turn_step_rad, size_m),

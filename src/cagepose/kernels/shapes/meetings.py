@@ -45,7 +45,7 @@ from cagepose.kernels.shapes.features import (
     is_end,
 )
 from cagepose.kernels.shapes.meeting import Meeting, both_reach, farthest_beyond, meeting, toward_vertex
-from cagepose.kernels.shapes.rims import distance_at, end_of_arc
+from cagepose.kernels.shapes.rims import distance_at, end_of_arc, outward_at
 
 ROOM_FOR_PAIR, MOST_ROOM = 128, 4096
 """Meetings that there is memory for: of each pair of parts, and of all."""
@@ -53,6 +53,8 @@ SAME_NORMAL = 1e-9
 """Radians. Meetings at one place with normals nearer than this are one."""
 SAME_PLACE = 4.0
 """In touch tolerances: meetings nearer to each other are at one place."""
+SIDE_BY_SIDE = 1e-6
+"""Sine between the tangents of rims: a lesser one is none."""
 DEEPEST = 0.05
 """Of the shortest edge or least radius: features of parts with holes that are deeper in each other do not touch."""
 
@@ -70,6 +72,8 @@ class Touching:
         As in `Meeting`.
     is_hidden
         Whether another part of one of the bodies covers the place.
+    is_kept
+        Whether a contact there carries, so that a motion keeps it.
     """
 
     part: int
@@ -82,6 +86,7 @@ class Touching:
     normal: Annotated[FloatArray, 3]
     place: Annotated[FloatArray, 3]
     is_hidden: bool
+    is_kept: bool
 
 
 class Meetings(NamedTuple):
@@ -179,6 +184,18 @@ def lie_flat(one: Feature, other: Feature, touch_m: float) -> bool:
 
 
 @kernel
+def lies_in_mouth(one: Feature, other: Feature, met: Meeting) -> bool:
+    """Whether a rim touches the mouth of a hole with one tangent, as at the same height: the wall below, or the side that
+    ends at the rim, tells the normal to all digits, which circles that nearly coincide would leave to rounding.
+    """
+    if one.kind != RIM or other.kind != RIM or (one.length > 0.0 and other.length > 0.0):
+        return False
+    along = cross(vector_from(one.direction), outward_at(one, met.place))
+    others = cross(vector_from(other.direction), outward_at(other, met.place))
+    return norm(cross(along, others)) < SIDE_BY_SIDE
+
+
+@kernel
 def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, touch_m: float, found: Meetings) -> float:
     """Append the meetings of two parts; return how far apart they are at least, below zero how deep in each other (not
     of parts with holes: see `find_meetings`); NaN: there is no room.
@@ -206,6 +223,9 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
                 continue
             least_gap = on_far_side(max(separation, at_least_m), touch_m) if deepest == -math.inf else deepest
             if met.gap < least_gap or lie_flat(a.features[i], b.features[j], touch_m):
+                continue
+            if lies_in_mouth(a.features[i], b.features[j], met):
+                nearest = min(nearest, met.gap)
                 continue
             if found.used[0] == len(found.rows):
                 found.used[0] = first
@@ -257,7 +277,7 @@ def on_far_side(separation: float, touch_m: float) -> float:
 def write_touching(one: int, other: int, i: int, j: int, met: Meeting, out: Touching) -> None:
     out.part, out.cage_part, out.feature, out.cage_feature = one, other, i, j
     out.twin = out.cage_twin = -1
-    out.gap, out.is_hidden = met.gap, False
+    out.gap, out.is_hidden, out.is_kept = met.gap, False, False
     for k in range(3):
         out.normal[k], out.place[k] = met.normal[k], met.place[k]
 
@@ -326,7 +346,7 @@ def is_same(found: Meetings, one: int, other: int, touch_m: float) -> bool:
 def move_touching(one: Touching, to: Touching) -> None:
     to.part, to.cage_part, to.feature, to.cage_feature = one.part, one.cage_part, one.feature, one.cage_feature
     to.twin, to.cage_twin = one.twin, one.cage_twin
-    to.gap, to.is_hidden = one.gap, one.is_hidden
+    to.gap, to.is_hidden, to.is_kept = one.gap, one.is_hidden, one.is_kept
     for k in range(3):
         to.normal[k], to.place[k] = one.normal[k], one.place[k]
 

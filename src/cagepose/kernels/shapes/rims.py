@@ -21,6 +21,8 @@ SEARCHED = 1.05 * HALF_ARC
 """To each side of an arc's middle: a little beyond its ends."""
 FLAT = 1e-13
 """Sine: flatter, a face lies on all of a rim, and its vertices meet it."""
+PARALLEL = 1e-12
+"""Sine: what is less along a rim's plane is across it."""
 SECTIONS = 6
 """Of an arc, that are searched for a foot each: two rims in nearly the same plane have several."""
 SECTION = 2.0 * SEARCHED / SECTIONS
@@ -230,24 +232,38 @@ class Feet(NamedTuple):
 def feet_on(rim: Feature, other: Feature) -> Feet:
     """Find where an edge or another rim, both in the world, is nearest to an arc of a rim."""
     seen = seen_from(rim, other)
-    n_feet, first, last, before = 0, 0.0, 0.0, rise(seen, other, COSINES[0], SINES[0])
-    for section in range(SECTIONS):
-        after = rise(seen, other, COSINES[section + 1], SINES[section + 1])
-        low = -SEARCHED + section * SECTION
-        high = low + SECTION
-        at_low, at_high = before[0], after[0]
-        if may_cross_twice(before, after):
+    n_feet, first, last = 0, 0.0, 0.0
+    low, before, section, split = -SEARCHED, rise(seen, other, COSINES[0], SINES[0]), 0, steepest_angle(seen)
+    while section < SECTIONS:
+        high = -SEARCHED + (section + 1) * SECTION
+        if low < split < high:
+            high, after = split, rise(seen, other, math.cos(split), math.sin(split))
+        else:
+            section += 1
+            after = rise(seen, other, COSINES[section], SINES[section])
+        since, at_since, until, at_until = low, before[0], high, after[0]
+        if may_cross_twice(before, after, high - low):
             between = farthest_rise(seen, other, low, high, before, after)
-            if at_low < 0.0:
-                high, at_high = between
+            if at_since < 0.0:
+                until, at_until = between
             else:
-                low, at_low = between
-        if at_low < 0.0 <= at_high:
-            foot = root_of_rise(seen, other, low, high, at_low, at_high)
+                since, at_since = between
+        if at_since < 0.0 <= at_until:
+            foot = root_of_rise(seen, other, since, until, at_since, at_until)
             first, last = nearest_two(rim, other, n_feet, first, last, foot)
             n_feet += 1
-        before = after
+        low, before = high, after
     return Feet(n_feet, first, last)
+
+
+@kernel
+def steepest_angle(seen: Seen) -> float:
+    """Return the angle from an arc's middle, a quarter turn at most, at which the rim is farthest along the other one's
+    direction, or the least far, feet lie to both sides of it; inf: nowhere.
+    """
+    if seen.tilt_ahead == 0.0 or math.hypot(seen.tilt_ahead, seen.tilt_aside) <= PARALLEL:
+        return math.inf
+    return math.atan(seen.tilt_aside / seen.tilt_ahead)
 
 
 @kernel
@@ -266,14 +282,14 @@ def nearest_two(
 
 
 @kernel
-def may_cross_twice(before: tuple[float, float], after: tuple[float, float]) -> bool:
-    """Whether `rise`, of one sign at both ends of a section, bends toward zero so much that its tangents cross there
+def may_cross_twice(before: tuple[float, float], after: tuple[float, float], width: float) -> bool:
+    """Whether `rise`, of one sign at both ends of a section so wide, bends toward zero so much that its tangents cross there
     beyond zero.
     """
     sign = -1.0 if before[0] < 0.0 else 1.0
     if (after[0] < 0.0) != (before[0] < 0.0) or sign * before[1] >= 0.0 or sign * after[1] <= 0.0:
         return False
-    way = (after[0] - before[0] - after[1] * SECTION) / (before[1] - after[1])
+    way = (after[0] - before[0] - after[1] * width) / (before[1] - after[1])
     return sign * (before[0] + before[1] * way) <= 0.0
 
 

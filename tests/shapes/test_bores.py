@@ -1,0 +1,58 @@
+"""Round parts in a bore that is a little wider, pushed across it, one push after the other: each ends where the wall faces
+it, within the angle of friction. On the way they slide around along the wall, and some pushes begin along it or away from
+it.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from cagepose import Box, Cage, Capsule, Cylinder, Force, Hole, Load, Object, Pose, Scene, Sphere, run
+from cagepose.model.shapes import Shape
+
+DEPTH = 0.012
+PARTS: tuple[tuple[Shape, float, float], ...] = (
+    (Cylinder(0.005, 0.004), 0.005, 0.002),
+    (Cylinder(0.003, DEPTH), 0.003, 0.5 * DEPTH),
+    (Sphere(0.004), 0.004, 0.004),
+    (Capsule(0.004, 0.003), 0.004, 0.0055),
+)
+"""With their radius and half of their height: flat, as long as the bore is deep, round, and round at its ends."""
+WIDER = (1e-3, 1e-4, 5e-5, 1e-5)
+FLOOR = Box((0.1, 0.1, 0.01), Pose((0.0, 0.0, -0.5 * DEPTH - 0.005)), name="floor")
+
+
+def pushed(part: tuple[Shape, float, float], play: float, ways: list[float], friction: float, on_floor: bool) -> Scene:
+    shape, radius, half = part
+    bore = Hole(radius + play, DEPTH, in_=["block"], pose_body_shape=Pose((0, 0, 0.5 * DEPTH)), name="bore")
+    weight = (0.0, 0.0, -1.0) if on_floor else None
+    loads = [Load("weight", gravity=weight)] if on_floor else []
+    for number, way in enumerate(ways):
+        force = Force((math.cos(way), math.sin(way), 0.0), (0.0, 0.0, 0.0))
+        loads.append(Load(f"push {number}", gravity=weight, force=force))
+    start = Pose((0.0, 0.0, half - 0.5 * DEPTH if on_floor else 0.0))
+    solids = [Box((0.1, 0.1, DEPTH), name="block"), *([FLOOR] if on_floor else [])]
+    held = Object(shapes=[shape], pose=start, mass_kg=0.1)
+    return Scene(held, Cage(shapes=solids, holes=[bore]), loads, friction_coefficient=friction)
+
+
+def test_parts_in_a_bore_end_where_its_wall_faces_the_push(cases, say):
+    rng, wrong, verdicts = np.random.default_rng(7), [], {}
+    n_scenes = cases(40, 400)
+    for number in range(n_scenes):
+        play, friction = float(rng.choice(WIDER)), float(rng.choice([0.0, 0.0, 0.2]))
+        quarters, n_pushes = rng.random() < 0.6, int(rng.integers(1, 4))
+        ways = rng.integers(0, 8, n_pushes) * math.pi / 4.0 if quarters else rng.uniform(0.0, 2.0 * math.pi, n_pushes)
+        part = PARTS[rng.integers(len(PARTS))]
+        result = run(pushed(part, play, list(map(float, ways)), friction, bool(rng.random() < 0.6)))
+        verdicts[result.verdict] = verdicts.get(result.verdict, 0) + 1
+        x, y = result.pose.position_m[:2]
+        off = abs(math.remainder(math.atan2(y, x) - float(ways[-1]), 2.0 * math.pi))
+        if result.verdict not in ("rests", "may rest") or off > math.atan(friction) + 1e-6:
+            wrong.append(f"{number}: {part[0]}, play {play}, {ways}, friction {friction}: {result.verdict}, {off} rad off")
+        elif abs(math.hypot(x, y) - play) > 1e-11:
+            wrong.append(f"{number}: {part[0]}, play {play}, {ways}: {math.hypot(x, y)} m beside the axis")
+    say(f"{n_scenes} parts pushed in bores: {verdicts}, {len(wrong)} wrong")
+    assert not wrong, "\n".join(wrong[:5])

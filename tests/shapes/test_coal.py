@@ -1,0 +1,103 @@
+"""How far apart parts are, against coal: along its line of shortest distance they touch after that distance."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+
+from cagepose import Box, Pose
+from cagepose.kernels.collision.first_meeting import Hit, first_meeting
+from cagepose.model.features import shapes_of
+from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Shape, Sphere
+from inner_kernels import as_machine_code
+from shapes.convex_bodies import random_turn
+from shapes.test_distances import TOUCH, geometry_of, placed
+from shapes.test_first_meeting import motion_of
+
+coal = pytest.importorskip("coal")
+
+ACCURACY = 1e-6
+"""Of coal's distances, in sizes; parts nearer or deeper than that are passed over."""
+ASIDE = 1e-8
+"""Of a size: so much beside the line, or two sharp tips would pass each other, which do not touch as two points."""
+N_PARTS = 60
+
+
+def random_part(rng: np.random.Generator) -> Shape:
+    a, b, c = 10.0 ** rng.uniform(-1.0, 0.0, 3)
+    kind = rng.integers(6)
+    if kind == 0:
+        return Box((a, b, c))
+    if kind == 1:
+        return Sphere(a)
+    if kind == 2:
+        return Capsule(a, b)
+    if kind == 3:
+        return Cylinder(a, b)
+    if kind == 4:
+        return Cone(a, 0.0, b)
+    return Convex(rng.normal(size=(rng.integers(4, 20), 3)) * (a, b, c), c * rng.integers(2))
+
+
+def of_coal(part: Shape):
+    """The same part as coal has it."""
+    if isinstance(part, Box):
+        return coal.Box(*part.size_m)
+    if isinstance(part, Sphere):
+        return coal.Sphere(part.radius_m)
+    if isinstance(part, Capsule):
+        return coal.Capsule(part.radius_m, part.length_m)
+    if isinstance(part, Cylinder):
+        return coal.Cylinder(part.radius_m, part.length_m)
+    if isinstance(part, Cone):
+        return coal.Cone(part.radius_bottom_m, part.length_m)
+    corners, triangles = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
+    hull = ConvexHull(part.vertices_m)
+    for corner in hull.points:
+        corners.append(corner)
+    for triangle, outward in zip(hull.simplices, hull.equations[:, :3], strict=True):
+        i, j, k = (int(n) for n in triangle)
+        one, two, three = hull.points[[i, j, k]]
+        turns = np.cross(two - one, three - one) @ outward > 0.0
+        triangles.append(coal.Triangle(i, j, k) if turns else coal.Triangle(i, k, j))
+    solid = coal.Convex(corners, triangles)
+    solid.setSweptSphereRadius(part.radius_m)
+    return solid
+
+
+def test_parts_touch_after_the_distance_that_coal_tells(cases, say):
+    rng, first = np.random.default_rng(11), as_machine_code(first_meeting)
+    parts = [random_part(rng) for _ in range(N_PARTS)]
+    theirs, ours = [of_coal(part) for part in parts], [shapes_of([part]) for part in parts]
+    request, result = coal.DistanceRequest(), coal.DistanceResult()
+    request.gjk_tolerance = request.epa_tolerance = 1e-10
+    request.gjk_max_iterations = request.epa_max_iterations = 1000
+    n_pairs, n_apart, n_in, worst, wrong = cases(2000, 100_000), 0, 0, 0.0, []
+    for _ in range(n_pairs):
+        i, j = rng.integers(N_PARTS, size=2)
+        offset = rng.normal(size=3) * rng.choice([0.3, 1.0, 3.0])
+        pose, turn = Pose(offset, random_turn(rng)), Pose((0, 0, 0), random_turn(rng))
+        result.clear()
+        away = coal.distance(
+            theirs[i], coal.Transform3s(pose.rotation, offset), theirs[j], coal.Transform3s(), request, result
+        )
+        geometry = geometry_of(ours[i], ours[j], TOUCH)
+        told = f"{parts[i]} at {pose}, {parts[j]}: {away}"
+        if away > ACCURACY:
+            n_apart += 1
+            motion = motion_of(np.zeros(3), np.array(result.normal), 0.0, np.zeros(3))
+            beside = Pose(offset + ASIDE * rng.normal(size=3), pose.quaternion_wxyz)
+            hit = Hit(*first(geometry, placed(geometry, beside), motion, 2.0 * away + 1.0, 0.0, 0.0))
+            worst = max(worst, abs(hit.amount - away))
+            if not abs(hit.amount - away) <= ACCURACY:
+                wrong.append(f"{told} by coal, {hit.amount} by us")
+        elif away < -ACCURACY:
+            n_in += 1
+            gap = float(placed(geometry, pose).meetings.gaps[0, 0])
+            if not gap < 0.0:
+                wrong.append(f"{told} by coal, {gap} by us")
+    say(f"{n_pairs} pairs against coal: {n_apart} apart, worst {worst:.1e}; {n_in} in each other; {len(wrong)} wrong")
+    assert n_apart > n_pairs // 4
+    assert n_in > n_pairs // 20
+    assert not wrong, "\n".join([f"{len(wrong)} wrong", *wrong[:15]])
