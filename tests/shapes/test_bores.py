@@ -40,7 +40,7 @@ def pushed(part: tuple[Shape, float, float], play: float, ways: list[float], fri
 
 def test_parts_in_a_bore_end_where_its_wall_faces_the_push(cases, say):
     rng, wrong, verdicts = np.random.default_rng(7), [], {}
-    n_scenes = cases(40, 400)
+    n_scenes = cases(40, 100)
     for number in range(n_scenes):
         play, friction = float(rng.choice(WIDER)), float(rng.choice([0.0, 0.0, 0.2]))
         quarters, n_pushes = rng.random() < 0.6, int(rng.integers(1, 4))
@@ -51,7 +51,9 @@ def test_parts_in_a_bore_end_where_its_wall_faces_the_push(cases, say):
         x, y = result.pose.position_m[:2]
         off = abs(math.remainder(math.atan2(y, x) - float(ways[-1]), 2.0 * math.pi))
         if result.verdict not in ("rests", "may rest") or off > math.atan(friction) + 1e-6:
-            wrong.append(f"{number}: {part[0]}, play {play}, {ways}, friction {friction}: {result.verdict}, {off} rad off")
+            wrong.append(
+                f"{number}: {part[0]}, play {play}, {ways}, friction {friction}: {result.verdict}, {off} rad off"
+            )
         elif abs(math.hypot(x, y) - play) > 1e-11:
             wrong.append(f"{number}: {part[0]}, play {play}, {ways}: {math.hypot(x, y)} m beside the axis")
     say(f"{n_scenes} parts pushed in bores: {verdicts}, {len(wrong)} wrong")

@@ -174,7 +174,7 @@ def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness:
     """As `equilibrium_of_listed`; where rims lie flat, with all their points that a motion would go in at."""
     code = equilibrium_of_listed(contacts, frame, friction, strictness, work)
     for _ in range(MOST_ADDED):
-        if code != MOVES or not add_on_rims(contacts, frame, work.cone.passive.residual):
+        if code != MOVES or not add_on_rims(contacts, frame, work.cone.passive.residual, work.load_terms):
             break
         forget_locked(contacts, frame, work)
         code = equilibrium_of_listed(contacts, frame, friction, strictness, work)

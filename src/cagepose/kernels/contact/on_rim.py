@@ -22,6 +22,7 @@ MOST_ADDED = 40
 """Points of rims, for one question."""
 ENTERS = 1e-10
 """Of the motion: a point of a rim that goes in more slowly does not count."""
+ROUNDING = 3e-16
 SAME = 1e-12
 """Of the radius: two points of a rim that are nearer are one, and what goes in there is rounding."""
 
@@ -80,12 +81,15 @@ def is_listed(contacts: ContactSet, new: int, within_m: float) -> bool:
 
 
 @kernel
-def add_on_rims(contacts: ContactSet, frame: Frame, y: FloatArray) -> bool:
-    """Append the point of a flat rim that a motion y goes in fastest at; False: none counts, or there is no room."""
+def add_on_rims(contacts: ContactSet, frame: Frame, y: FloatArray, terms: float) -> bool:
+    """Append the point of a flat rim that a motion y goes in fastest at; False: none counts, or there is no room.
+
+    What y is the rest of has ``terms`` of this length: slower than their rounding, nothing goes in.
+    """
     if len(contacts.bends) == 0:
         return False
     velocity, spin = twist_of(y, frame)
-    n_listed, fastest, least = contacts.used[0], -1, ENTERS * length(y, WRENCH)
+    n_listed, fastest, least = contacts.used[0], -1, max(ENTERS * length(y, WRENCH), ROUNDING * terms)
     for i in range(n_listed):
         rim = contacts.bends[i].on_rim
         if contacts.rows[i].feature < 0 or rim.length == 0.0 or contacts.used[0] == len(contacts.rows):

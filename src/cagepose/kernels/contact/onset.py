@@ -81,7 +81,7 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
     if code == MOVES:
         code = freest_motion(contacts, frame, friction, work)
         for _ in range(MOST_ADDED):
-            if code != MOVES or friction == 0.0 or not add_on_rims(contacts, frame, work.y):
+            if code != MOVES or friction == 0.0 or not add_on_rims(contacts, frame, work.y, work.load_terms):
                 break
             forget_locked(contacts, frame, work)
             code = equilibrium(contacts, frame, friction, AT_REST, work)
