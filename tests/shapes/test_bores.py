@@ -1,6 +1,6 @@
-"""Round parts in a bore that is a little wider, pushed across it, one push after the other: each ends where the wall faces
-it, within the angle of friction. On the way they slide around along the wall, and some pushes begin along it or away from
-it.
+"""Round parts in a bore that is a little wider, pushed across it, one push after the other: each ends where the wall
+faces it, within the angle of friction. On the way they slide around along the wall, and some pushes begin along it or
+away from it.
 """
 
 from __future__ import annotations

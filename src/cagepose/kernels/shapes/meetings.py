@@ -185,8 +185,8 @@ def lie_flat(one: Feature, other: Feature, touch_m: float) -> bool:
 
 @kernel
 def lies_in_mouth(one: Feature, other: Feature, met: Meeting) -> bool:
-    """Whether a rim touches the mouth of a hole with one tangent, as at the same height: the wall below, or the side that
-    ends at the rim, tells the normal to all digits, which circles that nearly coincide would leave to rounding.
+    """Whether a rim touches the mouth of a hole with one tangent, as at the same height: the wall below, or the side
+    that ends at the rim, tells the normal to all digits, which circles that nearly coincide would leave to rounding.
     """
     if one.kind != RIM or other.kind != RIM or (one.length > 0.0 and other.length > 0.0):
         return False

@@ -283,8 +283,8 @@ def nearest_two(
 
 @kernel
 def may_cross_twice(before: tuple[float, float], after: tuple[float, float], width: float) -> bool:
-    """Whether `rise`, of one sign at both ends of a section so wide, bends toward zero so much that its tangents cross there
-    beyond zero.
+    """Whether `rise`, of one sign at both ends of a section so wide, bends toward zero so much that its tangents cross
+    there beyond zero.
     """
     sign = -1.0 if before[0] < 0.0 else 1.0
     if (after[0] < 0.0) != (before[0] < 0.0) or sign * before[1] >= 0.0 or sign * after[1] <= 0.0:
