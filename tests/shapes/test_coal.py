@@ -22,8 +22,8 @@ ACCURACY, ON = 1e-6, 1e-4
 ASIDE = 1e-6
 """Of a size: so much beside the line two sharp tips do not meet in a point."""
 KNOWN_MISSED = 0.003
-"""Of pairs that are aimed at each other's nearest points. Known: sharp tips and rims that come to each other a millionth of a
-size beside a hit may be missed, most of them tips of cones.
+"""Of pairs that are aimed at each other's nearest points. Known: sharp tips and rims that come to each other a
+millionth of a size beside a hit may be missed, most of them tips of cones.
 """
 LOST = 1.0
 """Below minus so much, metres, coal tells no depth."""
@@ -84,7 +84,7 @@ def test_parts_touch_after_the_distance_that_coal_tells(cases, say):
     for _ in range(n_pairs):
         i, j = rng.integers(N_PARTS, size=2)
         offset = rng.normal(size=3) * rng.choice([0.3, 1.0, 3.0])
-        pose, turn = Pose(offset, random_turn(rng)), Pose((0, 0, 0), random_turn(rng))
+        pose = Pose(offset, random_turn(rng))
         result.clear()
         away = coal.distance(
             theirs[i], coal.Transform3s(pose.rotation, offset), theirs[j], coal.Transform3s(), request, result
@@ -116,7 +116,7 @@ def test_parts_touch_after_the_distance_that_coal_tells(cases, say):
             if not gap < 0.0:
                 wrong.append(f"{told} by coal, {gap} by us")
     say(
-        f"{n_pairs} pairs against coal: {n_apart} apart, worst {worst:.1e} where they meet, {n_past} glance off each other,"
+        f"{n_pairs} pairs against coal: {n_apart} apart, worst {worst:.1e} where they meet, {n_past} glance off,"
         f" {n_missed} are missed, {n_lost} times coal lost itself; {n_in} in each other; {len(wrong)} wrong"
     )
     assert n_past < n_apart // 50

@@ -16,8 +16,8 @@ from shapes.turned_bodies import circles_of, gap, random_turned
 WEIGHT = Load("weight", gravity=(0, 0, -1))
 WIDE = 6.0
 DEEP_ON_THE_WAY = 40.0
-"""Touch tolerances. Known: sharp rims of two solid parts that cross at a small angle go in each other by so much for some
-steps.
+"""Touch tolerances. Known: sharp rims of two solid parts that cross at a small angle go in each other by so much for
+some steps.
 """
 
 
