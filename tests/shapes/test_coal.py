@@ -21,7 +21,7 @@ ACCURACY, ON = 1e-6, 1e-4
 """Of a size: of coal's distances; and so much farther sharp tips that glance off each other are apart still."""
 ASIDE = 1e-6
 """Of a size: so much beside the line two sharp tips do not meet in a point."""
-KNOWN_MISSED = 0.003
+KNOWN_MISSED = 0.005
 """Of pairs that are aimed at each other's nearest points. Known: sharp tips and rims that come to each other a
 millionth of a size beside a hit may be missed, most of them tips of cones.
 """
@@ -79,7 +79,7 @@ def test_parts_touch_after_the_distance_that_coal_tells(cases, say):
     request, result = coal.DistanceRequest(), coal.DistanceResult()
     request.gjk_tolerance = request.epa_tolerance = 1e-10
     request.gjk_max_iterations = request.epa_max_iterations = 1000
-    n_pairs, n_apart, n_past, n_missed, n_lost, n_in = cases(2000, 20_000), 0, 0, 0, 0, 0
+    n_pairs, n_apart, n_past, n_missed, n_lost, n_in = cases(10_000, 20_000), 0, 0, 0, 0, 0
     worst, wrong = 0.0, []
     for _ in range(n_pairs):
         i, j = rng.integers(N_PARTS, size=2)
