@@ -29,7 +29,7 @@ THIN = 0.1
 LEAVES = 1e-6
 """Of the fastest speed of a part: features that touch and move apart faster leave each other, and may meet again."""
 ALMOST_STRAIGHT, PAST = 0.25, 1.01
-"""Radians; of an arc that turns by no more, no less than so much less is its chord."""
+"""Radians; and how many times longer than its chord an arc that turns by no more is at most."""
 LEAST_SLACK = 1e-12
 """Sine, of rounding."""
 
@@ -117,7 +117,8 @@ def first_meeting(
 ) -> Hit:
     """Return what shapes reach first, up to ``end``, but for what touches already.
 
-    Features nearer than ``near_m`` may go ``near_depth_m`` deep. On a travel, parts that touch do not meet again.
+    Features nearer than ``near_m`` may go ``near_depth_m`` deep. On a travel, parts without holes that touch do not meet
+    again.
     """
     held, cage, touch_m, earliest = placement.body.world, geometry.cage, geometry.touch_m, placement.earliest
     n_points = len(geometry.points_world)

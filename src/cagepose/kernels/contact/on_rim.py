@@ -23,6 +23,7 @@ MOST_ADDED = 40
 ENTERS = 1e-10
 """Of the motion: a point of a rim that goes in more slowly does not count."""
 ROUNDING = 3e-16
+"""Of the terms of the load: so much of a speed is their rounding."""
 SAME = 1e-12
 """Of the radius: two points of a rim that are nearer are one, and what goes in there is rounding."""
 

@@ -259,7 +259,7 @@ def feet_on(rim: Feature, other: Feature) -> Feet:
 @kernel
 def steepest_angle(seen: Seen) -> float:
     """Return the angle from an arc's middle, a quarter turn at most, at which the rim is farthest along the other one's
-    direction, or the least far, feet lie to both sides of it; inf: nowhere.
+    direction, or the least far; inf: nowhere. Feet lie to both sides of it.
     """
     if seen.tilt_ahead == 0.0 or math.hypot(seen.tilt_ahead, seen.tilt_aside) <= PARALLEL:
         return math.inf
