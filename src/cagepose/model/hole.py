@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import ClassVar, Self
 
 import numpy as np
@@ -16,6 +17,8 @@ from cagepose.model.shapes import Shape, Turned, set_lengths
 
 AROUND = 64
 """Corners of the polygon around a rim that stands for it where a hole is looked for within a part."""
+RINGS = (0.0, 0.5, 1.0)
+"""Of the radius: circles of points throughout a hole."""
 ON_FACE = 1e-6
 """A mouth this close to a face, as a fraction of the hole's reach, is on it."""
 
@@ -132,6 +135,33 @@ class Hole(Turned):
         rings = np.concatenate([self._ring(-share * depth, self.radius_m) for share in (0.01, 0.5, 0.99)])
         return not np.any([part.holds(rings) for part in parts], axis=0).all()
 
+    def meets(self, other: Hole, parts: Sequence[Shape]) -> bool:
+        """Return whether two holes in the same parts have a place in common; of ones that are aslant to each other,
+        less than a hundredth of a radius in each other, the answer may be no.
+        """
+        axis, mouth = self.pose_body_shape.rotation[:, 2], self.pose_body_shape.position_m
+        between, along = other.pose_body_shape.position_m - mouth, other.pose_body_shape.rotation[:, 2]
+        depths, slack = [hole.run_through(parts)[0] for hole in (self, other)], self._slack_m
+        if float(np.linalg.norm(np.cross(axis, along))) > ON_FACE:
+            return bool(other.holds(self._filled(depths[0])).any() or self.holds(other._filled(depths[1])).any())
+        start, sense = float(between @ axis), math.copysign(1.0, float(along @ axis))
+        heights, radii = np.array(self.rims).T
+        others, other_radii = np.array(other.rims).T
+        ends = np.sort([start, start - sense * depths[1]])
+        low, high = max(-depths[0], ends[0]), min(0.0, ends[1])
+        if low > high + slack:
+            return False
+        steps = np.clip([low, high, *heights, *(start + sense * others)], low, max(low, high))
+        wide = np.interp(steps, heights, radii) + np.interp(sense * (steps - start), others, other_radii)
+        return bool(float(np.linalg.norm(between - start * axis)) <= float(wide.max()) + slack)
+
+    def _filled(self, depth_m: float) -> FloatArray:
+        """Points of the body's frame throughout the hole, so far down."""
+        heights, radii = np.array(self.rims).T
+        steps = np.linspace(-depth_m, 0.0, AROUND)
+        wide = np.interp(steps, heights, radii)
+        return np.concatenate([self._ring(h, share * r) for h, r in zip(steps, wide, strict=True) for share in RINGS])
+
     @property
     def _slack_m(self) -> float:
         return ON_FACE * math.hypot(self.radius_m, self.depth_m)
@@ -168,7 +198,9 @@ class Hole(Turned):
 def check_holes(
     holes: Sequence[Hole], paths: Sequence[tuple[Key, ...]], parts: Sequence[Shape], problems: ProblemList
 ) -> None:
-    """Note what the holes of a body are cut out of that is no part of it, and mouths that are not on its faces."""
+    """Note what the holes of a body are cut out of that is no part of it, mouths that are not on its faces, and holes
+    that meet, where one cuts away the wall of another.
+    """
     named = {str(part.name): part for part in parts}
     for hole, path in zip(holes, paths, strict=True):
         unknown = [index for index, name in enumerate(hole.in_) if name not in named]
@@ -179,3 +211,10 @@ def check_holes(
             )
         if hole.in_ and not unknown:
             hole.check_mouth([named[name] for name in hole.in_], path, problems)
+    if problems.problems:
+        return
+    for (one, _), (other, path) in combinations(zip(holes, paths, strict=True), 2):
+        shared = [named[name] for name in one.in_ if name in other.in_]
+        if shared and one.meets(other, shared):
+            found = f"meets {one.name} in {', '.join(str(part.name) for part in shared)}; keep holes apart"
+            problems.add(path, f"{found}, or build a slot or a step in a bore from boxes and plates with one hole each")

@@ -20,8 +20,9 @@ from cagepose.kernels.shapes.along_motion import ahead, can_touch, clear_step, f
 from cagepose.kernels.shapes.body import place_asked
 from cagepose.kernels.shapes.features import EDGE, HOLE, RIM, SOLID, Feature, Shapes, is_end
 from cagepose.kernels.shapes.meeting import Meeting, both_reach, meeting
-from cagepose.kernels.shapes.meetings import SAME_PLACE, Meetings, balls_apart, lie_flat, slack_of
+from cagepose.kernels.shapes.meetings import SAME_PLACE, Meetings, balls_apart, slack_of
 from cagepose.kernels.shapes.motion import Motion, velocity_at
+from cagepose.kernels.shapes.rims import lie_flat
 
 SAFE = 1.0 + 1e-9
 THIN = 0.1

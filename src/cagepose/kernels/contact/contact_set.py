@@ -338,7 +338,8 @@ def append_meeting(
     held, cage, meeting = placement.body.world, geometry.cage, Meeting(True, met.gap, normal, vector_from(met.place))
     found = curvatures(held, met.feature, cage, met.cage_feature, meeting)
     write_bend(found, normal, arm, frame.axes, frame.radii, contacts.bends[place])
-    write_on_rim(held, met.feature, cage, met.cage_feature, center, contacts.bends[place].on_rim)
+    on_rim = contacts.bends[place].on_rim
+    write_on_rim(held, met.feature, cage, met.cage_feature, center, geometry.touch_m, on_rim)
     if met.twin >= 0:
         found = curvatures(held, met.twin, cage, met.cage_twin, meeting)
         write_twin(found, normal, arm, frame.axes, frame.radii, contacts.bends[place])

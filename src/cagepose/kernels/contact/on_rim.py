@@ -34,9 +34,10 @@ def angle_of_deepest(contacts: ContactSet, i: int, velocity: Vector, spin: Vecto
     row, rim = contacts.rows[i], contacts.bends[i].on_rim
     axis, outward = vector_from(rim.axis), vector_from(rim.outward)
     normal = vector_from(row.directions[0])
-    if rim.is_on_ball:  # n . v(p) = (c - p) . v(c) / r, or its opposite
+    if rim.is_on_ball:  # n . v(p) = (p - c) . v(c) / r, or its opposite
         away = minus(vector_from(row.arm), vector_from(rim.ball))
-        way = scaled(plus(velocity, cross(spin, vector_from(rim.ball))), math.copysign(rim.length, dot(away, normal)))
+        side = math.copysign(rim.length, rim.length * dot(away, normal))
+        way = scaled(plus(velocity, cross(spin, vector_from(rim.ball))), side)
     else:  # n . (w x p) = p . (n x w)
         way = scaled(cross(normal, spin), rim.length)
     return math.atan2(dot(way, cross(axis, outward)), dot(way, outward))

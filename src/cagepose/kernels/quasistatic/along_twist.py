@@ -276,7 +276,7 @@ def furthest_step(
     Return (amount, whether it went as far as it should, position, quaternion); amount 0: it could not move; inf:
     nothing is ahead.
     """
-    allow_depths(placement, setting.tolerances, work)
+    allow_depths(setting.geometry, placement, setting.tolerances, work)
     hit = first_contact(setting, placement, contacts, position, quaternion, twist)
     amount = hit.amount
     edge_crossing = first_edge_crossing(

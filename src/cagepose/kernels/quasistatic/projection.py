@@ -26,7 +26,7 @@ from cagepose.kernels.contact.metric import (
     write_scaled_wrench,
 )
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.features import Shapes, place_feature
+from cagepose.kernels.shapes.features import RIM, Shapes, place_feature
 from cagepose.kernels.shapes.meeting import meeting
 
 ROUNDS = 12
@@ -176,10 +176,10 @@ def lack(
 
 
 @kernel
-def is_second(geometry: Geometry, constraint: PositionConstraint) -> bool:
-    """Whether a constraint is about the second place on an arc of a rim where another feature is nearest."""
+def is_of_arc(geometry: Geometry, constraint: PositionConstraint) -> bool:
+    """Whether a constraint is about an arc of a rim."""
     held, cage = geometry.held.features, geometry.cage.features
-    return held[constraint.feature].is_second or cage[constraint.cage_feature].is_second
+    return held[constraint.feature].kind == RIM or cage[constraint.cage_feature].kind == RIM
 
 
 @kernel
@@ -225,7 +225,7 @@ def projected(
         worst = 0.0
         for i in range(work.used):
             lacks = lack(geometry, rows[i], position, quaternion, moved)
-            if lacks.value == math.inf and is_second(geometry, rows[i]):  # it has met the first one, which counts
+            if lacks.value == math.inf and is_of_arc(geometry, rows[i]):  # what is nearest there is on another arc
                 continue
             if lacks.value == math.inf:
                 return False, position, quaternion

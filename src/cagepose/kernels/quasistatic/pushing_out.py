@@ -12,8 +12,9 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.first_contact import allowed_depth
+from cagepose.kernels.collision.first_meeting import are_convex
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
-from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
+from cagepose.kernels.contact.contact_set import ContactRow, ContactSet, stays_on_face
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.projection import (
     GAP,
@@ -24,7 +25,10 @@ from cagepose.kernels.quasistatic.projection import (
     projected,
 )
 from cagepose.kernels.quasistatic.setting import Setting
+from cagepose.kernels.shapes.features import RIM
+from cagepose.kernels.shapes.meeting import meeting
 from cagepose.kernels.shapes.meetings import most_meetings
+from cagepose.kernels.shapes.rims import EQUALLY_FAR
 
 POINTS_PUSHED = 8
 """Points and shapes that may be pushed out of the object after a step."""
@@ -68,6 +72,21 @@ def constrain_to_face(geometry: Geometry, placement: Placement, point: int, box:
 
 
 @kernel
+def kept_gap(geometry: Geometry, placement: Placement, contact: ContactRow, closed_m: float) -> float:
+    """Return the gap that a contact of shapes keeps: see `constrain_contacts`.
+
+    An arc that lies flat is within the touch tolerance as its vertices are, with a gap of its own, which may be below
+    zero: a point that was added on it has that of a vertex.
+    """
+    held, cage = placement.body.world, geometry.cage
+    if held.features[contact.feature].kind == RIM or cage.features[contact.cage_feature].kind == RIM:
+        met = meeting(held, contact.feature, cage, contact.cage_feature)
+        if met.is_one:
+            return met.gap if abs(met.gap) > closed_m else 0.0
+    return contact.gap if contact.gap > closed_m else 0.0
+
+
+@kernel
 def constrain_contacts(
     geometry: Geometry, placement: Placement, contacts: ContactSet, closed_m: float, constraints: Constraints
 ) -> None:
@@ -79,7 +98,7 @@ def constrain_contacts(
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
         if stays_on_face(contacts, i) and contact.feature >= 0:
-            kept = contact.gap if contact.gap > closed_m else 0.0
+            kept = kept_gap(geometry, placement, contact, closed_m)
             constrain_features(constraints, contact.feature, contact.cage_feature, GAP, kept)
         elif stays_on_face(contacts, i):
             at = geometry.half_sizes[contact.box, contact.axis]
@@ -182,11 +201,14 @@ def constrain_meeting(placement: Placement, at: int, constraints: Constraints) -
 
 
 @kernel
-def allow_depths(placement: Placement, tolerances: KernelTolerances, work: StepWorkspace) -> None:
-    """Write how deep each point and each pair of shapes may be after the step: no deeper than it is."""
+def allow_depths(geometry: Geometry, placement: Placement, tolerances: KernelTolerances, work: StepWorkspace) -> None:
+    """Write how deep each point and each pair of shapes may be after the step: no deeper than it is, or than what lies
+    on the mouth of a hole all around may be between its vertices.
+    """
     for point in range(len(work.allowed)):
         work.allowed[point] = allowed_depth(placement.depths[point], tolerances)
-    gaps = placement.meetings.gaps
+    gaps, held, cage = placement.meetings.gaps, placement.body.world, geometry.cage
     for one in range(gaps.shape[0]):
         for other in range(gaps.shape[1]):
-            work.allowed_shapes[one, other] = allowed_depth(-gaps[one, other], tolerances)
+            least = 0.0 if are_convex(held, one, cage, other) else EQUALLY_FAR * tolerances.touch_m
+            work.allowed_shapes[one, other] = max(allowed_depth(-gaps[one, other], tolerances), least)

@@ -26,7 +26,7 @@ from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, minus, n
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.features import EDGE, FACE, RIM, VERTEX, Feature, Shapes, beyond_fence
 from cagepose.kernels.shapes.meeting import Meeting
-from cagepose.kernels.shapes.rims import HALF_ARC, outward_at
+from cagepose.kernels.shapes.rims import HALF_ARC, lie_flat, nearest_on_edge, outward_at
 
 FLAT = 1e-9
 """Sine between a rim's axis and the normal: less, it is straight as an edge along its tangent."""
@@ -46,7 +46,8 @@ class OnRim:
     before_reaches, after_reaches
         Whether all of the half of either arc next to the vertex touches as the vertex does.
     is_on_ball, ball
-        Whether the rim lies on a ball, and its centre as seen from the centre of gravity; else, on a face.
+        Whether the rim lies on a ball, and its centre as seen from the centre of gravity; else, on a face. The side of
+        a cone that all of it lies on is there like a ball about the place on its axis that the normals lead through.
     """
 
     length: float
@@ -238,20 +239,27 @@ def write_bend(found: Curvatures, normal: Vector, arm: Vector, axes: Matrix, rad
 
 
 @kernel
-def write_on_rim(a: Shapes, i: int, b: Shapes, j: int, center: Vector, out: OnRim) -> None:
+def write_on_rim(a: Shapes, i: int, b: Shapes, j: int, center: Vector, touch_m: float, out: OnRim) -> None:
     """Write of which rim feature i of the object or feature j of the cage is a vertex, if one of them is and the other
     may lie on all of the rim.
     """
     out.is_of_cage = b.features[j].length != 0.0 and b.features[j].kind == VERTEX
     vertex, other = (b.features[j], a.features[i]) if out.is_of_cage else (a.features[i], b.features[j])
     out.length = 0.0
-    if vertex.kind != VERTEX or vertex.length == 0.0 or (other.kind != FACE and other.kind != VERTEX):
+    if vertex.kind != VERTEX or vertex.length == 0.0 or other.kind == RIM:
         return
     out.length, out.arc_before, out.arc_after = vertex.length, vertex.arc_before, vertex.arc_after
-    out.is_on_ball = other.kind == VERTEX
+    out.is_on_ball = other.kind != FACE
     ball = minus(vector_from(other.point), center)
+    if other.kind == EDGE:
+        ball = minus(nearest_on_edge(other, vector_from(vertex.point)).place, center)
     for k in range(3):
         out.axis[k], out.outward[k], out.ball[k] = vertex.direction[k], vertex.toward[k], ball[k]
+    if other.kind == EDGE:
+        arcs = b if out.is_of_cage else a
+        out.before_reaches = lie_flat(arcs.features[vertex.arc_before], other, touch_m)
+        out.after_reaches = lie_flat(arcs.features[vertex.arc_after], other, touch_m)
+        return
     bodies, which = (a, i) if out.is_of_cage else (b, j)
     out.before_reaches = is_over_arc(bodies, which, vertex, -1.0)
     out.after_reaches = is_over_arc(bodies, which, vertex, 1.0)

@@ -287,6 +287,35 @@ def toward_vertex_from_rim(rim: Feature, vertex: Feature) -> Meeting:
 
 
 @kernel
+def common_normal(a: Shapes, i: int, b: Shapes, j: int, met: Meeting) -> Vector:
+    """Return, of a sharp rim and a sharp vertex at one place, an outward normal of the first body that is opposite to one
+    of the second, if there is such a one: that of the rim which leads most out of what ends in the vertex.
+    """
+    if a.features[i].kind == RIM:
+        return rim_normal(a.features[i], met.place, scaled(out_of_vertex(b, j), -1.0))
+    there = plus(met.place, scaled(met.normal, met.gap))
+    return scaled(rim_normal(b.features[j], there, scaled(out_of_vertex(a, i), -1.0)), -1.0)
+
+
+@kernel
+def out_of_vertex(shapes: Shapes, i: int) -> Vector:
+    """Return the direction in the middle of the outward normals of a vertex, of any length."""
+    out = (0.0, 0.0, 0.0)
+    for f in range(shapes.features[i].first_fence, shapes.features[i].last_fence):
+        out = minus(out, vector_from(shapes.fences[f].direction))
+    return out
+
+
+@kernel
+def rim_normal(rim: Feature, point: Vector, way: Vector) -> Vector:
+    """Return the outward normal of a rim at one of its points that is nearest to a direction."""
+    out, axis = outward_at(rim, point), vector_from(rim.direction)
+    angle = math.atan2(dot(axis, way), dot(out, way))
+    angle = min(max(angle, math.asin(rim.taper)), math.asin(rim.end_taper))
+    return plus(scaled(out, math.cos(angle)), scaled(axis, math.sin(angle)))
+
+
+@kernel
 def swapped(met: Meeting) -> Meeting:
     """Return a meeting as the other body has it."""
     return Meeting(met.is_one, met.gap, scaled(met.normal, -1.0), plus(met.place, scaled(met.normal, met.gap)))

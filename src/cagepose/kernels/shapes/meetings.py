@@ -44,8 +44,15 @@ from cagepose.kernels.shapes.features import (
     height_of_end,
     is_end,
 )
-from cagepose.kernels.shapes.meeting import Meeting, both_reach, farthest_beyond, meeting, toward_vertex
-from cagepose.kernels.shapes.rims import distance_at, end_of_arc, outward_at
+from cagepose.kernels.shapes.meeting import (
+    Meeting,
+    both_reach,
+    common_normal,
+    farthest_beyond,
+    meeting,
+    toward_vertex,
+)
+from cagepose.kernels.shapes.rims import lie_flat, outward_at
 
 ROOM_FOR_PAIR, MOST_ROOM = 128, 4096
 """Meetings that there is memory for: of each pair of parts, and of all."""
@@ -166,33 +173,20 @@ def deepest_gap(a: Shapes, one: int, b: Shapes, other: int) -> float:
 
 
 @kernel
-def lie_flat(one: Feature, other: Feature, touch_m: float) -> bool:
-    """Whether a face, a ball or a round side lies on all of an arc of a rim, to the touch tolerance: then the rim's
-    vertices tell all.
-    """
-    rim, on_rim = (one, other) if one.kind == RIM else (other, one)
-    if rim.kind != RIM or on_rim.kind == RIM:
-        return False
-    if on_rim.kind == EDGE:
-        ends = end_of_arc(rim, -1.0), end_of_arc(rim, 1.0)
-        return max(abs(distance_at(on_rim, ends[0])), abs(distance_at(on_rim, ends[1]))) <= touch_m
-    axis, way, away = vector_from(rim.direction), vector_from(on_rim.direction), 1.0
-    if on_rim.kind == VERTEX:
-        way = minus(vector_from(on_rim.point), vector_from(rim.point))
-        away = math.hypot(rim.length, norm(way))
-    return abs(rim.length) * norm(cross(axis, way)) <= touch_m * away
-
-
-@kernel
 def lies_in_mouth(one: Feature, other: Feature, met: Meeting) -> bool:
-    """Whether a rim touches the mouth of a hole with one tangent, as at the same height: the wall below, or the side
-    that ends at the rim, tells the normal to all digits, which circles that nearly coincide would leave to rounding.
+    """Whether a rim or a sharp edge touches the mouth of a hole with one tangent, as at the same height: the wall below,
+    or the side that ends at the rim, tells the normal to all digits, which circles that nearly coincide would leave to
+    rounding; and an edge lies on the face around the mouth there.
     """
-    if one.kind != RIM or other.kind != RIM or (one.length > 0.0 and other.length > 0.0):
+    mouth, on_it = (other, one) if other.kind == RIM and other.length < 0.0 else (one, other)
+    if mouth.kind != RIM or mouth.length > 0.0:
         return False
-    along = cross(vector_from(one.direction), outward_at(one, met.place))
-    others = cross(vector_from(other.direction), outward_at(other, met.place))
-    return norm(cross(along, others)) < SIDE_BY_SIDE
+    along = vector_from(on_it.direction)
+    if on_it.kind == RIM:
+        along = cross(along, outward_at(on_it, met.place))
+    elif on_it.kind != EDGE or on_it.radius != 0.0 or on_it.taper != 0.0:
+        return False
+    return norm(cross(cross(vector_from(mouth.direction), outward_at(mouth, met.place)), along)) < SIDE_BY_SIDE
 
 
 @kernel
@@ -241,16 +235,18 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
     keep_nearest(found, first, on_far_side(max(separation, at_least_m), touch_m))
     for at in range(first, found.used[0]):
         nearest = min(nearest, found.rows[at].gap)
+    if touch_m < nearest <= SAME_PLACE * touch_m and tip_is_at_rim(a, one, b, other, nearest):
+        nearest = math.inf
     radii = a.features[a.parts[one].first].radius + b.features[b.parts[other].first].radius
     if (nearest == math.inf or touch_m < -separation - radii < math.inf) and max(separation, at_least_m) <= touch_m:
-        separation = max(separation, apart_by_rims(a, one, b, other, slack))
+        separation = max(separation, apart_by_rims(a, one, b, other, slack, touch_m))
     if nearest == math.inf or touch_m < -separation - radii < math.inf:  # of cores: what reaches does so by the slack
         return max(separation, at_least_m)
     return max(separation, nearest)  # at an edge, one of the faces may be deep
 
 
 @kernel
-def apart_by_rims(a: Shapes, one: int, b: Shapes, other: int, slack: float) -> float:
+def apart_by_rims(a: Shapes, one: int, b: Shapes, other: int, slack: float, touch_m: float) -> float:
     """Return how far apart two parts are along the ways between their rims and other features, however far these are;
     -inf: there are no rims.
     """
@@ -264,7 +260,22 @@ def apart_by_rims(a: Shapes, one: int, b: Shapes, other: int, slack: float) -> f
             met = toward_vertex(a, i, b, j) if is_vertex else meeting(a, i, b, j)
             if met.is_one and (is_vertex or tells_apart(a, i, b, j, met, slack)):
                 separation = max(separation, apart_along(a, one, b, other, met.normal))
+            if met.is_one and is_vertex and met.gap <= SAME_PLACE * touch_m:
+                separation = max(separation, apart_along(a, one, b, other, common_normal(a, i, b, j, met)))
     return separation
+
+
+@kernel
+def tip_is_at_rim(a: Shapes, one: int, b: Shapes, other: int, within_m: float) -> bool:
+    """Whether a sharp vertex of one of two parts is so near to a sharp rim of the other."""
+    for i in range(a.parts[one].first, a.parts[one].last):
+        for j in range(b.parts[other].first, b.parts[other].last):
+            kind, other_kind = a.features[i].kind, b.features[j].kind
+            if (kind == RIM and other_kind == VERTEX) or (kind == VERTEX and other_kind == RIM):
+                met = toward_vertex(a, i, b, j)
+                if met.is_one and met.gap <= within_m:
+                    return True
+    return False
 
 
 @kernel

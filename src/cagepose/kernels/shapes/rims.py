@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.features import EDGE, FACE, VERTEX, Feature
+from cagepose.kernels.shapes.features import EDGE, FACE, RIM, VERTEX, Feature
 
 ARCS = 8
 """Of one rim."""
@@ -33,6 +33,8 @@ EXTREME_STEPS = 12
 """Of the search for where the way to the nearest point has most of a part along the tangent."""
 ITERATIONS, ROUNDING = 60, 2e-16
 """Of the search for a foot, radians."""
+EQUALLY_FAR = 0.5
+"""In touch tolerances: where distances along an arc differ by more, its vertices may not have the normal that it has."""
 REACH = 2.0 * math.sin(0.5 * SEARCHED)
 """Of an arc from its middle, in radii."""
 
@@ -375,3 +377,29 @@ def end_of_arc(rim: Feature, side: float) -> Vector:
 @kernel
 def reach_of_arc(rim: Feature) -> float:
     return REACH * abs(rim.length)
+
+
+@kernel
+def lie_flat(one: Feature, other: Feature, touch_m: float) -> bool:
+    """Whether a face, a ball or a round side lies on all of an arc of a rim, to the touch tolerance: then the rim's
+    vertices tell all.
+    """
+    rim, on_rim = (one, other) if one.kind == RIM else (other, one)
+    if rim.kind != RIM or on_rim.kind == RIM:
+        return False
+    if on_rim.kind == EDGE:
+        return lies_along(rim, on_rim, touch_m)
+    axis, way, away = vector_from(rim.direction), vector_from(on_rim.direction), 1.0
+    if on_rim.kind == VERTEX:
+        way = minus(vector_from(on_rim.point), vector_from(rim.point))
+        away = math.hypot(rim.length, norm(way))
+    return abs(rim.length) * norm(cross(axis, way)) <= touch_m * away
+
+
+@kernel
+def lies_along(rim: Feature, side: Feature, touch_m: float) -> bool:
+    """Whether a round side lies on all of an arc: at its ends and in its middle they are equally far apart."""
+    first, middle = distance_at(side, end_of_arc(rim, -1.0)), distance_at(side, middle_of_arc(rim))
+    last = distance_at(side, end_of_arc(rim, 1.0))
+    least, most = min(first, middle, last), max(first, middle, last)
+    return most - least <= EQUALLY_FAR * touch_m and max(most, -least) <= touch_m

@@ -1,0 +1,102 @@
+"""Cones seated in the mouth of a bore, pushed sideways without friction: against the two sides of a wedge on two points.
+
+In the plane of the push the cone is a wedge that lies on both ends of the mouth's diameter; the circle there touches it
+nowhere else. Along its tilt the potential is a function of one number, whose first minimum from upright is the rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from cagepose import Box, Cage, Cone, Force, Hole, Load, Object, Pose, Scene, run
+
+MM, WEIGHT_N = 1e-3, 0.981
+CONES = ((4.0, 8.0, 4.0), (5.0, 8.0, 6.0), (3.0, 8.0, 3.0), (4.5, 7.0, 10.0), (4.0, 9.0, 9.0))
+"""Radius below and above, and length, mm."""
+STEP = 1e-4
+"""Radians."""
+
+
+def seated(cone: tuple[float, float, float], mouth: float, push_n: float, height: float) -> Scene:
+    """A cone in a bore of this radius, mm, pushed at a height above its middle."""
+    low, high, length = cone
+    plate = Box((0.1, 0.1, 0.02), Pose((0.0, 0.0, -0.01)), name="plate")
+    bore = Hole(mouth * MM, 0.02, in_=["plate"])
+    head = Object(shapes=[Cone(low * MM, high * MM, length * MM)], pose=Pose((0.0, 0.0, length * MM)), mass_kg=0.1)
+    push = Force((1.0, 0.0, 0.0), (0.0, 0.0, height * MM), push_n)
+    weight = (0.0, 0.0, -9.81)
+    return Scene(head, Cage(shapes=[plate], holes=[bore]), [Load("seat", gravity=weight), Load("push", gravity=weight, force=push)])
+
+
+def rest_of_wedge(cone: tuple[float, float, float], mouth: float, push_n: float, height: float, center: float) -> float | None:
+    """Return the tilt of the rest, radians, below zero where the cone leans against the push; None: it is not held by
+    both of its sides there.
+    """
+    low, high, length = cone
+    half = math.atan2(high - low, length)
+    apex, least, most = -0.5 * length - low / math.tan(half), low / math.sin(half), high / math.sin(half)
+
+    def sides(tilt: float) -> tuple[np.ndarray, float, float]:
+        """Where the apex is in the plane, and how far from it each side meets the mouth."""
+        right, left = (np.array((math.sin(tilt + sense * half), math.cos(tilt + sense * half))) for sense in (1.0, -1.0))
+        along = np.linalg.solve(np.column_stack([right, -left]), (2.0 * mouth, 0.0))
+        return np.array((mouth, 0.0)) - along[0] * right, *map(float, along)
+
+    def potential(tilt: float) -> float:
+        tip, axis = sides(tilt)[0], np.array((math.sin(tilt), math.cos(tilt)))
+        return float(WEIGHT_N * (tip + axis * (center - apex))[1] - push_n * (tip + axis * (height - apex))[0])
+
+    def slope(tilt: float) -> float:
+        return (potential(tilt + 1e-5) - potential(tilt - 1e-5)) / 2e-5
+
+    sense, tilt = -math.copysign(1.0, slope(0.0)), 0.0
+    while sense * slope(sense * tilt) < 0.0:
+        tilt += STEP
+        if tilt > half or min(sides(sense * tilt)[1:]) < least or max(sides(sense * tilt)[1:]) > most:
+            return None  # a rim of the cone, or the wall below the mouth, comes in
+    rest = float(brentq(slope, sense * (tilt - STEP), sense * tilt)) if tilt > 0.0 else 0.0
+    return rest if both_press(half, rest, push_n) else None
+
+
+def both_press(half: float, tilt: float, push_n: float) -> bool:
+    """Whether both sides of the wedge press on the mouth, by the balance of forces."""
+    normals = np.column_stack([(-math.cos(tilt + half), math.sin(tilt + half)), (math.cos(tilt - half), -math.sin(tilt - half))])
+    return bool((np.linalg.solve(normals, (-push_n, WEIGHT_N)) > 0.0).all())
+
+
+CASES = [
+    (cone, mouth, push, height)
+    for mouth in (6.0, 5.0)
+    for cone in CONES
+    for push in (0.01, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0)
+    for height in (0.0, 0.5 * cone[2], -0.5 * cone[2])
+    if cone[0] < mouth < cone[1]
+]
+
+
+def test_cones_in_a_mouth_tilt_as_wedges_do(cases, say):
+    random = np.random.default_rng(4)
+    chosen, seen, wrong = random.permutation(len(CASES))[: cases(40, len(CASES))], 0, []
+    for number in chosen:
+        cone, mouth, push, height = CASES[number]
+        scene = seated(cone, mouth, push, height)
+        rest = rest_of_wedge(cone, mouth, push, height, float(scene.object.center_of_gravity_m[2]) / MM)
+        if rest is None:
+            continue
+        seen += 1
+        result = run(scene)
+        tilt = math.atan2(result.pose.rotation[0, 2], result.pose.rotation[2, 2])
+        if result.verdict != "rests" or abs(tilt - rest) > TILTED:
+            wrong.append(f"{CASES[number]}: {result.verdict}, {tilt} rad, not {rest}")
+    say(f"{seen} cones pushed in a mouth: {len(wrong)} wrong")
+    assert seen > len(chosen) // 3
+    assert not wrong, "\n".join(wrong[:5])
+
+
+TILTED = 3e-5
+"""Radians: tilted by less, the whole circle is within the touch tolerance."""
