@@ -65,11 +65,18 @@ def test_a_study_prints_what_its_page_says_and_show_says_it_again(
     code, text, _ = answer(capsys, "show", "out", "--json")
     assert (code, json.loads(text)) == (0, numbers)
     rows_as_csv(capsys)
-    Path("out/report.json").unlink()  # then it is written anew
-    code, out_again, _ = answer(capsys, "show", "out")
-    assert (code, out_again) == (0, out)
+    for gone in (lambda: Path("out/report.json").unlink(), lambda: of_another_version(numbers)):
+        gone()  # then it is written anew
+        code, out_again, _ = answer(capsys, "show", "out")
+        assert (code, out_again) == (0, out)
     assert answer(capsys, study, "--out", "out")[0] == 2
     assert answer(capsys, study, "--out", "out", "--resume")[0] == 0
+
+
+def of_another_version(numbers: dict[str, Any]) -> None:
+    """What is left of a study when cagepose was renewed: other keys, it may be."""
+    kept = {name: numbers[name] for name in ("yield", "runs")}
+    Path("out/report.json").write_text(json.dumps({**kept, "version": "0.0.9"}), encoding="utf-8")
 
 
 def rows_as_csv(capsys: pytest.CaptureFixture[str]) -> None:

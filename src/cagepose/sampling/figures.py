@@ -44,8 +44,9 @@ def draw(findings: Findings) -> dict[str, Figure]:
     with styled():
         if known:
             pictures["sobol"] = _sobol_figure(known, names)
-        if any((row.derivatives != 0.0).any() for row in rows):
-            pictures["tornado"] = _tornado_figure(rows, names, findings.distributions)
+        changing = [row for row in rows if np.ptp(row.worst) > row.resolution]
+        if changing:
+            pictures["tornado"] = _tornado_figure(changing, names, findings.distributions)
         resolution, all_spreads = findings.results.columns.resolution, findings.statistics.spreads
         spreads = {
             name: all_spreads[name]
@@ -117,7 +118,7 @@ def _tornado_figure(
         panel.xaxis.set_major_formatter("{x:g}")
         panel.set_yticks(np.arange(n_bars), [names[one] for one in order])
         panel.set_title(row.name)
-        panel.set_xlabel("change from the middle to either end")
+        panel.set_xlabel("change to either end")
     return figure
 
 
@@ -130,6 +131,7 @@ def _spread_figure(spreads: dict[str, Spread]) -> Figure:
         panel.axvline(spread.mean, color=VERMILLION, linewidth=1.0)
         panel.set_title(name)
         panel.set_yticks([])
+        panel.locator_params(axis="x", nbins=4)
     return figure
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 import cagepose
 from cagepose.runs.methods import chosen_method
+from cagepose.runs.run import FAILURES
 from cagepose.sampling.capture_map import CaptureMap, capture_maps
 from cagepose.sampling.chosen_runs import ChosenRun, chosen_runs
 from cagepose.sampling.contact_table import ContactTable, contact_table
@@ -88,6 +89,8 @@ def document(findings: Findings) -> dict[str, Any]:
         "runs": statistics.n_runs,
         "accept": study.model.accept,
         "yield": _share(statistics.n_accepted, statistics.n_runs),
+        "good_but_not_at_rest": statistics.n_accepted_moving,
+        "failed": {name: n for name, n in statistics.verdicts.most_common() if name in FAILURES},
         "verdicts": {name: _share(n, statistics.n_runs) for name, n in statistics.verdicts.most_common()},
         "varied": [
             {"key": one.key, "nominal": one.nominal, "low": spread.low, "high": spread.high, "sigma": spread.sigma}
@@ -128,6 +131,7 @@ def _tolerance(row: ToleranceRow, results: StudyResults) -> dict[str, Any]:
             "range": [spread.least, spread.greatest],
             "runs": spread.n,
         },
+        "resolution": row.resolution,
         "stays_within_worst_case": row.stays_within_worst,
         "derivatives": dict(zip(results.columns.varied, row.derivatives.tolist(), strict=True)),
     }
