@@ -223,8 +223,8 @@ def test_a_failed_run_is_never_good_and_is_told(
     """Its pose is where it stopped: that it lies where it should is no answer."""
     ends = Runner.run
 
-    def one_fails(runner: Runner, values: FloatArray) -> Outcomes:
-        outcomes = ends(runner, values)
+    def one_fails(runner: Runner, values: FloatArray, **how: bool) -> Outcomes:
+        outcomes = ends(runner, values, **how)
         outcomes.phase_verdicts[7:8, 0] = "limit"
         return outcomes
 
@@ -235,6 +235,7 @@ def test_a_failed_run_is_never_good_and_is_told(
     assert frame["accepted"].tolist() == [verdict == "rests" for verdict in frame["verdict"]]
     assert (numbers["yield"]["runs"], numbers["verdicts"]["limit"]["runs"]) == (63, 1)
     assert numbers["failed"] == {"limit": 1}
+    assert numbers["contacts"]["forces_of_runs"] <= 63
     assert tolerance_of(numbers, "position_z")["monte_carlo"]["runs"] == 63
     assert numbers["chosen_runs"][0]["run"] == 7
     assert "1 run failed (<code>limit</code>)" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
@@ -317,6 +318,18 @@ def test_contacts_say_how_often_and_how_much(run_study: RunStudy) -> None:
         if (forces > 0.0).any():
             assert row["mean_force"] == pytest.approx(forces[forces > 0.0].mean())
             assert row["greatest_force"] == forces.max()
+
+
+@pytest.mark.usefixtures("small_designs")
+@pytest.mark.parametrize("name", ["force_C1", "force.C1"])
+def test_a_run_may_be_judged_by_its_forces(run_study: RunStudy, name: str) -> None:
+    """In the rows, and in the runs beside them."""
+    vary = {"cage.pose.euler_zyx_deg[1]": {"uniform": [-0.1, 0.1]}, "cage.points[0][2]": {"uniform": [-1.1, -0.9]}}
+    results = run_study(vary, 100, forces=True, accept=f"{name} > 0.05")
+    frame, numbers = results.to_frame(), results.report()
+    assert frame["accepted"].tolist() == (frame["force_C1"] > 0.05).tolist()
+    assert 0.0 < numbers["yield"]["share"] < 1.0
+    assert 0 < sum(map(sum, numbers["maps"][0]["accepted_cells"])) < 64
 
 
 @pytest.mark.usefixtures("small_designs")
