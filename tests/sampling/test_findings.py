@@ -341,7 +341,9 @@ def test_the_page_stands_alone_and_holds_the_numbers(run_study: RunStudy, tmp_pa
     assert not re.findall(r'(?:src|href)="(?!#|data:|worst|typical)', page)
     assert "<script" not in page
     assert "&lt;b&gt;" in page
-    assert page.count("<svg") == 4
+    assert page.count("<svg") == 5
+    reasons = {one["missing"] for one in numbers["sensitivities"]} - {None}
+    assert page.count("No indices of") == len(reasons) > 0
     for text in ("Yield", "Tolerances", "What matters", "Capture map", "Contacts", "worst-1.yaml", "tip_z"):
         assert text in page
     assert json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8")) == numbers
