@@ -153,6 +153,26 @@ def test_a_broken_study_is_refused_in_place(
     assert not Path("out").exists()
 
 
+@pytest.mark.parametrize(
+    ("command", "name", "told"),
+    [
+        (("study",), "scene", "is a scene, not a study; run it with `cagepose run FILE`, or name it as the scene of"),
+        (("study",), "design", "is a design, not a study; run it with `cagepose design FILE`"),
+        (("design",), "study", "is a study, not a design; run it with `cagepose study FILE --out FOLDER`"),
+        (("run",), "study", "is a study, not a scene; run it with `cagepose study FILE --out FOLDER`"),
+        (("check",), "design", "is a design, not a scene; run it with `cagepose design FILE`"),
+    ],
+)
+def test_a_file_of_another_kind_is_told_its_command(
+    study: Path, capsys: pytest.CaptureFixture[str], command: tuple[str, ...], name: str, told: str
+) -> None:
+    Path("design.yaml").write_text(STUDY + "change: {parameters.half: [1, 2]}\n", encoding="utf-8")
+    out = ("--out", "out") if command == ("study",) else ()
+    assert main([*command, str(study.with_name(f"{name}.yaml")), *out]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"{study.with_name(name)}.yaml: {told}")
+
+
 def test_a_right_study_has_its_runs(study: Path) -> None:
     assert len(Study.load("study.yaml")) == 100
     grid = STUDY.replace(SIDE, "parameters.side: {grid: [9, 10]}").replace(

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 
 from cagepose.errors import FileProblem, Key, Problem, SceneError, SceneFileError
 from cagepose.files.build import build_scene
+from cagepose.files.file_kind import expect_kind
 from cagepose.files.key_path import Path as KeyPath
 from cagepose.files.key_path import parse_key_path, resolved, set_value, value_at
 from cagepose.files.messages import Finding, schema_findings, shown
@@ -75,12 +76,14 @@ def scene_text_of(text: str, source: str) -> SceneText:
     Raises
     ------
     SceneFileError
-        The text is not YAML, or is a saved run.
+        The text is not YAML, or is a saved run, a study or a design.
     """
     if starts_as_run(text):
         message = "is a saved run, not a scene; name its scene file (saved runs are for `cagepose plot` and `view`)"
         raise SceneFileError([FileProblem((), message, source)])
-    return SceneText(text, parse_yaml(text, source), Path(source).parent)
+    yaml = parse_yaml(text, source)
+    expect_kind(yaml, "scene")
+    return SceneText(text, yaml, Path(source).parent)
 
 
 def parse_scene(text: str, name: str = "scene.yaml", set_values: Sequence[str] = ()) -> Scene:
