@@ -35,6 +35,9 @@ def print_study(found: dict[str, Any]) -> None:
 
 def _warnings(found: dict[str, Any]) -> list[str]:
     lines = [f"{n:,} failed ({name}): without an answer, and not good" for name, n in found["failed"].items()]
+    if found["at_rest"] and not found["yield"]["runs"]:
+        rests = " and ".join(f"{n:,} as {name!r}" for name, n in found["at_rest"].items())
+        lines.append(f"no run is good, though runs come to rest: {rests}; is accept right?")
     if moving := found["good_but_not_at_rest"]:
         lines.append(f"{moving:,} good runs do not come to rest; write verdict == 'rests' into accept, if they must")
     return lines

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -41,14 +42,16 @@ def range_or_dash(ends: Sequence[float | None], noise: float = 0.0) -> str:
 
 
 def percent(share: float) -> str:
-    """Return a share: more digits near all and none.
+    """Return a share: more digits near all and none, so that one of a million is seen.
 
-    >>> percent(0.5), percent(0.99973), percent(1.0)
-    ('50.00 %', '99.973 %', '100 %')
+    >>> percent(0.5), percent(0.99973), percent(1.0), percent(1e-6), percent(1.0 - 3.84e-6)
+    ('50.00 %', '99.973 %', '100 %', '0.00010 %', '99.99962 %')
     """
-    if share in (0.0, 1.0):
+    least = min(share, 1.0 - share)
+    if least <= 0.0:
         return f"{100.0 * share:.0f} %"
-    return f"{100.0 * share:.{2 if 0.01 <= share <= 0.99 else 3}f} %"
+    digits = 2 if least >= 0.01 else max(3, 1 + math.ceil(-math.log10(100.0 * least)))
+    return f"{100.0 * share:.{digits}f} %"
 
 
 def coordinates(values: FloatArray, digits: int = 6) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 
 import cagepose
 from cagepose.runs.methods import chosen_method
-from cagepose.runs.run import FAILURES
+from cagepose.runs.run import AT_REST, FAILURES
 from cagepose.sampling.capture_map import CaptureMap, capture_maps
 from cagepose.sampling.chosen_runs import ChosenRun, chosen_runs
 from cagepose.sampling.contact_table import ContactTable, contact_table
@@ -90,6 +90,7 @@ def document(findings: Findings) -> dict[str, Any]:
         "accept": study.model.accept,
         "yield": _share(statistics.n_accepted, statistics.n_runs),
         "good_but_not_at_rest": statistics.n_accepted_moving,
+        "at_rest": {name: n for name, n in statistics.verdicts.most_common() if name in AT_REST},
         "failed": {name: n for name, n in statistics.verdicts.most_common() if name in FAILURES},
         "verdicts": {name: _share(n, statistics.n_runs) for name, n in statistics.verdicts.most_common()},
         "varied": [
