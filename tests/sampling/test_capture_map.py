@@ -88,6 +88,7 @@ def test_a_refined_map_of_a_rail_is_its_whole_grid(
     assert np.array_equal(refined.accepted, whole.accepted)
     assert np.array_equal(refined.verdicts, whole.verdicts)
     assert refined.box == whole.box
+    assert (len(refined.quantities), len(whole.quantities)) == (0, 6)
 
 
 @pytest.mark.usefixtures("small_designs")
@@ -103,6 +104,7 @@ def test_the_capture_map_says_what_each_of_its_runs_does(run_study: RunStudy, tm
     found = numbers["maps"][0]
     assert found["over"] == keys
     assert found["verdicts"] == ["refused", "rests"]
+    assert (tmp_path / "out" / "ends.svg").exists()
     study = StudyResults(tmp_path / "out").study
     for up in (0, 5, 11):
         for across in (0, 6, 11):
@@ -110,10 +112,12 @@ def test_the_capture_map_says_what_each_of_its_runs_does(run_study: RunStudy, tm
             paths = {one.path: numbers_there[one.key] for one in study.varied}
             if found["verdicts"][found["verdict_cells"][up][across]] == "refused":
                 assert not found["accepted_cells"][up][across]
+                assert found["ends"]["pitch_deg"][up][across] is None
                 continue
             ended = run(study.scene_text.scene_with(paths).scene)
             pitch = math.degrees(ended.pose.euler_zyx[1])
             assert found["accepted_cells"][up][across] == (ended.verdict == "rests" and abs(pitch) < 0.3)
+            assert found["ends"]["pitch_deg"][up][across] == pytest.approx(pitch, abs=1e-12)
 
 
 @pytest.mark.usefixtures("small_designs")
@@ -183,7 +187,7 @@ def test_a_third_number_makes_a_map_for_each_of_a_few_values(
     study = StudyResults(tmp_path / "out").study
     paths = {one.key: one.path for one in study.varied}
     for one in maps[:3]:
-        assert one["over"] == keys[:2]
+        assert (one["over"], one["ends"]) == (keys[:2], {})
         for up in range(4):
             numbers = {keys[0]: one["across"][2], keys[1]: one["up"][up], keys[2]: one["layer"][keys[2]]}
             ended = run(study.scene_text.scene_with({paths[key]: value for key, value in numbers.items()}).scene)

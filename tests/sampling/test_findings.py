@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,12 +16,21 @@ from scipy import stats
 from scipy.stats import qmc
 
 from cagepose import Study, StudyResults, load_scene, run
+from cagepose.cli.app import main
+from cagepose.model.checks import FloatArray
+from cagepose.sampling.outcome import Outcomes
+from cagepose.sampling.runner import Runner
 from cagepose.sampling.sensitivity import _indices, saltelli_rows
 from cagepose.sampling.statistics import Spread, statistics_of, wilson
 from our_studies import PEG, RunStudy
 
 RISES = {"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}}
 HEIGHTS = {"cage.pose.position[2]": {"normal": {"sigma": 0.1}}, "object.pose.position[0]": {"uniform": [-0.05, 0.05]}}
+
+
+def tolerance_of(numbers: dict[str, Any], name: str) -> dict[str, Any]:
+    (row,) = (row for row in numbers["tolerances"] if row["name"] == name)
+    return row  # type: ignore[no-any-return]
 
 
 def test_the_tilt_of_a_rail_with_normal_gaps_has_the_distribution_of_the_closed_form(
@@ -121,7 +131,7 @@ def test_a_linear_case_has_the_tolerances_and_indices_of_theory(run_study: RunSt
     peg.write_text(text, encoding="utf-8")
     vary = {"parameters.a": {"normal": {"sigma": 0.1, "cut": 3}}, "parameters.b": {"normal": {"sigma": 0.2, "cut": 3}}}
     numbers = run_study(vary, 20_000, scene=peg).report()
-    (row,) = (row for row in numbers["tolerances"] if row["name"] == "position_z")
+    row = tolerance_of(numbers, "position_z")
     assert row["nominal"] == pytest.approx(0.5)
     assert list(row["derivatives"].values()) == pytest.approx([1.0, 1.0], abs=1e-9)
     assert row["worst_case"] == pytest.approx([0.5 - 0.9, 0.5 + 0.9])
@@ -140,12 +150,97 @@ def test_a_linear_case_has_the_tolerances_and_indices_of_theory(run_study: RunSt
 def test_no_row_leaves_a_worst_case_that_is_not_known(run_study: RunStudy, peg: Path, tmp_path: Path) -> None:
     """The cube starts on its points: a step upwards of these would be into it."""
     peg.write_text(PEG.replace("0.02, 3]", "0.02, 0.5]"), encoding="utf-8")
-    vary = {"cage.pose.position[2]": {"uniform": [-0.2, -0.1]}}
+    vary = {"cage.pose.position[2]": {"uniform": [-0.2, 0.1]}}
     numbers = run_study(vary, 20, scene=peg).report()
-    (row,) = (row for row in numbers["tolerances"] if row["name"] == "position_z")
+    row = tolerance_of(numbers, "position_z")
     assert (row["nominal"], row["worst_case"], row["stays_within_worst_case"]) == (0.5, [None, None], None)
-    assert row["monte_carlo"]["runs"] == 20
-    assert 'class="leaves"' not in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert row["monte_carlo"]["runs"] == numbers["verdicts"]["rests"]["runs"] < 20
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert 'class="leaves"' not in page
+    assert "- to -" not in page
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_no_step_leaves_the_range_of_a_number(run_study: RunStudy, peg: Path) -> None:
+    """A nominal friction of 0, and a cage that can only be lower: on the other side no scene is."""
+    peg.write_text(PEG.replace("0.02, 3]", "0.02, 0.5]") + "friction: {coefficient: 0}\n", encoding="utf-8")
+    vary = {"friction.coefficient": {"uniform": [0, 0.3]}, "cage.pose.position[2]": {"uniform": [-0.2, 0]}}
+    row = tolerance_of(run_study(vary, 20, scene=peg).report(), "position_z")
+    assert row["derivatives"] == pytest.approx({"friction.coefficient": 0.0, "cage.pose.position[2]": 1.0}, abs=1e-9)
+    assert row["worst_case"] == pytest.approx([0.3, 0.5])
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_a_jump_has_no_derivative(run_study: RunStudy, peg: Path) -> None:
+    """The cube stands 0.1 m high on either side of a step in its scene's expression."""
+    peg.write_text(
+        PEG.replace("position: [0, 0, 0]}\nloads", 'position: [0, 0, "=(a/abs(a))/10"]}\nparameters: {a: 1e-9}\nloads'),
+        encoding="utf-8",
+    )
+    vary = {"parameters.a": {"uniform": [-1, 1]}}
+    numbers = run_study(vary, 64, scene=peg).report()
+    row = tolerance_of(numbers, "position_z")
+    assert (row["nominal"], row["derivatives"], row["worst_case"]) == (0.6, {"parameters.a": None}, [None, None])
+    assert tolerance_of(numbers, "position_x")["worst_case"] == [0.0, 0.0]
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_rounding_is_no_way_out_of_the_worst_case(
+    run_study: RunStudy, peg: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The cube starts tilted and settles on its face, to the last digits."""
+    peg.write_text(PEG.replace("0.02, 3]", "0.02, 3], euler_zyx_deg: [0, 0, 0]"), encoding="utf-8")
+    vary = {"object.pose.euler_zyx_deg[1]": {"uniform": [-3, 3]}, **RISES}
+    numbers = run_study(vary, 64, scene=peg).report()
+    row = tolerance_of(numbers, "pitch_deg")
+    least, greatest = row["monte_carlo"]["range"]
+    assert 0.0 < greatest - least < row["resolution"]
+    assert row["stays_within_worst_case"]
+    assert main(["study", "show", str(tmp_path / "out")]) == 0
+    assert "e-1" not in capsys.readouterr().out
+    assert not re.findall(r"<td>[^<]*e-1", (tmp_path / "out" / "report.html").read_text(encoding="utf-8"))
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_good_runs_that_do_not_rest_are_told(
+    run_study: RunStudy, peg: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Beyond its points the cube tips over, and where it is then may be where it should be."""
+    vary = {"object.pose.position[0]": {"uniform": [-0.1, 0.9]}, **RISES}
+    numbers = run_study(vary, 64, scene=peg, accept="abs(position.y) < 100").report()
+    escaped = numbers["verdicts"]["escapes"]["runs"]
+    assert numbers["good_but_not_at_rest"] == escaped > 10
+    told = f"{escaped} of the good runs do not come to rest; write"
+    assert told in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert main(["study", "show", str(tmp_path / "out")]) == 0
+    assert f"{escaped} good runs do not come to rest; write verdict == 'rests'" in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_a_failed_run_is_never_good_and_is_told(
+    run_study: RunStudy, peg: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its pose is where it stopped: that it lies where it should is no answer."""
+    ends = Runner.run
+
+    def one_fails(runner: Runner, values: FloatArray, **how: bool) -> Outcomes:
+        outcomes = ends(runner, values, **how)
+        outcomes.phase_verdicts[7:8, 0] = "limit"
+        return outcomes
+
+    monkeypatch.setattr(Runner, "run", one_fails)
+    results = run_study(RISES, 64, scene=peg, accept="position.z < 100")
+    frame, numbers = results.to_frame(), results.report()
+    assert frame["verdict"].tolist() == ["rests"] * 7 + ["limit"] + ["rests"] * 56
+    assert frame["accepted"].tolist() == [verdict == "rests" for verdict in frame["verdict"]]
+    assert (numbers["yield"]["runs"], numbers["verdicts"]["limit"]["runs"]) == (63, 1)
+    assert numbers["failed"] == {"limit": 1}
+    assert numbers["contacts"]["forces_of_runs"] <= 63
+    assert tolerance_of(numbers, "position_z")["monte_carlo"]["runs"] == 63
+    assert numbers["chosen_runs"][0]["run"] == 7
+    assert "1 run failed (<code>limit</code>)" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert main(["study", "show", str(tmp_path / "out")]) == 0
+    assert "1 failed (limit): without an answer, and not good" in capsys.readouterr().out
 
 
 def test_the_design_of_the_indices_is_that_of_salib() -> None:
@@ -166,6 +261,19 @@ def test_blocks_of_a_design_in_which_a_run_has_no_pose_are_left_out() -> None:
     assert (found.n_runs, found.first.tolist()) == (297, expected.first.tolist())
     measured[:200] = np.nan
     assert "too many" in (_indices("q", measured, problem, 1, 0.0).missing or "")
+
+
+@pytest.mark.parametrize("odd", [0, 1])
+def test_what_is_nearly_always_the_same_has_no_indices_of_zero(odd: int) -> None:
+    """One run of 300 differs. If it is none of those that the variance is taken of, SALib warns and says zero."""
+    problem = {"num_vars": 1, "names": ["a"], "bounds": [[0.0, 1.0]]}
+    measured = np.zeros(300)
+    measured[odd] = 1.0
+    found = _indices("q", measured, problem, 1, 0.0)
+    if odd == 0:
+        assert (found.missing, found.total.tolist()) == (None, pytest.approx([1.0], abs=0.01))
+    else:
+        assert found.missing == "is the same in all of them, or in nearly all"
 
 
 @pytest.mark.usefixtures("small_designs")
@@ -213,6 +321,18 @@ def test_contacts_say_how_often_and_how_much(run_study: RunStudy) -> None:
 
 
 @pytest.mark.usefixtures("small_designs")
+@pytest.mark.parametrize("name", ["force_C1", "force.C1"])
+def test_a_run_may_be_judged_by_its_forces(run_study: RunStudy, name: str) -> None:
+    """In the rows, and in the runs beside them."""
+    vary = {"cage.pose.euler_zyx_deg[1]": {"uniform": [-0.1, 0.1]}, "cage.points[0][2]": {"uniform": [-1.1, -0.9]}}
+    results = run_study(vary, 100, forces=True, accept=f"{name} > 0.05")
+    frame, numbers = results.to_frame(), results.report()
+    assert frame["accepted"].tolist() == (frame["force_C1"] > 0.05).tolist()
+    assert 0.0 < numbers["yield"]["share"] < 1.0
+    assert 0 < sum(map(sum, numbers["maps"][0]["accepted_cells"])) < 64
+
+
+@pytest.mark.usefixtures("small_designs")
 def test_the_page_stands_alone_and_holds_the_numbers(run_study: RunStudy, tmp_path: Path) -> None:
     vary = {"cage.pose.euler_zyx_deg[1]": {"uniform": [-0.4, 0.4]}, "friction.coefficient": {"grid": [0.0, 0.1]}}
     results = run_study(vary, 200, accept="pitch_deg < 0.1 and 'x' != '<b>'", watch={"tip": {"point": [600, 0, 0]}})
@@ -221,7 +341,9 @@ def test_the_page_stands_alone_and_holds_the_numbers(run_study: RunStudy, tmp_pa
     assert not re.findall(r'(?:src|href)="(?!#|data:|worst|typical)', page)
     assert "<script" not in page
     assert "&lt;b&gt;" in page
-    assert page.count("<svg") == 4
+    assert page.count("<svg") == 5
+    reasons = {one["missing"] for one in numbers["sensitivities"]} - {None}
+    assert page.count("No indices of") == len(reasons) > 0
     for text in ("Yield", "Tolerances", "What matters", "Capture map", "Contacts", "worst-1.yaml", "tip_z"):
         assert text in page
     assert json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8")) == numbers

@@ -65,11 +65,32 @@ def test_a_study_prints_what_its_page_says_and_show_says_it_again(
     code, text, _ = answer(capsys, "show", "out", "--json")
     assert (code, json.loads(text)) == (0, numbers)
     rows_as_csv(capsys)
-    Path("out/report.json").unlink()  # then it is written anew
-    code, out_again, _ = answer(capsys, "show", "out")
-    assert (code, out_again) == (0, out)
+    for gone in (lambda: Path("out/report.json").unlink(), lambda: of_another_version(numbers)):
+        gone()  # then it is written anew
+        code, out_again, _ = answer(capsys, "show", "out")
+        assert (code, out_again) == (0, out)
     assert answer(capsys, study, "--out", "out")[0] == 2
     assert answer(capsys, study, "--out", "out", "--resume")[0] == 0
+
+
+def test_a_condition_that_no_rest_meets_is_told(study: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """What the one method calls a rest the other one calls stable."""
+    scene = Path("stepwise.yaml")
+    scene.write_text(f"method: stepwise\n{RAIL.read_text(encoding='utf-8')}", encoding="utf-8")
+    text = STUDY.replace(str(RAIL), scene.name) + "accept: verdict == 'rests'\n"
+    Path(study).write_text(text, encoding="utf-8")
+    code, out, _ = answer(capsys, study, "--out", "out")
+    assert code == 0
+    n_stable = json.loads(Path("out/report.json").read_text(encoding="utf-8"))["verdicts"]["stable"]["runs"]
+    assert f"no run is good, though runs come to rest: {n_stable} as 'stable'; is accept right?" in out
+    page = Path("out/report.html").read_text(encoding="utf-8")
+    assert f"No run is good, though runs come to rest: {n_stable}\nas <code>stable</code>." in page
+
+
+def of_another_version(numbers: dict[str, Any]) -> None:
+    """What is left of a study when cagepose was renewed: other keys, it may be."""
+    kept = {name: numbers[name] for name in ("yield", "runs")}
+    Path("out/report.json").write_text(json.dumps({**kept, "version": "0.0.9"}), encoding="utf-8")
 
 
 def rows_as_csv(capsys: pytest.CaptureFixture[str]) -> None:

@@ -54,6 +54,12 @@ EDITS = [
      "3:20: vary.parameters.side: is 10; give keys with values"),
     ("limits the wrong way round", SIDE, "parameters.side: {uniform: [11, 9]}",
      "3:30: vary.parameters.side.uniform: is [11.0, 9.0]; give the lower number first"),
+    ("limits that are one", SIDE, "parameters.side: {uniform: [9, 9]}",
+     "3:30: vary.parameters.side.uniform: is [9.0, 9.0], which does not vary; give two different numbers, or leave"),
+    ("steps on the spot", SIDE, "parameters.side: {steps: {first: 9, last: 9, count: 2}}",
+     "3:28: vary.parameters.side.steps: run from 9.0 to 9.0; give two different numbers, or leave this key out"),
+    ("a key with brackets and no quotes", "vary:\n", "map: {over: [cage.points[0][2], parameters.side]}\nvary:\n",
+     "2:25: is not YAML: expected ',' or ']', but got '['; put a key with brackets in quotes where it stands within"),
     ("three limits", SIDE, "parameters.side: {uniform: [9, 10, 11]}",
      "3:30: vary.parameters.side.uniform: has 3 values; give 2"),
     ("negative sigma", "sigma: 0.02", "sigma: -0.02",
@@ -145,6 +151,26 @@ def test_a_broken_study_is_refused_in_place(
     lines = capsys.readouterr().err.splitlines()
     assert any(found.startswith(f"study.yaml:{line}") for found in lines), lines
     assert not Path("out").exists()
+
+
+@pytest.mark.parametrize(
+    ("command", "name", "told"),
+    [
+        (("study",), "scene", "is a scene, not a study; run it with `cagepose run FILE`, or name it as the scene of"),
+        (("study",), "design", "is a design, not a study; run it with `cagepose design FILE`"),
+        (("design",), "study", "is a study, not a design; run it with `cagepose study FILE --out FOLDER`"),
+        (("run",), "study", "is a study, not a scene; run it with `cagepose study FILE --out FOLDER`"),
+        (("check",), "design", "is a design, not a scene; run it with `cagepose design FILE`"),
+    ],
+)
+def test_a_file_of_another_kind_is_told_its_command(
+    study: Path, capsys: pytest.CaptureFixture[str], command: tuple[str, ...], name: str, told: str
+) -> None:
+    Path("design.yaml").write_text(STUDY + "change: {parameters.half: [1, 2]}\n", encoding="utf-8")
+    out = ("--out", "out") if command == ("study",) else ()
+    assert main([*command, str(study.with_name(f"{name}.yaml")), *out]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"{study.with_name(name)}.yaml: {told}")
 
 
 def test_a_right_study_has_its_runs(study: Path) -> None:

@@ -8,7 +8,7 @@ from rich.table import Table
 
 from cagepose.cli.console import print_all
 from cagepose.cli.styles import plain_table
-from cagepose.model.wording import number_or_dash, percent
+from cagepose.model.wording import number_or_dash, percent, range_or_dash
 
 MOST_ROWS = 8
 """Of numbers that matter; the page shows more."""
@@ -20,6 +20,7 @@ def print_study(found: dict[str, Any]) -> None:
     parts: list[Any] = [
         f"{found['scene']}: {found['runs']:,} runs ({found['method']})",
         f"yield {percent(share['share'])}, between {percent(share['low'])} and {percent(share['high'])} (95 %)",
+        *_warnings(found),
         "",
         _verdicts(found),
         "",
@@ -30,6 +31,16 @@ def print_study(found: dict[str, Any]) -> None:
         parts += ["", matters]
     parts += ["", *map(_box, found["maps"])] if found["maps"] else []
     print_all(*parts)
+
+
+def _warnings(found: dict[str, Any]) -> list[str]:
+    lines = [f"{n:,} failed ({name}): without an answer, and not good" for name, n in found["failed"].items()]
+    if found["at_rest"] and not found["yield"]["runs"]:
+        rests = " and ".join(f"{n:,} as {name!r}" for name, n in found["at_rest"].items())
+        lines.append(f"no run is good, though runs come to rest: {rests}; is accept right?")
+    if moving := found["good_but_not_at_rest"]:
+        lines.append(f"{moving:,} good runs do not come to rest; write verdict == 'rests' into accept, if they must")
+    return lines
 
 
 def _verdicts(found: dict[str, Any]) -> Table:
@@ -45,7 +56,9 @@ def _tolerances(found: dict[str, Any]) -> Table:
     for row in found["tolerances"]:
         runs = row["monte_carlo"]
         pairs = (row["worst_case"], row["root_sum_square"], runs["three_sigma"], runs["range"])
-        table.add_row(row["name"], number_or_dash(row["nominal"]), *(_range(*pair) for pair in pairs))
+        noise = row["resolution"]
+        cells = [number_or_dash(row["nominal"], noise), *(range_or_dash(pair, noise) for pair in pairs)]
+        table.add_row(row["name"], *cells)
     return table
 
 
@@ -68,9 +81,5 @@ def _box(found: dict[str, Any]) -> str:
     layer = "".join(f", {key} {number_or_dash(value)}" for key, value in (found["layer"] or {}).items())
     if found["box"] is None:
         return f"capture map{layer}: the nominal values are not accepted, or not on the map"
-    sides = [f"{key} {_range(*side)}" for key, side in zip(found["over"], found["box"], strict=True)]
+    sides = [f"{key} {range_or_dash(side)}" for key, side in zip(found["over"], found["box"], strict=True)]
     return f"largest box of accepted runs{layer}: {', '.join(sides)}"
-
-
-def _range(low: float | None, high: float | None) -> str:
-    return f"{number_or_dash(low)} to {number_or_dash(high)}"

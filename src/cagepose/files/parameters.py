@@ -64,7 +64,7 @@ class Expressions:
                     found[path] = names[name] = _number(self.by_path[path], names)
                 except ValueError as error:
                     raise SceneError([Problem(path, str(error))]) from None
-            elif isinstance(given, (int, float)) and not isinstance(given, bool):
+            elif _is_number(given):
                 names[name] = float(given)
             else:
                 raise SceneError([])  # no number: the schema says so
@@ -92,22 +92,32 @@ def _is_array(value: object) -> bool:
     return getattr(value, "ndim", 0) > 0
 
 
-def evaluated(data: object) -> tuple[object, list[Problem]]:
+def evaluated(data: Any, parsed: Expressions | None = None) -> tuple[object, list[Problem]]:
     """Return plain scene data with all expressions as numbers, and what is wrong with them; the data stay as they are.
 
-    An expression that is wrong stands as it was written, so that its place is known.
+    An expression that is wrong stands as it was written, so that its place is known. ``parsed`` are the expressions of
+    data that differ from these in numbers alone.
     """
-    expressions = Expressions(data)
+    expressions = Expressions(data) if parsed is None else parsed
     if not expressions.by_path:
         return data, expressions.problems
     try:
-        values = expressions.values()
+        values = expressions.values(None if parsed is None else _numbers(data.get("parameters")))
     except SceneError as error:
         return data, [*expressions.problems, *error.problems]
     changed = deepcopy(data)
     for path, value in values.items():
         set_value(changed, path, value)
     return changed, expressions.problems
+
+
+def _numbers(parameters: Any) -> dict[str, float]:
+    given = parameters.items() if isinstance(parameters, dict) else ()
+    return {name: float(value) for name, value in given if _is_number(value)}
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def expression_at(data: object, path: Path) -> str | None:

@@ -13,10 +13,11 @@ from pydantic import ValidationError
 
 from cagepose.errors import FileProblem, Key, Problem, SceneError, SceneFileError
 from cagepose.files.build import build_scene
+from cagepose.files.file_kind import expect_kind
 from cagepose.files.key_path import Path as KeyPath
 from cagepose.files.key_path import parse_key_path, resolved, set_value, value_at
 from cagepose.files.messages import Finding, schema_findings, shown
-from cagepose.files.parameters import evaluated, expression_at
+from cagepose.files.parameters import Expressions, evaluated, expression_at
 from cagepose.files.points_file import POINTS_KEY, PointsTable, read_points
 from cagepose.files.read import read_text, starts_as_run
 from cagepose.files.schema import PointsFileModel, SceneModel
@@ -75,12 +76,14 @@ def scene_text_of(text: str, source: str) -> SceneText:
     Raises
     ------
     SceneFileError
-        The text is not YAML, or is a saved run.
+        The text is not YAML, or is a saved run, a study or a design.
     """
     if starts_as_run(text):
         message = "is a saved run, not a scene; name its scene file (saved runs are for `cagepose plot` and `view`)"
         raise SceneFileError([FileProblem((), message, source)])
-    return SceneText(text, parse_yaml(text, source), Path(source).parent)
+    yaml = parse_yaml(text, source)
+    expect_kind(yaml, "scene")
+    return SceneText(text, yaml, Path(source).parent)
 
 
 def parse_scene(text: str, name: str = "scene.yaml", set_values: Sequence[str] = ()) -> Scene:
@@ -149,10 +152,14 @@ class SceneText:
         data = deepcopy(self.yaml.data)
         for path, number in numbers.items():
             set_value(data, path, number)
-        attempt = _Attempt(data, self.folder)
+        attempt = _Attempt(data, self.folder, self._expressions)
         if attempt.scene_file is None:
             raise SceneError([*attempt.table_problems, *(finding.problem for finding in attempt.findings)])
         return attempt.scene_file
+
+    @cached_property
+    def _expressions(self) -> Expressions:
+        return Expressions(self.yaml.data)
 
 
 def _reading_order(problem: FileProblem) -> tuple[int, int]:
@@ -202,12 +209,12 @@ class _Attempt:
         The points file, where the scene names one, and its bad rows.
     """
 
-    def __init__(self, data: object, folder: Path) -> None:
+    def __init__(self, data: object, folder: Path, parsed: Expressions | None = None) -> None:
         self.scene_file: SceneFile | None = None
         self.findings: list[Finding] = []
         self.table_problems: list[FileProblem] = []
         written = data
-        data, of_expressions = evaluated(data)
+        data, of_expressions = evaluated(data, parsed)
         self.findings += [Finding(problem, False) for problem in of_expressions]
         self.table = self._read_table(value_at(data, POINTS_KEY), folder)
         try:

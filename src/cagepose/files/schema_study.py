@@ -14,7 +14,9 @@ DISTRIBUTIONS = ("uniform", "normal", "triangular", "grid", "steps")
 
 
 def _ordered(limits: list[float]) -> list[float]:
-    if sorted(limits) != limits or limits[0] == limits[-1]:
+    if limits[0] == limits[-1]:
+        raise wrong(f"is {limits}, which does not vary; give two different numbers, or leave this key out")
+    if sorted(limits) != limits:
         raise wrong(f"is {limits}; give the lower number first")
     return limits
 
@@ -44,7 +46,9 @@ class StepsModel(Mapping):
 
     @model_validator(mode="after")
     def _first_below_last(self) -> StepsModel:
-        if self.first >= self.last:
+        if self.first == self.last:
+            raise wrong(f"run from {self.first!r} to {self.last!r}; give two different numbers, or leave this key out")
+        if self.first > self.last:
             raise wrong(f"run from {self.first!r} to {self.last!r}; give the lower number first")
         return self
 

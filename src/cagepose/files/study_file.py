@@ -15,6 +15,7 @@ from pydantic import ValidationError
 
 from cagepose.errors import FileProblem, Problem, SceneError, SceneFileError, key_path
 from cagepose.files.expression import Expression
+from cagepose.files.file_kind import expect_kind
 from cagepose.files.key_path import Path as KeyPath
 from cagepose.files.key_path import parse_key_path, resolved, set_value, value_at
 from cagepose.files.messages import Finding, schema_findings, shown
@@ -117,6 +118,7 @@ def checked_model(text: str, source: str, kind: type[Model]) -> tuple[YamlSource
         Lists every problem with its line and column.
     """
     yaml = parse_yaml(text, source)
+    expect_kind(yaml, "study" if kind is StudyModel else "design")
     if yaml.problems:
         raise SceneFileError(yaml.problems)
     try:

@@ -220,4 +220,6 @@ def _syntax_message(error: MarkedYAMLError, text: str, place: Mark | None) -> st
     if "end of stream" in problem or "<stream end>" in problem:
         problem = problem.replace("'<stream end>'", "the end of the file").replace("stream", "file")
         return f"is not YAML: {problem}; close the bracket or quote that is open"
+    if "but got '['" in problem:
+        return f"is not YAML: {problem}; put a key with brackets in quotes where it stands within {{ }} or [ ]"
     return f"is not YAML: {problem}; correct this line or the one above"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -22,24 +23,35 @@ def components(direction: FloatArray) -> str:
     return ", ".join(short(value, 4, 5e-5) for value in direction.tolist())
 
 
-def number_or_dash(value: float | None) -> str:
-    """Return a number as people read it; a dash where there is none.
+def number_or_dash(value: float | None, noise: float = 0.0) -> str:
+    """Return a number as people read it; a dash where there is none; below ``noise`` it is zero.
 
-    >>> number_or_dash(0.12345649), number_or_dash(None), number_or_dash(-0.0)
-    ('0.12346', '-', '0')
+    >>> number_or_dash(0.12345649), number_or_dash(None), number_or_dash(-0.0), number_or_dash(-5e-15, 1e-9)
+    ('0.12346', '-', '0', '0')
     """
-    return "-" if value is None else f"{value + 0.0:.5g}"
+    return "-" if value is None else short(value + 0.0, 5, noise)
+
+
+def range_or_dash(ends: Sequence[float | None], noise: float = 0.0) -> str:
+    """Return two ends, as `number_or_dash` each; one dash where there is neither.
+
+    >>> range_or_dash([-1.5, 1e-16], 1e-9), range_or_dash([None, None])
+    ('-1.5 to 0', '-')
+    """
+    return " to ".join(number_or_dash(end, noise) for end in ends) if any(end is not None for end in ends) else "-"
 
 
 def percent(share: float) -> str:
-    """Return a share: more digits near all and none.
+    """Return a share: more digits near all and none, so that one of a million is seen.
 
-    >>> percent(0.5), percent(0.99973), percent(1.0)
-    ('50.00 %', '99.973 %', '100 %')
+    >>> percent(0.5), percent(0.99973), percent(1.0), percent(1e-6), percent(1.0 - 3.84e-6)
+    ('50.00 %', '99.973 %', '100 %', '0.00010 %', '99.99962 %')
     """
-    if share in (0.0, 1.0):
+    least = min(share, 1.0 - share)
+    if least <= 0.0:
         return f"{100.0 * share:.0f} %"
-    return f"{100.0 * share:.{2 if 0.01 <= share <= 0.99 else 3}f} %"
+    digits = 2 if least >= 0.01 else max(3, 1 + math.ceil(-math.log10(100.0 * least)))
+    return f"{100.0 * share:.{digits}f} %"
 
 
 def coordinates(values: FloatArray, digits: int = 6) -> str:

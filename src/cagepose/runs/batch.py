@@ -40,7 +40,7 @@ class Batch:
         self._scene, self._method = scene, method
         self.n_runs, columns = variation.columns(scene)
         self.endings = empty_endings(self.n_runs, len(scene.loads), len(scene.cage.element_names))
-        self._part, self._cases = Slots(part_of(scene)), Slots(_varied(scene, method.friction(scene), columns))
+        self._part, self._cases = Slots(part_of(scene)), Slots(varied_cases(scene, method.friction(scene), columns))
         self._endings = Slots(self.endings)
         self._is_stopped = np.zeros(1, np.int64)
         self._idle = list[Callable[[int, int], None]]()
@@ -76,7 +76,7 @@ def _run(method: Method, is_stopped: NDArray[np.int64], arguments: list[object],
     method.run_cases.until(is_stopped, first, last, *arguments)
 
 
-def _varied(scene: Scene, friction: float, columns: dict[str, FloatArray]) -> Cases:
+def varied_cases(scene: Scene, friction: float, columns: dict[str, FloatArray]) -> Cases:
     """Return the cases of a scene in which columns stand in the place of its own values."""
     base = cases_of(scene, friction)
     points = _owned(columns.get("points_cage_m", base.points_cage))

@@ -40,6 +40,7 @@ WEDGED = "; the contacts can press against each other without a load, as in a we
 STOPPED = "; what they leave, contacts without play stop to second order, by forces without bound"
 CHAINED = "; contacts without play hold each other in turn: the least play frees it"
 CLAMPED = "; it seems to hang on contacts that no load keeps closed: what opens one of them for a moment may free it"
+HELD_BY_NO_FORCES = (PROVEN_MOVES, TOO_MANY_CONTACTS)
 NUMBERS = [
     *("proof", "stability", "residual", "wedged", "is_second_order", "is_chained", "is_clamped"),
     *("n_contacts", "n_undetermined"),
@@ -65,7 +66,7 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
     found, first = list[Proof](), 0
     for numbers, undetermined, motion, end, (gap_work, largest_force), names in columns:
         code, stability, residual, wedged, second, chained, clamped, last, n_undetermined = numbers
-        held = code not in (PROVEN_MOVES, TOO_MANY_CONTACTS)
+        held = code not in HELD_BY_NO_FORCES
         is_open = held and code not in (PROVEN_WITHOUT_FRICTION, PROVEN_UNIQUE)
         found.append(
             Proof(

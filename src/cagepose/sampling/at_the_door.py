@@ -27,7 +27,7 @@ def checked_columns(file: StudyFile, source: str) -> RowColumns:
         message = f"gives the column {name} a second meaning; rename the point that is watched"
         raise refused_at(("watch",), file, source, message)
     nominal = np.array([[one.nominal for one in file.varied]])
-    outcomes = Runner(file).run_one_by_one(nominal)
+    outcomes = Runner(file).run_nominal()
     if outcomes.errors[0] is not None:
         raise refused_at(("scene",), file, source, f"cannot be run: {outcomes.errors[0]}")
     try:

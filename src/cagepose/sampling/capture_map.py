@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -46,6 +46,9 @@ class CaptureMap:
         good; None: the nominal one is not, or is not on the map.
     n_runs
         How many cells were run; the others lie among cells that agree.
+    quantities
+        Where the part is at the end, by name, (n, n) each, rows up; NaN where it does not come to rest. Nothing if not
+        all cells were run, or there is a third number.
     """
 
     keys: tuple[str, str]
@@ -56,6 +59,7 @@ class CaptureMap:
     accepted: NDArray[np.bool_]
     box: tuple[tuple[float, float], tuple[float, float]] | None
     n_runs: int
+    quantities: Mapping[str, FloatArray]
 
 
 def capture_maps(runner: Runner, columns: RowColumns, distributions: Sequence[Distribution]) -> tuple[CaptureMap, ...]:
@@ -94,6 +98,7 @@ def _map(
     """Return the map over the first two of the chosen numbers, all others as in ``nominal``."""
     across, up = axes
     kinds: dict[tuple[str, bool], int] = {}
+    ends = {name: np.full((len(up), len(across)), np.nan) for name in columns.quantities}
 
     def kinds_of(rows: Indices, places: Indices) -> Indices:
         """Run cells; return the number of what happens in each, the same for the same verdict and acceptance."""
@@ -102,6 +107,9 @@ def _map(
         found = list[int]()
 
         def told(outcomes: Outcomes, part: FloatArray) -> None:
+            here = slice(len(found), len(found) + len(part))
+            for name, measured in columns.quantities_of(outcomes).items():
+                ends[name][rows[here], places[here]] = measured
             accepted = columns.columns(part, outcomes)["accepted"].tolist()
             for kind in zip(outcomes.verdict.tolist(), accepted, strict=True):
                 found.append(kinds.setdefault(kind, len(kinds)))
@@ -122,7 +130,8 @@ def _map(
         box = (float(across[left]), float(across[right])), (float(up[bottom]), float(up[top]))
     names = [runner.study.varied[one].key for one in chosen]
     layer = (names[2], float(nominal[chosen[2]])) if len(names) > 2 else None
-    return CaptureMap((names[0], names[1]), layer, across, up, verdicts, good, box, n_runs)
+    known = ends if n_runs == cells.size and layer is None else {}
+    return CaptureMap((names[0], names[1]), layer, across, up, verdicts, good, box, n_runs, known)
 
 
 def refined_map(count: int, kinds_of: Callable[[Indices, Indices], Indices]) -> tuple[Indices, int]:

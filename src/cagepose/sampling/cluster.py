@@ -82,4 +82,4 @@ def _refused(message: str) -> SceneError:
 
 def _run_part(study: StudyFile, values: FloatArray) -> tuple[str, Outcomes]:
     """Run rows in a worker, by one thread; the same rows have the same bits wherever they are run."""
-    return __version__, Runner(study, workers=1).run(values)
+    return __version__, Runner(study, workers=1).run(values, with_forces=bool(study.model.forces))

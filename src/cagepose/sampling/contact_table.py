@@ -9,6 +9,7 @@ import numpy as np
 
 from cagepose.model.checks import FloatArray
 from cagepose.runs.load_scaling import force_unit
+from cagepose.sampling.outcome import at_rest
 from cagepose.sampling.results import StudyResults
 from cagepose.sampling.runner import Runner
 from cagepose.sampling.statistics import Statistics
@@ -37,7 +38,7 @@ class ContactRow:
 
 @dataclass(frozen=True)
 class ContactTable:
-    """All of them; ``unit``, "N" or "load", is that of the forces of the last phase; ``n_runs`` they are of."""
+    """All of them; ``unit``, "N" or "load", is that of the forces of the last phase; ``n_runs`` at rest they are of."""
 
     rows: tuple[ContactRow, ...]
     unit: str
@@ -71,15 +72,14 @@ def contact_table(results: StudyResults, runner: Runner, statistics: Statistics)
 
 
 def _forces(results: StudyResults, runner: Runner) -> Iterator[FloatArray]:
-    """Yield forces in parts of the rows, (n, n_elements)."""
-    columns = results.columns
-    if columns.forces:
-        for part in results.parts(list(columns.forces)):
-            yield np.stack([part[name] for name in columns.forces], axis=1)
-        return
-    for part in results.parts(columns.varied):
-        values = np.stack([part[name] for name in columns.varied], axis=1)[:MOST_RUNS]
-        forces = runner.run_one_by_one(values, with_forces=True).forces
+    """Yield forces in parts of the rows that come to rest, (n, n_elements)."""
+    names = tuple(results.columns.forces) or results.columns.varied
+    for part in results.parts([*names, "verdict"]):
+        values = np.stack([part[name] for name in names], axis=1)[at_rest(part["verdict"])]
+        if results.columns.forces:
+            yield values
+            continue
+        forces = runner.run(values[:MOST_RUNS], with_forces=True).forces
         assert forces is not None, "they were asked for"
         yield forces
         return

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
+from matplotlib.ticker import MaxNLocator
 
 from cagepose.model.checks import FloatArray
 from cagepose.sampling.capture_map import CaptureMap
@@ -44,8 +45,9 @@ def draw(findings: Findings) -> dict[str, Figure]:
     with styled():
         if known:
             pictures["sobol"] = _sobol_figure(known, names)
-        if any((row.derivatives != 0.0).any() for row in rows):
-            pictures["tornado"] = _tornado_figure(rows, names, findings.distributions)
+        changing = [row for row in rows if np.ptp(row.worst) > row.resolution]
+        if changing:
+            pictures["tornado"] = _tornado_figure(changing, names, findings.distributions)
         resolution, all_spreads = findings.results.columns.resolution, findings.statistics.spreads
         spreads = {
             name: all_spreads[name]
@@ -56,6 +58,10 @@ def draw(findings: Findings) -> dict[str, Figure]:
             pictures["spread"] = _spread_figure(spreads)
         if findings.maps:
             pictures["map"] = _map_figure(findings.maps)
+            ends = {name: found for name, found in findings.maps[0].quantities.items() if name in asked}
+            ends = {name: found for name, found in ends.items() if _reach(found) > resolution[name]}
+            if ends:
+                pictures["ends"] = _ends_figure(findings.maps[0], ends)
     return pictures
 
 
@@ -117,7 +123,7 @@ def _tornado_figure(
         panel.xaxis.set_major_formatter("{x:g}")
         panel.set_yticks(np.arange(n_bars), [names[one] for one in order])
         panel.set_title(row.name)
-        panel.set_xlabel("change from the middle to either end")
+        panel.set_xlabel("change to either end")
     return figure
 
 
@@ -130,6 +136,7 @@ def _spread_figure(spreads: dict[str, Spread]) -> Figure:
         panel.axvline(spread.mean, color=VERMILLION, linewidth=1.0)
         panel.set_title(name)
         panel.set_yticks([])
+        panel.locator_params(axis="x", nbins=4)
     return figure
 
 
@@ -152,16 +159,40 @@ def _map_figure(maps: Sequence[CaptureMap]) -> Figure:
     return figure
 
 
+def _reach(values: FloatArray) -> float:
+    """How far known values are apart; 0 where there are none."""
+    known = values[~np.isnan(values)]
+    return float(np.ptp(known)) if len(known) else 0.0
+
+
+def _ends_figure(found: CaptureMap, ends: dict[str, FloatArray]) -> Figure:
+    figure, panels = _panels(len(ends), 2.3, 3)
+    for panel, (name, values) in zip(panels, ends.items(), strict=True):
+        panel.set_facecolor(PALE)
+        picture = panel.imshow(values, origin="lower", extent=_extent(found), aspect="auto", interpolation="none")
+        figure.colorbar(picture, ax=panel, location="bottom", shrink=0.9).locator = MaxNLocator(4)
+        _draw_boundary(panel, found)
+        panel.set_title(name)
+        panel.set_yticks([])
+        panel.locator_params(axis="x", nbins=4)
+    return figure
+
+
+def _extent(found: CaptureMap) -> tuple[float, float, float, float]:
+    half = [(axis[-1] - axis[0]) / (len(axis) - 1) / 2.0 for axis in (found.across, found.up)]
+    return found.across[0] - half[0], found.across[-1] + half[0], found.up[0] - half[1], found.up[-1] + half[1]
+
+
+def _draw_boundary(panel: Axes, found: CaptureMap) -> None:
+    if found.accepted.any() and not found.accepted.all():
+        panel.contour(found.across, found.up, found.accepted.astype(float), [0.5], colors=[BLACK], linewidths=1.0)
+
+
 def _draw_map(panel: Axes, found: CaptureMap, shades: FloatArray) -> None:
     """Draw one map; ``shades`` are the colours of its verdicts, (n, n, 3)."""
     shades = np.where(found.accepted[..., None], shades, 0.55 + 0.45 * shades)  # what is not accepted is pale
-    half = [(axis[-1] - axis[0]) / (len(axis) - 1) / 2.0 for axis in (found.across, found.up)]
-    extent = (
-        found.across[0] - half[0], found.across[-1] + half[0], found.up[0] - half[1], found.up[-1] + half[1],
-    )  # fmt: skip
-    panel.imshow(shades, origin="lower", extent=extent, aspect="auto", interpolation="none")
-    if found.accepted.any() and not found.accepted.all():
-        panel.contour(found.across, found.up, found.accepted.astype(float), [0.5], colors=[BLACK], linewidths=1.0)
+    panel.imshow(shades, origin="lower", extent=_extent(found), aspect="auto", interpolation="none")
+    _draw_boundary(panel, found)
     if found.box is not None:
         (left, right), (bottom, top) = found.box
         panel.add_patch(

@@ -10,6 +10,7 @@ import numpy as np
 
 import cagepose
 from cagepose.runs.methods import chosen_method
+from cagepose.runs.run import AT_REST, FAILURES
 from cagepose.sampling.capture_map import CaptureMap, capture_maps
 from cagepose.sampling.chosen_runs import ChosenRun, chosen_runs
 from cagepose.sampling.contact_table import ContactTable, contact_table
@@ -88,6 +89,9 @@ def document(findings: Findings) -> dict[str, Any]:
         "runs": statistics.n_runs,
         "accept": study.model.accept,
         "yield": _share(statistics.n_accepted, statistics.n_runs),
+        "good_but_not_at_rest": statistics.n_accepted_moving,
+        "at_rest": {name: n for name, n in statistics.verdicts.most_common() if name in AT_REST},
+        "failed": {name: n for name, n in statistics.verdicts.most_common() if name in FAILURES},
         "verdicts": {name: _share(n, statistics.n_runs) for name, n in statistics.verdicts.most_common()},
         "varied": [
             {"key": one.key, "nominal": one.nominal, "low": spread.low, "high": spread.high, "sigma": spread.sigma}
@@ -128,6 +132,7 @@ def _tolerance(row: ToleranceRow, results: StudyResults) -> dict[str, Any]:
             "range": [spread.least, spread.greatest],
             "runs": spread.n,
         },
+        "resolution": row.resolution,
         "stays_within_worst_case": row.stays_within_worst,
         "derivatives": dict(zip(results.columns.varied, row.derivatives.tolist(), strict=True)),
     }
@@ -158,6 +163,7 @@ def _map(found: CaptureMap) -> dict[str, Any]:
         "verdicts": names.tolist(),
         "verdict_cells": codes.reshape(found.verdicts.shape).tolist(),
         "accepted_cells": found.accepted.astype(np.int64).tolist(),
+        "ends": {name: values.tolist() for name, values in found.quantities.items()},
         "box": None if found.box is None else [list(side) for side in found.box],
     }
 

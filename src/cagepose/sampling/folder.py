@@ -85,7 +85,7 @@ class StudyFolder:
         path = self._part(first, last)
         if not path.exists():
             return False
-        self._schema(path)
+        self._check_version(self._metadata(path))
         return True
 
     def write(self, first: int, last: int, table: pa.Table) -> None:
@@ -110,11 +110,13 @@ class StudyFolder:
             One cannot be read.
         """
         for path in self.parts():
-            self._schema(path)
             try:
-                yield pq.read_table(path, columns=None if columns is None else list(columns))
+                with pq.ParquetFile(path) as part:
+                    self._check_version(part.metadata)
+                    table = part.read(columns=None if columns is None else list(columns))
             except (OSError, pa.ArrowException) as error:
                 raise self._unreadable(path, error) from None
+            yield table
 
     def parts(self) -> list[Path]:
         """Return the files of the parts, in order."""
@@ -133,8 +135,8 @@ class StudyFolder:
         except (OSError, pa.ArrowException) as error:
             raise self._unreadable(path, error) from None
 
-    def _schema(self, path: Path) -> None:
-        version = (self._metadata(path).metadata or {}).get(b"cagepose", b"none").decode(errors="replace")
+    def _check_version(self, metadata: pq.FileMetaData) -> None:
+        version = (metadata.metadata or {}).get(b"cagepose", b"none").decode(errors="replace")
         if version != __version__:
             raise self._refused(
                 f"holds rows of cagepose {version}, and this is {__version__}; name another folder, or use that version"

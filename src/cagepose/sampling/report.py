@@ -8,8 +8,9 @@ from typing import Any
 
 from markupsafe import Markup
 
+from cagepose import __version__
 from cagepose.files.write import MADE_BY, json_text, write_whole
-from cagepose.model.wording import number_or_dash, percent
+from cagepose.model.wording import number_or_dash, percent, range_or_dash
 from cagepose.sampling.chosen_runs import write_runs
 from cagepose.sampling.figures import draw
 from cagepose.sampling.findings import Findings, document
@@ -47,10 +48,13 @@ def numbers_text(numbers: dict[str, Any]) -> str:
 
 
 def kept_numbers(results: StudyResults) -> dict[str, Any] | None:
-    """Return the numbers of a report that was written of these rows; None: there is none, or of fewer rows."""
+    """Return the numbers of a report that was written of these rows; None: there is none, of fewer rows, or of another
+    cagepose.
+    """
     try:
         numbers: dict[str, Any] = json.loads((results.folder.path / NUMBERS_NAME).read_text(encoding="utf-8"))
-        return numbers if numbers["runs"] == len(results) else None
+        is_of_these = (numbers["version"], numbers["runs"]) == (__version__, len(results))
+        return numbers if is_of_these else None
     except (OSError, ValueError, KeyError, TypeError):
         return None
 
@@ -58,7 +62,7 @@ def kept_numbers(results: StudyResults) -> dict[str, Any] | None:
 def page_text(numbers: dict[str, Any], findings: Findings, pictures: dict[str, bytes]) -> str:
     """Return the page."""
     templates = environment("cagepose.sampling")
-    templates.filters |= {"number": number_or_dash, "percent": percent}
+    templates.filters |= {"number": number_or_dash, "percent": percent, "range": range_or_dash}
     svgs = {name: Markup(_inner_svg(content)) for name, content in pictures.items()}
     return templates.get_template("report.jinja").render(
         made_by=MADE_BY, found=numbers, pictures=svgs, planned=findings.n_planned

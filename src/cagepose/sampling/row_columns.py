@@ -14,10 +14,12 @@ from cagepose.files.study_file import StudyFile
 from cagepose.files.units import from_metres, to_metres
 from cagepose.model.checks import FloatArray
 from cagepose.model.wording import few
+from cagepose.runs.run import FAILURES
 from cagepose.sampling.outcome import REFUSED, Outcomes, at_rest
 
 SAME, SAME_DEG = 1e-8, 1e-6
 """Of lengths, as a fraction of the scene's size; and of angles."""
+WITHOUT_ANSWER = [REFUSED, *sorted(FAILURES)]
 AXES, ANGLES = ("x", "y", "z"), ("yaw_deg", "pitch_deg", "roll_deg")
 
 
@@ -88,7 +90,7 @@ class RowColumns:
         return columns
 
     def _accepted(self, columns: Mapping[str, NDArray[Any]]) -> NDArray[np.bool_]:
-        """Return which rows are good, (n,); none that was refused.
+        """Return which rows are good, (n,); none that was refused or whose run failed: these have no answer.
 
         Raises
         ------
@@ -100,7 +102,7 @@ class RowColumns:
         found = np.asarray(self._study.accept.value(columns))
         if found.dtype != np.bool_:
             raise ValueError("is no comparison; write what is true of a good run, such as verdict == 'rests'")
-        accepted: NDArray[np.bool_] = (columns["verdict"] != REFUSED) & found
+        accepted: NDArray[np.bool_] = ~np.isin(columns["verdict"], WITHOUT_ANSWER) & found
         return accepted
 
     def table(self, first: int, values: FloatArray, outcomes: Outcomes) -> pa.Table:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from copy import deepcopy
 from dataclasses import fields
+from itertools import repeat
 from multiprocessing import get_context
 from typing import Any
 
@@ -16,6 +17,7 @@ from cagepose.files.key_path import set_value, value_at
 from cagepose.files.parameters import Expressions, evaluated
 from cagepose.files.study_file import StudyFile
 from cagepose.model.checks import FloatArray, expect_count
+from cagepose.runs.end_forces import end_forces
 from cagepose.runs.many import run_many
 from cagepose.runs.solve import run
 from cagepose.sampling.batch_columns import BatchColumns, Columns
@@ -62,7 +64,7 @@ class Runner:
         if workers is not None:
             expect_count(workers, "workers")
         self.study, self._workers = study, workers
-        self._with_forces = bool(study.model.forces)
+        self._is_judged_by_forces = bool(study.model.forces) and "force" in (study.model.accept or "")
         nominal: Any = deepcopy(study.scene_text.yaml.data)
         for one in study.varied:
             set_value(nominal, one.path, one.nominal)
@@ -70,7 +72,7 @@ class Runner:
         self._nominal, _ = evaluated(nominal)
         self._batch = BatchColumns(self._nominal, study.nominal.length_unit)
         probe = self._columns(np.array([[one.nominal for one in study.varied]]))
-        self.is_batch = not self._with_forces and all(map(self._batch.takes, probe))
+        self.is_batch = all(map(self._batch.takes, probe))
         self.rows_of_a_part = ROWS_OF_A_BATCH if self.is_batch else ROWS_ONE_BY_ONE
         self._pool: ProcessPoolExecutor | None = None
 
@@ -80,20 +82,23 @@ class Runner:
             self._pool.shutdown(wait=False, cancel_futures=True)
             self._pool = None
 
-    def run(self, values: FloatArray) -> Outcomes:
+    def run(self, values: FloatArray, *, with_forces: bool = False) -> Outcomes:
         """Run rows of varied numbers, (n, n_varied), in the scene file's unit.
+
+        With forces, too, if ``accept`` may ask for them.
 
         Raises
         ------
         KeyboardInterrupt
             Ctrl-C was pressed; nothing goes on.
         """
+        has_forces = with_forces or self._is_judged_by_forces
         if self.is_batch:
-            return self._run_batch(values)
+            return self._run_batch(values, has_forces)
         if (self._workers or 1) == 1:
-            return self.run_one_by_one(values)
+            return self._run_one_by_one(values, has_forces)
         tasks = [values[first : first + ROWS_OF_A_TASK] for first in range(0, len(values), ROWS_OF_A_TASK)]
-        return _joined(list(self._processes().map(_run_task, tasks)))
+        return _joined(list(self._processes().map(_run_task, tasks, repeat(has_forces))))
 
     def run_in_parts(self, values: FloatArray, told: Callable[[Outcomes, FloatArray], None]) -> None:
         """Run rows as `run` does, so many at a time that memory does not grow with them."""
@@ -101,9 +106,12 @@ class Runner:
             rows = values[first : first + self.rows_of_a_part]
             told(self.run(rows), rows)
 
-    def run_one_by_one(self, values: FloatArray, *, with_forces: bool | None = None) -> Outcomes:
-        """Build and run the scene of each row; with forces as the study says, if it is not said here."""
-        has_forces = self._with_forces if with_forces is None else with_forces
+    def run_nominal(self) -> Outcomes:
+        """Build and run the nominal scene."""
+        values = np.array([[one.nominal for one in self.study.varied]])
+        return self._run_one_by_one(values, bool(self.study.model.forces))
+
+    def _run_one_by_one(self, values: FloatArray, has_forces: bool) -> Outcomes:
         outcomes = empty_outcomes(self.study.nominal.scene, len(values), with_forces=has_forces)
         self._write_one_by_one(values, range(len(values)), outcomes)
         return outcomes
@@ -117,16 +125,18 @@ class Runner:
             except SceneError as error:
                 outcomes.write_refusal(row, str(error))
 
-    def _run_batch(self, values: FloatArray) -> Outcomes:
+    def _run_batch(self, values: FloatArray, has_forces: bool) -> Outcomes:
         columns = self._columns(values)
         usable = self._batch.usable(columns)
         if not usable.any():
-            return self.run_one_by_one(values)
+            return self._run_one_by_one(values, has_forces)
         if not usable.all():  # the nominal scene in their place, until they are written below
             columns = {path: np.where(usable, column, self._nominal_at(path)) for path, column in columns.items()}
-        scene = self.study.nominal.scene
-        outcomes = outcomes_of(run_many(scene, self._batch.variation(columns), threads=self._workers))
+        scene, variation = self.study.nominal.scene, self._batch.variation(columns)
+        outcomes = outcomes_of(run_many(scene, variation, threads=self._workers))
         is_told = usable & (outcomes.phase_verdicts[:, 0] != "invalid")
+        if has_forces:
+            outcomes.forces = end_forces(scene, variation, np.flatnonzero(is_told).tolist())
         if not is_told.all():
             outcomes.clear(~is_told)
             self._write_one_by_one(values, np.flatnonzero(~is_told).tolist(), outcomes)
@@ -164,8 +174,8 @@ def _begin_process(study: StudyFile) -> None:
     _RUNNERS[:] = [Runner(study)]
 
 
-def _run_task(values: FloatArray) -> Outcomes:
-    return _RUNNERS[0].run_one_by_one(values)
+def _run_task(values: FloatArray, has_forces: bool) -> Outcomes:
+    return _RUNNERS[0].run(values, with_forces=has_forces)
 
 
 def _joined(parts: list[Outcomes]) -> Outcomes:

@@ -91,8 +91,8 @@ def _indices(name: str, measured: FloatArray, problem: dict[str, Any], seed: int
     measured = whole.ravel()
     if len(whole) < LEAST_WHOLE * len(blocks):
         missing = "is not known, as too many runs of the design do not come to rest"
-    elif np.ptp(measured) <= resolution:
-        missing = "is the same in all of them"
+    elif np.ptp(whole[:, [0, -1]]) <= resolution:  # the variance of these is what the others are measured by
+        missing = "is the same in all of them, or in nearly all"
     if missing is not None:
         return Sensitivity(name, len(measured), nothing, nothing, nothing, nothing, missing)
     with np.errstate(invalid="ignore", divide="ignore"):  # of resamples that happen to be constant

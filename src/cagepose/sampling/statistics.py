@@ -82,8 +82,8 @@ class Statistics:
 
     Attributes
     ----------
-    n_runs, n_accepted
-        How many rows, and how many of them are good.
+    n_runs, n_accepted, n_accepted_moving
+        How many rows, how many of them are good, and how many of these did not come to rest.
     verdicts
         How many rows ended with each.
     spreads
@@ -94,6 +94,7 @@ class Statistics:
 
     n_runs: int = 0
     n_accepted: int = 0
+    n_accepted_moving: int = 0
     verdicts: Counter[str] = field(default_factory=Counter)
     spreads: dict[str, Spread] = field(default_factory=dict)
     n_touching: Counter[str] = field(default_factory=Counter)
@@ -105,11 +106,13 @@ def statistics_of(results: StudyResults) -> Statistics:
     found = Statistics(spreads={name: Spread() for name in columns.quantities})
     for part in results.parts([*columns.quantities, *columns.touching, "verdict", "accepted"]):
         found.n_runs += len(part["verdict"])
+        rests = at_rest(part["verdict"])
         found.n_accepted += int(part["accepted"].sum())
+        found.n_accepted_moving += int((part["accepted"] & ~rests).sum())
         names, counts = np.unique(part["verdict"], return_counts=True)
         found.verdicts.update(dict(zip(names.tolist(), counts.tolist(), strict=True)))
         for name, spread in found.spreads.items():
-            spread.add(part[name][at_rest(part["verdict"])])
+            spread.add(part[name][rests])
         for name in columns.touching:
             found.n_touching[name] += int(part[name].sum())
     for part in results.parts([*columns.quantities, "verdict"]):

@@ -170,7 +170,7 @@ class Study:
             return
         for part in parts:
             values = self._sample.values(*part)
-            yield part, values, runner.run(values)
+            yield part, values, runner.run(values, with_forces=bool(self._file.model.forces))
 
 
 def scene_name(scene: object) -> str:
