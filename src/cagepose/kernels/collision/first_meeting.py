@@ -118,8 +118,8 @@ def first_meeting(
 ) -> Hit:
     """Return what shapes reach first, up to ``end``, but for what touches already.
 
-    Features nearer than ``near_m`` may go ``near_depth_m`` deep. On a travel, parts without holes that touch do not meet
-    again.
+    Features nearer than ``near_m`` may go ``near_depth_m`` deep. On a travel, parts without holes that touch do not
+    meet again.
     """
     held, cage, touch_m, earliest = placement.body.world, geometry.cage, geometry.touch_m, placement.earliest
     n_points = len(geometry.points_world)

@@ -20,6 +20,7 @@ from cagepose.kernels.contact.friction import Friction, friction_share
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.bend import Bend, curvatures, write_bend, write_on_rim, write_twin
+from cagepose.kernels.shapes.features import FACE, HOLE
 from cagepose.kernels.shapes.meeting import Meeting
 from cagepose.kernels.shapes.meetings import is_at_place, most_meetings
 
@@ -255,33 +256,51 @@ def add_meetings(
 ) -> bool:
     """Append the contacts of shapes; False: there are more than there is room for.
 
-    Meetings of two parts at one place are a group: parts that are apart along any of the normals are apart.
+    Meetings of two parts at one place are a group: parts that are apart along any of the normals are apart. Not so at
+    the bottom of a hole, where its wall and its floor are in the way.
     """
     meetings = placement.meetings
     if meetings.used[0] < 0 or contacts.used[0] + meetings.used[0] > len(contacts.rows):
         return False
     for at in range(meetings.used[0]):
         met = meetings.rows[at]
-        if met.is_hidden or is_in_group(placement, at, touch_m):
+        if met.is_hidden or is_in_group(geometry, placement, at, touch_m):
             continue
         first = contacts.used[0]
         for other in range(at, meetings.used[0]):
             row = meetings.rows[other]
             if row.part != met.part or row.cage_part != met.cage_part:
                 break
-            if not row.is_hidden and is_at_place(meetings, at, other, touch_m):
+            if not row.is_hidden and are_grouped(geometry, placement, at, other, touch_m):
                 append_meeting(geometry, placement, friction, other, first, center, frame, contacts)
     return True
 
 
 @kernel
-def is_in_group(placement: Placement, at: int, touch_m: float) -> bool:
-    """Whether a meeting of the same parts before this one is at the same place."""
+def are_grouped(geometry: Geometry, placement: Placement, one: int, other: int, touch_m: float) -> bool:
+    """Whether two meetings of the same parts are a group."""
+    if is_on_floor(geometry, placement, one) != is_on_floor(geometry, placement, other):
+        return False
+    return is_at_place(placement.meetings, one, other, touch_m)
+
+
+@kernel
+def is_on_floor(geometry: Geometry, placement: Placement, at: int) -> bool:
+    """Whether a meeting is on the floor of a hole."""
+    row, held, cage = placement.meetings.rows[at], placement.body.world, geometry.cage
+    if held.parts[row.part].kind == HOLE:
+        return held.features[row.feature].kind == FACE
+    return cage.parts[row.cage_part].kind == HOLE and cage.features[row.cage_feature].kind == FACE
+
+
+@kernel
+def is_in_group(geometry: Geometry, placement: Placement, at: int, touch_m: float) -> bool:
+    """Whether a meeting of the same parts before this one is of the same group."""
     rows = placement.meetings.rows
     for before in range(at - 1, -1, -1):
         if rows[before].part != rows[at].part or rows[before].cage_part != rows[at].cage_part:
             return False
-        if not rows[before].is_hidden and is_at_place(placement.meetings, before, at, touch_m):
+        if not rows[before].is_hidden and are_grouped(geometry, placement, before, at, touch_m):
             return True
     return False
 

@@ -54,11 +54,18 @@ def depth_in_part(shapes: Shapes, which: int, point: Vector) -> float:
 
 
 @kernel
+def heights_of_wall(wall: Feature) -> tuple[float, float]:
+    """Return the heights of the rims of a hole's wall, along its axis."""
+    far = wall.radius - wall.taper * wall.length
+    return wall.radius * wall.taper, wall.length + far * wall.taper
+
+
+@kernel
 def is_within_wall(wall: Feature, point: Vector) -> bool:
     """Whether a point lies within a wall of a hole, at the heights of its rims or between them."""
     along, seen = vector_from(wall.direction), minus(point, vector_from(wall.point))
     height, far = dot(along, seen), wall.radius - wall.taper * wall.length
-    first, last = wall.radius * wall.taper, wall.length + far * wall.taper
+    first, last = heights_of_wall(wall)
     if height < first or height > last:
         return False
     radius = wall.radius + (far - wall.radius) * (height - first) / (last - first)
@@ -88,6 +95,11 @@ def covers(shapes: Shapes, which: int, i: int, place: Vector, normal: Vector, to
             beyond = beyond_fence(shapes.fences[f], seen)
             if beyond > -touch_m:
                 probe = minus(probe, scaled(out_of_fence(shapes.fences[f], seen), beyond + PROBE * touch_m))
+    if feature.kind == EDGE and feature.radius < 0.0:  # of a wall, not at its rims, where it may end in a floor
+        along = vector_from(feature.direction)
+        height, (first, last) = dot(along, minus(probe, vector_from(feature.point))), heights_of_wall(feature)
+        within = min(max(height, first + PROBE * touch_m), last - PROBE * touch_m)
+        probe = plus(probe, scaled(along, within - height))
     return is_in_parts(shapes, which, probe, PROBE_MARGIN * touch_m)
 
 

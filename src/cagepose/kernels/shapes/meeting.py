@@ -288,8 +288,8 @@ def toward_vertex_from_rim(rim: Feature, vertex: Feature) -> Meeting:
 
 @kernel
 def common_normal(a: Shapes, i: int, b: Shapes, j: int, met: Meeting) -> Vector:
-    """Return, of a sharp rim and a sharp vertex at one place, an outward normal of the first body that is opposite to one
-    of the second, if there is such a one: that of the rim which leads most out of what ends in the vertex.
+    """Return, of a sharp rim and a sharp vertex at one place, an outward normal of the first body that is opposite to
+    one of the second, if there is such a one: that of the rim which leads most out of what ends in the vertex.
     """
     if a.features[i].kind == RIM:
         return rim_normal(a.features[i], met.place, scaled(out_of_vertex(b, j), -1.0))

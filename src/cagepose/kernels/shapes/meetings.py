@@ -50,9 +50,10 @@ from cagepose.kernels.shapes.meeting import (
     common_normal,
     farthest_beyond,
     meeting,
+    reaches,
     toward_vertex,
 )
-from cagepose.kernels.shapes.rims import lie_flat, outward_at
+from cagepose.kernels.shapes.rims import beyond_normals, lie_flat, outward_at
 
 ROOM_FOR_PAIR, MOST_ROOM = 128, 4096
 """Meetings that there is memory for: of each pair of parts, and of all."""
@@ -173,20 +174,22 @@ def deepest_gap(a: Shapes, one: int, b: Shapes, other: int) -> float:
 
 
 @kernel
-def lies_in_mouth(one: Feature, other: Feature, met: Meeting) -> bool:
-    """Whether a rim or a sharp edge touches the mouth of a hole with one tangent, as at the same height: the wall below,
-    or the side that ends at the rim, tells the normal to all digits, which circles that nearly coincide would leave to
-    rounding; and an edge lies on the face around the mouth there.
+def lie_side_by_side(one: Feature, other: Feature, met: Meeting) -> bool:
+    """Whether a rim and the mouth of a hole, or a rim and a sharp edge, touch with one tangent, as at the same height:
+    the wall below, or the side that ends at the rim, tells the normal to all digits, which circles that nearly coincide
+    would leave to rounding; and where no side does, they pass each other as parallel edges do.
     """
-    mouth, on_it = (other, one) if other.kind == RIM and other.length < 0.0 else (one, other)
-    if mouth.kind != RIM or mouth.length > 0.0:
+    rim, beside = (other, one) if other.kind == RIM and (one.kind != RIM or other.length < 0.0) else (one, other)
+    if rim.kind != RIM:
         return False
-    along = vector_from(on_it.direction)
-    if on_it.kind == RIM:
-        along = cross(along, outward_at(on_it, met.place))
-    elif on_it.kind != EDGE or on_it.radius != 0.0 or on_it.taper != 0.0:
+    along = vector_from(beside.direction)
+    if beside.kind == RIM:
+        if rim.length > 0.0:
+            return False
+        along = cross(along, outward_at(beside, met.place))
+    elif beside.kind != EDGE or beside.radius != 0.0 or beside.taper != 0.0:
         return False
-    return norm(cross(cross(vector_from(mouth.direction), outward_at(mouth, met.place)), along)) < SIDE_BY_SIDE
+    return norm(cross(cross(vector_from(rim.direction), outward_at(rim, met.place)), along)) < SIDE_BY_SIDE
 
 
 @kernel
@@ -218,7 +221,7 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
             least_gap = on_far_side(max(separation, at_least_m), touch_m) if deepest == -math.inf else deepest
             if met.gap < least_gap or lie_flat(a.features[i], b.features[j], touch_m):
                 continue
-            if lies_in_mouth(a.features[i], b.features[j], met):
+            if lie_side_by_side(a.features[i], b.features[j], met):
                 nearest = min(nearest, met.gap)
                 continue
             if found.used[0] == len(found.rows):
@@ -234,6 +237,8 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
         return max(at_least_m, 0.0)
     keep_nearest(found, first, on_far_side(max(separation, at_least_m), touch_m))
     for at in range(first, found.used[0]):
+        add_flat_ends(a, one, b, other, at, slack, touch_m, found)
+    for at in range(first, found.used[0]):
         nearest = min(nearest, found.rows[at].gap)
     if touch_m < nearest <= SAME_PLACE * touch_m and tip_is_at_rim(a, one, b, other, nearest):
         nearest = math.inf
@@ -243,6 +248,47 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
     if nearest == math.inf or touch_m < -separation - radii < math.inf:  # of cores: what reaches does so by the slack
         return max(separation, at_least_m)
     return max(separation, nearest)  # at an edge, one of the faces may be deep
+
+
+@kernel
+def add_flat_ends(
+    a: Shapes, one: int, b: Shapes, other: int, at: int, slack: float, touch_m: float, found: Meetings
+) -> None:
+    """Append, where a rim meets the side of a part in a place of its face, with a face that is flush with the rim, its
+    meeting with this face: the parts are apart along its normal, too.
+    """
+    met = found.rows[at]
+    place, normal = vector_from(met.place), vector_from(met.normal)
+    if a.features[met.feature].kind == RIM:
+        for j in range(b.parts[other].first_face, b.parts[other].last):
+            if j != met.cage_feature and found.used[0] < len(found.rows):
+                out = scaled(vector_from(b.features[j].direction), -1.0)
+                if is_flush(a.features[met.feature], place, b, j, out, slack, touch_m):
+                    gap = dot(out, minus(vector_from(b.features[j].point), place))
+                    write_touching(one, other, met.feature, j, Meeting(True, gap, out, place), found.rows[found.used[0]])
+                    found.used[0] += 1
+    there = plus(place, scaled(normal, met.gap))
+    if b.features[met.cage_feature].kind == RIM:
+        for i in range(a.parts[one].first_face, a.parts[one].last):
+            if i != met.feature and found.used[0] < len(found.rows):
+                out = vector_from(a.features[i].direction)
+                if is_flush(b.features[met.cage_feature], there, a, i, scaled(out, -1.0), slack, touch_m):
+                    gap = dot(out, minus(there, vector_from(a.features[i].point)))
+                    beside = Meeting(True, gap, out, minus(there, scaled(out, gap)))
+                    write_touching(one, other, i, met.cage_feature, beside, found.rows[found.used[0]])
+                    found.used[0] += 1
+
+
+@kernel
+def is_flush(rim: Feature, place: Vector, shapes: Shapes, i: int, out: Vector, slack: float, touch_m: float) -> bool:
+    """Whether a place of a sharp rim lies on a sharp face, whose opposite normal is one of the rim."""
+    face = shapes.features[i]
+    height = dot(out, minus(place, vector_from(face.point)))
+    if face.kind != FACE or face.radius != 0.0 or abs(height) > touch_m:
+        return False
+    if not reaches(shapes, i, scaled(out, -1.0), place, slack, 2.0 * touch_m):
+        return False
+    return beyond_normals(rim, place, out) <= slack
 
 
 @kernel

@@ -34,7 +34,8 @@ EXTREME_STEPS = 12
 ITERATIONS, ROUNDING = 60, 2e-16
 """Of the search for a foot, radians."""
 EQUALLY_FAR = 0.5
-"""In touch tolerances: where distances along an arc differ by more, its vertices may not have the normal that it has."""
+"""In touch tolerances: where distances along an arc differ by more, its vertices may not have the normal that it
+has."""
 REACH = 2.0 * math.sin(0.5 * SEARCHED)
 """Of an arc from its middle, in radii."""
 
