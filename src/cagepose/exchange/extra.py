@@ -7,17 +7,6 @@ from typing import Any
 from cagepose.files.extra import extra_library, files_library
 
 
-def manifold3d() -> Any:
-    """Return the module that cuts and drills bodies.
-
-    Raises
-    ------
-    MissingExtraError
-        It is not installed.
-    """
-    return files_library("manifold3d", "parts with holes need manifold3d")
-
-
 def mujoco() -> Any:
     """Return MuJoCo.
 
