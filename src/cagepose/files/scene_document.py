@@ -69,7 +69,7 @@ def _shortest(value: float, wanted: float, back: Callable[[float], float]) -> fl
 
 
 class SceneWriter:
-    """Writes a scene, or parts of one, with lengths in a unit; own coefficients of friction stand beside their shapes."""
+    """Writes a scene, or parts of one, with lengths in a unit; what has its own friction says so beside its shape."""
 
     def __init__(self, unit: LengthUnit, friction_of: Mapping[str, float] | None = None) -> None:
         self.unit: LengthUnit = unit
