@@ -1,7 +1,7 @@
 """Models that packages bring with them are read.
 
-Gymnasium (MIT) is among our development packages. dm_control (Apache-2.0) is not, as it needs compiled packages that our
-lock has no other use for: `pip install dm_control` runs its tests, too.
+Gymnasium (MIT) is among our development packages. dm_control (Apache-2.0) is not, as it needs compiled packages that
+our lock has no other use for: `pip install dm_control` runs its tests, too.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.exchange.extra import open_cascade
+from cagepose.files.extra import require
 from cagepose.files.own_process import answer, ask
 
 Data = dict[str, Any]
@@ -48,7 +48,7 @@ def write_step(solids: list[Data], path: Path) -> None:
 
 
 def _ask(task: Data) -> Data:
-    open_cascade()
+    require("OCP", "STEP files need Open CASCADE", "cad")
     found: Data = json.loads(ask(__name__, json.dumps(task).encode(), WALL_SECONDS, "Open CASCADE"))
     return found
 

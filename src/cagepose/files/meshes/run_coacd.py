@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.files.extra import files_library
+from cagepose.files.extra import require
 from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.own_process import answer, ask
 from cagepose.model.checks import FloatArray
@@ -28,7 +28,7 @@ def convex_parts(mesh: Triangles) -> list[FloatArray]:
     MissingExtraError
         coacd is not installed.
     """
-    files_library("coacd", "a mesh that is not convex needs coacd")
+    require("coacd", "a mesh that is not convex needs coacd", "files")
     given = io.BytesIO()
     np.savez(given, vertices=mesh.vertices, faces=mesh.faces, concavity=CONCAVITY)
     found = np.load(io.BytesIO(ask(__name__, given.getvalue(), SECONDS, "coacd")))
