@@ -312,11 +312,3 @@ def test_two_scenes_and_a_scene_without_a_command_are_told_apart_from_changes(co
 def test_check_prints_remarks(command, sample):
     out = command("check", sample, "--set", "friction.coefficient=3").out
     assert out.splitlines()[-1].startswith("remark: friction: a coefficient of 3 is more than dry surfaces have")
-
-
-@pytest.mark.parametrize(
-    ("asked", "needed"), [("study", "scene:, vary:, sample:"), ("design", "scene:, vary:, change:, wish:")]
-)
-def test_a_scene_is_no_study(command, sample, asked, needed):
-    told = f"is a scene, not a {asked}; write a {asked} with {needed}, which names it, or: cagepose run {sample}"
-    assert command(asked, sample, "--out", "folder") == (2, "", f"{sample}: {told}\n")

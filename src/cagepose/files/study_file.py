@@ -121,11 +121,6 @@ def checked_model(text: str, source: str, kind: type[Model]) -> tuple[YamlSource
     expect_kind(yaml, "study" if kind is StudyModel else "design")
     if yaml.problems:
         raise SceneFileError(yaml.problems)
-    if isinstance(yaml.data, dict) and {"object", "cage"} <= yaml.data.keys() and "scene" not in yaml.data:
-        what = kind.__name__.removesuffix("Model").lower()
-        needed = ", ".join(f"{key}:" for key, field in kind.model_fields.items() if field.is_required())
-        message = f"is a scene, not a {what}; write a {what} with {needed}, which names it, or: cagepose run {source}"
-        raise SceneFileError([FileProblem((), message, source)])
     try:
         return yaml, kind.model_validate(yaml.data)
     except ValidationError as error:
