@@ -46,12 +46,12 @@ $(READY): $(LOCKED) $(BUILT) pyproject.toml
 run: $(READY)  ## run the sample scene
 	@$(BIN)/cagepose run scenes/sample.yaml
 
-test: $(READY)  ## run all tests and the examples in docstrings
+test: $(READY)  ## run all tests and the examples in docstrings (N=10000: with many random cases, see test-deep)
 	@echo "Running all tests, about six minutes ..."
-	@$(BIN)/python -m pytest $(ON_ALL_CORES)
+	@$(BIN)/python -m pytest $(ON_ALL_CORES) $(if $(filter file,$(origin N)),,--scenes $(N))
 
 test-deep: $(READY)  ## run the tests that draw random cases with many of them, minutes (N=20000: scenes of the largest)
-	@$(BIN)/python -m pytest $(ON_ALL_CORES) --scenes $(N)
+	@$(BIN)/python -m pytest $(ON_ALL_CORES) --only-random --scenes $(N)
 
 test-python: $(READY)  ## run the tests of kernels and of stepwise runs with kernels as plain Python
 	@CAGEPOSE_KERNELS=python $(BIN)/python -m pytest $(ON_ALL_CORES) tests/kernels tests/stepwise

@@ -18,12 +18,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--scenes",
         type=int,
         metavar="N",
-        help=f"run only the tests that draw random cases, the largest of them with N of {FULL:,} scenes",
+        help=f"draw many random cases: N of {FULL:,} scenes in the largest test, as many in proportion in others",
     )
+    parser.addoption("--only-random", action="store_true", help="run only the tests that draw random cases")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    if config.getoption("scenes") is None:
+    if not config.getoption("only_random"):
         return
     drawing = [item for item in items if "cases" in getattr(item, "fixturenames", ())]
     config.hook.pytest_deselected(items=[item for item in items if item not in set(drawing)])
@@ -51,7 +52,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
 
 @pytest.fixture(scope="session")
 def cases(request: pytest.FixtureRequest) -> Callable[[int, int], int]:
-    """Says how many cases to draw: few, or in ``make test-deep`` the share of many that is asked for.
+    """Says how many cases to draw: few, or the share of many that is asked for.
 
     With kernels as plain Python there are fewer: they are about a hundred times slower.
     """

@@ -7,12 +7,14 @@ import subprocess
 from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
 import cagepose.runs.solve
 from cagepose.cli.app import COMMANDS, overview
+from cagepose.exchange.export import Format
+from cagepose.exchange.solids_document import SOLIDS
 from cagepose.files.schema import scene_json_schema
 
 Command = Callable[..., Any]
@@ -38,6 +40,16 @@ def test_the_help_of_run_names_every_flag(command: Command) -> None:
     out = command("run", "--help").out
     assert all(flag in out for flag in ("SCENE", "--method", "--set", "--json", "--out", "--check-tolerance"))
     assert "--no-" not in out
+
+
+def test_files_of_other_programs_are_named_alike_wherever_they_are(command: Command) -> None:
+    """In the overview, the help of a command, its choices, and the README."""
+    readme = (Path(__file__).resolve().parents[2] / "README.md").read_text().lower()
+    solids = [suffix.strip(".") for suffix in SOLIDS if suffix != ".stp"]
+    for name, formats in (("export", get_args(Format)), ("import", ["mjcf", "urdf", *solids])):
+        (line,) = (line for line in readme.splitlines() if f"cagepose {name} " in line)
+        for told in (COMMANDS[name][1].lower(), command(name, "--help").out.lower(), line):
+            assert [format for format in formats if format not in told] == []
 
 
 def test_the_version_is_that_of_the_package(command: Command) -> None:

@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
+from cagepose.files import extra
 from cagepose.paper.report import report_files
 from cagepose.paper.reproduction import METHODS
-from cagepose.views import extra
 
 Command = Callable[..., Any]
 

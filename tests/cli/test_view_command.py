@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from PIL import Image
 
-from cagepose.views import extra
+from cagepose.files import extra
 
 Command = Callable[..., Any]
 

@@ -15,12 +15,12 @@ from cagepose import Hole, Scene, SceneFileError, load_scene, run
 from cagepose.cli.app import main
 from cagepose.exchange import compile_model, imported, model_text
 from cagepose.exchange.compile_model import compiled_here
-from cagepose.exchange.crosscheck import surface_points
 from cagepose.exchange.export import exported
 from cagepose.exchange.model_friction import scene_friction
 from cagepose.exchange.stl import binary_stl
 from cagepose.model.shapes import Cone, Convex
 from cagepose.model.surface import Mesh
+from exchange.poses_apart import apart
 from our_scenes import SCENES
 
 mujoco = pytest.importorskip("mujoco")
@@ -49,17 +49,6 @@ def there_and_back(scene: Scene, to: str, folder: Path):
         (folder / file).parent.mkdir(exist_ok=True)
         (folder / file).write_bytes(content)
     return imported.imported(str(folder / name))
-
-
-def apart(one: Scene, other: Scene) -> float:
-    """How far the final poses of two scenes with the same object are apart, in sizes, phase by phase at most."""
-    points, ours, theirs = surface_points(one.object), run(one), run(other)
-    assert [phase.verdict for phase in ours.phases] == [phase.verdict for phase in theirs.phases]
-    gaps = [
-        np.linalg.norm(a.pose.transform(points) - b.pose.transform(points), axis=1).max()
-        for a, b in zip(ours.phases, theirs.phases, strict=True)
-    ]
-    return max(gaps) / one.size_m
 
 
 def test_sixteen_scenes_are_of_primitives():
@@ -310,8 +299,8 @@ def test_a_model_that_asks_for_too_much_is_stopped(arm, monkeypatch):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not count memory so")
-def test_the_compiler_may_take_two_gibibytes():
-    limited = "from cagepose.exchange.compile_model import limit_memory; limit_memory()"
+def test_a_process_of_its_own_may_take_two_gibibytes():
+    limited = "from cagepose.files.own_process import limit; limit()"
     for mebibytes, stops in ((1500, False), (2100, True)):
         code = f"{limited}; import numpy; numpy.empty({mebibytes} * 2**20, numpy.uint8)"
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)

@@ -1,6 +1,7 @@
-"""Models that packages bring with them are read, where the package is installed (`pip install gymnasium dm_control`).
+"""Models that packages bring with them are read.
 
-Gymnasium is under MIT, dm_control under Apache-2.0.
+Gymnasium (MIT) is among our development packages. dm_control (Apache-2.0) is not, as it needs compiled packages that
+our lock has no other use for: `pip install dm_control` runs its tests, too.
 """
 
 from __future__ import annotations

@@ -12,11 +12,11 @@ import pytest
 from cagepose import Box, Cage, Convex, Cylinder, Load, MissingExtraError, Object, Pose, Scene, load_scene, run
 from cagepose.cli.app import main
 from cagepose.exchange import step_solids
-from cagepose.exchange.crosscheck import surface_points
 from cagepose.exchange.export import exported
 from cagepose.exchange.imported import imported
 from cagepose.exchange.step import step_solid
 from cagepose.exchange.step_solids import write_step
+from exchange.poses_apart import apart
 from our_scenes import SCENES
 
 FILES = {path.stem: path for path in SCENES}
@@ -26,17 +26,6 @@ def there_and_back(scene: Scene, name: str, folder: Path):
     for file, content in exported(run(scene), name.rpartition(".")[2], name).files.items():
         (folder / file).write_bytes(content)
     return imported(str(folder / name))
-
-
-def apart(one: Scene, other: Scene) -> float:
-    """How far poses of two scenes with the same object are apart, in sizes, phase by phase at most."""
-    points, ours, theirs = surface_points(one.object), run(one), run(other)
-    assert [phase.verdict for phase in ours.phases] == [phase.verdict for phase in theirs.phases]
-    gaps = [
-        np.linalg.norm(a.pose.transform(points) - b.pose.transform(points), axis=1).max()
-        for a, b in zip(ours.phases, theirs.phases, strict=True)
-    ]
-    return max(gaps) / one.size_m
 
 
 @pytest.mark.parametrize("name", ["rollers", "peg-in-hole", "plate-on-pins", "v-groove"])

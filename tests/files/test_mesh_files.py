@@ -150,10 +150,16 @@ HOSTILE = {
     ),
 }
 BYTES = {
-    "empty.stl": (b"", "holds no triangles"),
+    "empty.stl": (b"", "is truncated: 84 bytes expected, 0 found; copy or export it again"),
+    "no-header.stl": (b" " * 50, "is truncated: 84 bytes expected, 50 found"),
+    "no-triangles.stl": (bytes(84), "holds no triangles"),
+    "no-triangles-in-text.stl": (b"solid facet\nendsolid\n", "holds no triangles"),
     "garbage.glb": (bytes(range(256)) * 40, "cannot be read as a mesh"),
     "text.ply": (b"ply\nformat ascii 1.0\nelement vertex 999999999\nend_header\n", "cannot be read as a mesh"),
-    "claims.stl": (b" " * 80 + b"\xff\xff\xff\x7f" + bytes(500), "holds no triangles"),
+    "claims.stl": (
+        b" " * 80 + b"\xff\xff\xff\x7f" + bytes(500),
+        "is truncated: 107,374,182,434 bytes expected, 584 found",
+    ),
     "part.step": (b"ISO-10303-21;", "has the suffix '.step'; give a file of one of: .stl, .obj, .ply, .glb"),
 }
 
@@ -188,7 +194,8 @@ def test_truncated_files_are_clear_errors(share, tmp_path):
         name = written(tmp_path, part().subdivide(), f"whole.{suffix}")
         content = (tmp_path / name).read_bytes()
         (tmp_path / f"cut.{suffix}").write_bytes(content[: int(share * len(content))])
-        assert refusal(tmp_path, f"cut.{suffix}")
+        told = refusal(tmp_path, f"cut.{suffix}")
+        assert suffix != "stl" or told.startswith(f"is truncated: {len(content):,} bytes expected, ")
 
 
 def test_missing_and_huge_files(tmp_path, monkeypatch):

@@ -186,14 +186,14 @@ def test_ctrl_c_leaves_a_folder_to_go_on_with(study: str, tmp_path: Path) -> Non
 
 def test_a_missing_extra_is_named_with_its_install_line(monkeypatch: pytest.MonkeyPatch) -> None:
     find = util.find_spec
-    monkeypatch.setattr("cagepose.views.extra.find_spec", lambda name: None if name == "pyarrow" else find(name))
+    monkeypatch.setattr("cagepose.files.extra.find_spec", lambda name: None if name == "pyarrow" else find(name))
     missing = r"studies need pyarrow.*pip install 'cagepose\[study\]'"
     with pytest.raises(MissingExtraError, match=missing):
         StudyResults("out")
     vary = {"cage.pose.euler_zyx_deg[1]": {"uniform": [0, 1]}}
     with pytest.raises(MissingExtraError, match=missing):
         Study(RAIL, vary, {"runs": 1})
-    monkeypatch.setattr("cagepose.views.extra.find_spec", lambda name: None if name == "distributed" else find(name))
+    monkeypatch.setattr("cagepose.files.extra.find_spec", lambda name: None if name == "distributed" else find(name))
     with pytest.raises(MissingExtraError, match=r"many machines need Dask.*pip install 'cagepose\[dask\]'"):
         Study(RAIL, vary, {"runs": 1}).run("out", dask="tcp://localhost:1")
 

@@ -34,9 +34,11 @@ def first():
     return as_machine_code(first_meeting)
 
 
+FEW = 80
+"""None of these is wrong."""
 KNOWN_WRONG = 0.01
-"""Share: three of 300 random motions are early or late, or told so by an oracle that is loose where parts touch at the
-start."""
+"""Share of more: three of 300 random motions are early or late, or told so by an oracle that is loose where parts touch
+at the start."""
 
 
 def fastest(motion: Motion, middle: np.ndarray, reach: float) -> float:
@@ -78,8 +80,8 @@ def check(
 
 def test_random_motions(first, cases, say):
     rng, wrong, seen = np.random.default_rng(7), [], {"met": 0, "not met": 0, "pressed": 0}
-    n_cases = cases(80, 300)
-    for _ in range(n_cases):
+    n_cases = cases(FEW, 300)
+    for number in range(n_cases):
         part, cage_part = random_turned(rng), random_turned(rng)
         if not (isinstance(part, Turned) or isinstance(cage_part, Turned)):
             continue
@@ -100,9 +102,9 @@ def test_random_motions(first, cases, say):
         seen["pressed" if hit is None else "met" if hit.amount <= end else "not met"] += 1
         if told:
             wrong.append(f"{told}: {part} at {pose}, {cage_part}, {motion} to {end}")
+        assert number >= FEW or not wrong, wrong
     say(f"first contact of {n_cases} motions of turned parts: {seen}, {len(wrong)} wrong")
-    most = 0 if n_cases == 80 else n_cases * KNOWN_WRONG
-    assert len(wrong) <= most, "\n".join([f"{len(wrong)} of {n_cases} wrong", *wrong[:5]])
+    assert len(wrong) <= n_cases * KNOWN_WRONG, "\n".join([f"{len(wrong)} of {n_cases} wrong", *wrong[:5]])
 
 
 def test_random_motions_in_and_over_holes(first, cases, say):

@@ -57,11 +57,11 @@ COMMANDS = {
     ),
     "export": (
         "cagepose.cli.export_command:export_command",
-        "Write a scene and its final poses for other programs: MJCF, URDF, STL, CSV.",
+        "Write a scene and its final poses for other programs: MJCF, URDF, STEP, STL, CSV.",
     ),
     "import": (
         "cagepose.cli.import_command:import_command",
-        "Write the scene that an MJCF or URDF file describes.",
+        "Write the scene that an MJCF, URDF, STEP, STL, OBJ, PLY or GLB file describes.",
     ),
     "crosscheck": (
         "cagepose.cli.crosscheck_command:crosscheck_command",

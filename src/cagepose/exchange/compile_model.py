@@ -1,23 +1,21 @@
-"""MuJoCo's compiler in a process of its own, which may take only so much time and memory: `compiled`.
+"""MuJoCo's compiler in a process of its own: `compiled`.
 
-Run as a program, it writes what it found to standard output as JSON: metres, kilograms, quaternions with the scalar
-first, joints where the model has them at rest.
+It writes what it found as JSON: metres, kilograms, quaternions with the scalar first, joints where the model has them
+at rest.
 """
 
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
+import os
 from typing import Any
 
 import numpy as np
 
-from cagepose.errors import FileProblem, SceneFileError
+from cagepose.errors import FileProblem, SceneError, SceneFileError
+from cagepose.files.own_process import answer, ask
 
-SECONDS, MEMORY_BYTES = 10.0, 2 * 1024**3
-FAILED = 2
-"""Exit code where the compiler refuses the model; its message is on standard error."""
+SECONDS = 10.0
 SURFACES = ("plane", "sphere", "capsule", "cylinder", "box", "mesh")
 """Kinds of geoms that are passed on; others only by name."""
 
@@ -30,20 +28,11 @@ def compiled(source: str) -> dict[str, Any]:
     SceneFileError
         The compiler refuses the model, or takes too long.
     """
-    command = [sys.executable, "-m", "cagepose.exchange.compile_model", source]
     try:
-        done = subprocess.run(command, capture_output=True, timeout=SECONDS, check=False)
-    except subprocess.TimeoutExpired:
-        message = f"takes MuJoCo's compiler more than {SECONDS:g} s; simplify it"
-        raise SceneFileError([FileProblem((), message, source)]) from None
-    if done.returncode == 0:
-        found: dict[str, Any] = json.loads(done.stdout)
-        return found
-    said = " ".join(done.stderr.decode(errors="replace").split())[-300:]
-    message = f"is refused by MuJoCo's compiler: {said}"
-    if done.returncode != FAILED:
-        message = f"broke MuJoCo's compiler (it may take {MEMORY_BYTES // 1024**3} GiB of memory); simplify it"
-    raise SceneFileError([FileProblem((), message, source)])
+        found: dict[str, Any] = json.loads(ask(__name__, os.fsencode(source), SECONDS, "MuJoCo's compiler"))
+    except SceneError as error:
+        raise SceneFileError([FileProblem((), problem.message, source) for problem in error.problems]) from None
+    return found
 
 
 def compiled_here(source: str) -> dict[str, Any]:
@@ -56,30 +45,14 @@ def compiled_here(source: str) -> dict[str, Any]:
     """
     import mujoco
 
-    spec = mujoco.MjSpec.from_file(source)
-    spec.compiler.fusestatic = False  # links keep their names
-    return _document(mujoco, spec.compile())
-
-
-def main(source: str) -> int:
-    """Compile a model and print it."""
-    limit_memory()
     try:
-        found = compiled_here(source)
+        spec = mujoco.MjSpec.from_file(source)
+        spec.compiler.fusestatic = False  # links keep their names
+        model = spec.compile()
     except (ValueError, RuntimeError) as error:
-        sys.stderr.write(str(error))
-        return FAILED
-    json.dump(found, sys.stdout)
-    return 0
-
-
-def limit_memory() -> None:
-    """Let this process take no more than `MEMORY_BYTES`."""
-    try:
-        import resource
-    except ImportError:  # Windows has no such limit
-        return
-    resource.setrlimit(resource.RLIMIT_DATA, (MEMORY_BYTES, MEMORY_BYTES))
+        said = " ".join(str(error).split())[-300:]
+        raise ValueError(f"is refused by MuJoCo's compiler: {said}") from error
+    return _document(mujoco, model)
 
 
 def _document(mujoco: Any, model: Any) -> dict[str, Any]:
@@ -150,4 +123,4 @@ def _corners_of_hull(model: Any, mesh: int, count: int) -> Any:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    answer(lambda source: json.dumps(compiled_here(os.fsdecode(source))).encode())

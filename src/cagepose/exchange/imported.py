@@ -16,7 +16,7 @@ from cagepose.exchange.extra import mujoco
 from cagepose.exchange.model_bodies import WORLD, ModelBodies
 from cagepose.exchange.model_friction import scene_friction
 from cagepose.exchange.model_text import ModelText, read_model_text
-from cagepose.exchange.solids_document import SOLIDS, Progress, kept_friction, pose_data, solids_document
+from cagepose.exchange.solids_document import METRES, SOLIDS, Progress, kept_friction, solids_document
 from cagepose.files.meshes.mesh_shapes import MOST_CORNERS
 from cagepose.files.scene_file import SceneText
 from cagepose.files.yaml_source import YamlSource
@@ -122,10 +122,10 @@ class _Reader:
         others = [self.shape(geom, frame, reach_m) for geom in walls if geom["label"] not in points]
         found: Data = {"name": beside.get("name") or Path(self.source).stem, "units": {"length": "m"}}
         found["object"] = {"shapes": [shape for shape in shapes if shape], **self.inertial(of_object, held)}
-        found["object"]["pose"] = pose_data(bodies.pose(held))
+        found["object"]["pose"] = METRES.pose(bodies.pose(held))
         found["cage"] = {"points": points, "shapes": [shape for shape in others if shape]}
         found["cage"] = {key: value for key, value in found["cage"].items() if value}
-        found["cage"]["pose"] = pose_data(bodies.pose(frame))
+        found["cage"]["pose"] = METRES.pose(bodies.pose(frame))
         for body, what in ((found["object"], "the object"), (found["cage"], "the cage")):
             if not body.get("shapes") and not body.get("points"):
                 message = f"has nothing that touches in what is {what}; choose other bodies with --object and --cage"
@@ -163,7 +163,7 @@ class _Reader:
         else:
             numbers = {}
             self.notes.append(f"left out: {label!r}, as it is neither box, ball, capsule, cylinder, plane nor mesh")
-        return {"name": label, **numbers, **pose_data(place, of_part=True)} if numbers else None
+        return {"name": label, **numbers, **METRES.pose(place, turn=False)} if numbers else None
 
     def hull(self, geom: Data, label: str) -> Data:
         if len(geom["vertices"]) > MOST_CORNERS:

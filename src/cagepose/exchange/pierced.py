@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.exchange.extra import manifold3d
+from cagepose.files.meshes.manifolds import Triangles
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.hole import Hole
 from cagepose.model.shapes import Convex, Shape
@@ -35,11 +35,10 @@ def pierced_pieces(part: Shape, holes: Sequence[Hole]) -> list[Convex]:
     MissingExtraError
         manifold3d is not installed.
     """
-    library = manifold3d()
     origin = part.nodes_body().mean(axis=0)
     unit_m = 2.0 ** float(np.frexp(part.farthest_m(origin))[1])
     mesh = shape_mesh(part, OUTSIDE)
-    whole = library.Manifold(library.Mesh64((mesh.vertices_m - origin) / unit_m, mesh.triangles.astype(np.uint64)))
+    whole = Triangles((mesh.vertices_m - origin) / unit_m, mesh.triangles).body()
 
     def cut(body: Any, outwards: FloatArray, point: FloatArray) -> Any:
         """Keep what lies on the side of a plane that ``outwards`` points to."""
@@ -56,9 +55,7 @@ def pierced_pieces(part: Shape, holes: Sequence[Hole]) -> list[Convex]:
                 cell = cut(cell, unit_rows(across[None])[0], (one + two) / 2.0)
         pieces += _around(cell, hole, cut)
     least = NOTHING * whole.volume()
-    return [
-        Convex(piece.to_mesh64().vert_properties[:, :3] * unit_m + origin) for piece in pieces if piece.volume() > least
-    ]
+    return [Convex(Triangles.of(piece).vertices * unit_m + origin) for piece in pieces if piece.volume() > least]
 
 
 def _around(cell: Any, hole: Hole, cut: Any) -> list[Any]:

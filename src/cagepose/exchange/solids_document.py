@@ -17,13 +17,12 @@ from cagepose.files.meshes import mesh_file
 from cagepose.files.meshes.decomposed import kept_beside
 from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
-from cagepose.files.scene_document import pose_angles
-from cagepose.model.box import Box
+from cagepose.files.scene_document import SceneWriter
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
 from cagepose.model.shape_moments import shape_moments
-from cagepose.model.shapes import Convex, Shape, Sphere
+from cagepose.model.shapes import Sphere
 from cagepose.model.wording import few
 
 Data = dict[str, Any]
@@ -32,6 +31,7 @@ Progress = Callable[[str], None]
 STEP = (".step", ".stp")
 SOLIDS = (*STEP, *mesh_file.SUFFIXES)
 MAX_STEP_BYTES = 32 * 1024 * 1024
+METRES = SceneWriter("m")
 SAME_VOLUME = 1e-7
 """Of itself: shapes that have it are the solid, and its triangles alone are off."""
 
@@ -58,10 +58,9 @@ def solids_document(
             notes.append(f"solids left out: {few(left, 12)}")
         points = [name for name in walls if _short(name, walls) in note.get("points", ())]
         walls = [name for name in walls if name not in points]
-        of_object, of_cage = _pose(note.get("object", {}).get("pose")), _pose(note.get("cage"))
-        shown = Pose(*note["shown"]) if note else Pose()
+        of_object, of_cage = (Pose(*note[body]) if note else Pose() for body in ("shown_object", "shown_cage"))
         shapes: dict[str, list[Data]] = {"object": [], "cage": []}
-        listed = [("object", name, held, shown.inverse()) for name in held]
+        listed = [("object", name, held, of_object.inverse()) for name in held]
         listed += [("cage", name, walls, of_cage.inverse()) for name in walls]
         for number, (body, name, names, frame) in enumerate(listed):
             progress(f"solid {number + 1} of {len(listed)}: {name}")
@@ -69,8 +68,8 @@ def solids_document(
     except SceneError as error:
         raise SceneFileError([FileProblem((), problem.message, source) for problem in error.problems]) from None
     found: Data = {"name": note.get("name") or path.stem, "units": {"length": "m"}}
-    found["object"] = {**note.get("object", {}), "shapes": shapes["object"], "pose": pose_data(of_object)}
-    found["cage"] = {"shapes": shapes["cage"], "pose": pose_data(of_cage)}
+    found["object"] = {**note.get("object", {}), "shapes": shapes["object"]}
+    found["cage"] = {"shapes": shapes["cage"], "pose": METRES.pose(of_cage)}
     found["cage"]["points"] = {
         _short(name, points): of_cage.inverse_transform(_middle(solids[name])).tolist() for name in points
     }
@@ -94,14 +93,6 @@ def kept_friction(note: Data, names: Sequence[str]) -> Data:
 
 def is_of(name: str, element: str) -> bool:
     return name == element or name.startswith(f"{element}/")
-
-
-def pose_data(pose: Pose, *, of_part: bool = False) -> Data:
-    """Return a pose as a scene file has it; that of a part has angles, whatever their last digits."""
-    angles = pose_angles(pose)
-    if angles is None and not of_part:
-        return {"position": pose.position_m.tolist(), "quat_wxyz": pose.quaternion_wxyz.tolist()}
-    return {"position": pose.position_m.tolist(), "euler_zyx_deg": angles or np.degrees(pose.euler_zyx).tolist()}
 
 
 def _of_step(path: Path, notes: list[str]) -> dict[str, Data]:
@@ -168,39 +159,16 @@ def _middle(solid: Data) -> FloatArray:
 def _shapes(path: Path, name: str, solid: Data, frame: Pose, notes: list[str]) -> list[Data]:
     """Return a solid as shapes of a scene file, in the frame of its body, in metres."""
     if "center" in solid:
-        return [_data(Sphere(solid["radius"] / MM, Pose(_middle(solid)), name), frame)]
+        return [METRES.shape(Sphere(solid["radius"] / MM, frame @ Pose(_middle(solid)), name))]
     mesh = mesh_file.checked(Triangles(np.array(solid["vertices"]), np.array(solid["faces"])), f"{name!r} ")
     found = mesh_shapes(mesh, name, "mm", partial(kept_beside, path))
     if not _is_exact(found, solid):
         notes += found.notes
-    return [_data(mesh_file.scaled(shape, 1.0 / MM), frame) for shape in found.shapes]
+    metres = [mesh_file.scaled(shape, 1.0 / MM) for shape in found.shapes]
+    return [METRES.shape(shape.moved(frame @ shape.pose_body_shape)) for shape in metres]
 
 
 def _is_exact(found: MeshShapes, solid: Data) -> bool:
     """Whether shapes have the volume of the surfaces that the triangles stand for."""
     volume = sum((-1.0 if isinstance(shape, Hole) else 1.0) * shape_moments(shape).volume_m3 for shape in found.shapes)
     return "volume" in solid and abs(volume - solid["volume"]) <= SAME_VOLUME * volume
-
-
-def _pose(data: Data | None) -> Pose:
-    if data is None:
-        return Pose()
-    angles = data.get("euler_zyx_deg")
-    return Pose(data["position"], data.get("quat_wxyz"), euler_zyx=None if angles is None else np.radians(angles))
-
-
-def _data(shape: Shape, frame: Pose) -> Data:
-    """Return a shape as a scene file has it."""
-    place = frame @ shape.pose_body_shape
-    if isinstance(shape, Box):
-        numbers: Data = {"size": shape.size_m.tolist()}
-    elif isinstance(shape, Convex):
-        numbers, place = {"vertices": place.transform(shape.vertices_m).tolist()}, Pose()
-    else:
-        numbers = {key.removesuffix("_m"): value for key, value in vars(shape).items() if key.endswith("_m")}
-    if isinstance(shape, Hole):
-        numbers["in"] = list(shape.in_)
-        if shape.chamfer is not None:
-            width, angle_deg = shape.chamfer.width_m, float(np.degrees(shape.chamfer.angle_rad))
-            numbers["chamfer"] = {"width": width, "angle_deg": angle_deg}
-    return {"name": shape.name, shape.kind: numbers, **pose_data(place, of_part=True)}

@@ -26,9 +26,10 @@ def solids_note(scene: Scene, pose_world_object: Pose) -> str:
     """Return the note for solids that show the object at a pose."""
     document = scene_document(scene, "m")
     note = json.loads(beside_text(scene, with_friction=True))
-    note |= {"what": f"a scene's loads, points and poses, {MADE_BY}", "cage": document["cage"]["pose"]}
+    note["what"] = f"a scene's loads, points and poses, {MADE_BY}"
     note["object"] = {key: document["object"][key] for key in OF_OBJECT if key in document["object"]}
-    note["shown"] = [pose_world_object.position_m.tolist(), pose_world_object.quaternion_wxyz.tolist()]
+    for body, pose in (("object", pose_world_object), ("cage", scene.cage.pose_world_cage)):
+        note[f"shown_{body}"] = [pose.position_m.tolist(), pose.quaternion_wxyz.tolist()]
     return json.dumps(note)
 
 
@@ -55,4 +56,4 @@ def read_solids_note(path: Path) -> dict[str, Any]:
         found = IN_STEP.search(text)
         text = found.group(1) if found else ""
     note = read_beside(text) or {}
-    return note if {"object", "cage", "shown", "points"} <= note.keys() else {}
+    return note if {"object", "shown_object", "shown_cage", "points"} <= note.keys() else {}

@@ -1,24 +1,16 @@
-"""Solids of STEP files, by Open CASCADE in a process of its own, which may take only so much time and memory.
-
-Run as a program, it reads what to do from standard input as JSON and writes what it found to a file as JSON, since
-Open CASCADE prints to standard output. Millimetres throughout.
-"""
+"""Solids of STEP files, by Open CASCADE in a process of its own. Millimetres throughout."""
 
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from cagepose.errors import Problem, SceneError
-from cagepose.exchange.compile_model import limit_memory
-from cagepose.exchange.extra import open_cascade
+from cagepose.files.extra import require
+from cagepose.files.own_process import answer, ask
 
 Data = dict[str, Any]
 
@@ -28,7 +20,6 @@ AROUND = 64
 """Chords of a full circle at least."""
 CHORD_OF_SIZE = 1e-2
 """How far triangles may be from the surface, where that is less than `AROUND` gives."""
-FAILED = 2
 
 
 def read_step(path: Path) -> Data:
@@ -42,7 +33,7 @@ def read_step(path: Path) -> Data:
     MissingExtraError
         Open CASCADE is not installed.
     """
-    return _in_process({"read": str(path)})
+    return _ask({"read": str(path)})
 
 
 def write_step(solids: list[Data], path: Path) -> None:
@@ -53,46 +44,17 @@ def write_step(solids: list[Data], path: Path) -> None:
     SceneError, MissingExtraError
         As `read_step`.
     """
-    _in_process({"write": str(path), "solids": solids})
+    _ask({"write": str(path), "solids": solids})
 
 
-def _in_process(task: Data) -> Data:
-    open_cascade()
-    with tempfile.TemporaryDirectory() as folder:
-        answer = Path(folder) / "answer.json"
-        command = [sys.executable, "-m", __name__, str(answer)]
-        try:
-            done = subprocess.run(
-                command, input=json.dumps(task).encode(), capture_output=True, timeout=WALL_SECONDS, check=False
-            )
-        except subprocess.TimeoutExpired:
-            raise SceneError([Problem((), f"takes Open CASCADE more than {WALL_SECONDS:g} s; simplify it")]) from None
-        if done.returncode == 0:
-            found: Data = json.loads(answer.read_text())
-            return found
-    message = f"broke Open CASCADE (it may take {CPU_SECONDS} s and 2 GiB of memory); simplify it"
-    if done.returncode == FAILED:
-        message = done.stderr.decode(errors="replace").strip().splitlines()[-1]
-    raise SceneError([Problem((), message)])
+def _ask(task: Data) -> Data:
+    require("OCP", "STEP files need Open CASCADE", "cad")
+    found: Data = json.loads(ask(__name__, json.dumps(task).encode(), WALL_SECONDS, "Open CASCADE"))
+    return found
 
 
-def main(answer: str) -> int:
-    """Do what standard input asks for."""
-    limit_memory()
-    try:
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
-    except ImportError:  # Windows has no such limit
-        pass
-    task = json.load(sys.stdin)
-    try:
-        found = _read(task["read"]) if "read" in task else _write(task["solids"], task["write"])
-    except (ValueError, RuntimeError) as error:
-        sys.stderr.write("\n" + " ".join(str(error).split()))
-        return FAILED
-    Path(answer).write_text(json.dumps(found))
-    return 0
+def _done(task: Data) -> Data:
+    return _read(task["read"]) if "read" in task else _write(task["solids"], task["write"])
 
 
 def _document() -> tuple[Any, Any]:
@@ -315,4 +277,4 @@ def _turned(profile: list[list[float]]) -> Any:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    answer(lambda task: json.dumps(_done(json.loads(task))).encode(), CPU_SECONDS)

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cagepose.exchange.extra import manifold3d
 from cagepose.exchange.world_parts import world_parts
+from cagepose.files.meshes.manifolds import Triangles, manifold3d
 from cagepose.files.write import MADE_BY
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
@@ -67,16 +67,12 @@ def _radius_m(shape: Shape) -> float:
 
 
 def _drilled(part: Shape, holes: Sequence[Hole]) -> Mesh:
-    library = manifold3d()
     origin = part.nodes_body().mean(axis=0)
     unit_m = 2.0 ** float(np.frexp(part.farthest_m(origin))[1])
-    bodies = []
-    for shape in (part, *holes):
-        mesh = shape_mesh(shape, SEGMENTS)
-        vertices = (mesh.vertices_m - origin) / unit_m
-        bodies.append(library.Manifold(library.Mesh64(vertices, mesh.triangles.astype(np.uint64))))
-    found = library.Manifold.batch_boolean(bodies, library.OpType.Subtract).to_mesh64()
-    return Mesh(found.vert_properties[:, :3] * unit_m + origin, found.tri_verts.astype(np.int64))
+    meshes = [shape_mesh(shape, SEGMENTS) for shape in (part, *holes)]
+    bodies = [Triangles((mesh.vertices_m - origin) / unit_m, mesh.triangles).body() for mesh in meshes]
+    found = Triangles.of(manifold3d().Manifold.batch_boolean(bodies, manifold3d().OpType.Subtract))
+    return Mesh(found.vertices * unit_m + origin, found.faces)
 
 
 def _normals(corners: FloatArray) -> FloatArray:

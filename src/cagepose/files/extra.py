@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
+from importlib.util import find_spec
 from typing import Any
 
 from cagepose.errors import MissingExtraError
@@ -30,5 +31,16 @@ def extra_library(module: str, need: str, extra: str) -> Any:
     try:
         return import_module(module)
     except ImportError as error:
-        message = f"{need}, which is not installed; install the {extra} extra: pip install 'cagepose[{extra}]'"
-        raise MissingExtraError(message) from error
+        raise _missing(need, extra) from error
+
+
+def require(module: str, need: str, extra: str) -> None:
+    """As `extra_library`, but do not import it, which may take seconds."""
+    if find_spec(module) is None:
+        raise _missing(need, extra)
+
+
+def _missing(need: str, extra: str) -> MissingExtraError:
+    return MissingExtraError(
+        f"{need}, which is not installed; install the {extra} extra: pip install 'cagepose[{extra}]'"
+    )

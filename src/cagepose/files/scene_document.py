@@ -7,7 +7,7 @@ were given as quaternions.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import product
 from typing import Any
 
@@ -40,7 +40,7 @@ def scene_document(scene: Scene, length_unit: LengthUnit = "mm") -> dict[str, An
     Poses have angles if these give the same quaternion again, else the quaternion. What was left out of a scene is left
     out, but for names and poses. The ranges of adjustable numbers stay as they are.
     """
-    return _Writer(scene, length_unit).document()
+    return SceneWriter(length_unit, scene.friction_of).document(scene)
 
 
 def pose_angles(pose: Pose) -> list[float] | None:
@@ -68,15 +68,15 @@ def _shortest(value: float, wanted: float, back: Callable[[float], float]) -> fl
     return value
 
 
-class _Writer:
-    def __init__(self, scene: Scene, unit: LengthUnit) -> None:
-        self.scene = scene
+class SceneWriter:
+    """Writes a scene, or parts of one, with lengths in a unit; what has its own friction says so beside its shape."""
+
+    def __init__(self, unit: LengthUnit, friction_of: Mapping[str, float] | None = None) -> None:
         self.unit: LengthUnit = unit
         self.metres = float(to_metres(1.0, unit))
-        self.friction_of = dict(scene.friction_of)
+        self.friction_of = dict(friction_of or {})
 
-    def document(self) -> dict[str, Any]:
-        scene = self.scene
+    def document(self, scene: Scene) -> dict[str, Any]:
         found: dict[str, Any] = {"name": scene.name, "units": {"length": self.unit}}
         found["object"] = self.object(scene.object)
         found["cage"] = self.cage(scene.cage)

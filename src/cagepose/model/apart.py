@@ -9,8 +9,9 @@ import numpy as np
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.hole import Hole
+from cagepose.model.nearest import core_of, nearest_points
 from cagepose.model.pose import Pose
-from cagepose.model.shapes import Convex, Rounded, Shape, Turned
+from cagepose.model.shapes import Convex, Shape, Turned
 from cagepose.model.surface import shape_mesh
 
 WITHIN = 1e-12
@@ -40,9 +41,16 @@ def are_apart(one: Shape, other: Shape) -> bool:
         np.cross(np.cross(both, offset), both),
     ]
     directions = np.concatenate([_directions(vectors) for vectors in candidates])
-    directions = np.concatenate([directions, -directions])
-    gaps = -one.heights_m(directions) - other.heights_m(-directions)
-    return float(gaps.max(initial=-reach)) >= -WITHIN * reach or _gilbert(one, other, offset, WITHIN * reach)
+    if _largest_gap(one, other, np.concatenate([directions, -directions])) >= -WITHIN * reach:
+        return True
+    cores = (core_of(shape, Pose())._replace(radius_m=0.0) for shape in (one, other))
+    foot, place = nearest_points(*cores)
+    return _largest_gap(one, other, _directions((place - foot)[None])) >= -WITHIN * reach
+
+
+def _largest_gap(one: Shape, other: Shape, directions: FloatArray) -> float:
+    """Return how far apart two planes across one of the directions (n, 3) are, with a shape behind each, at most."""
+    return float((-one.heights_m(directions) - other.heights_m(-directions)).max(initial=-np.inf))
 
 
 def are_in_each_other(
@@ -76,22 +84,6 @@ def _directions(vectors: FloatArray) -> FloatArray:
     return unit_rows(vectors[long_enough]) if long_enough.any() else np.zeros((0, 3))
 
 
-def _gilbert(one: Shape, other: Shape, offset: FloatArray, tolerance: float) -> bool:
-    """Approach the point of the difference of the two that is nearest to the origin (Gilbert's algorithm)."""
-    nearest = -offset
-    for _ in range(100):
-        length = float(np.linalg.norm(nearest))
-        if length <= tolerance:
-            return False
-        direction = nearest / length
-        support = _farthest(one, -direction) - _farthest(other, direction)
-        if float(support @ direction) >= -tolerance:
-            return True
-        step = support - nearest
-        nearest = nearest + min(1.0, max(0.0, -float(nearest @ step) / float(step @ step))) * step
-    return False
-
-
 def _across_faces(shape: Shape) -> FloatArray:
     """Directions across the shape's flat faces, (n, 3)."""
     turn = shape.pose_body_shape.rotation
@@ -111,15 +103,3 @@ def _lines(shape: Shape) -> FloatArray:
         start, end = np.moveaxis(shape.hull.vertices_m[shape.hull.edges], 1, 0)
         return _directions(end - start) @ turn.T
     return turn[:, 2:].T
-
-
-def _farthest(shape: Shape, direction: FloatArray) -> FloatArray:
-    """Return the shape's farthest point along a unit vector."""
-    nodes = shape.nodes_body()
-    if isinstance(shape, Turned):
-        axis = shape.pose_body_shape.rotation[:, 2]
-        across = direction - (direction @ axis) * axis
-        length = float(np.linalg.norm(across))
-        nodes = nodes + np.outer([radius for _, radius in shape.rims], across / length if length > 0.0 else across)
-    point: FloatArray = nodes[int(np.argmax(nodes @ direction))]
-    return point + shape.radius_m * direction if isinstance(shape, Rounded) else point

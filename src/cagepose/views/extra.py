@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
-
-from cagepose.errors import MissingExtraError
+from cagepose.files.extra import require
 
 STUDY_MODULES = {
     "scipy": "SciPy",
@@ -23,7 +21,7 @@ def require_pillow() -> None:
     MissingExtraError
         It is not; the message says how to install it.
     """
-    _require("PIL", "pictures need Pillow", "view")
+    require("PIL", "pictures need Pillow", "view")
 
 
 def require_matplotlib() -> None:
@@ -34,7 +32,7 @@ def require_matplotlib() -> None:
     MissingExtraError
         As `require_pillow`.
     """
-    _require("matplotlib", "pictures need matplotlib", "plot")
+    require("matplotlib", "pictures need matplotlib", "plot")
 
 
 def require_report() -> None:
@@ -46,8 +44,8 @@ def require_report() -> None:
         As `require_pillow`.
     """
     require_matplotlib()
-    _require("jinja2", "the report needs Jinja2", "plot")
-    _require("markdown_it", "the report needs markdown-it-py", "plot")
+    require("jinja2", "the report needs Jinja2", "plot")
+    require("markdown_it", "the report needs markdown-it-py", "plot")
 
 
 def require_study() -> None:
@@ -59,7 +57,7 @@ def require_study() -> None:
         As `require_pillow`.
     """
     for module, name in STUDY_MODULES.items():
-        _require(module, f"studies need {name}", "study")
+        require(module, f"studies need {name}", "study")
 
 
 def require_dask() -> None:
@@ -70,11 +68,4 @@ def require_dask() -> None:
     MissingExtraError
         As `require_pillow`.
     """
-    _require("distributed", "many machines need Dask", "dask")
-
-
-def _require(module: str, need: str, extra: str) -> None:
-    if find_spec(module) is None:
-        raise MissingExtraError(
-            f"{need}, which is not installed; install the {extra} extra: pip install 'cagepose[{extra}]'"
-        )
+    require("distributed", "many machines need Dask", "dask")

@@ -25,7 +25,7 @@ def manifold3d() -> Any:
     MissingExtraError
         It is not installed.
     """
-    return files_library("manifold3d", "meshes need manifold3d")
+    return files_library("manifold3d", "meshes and parts with holes need manifold3d")
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,6 +25,8 @@ UNIT_OF_GLB: LengthUnit = "m"
 """By its standard; the other formats do not say theirs."""
 MAX_MESH_BYTES = 32 * 1024 * 1024
 """Of one file: 650,000 triangles of a binary STL."""
+STL_HEADER_BYTES, STL_TRIANGLE_BYTES = 84, 50
+"""Of a binary STL file; the last four bytes of its header are the number of triangles."""
 FLAT = 1e-6
 """Of its size: what is thinner is flat."""
 KEPT = 64
@@ -91,19 +93,33 @@ def read_solids(path: Path, *, split: bool = True) -> dict[str, Triangles]:
         raise refused("is no file; check the name and the folder")
     if path.stat().st_size > MAX_MESH_BYTES:
         raise refused(f"is larger than {MAX_MESH_BYTES // 1024**2} MiB; simplify it")
-    content = io.BytesIO(path.read_bytes())
+    content = path.read_bytes()
+    if suffix == ".stl":
+        _check_whole(content)
     # No resolver: a file may name others, such as textures, which are not opened.
     given: dict[str, Any] = {"file_type": suffix[1:], "skip_materials": True, "process": False}
     try:
         if split:
-            scene = trimesh.load_scene(content, **given, **({"split_objects": True} if suffix == ".obj" else {}))
+            scene = trimesh.load_scene(
+                io.BytesIO(content), **given, **({"split_objects": True} if suffix == ".obj" else {})
+            )
             meshes = {str(mesh.metadata["name"]): mesh for mesh in scene.dump()}
         else:
-            meshes = {"": trimesh.load_mesh(content, **given)}
+            meshes = {"": trimesh.load_mesh(io.BytesIO(content), **given)}
         return {name: _merged(mesh.vertices, mesh.faces) for name, mesh in meshes.items()}
     except Exception as error:  # whatever trimesh's readers raise on a damaged file
         words = " ".join(str(error).split())[:80] or type(error).__name__
         raise refused(f"cannot be read as a mesh ({words}); export it again") from None
+
+
+def _check_whole(stl: bytes) -> None:
+    """Refuse a binary STL file that is shorter than it says."""
+    if stl.lstrip().startswith(b"solid") and b"facet" in stl:
+        return  # text, which does not say how long it is
+    n_triangles = int.from_bytes(stl[STL_HEADER_BYTES - 4 : STL_HEADER_BYTES], "little")
+    expected = STL_HEADER_BYTES + STL_TRIANGLE_BYTES * n_triangles
+    if len(stl) < expected:
+        raise refused(f"is truncated: {expected:,} bytes expected, {len(stl):,} found; copy or export it again")
 
 
 def _merged(vertices: ArrayLike, faces: ArrayLike) -> Triangles:

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
+from cagepose.model.nearest import Core, core_of, nearest_points
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
-from cagepose.views.viewer.nearest import Core, core_of, nearest_points
 
 
 class Nearest(NamedTuple):

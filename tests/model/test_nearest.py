@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
-from cagepose import Box, Cage, Object, Pose
+from cagepose import Box, Pose
+from cagepose.model.nearest import core_of, nearest_points
 from cagepose.model.shapes import AnyShape, Capsule, Cone, Convex, Cylinder, Disc, Sphere
 from cagepose.model.surface import shape_mesh
-from cagepose.views.viewer.nearest import core_of, nearest_points
-from cagepose.views.viewer.surface import nearest_on_object
 
 N_PAIRS, SEGMENTS = 300, 96
 
@@ -49,17 +47,3 @@ def test_no_two_places_of_the_bodies_are_nearer() -> None:
             heights = pose.transform(shape_mesh(shape, SEGMENTS).vertices_m) @ way - end @ way
             assert -5e-5 < heights.max() < 1e-9  # all of it is behind, and reaches there but for the mesh's chords
     assert n_apart > 0.8 * N_PAIRS
-
-
-def test_points_and_shapes_of_a_cage_find_the_nearest_part() -> None:
-    parts = [Box((0.02, 0.02, 0.02), Pose((-0.02, 0, 0))), Sphere(0.01, Pose((0.02, 0, 0)))]
-    held = Object(shapes=parts, center_of_gravity_m=(0, 0, 0), mass_kg=1.0, inertia_kg_m2=np.eye(3) * 1e-5)
-    pin = Capsule(0.003, 0.04, Pose((0.04, 0, 0)), "pin")
-    cage = Cage([(-0.02, 0, 0.015), (0.02, 0, 0.013)], shapes=[pin], pose=Pose((0, 0, 0.001)))
-    found = nearest_on_object(held, Pose((0, 0, 0.001)), cage)
-    assert found.parts.tolist() == [0, 1, 1]
-    assert found.feet_world == pytest.approx(np.array([(-0.02, 0, 0.011), (0.02, 0, 0.011), (0.03, 0, 0.001)]))
-    assert found.places_world == pytest.approx(np.array([(-0.02, 0, 0.016), (0.02, 0, 0.014), (0.037, 0, 0.001)]))
-    assert found.normals_world == pytest.approx(np.array([(0, 0, 1), (0, 0, 1), (1, 0, 0)]), abs=1e-12)
-    again = nearest_on_object(held, Pose((0, 0, 0.001)), cage, [2, 0])
-    assert again.parts.tolist() == [1, 0]
