@@ -70,6 +70,39 @@ def test_a_mouth_is_on_the_face_whole_and_faces_out(plate, top):
     assert "has its mouth inside plate" in found(lambda: make(0.0, top - 0.01))[0]
 
 
+DOWN, UP, SIDEWAYS = (0.0, 0.0, 0.0), (0.0, 0.0, PI), (0.0, PI / 2.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "meet"),
+    [
+        (((0, 0, 1), 0.8, 2.0, DOWN), ((1.0, 0, 1), 0.8, 2.0, DOWN), True),
+        (((-0.8, 0, 1), 0.8, 2.0, DOWN), ((0.8, 0, 1), 0.8, 2.0, DOWN), True),  # their walls touch
+        (((-0.9, 0, 1), 0.8, 2.0, DOWN), ((0.75, 0, 1), 0.8, 2.0, DOWN), False),
+        (((0, 0, 1), 0.8, 0.5, DOWN), ((0, 0, -1), 0.4, 1.5, UP), True),  # a step in a bore
+        (((0, 0, 1), 0.8, 0.5, DOWN), ((0, 0, -1), 0.4, 1.4, UP), False),
+        (((0, 0, 1), 0.8, 3.0, DOWN), ((2, 0, 0), 0.4, 2.0, SIDEWAYS), True),
+        (((0, 0, 1), 0.8, 3.0, DOWN), ((2, 0, 0), 0.4, 1.1, SIDEWAYS), False),
+    ],
+)
+def test_holes_that_meet_are_refused(one, other, meet):
+    """Where one hole cuts away the wall of another, as in a slot of round holes, edges are left that are not known."""
+    plate = Box((4, 4, 2), at(0, 0, 0), "plate")
+
+    def cage():
+        return Cage(
+            shapes=[
+                plate,
+                *(hole(radius, depth, at(*place, euler=turn), "plate") for place, radius, depth, turn in (one, other)),
+            ]
+        )
+
+    if meet:
+        assert found(cage)[0].startswith("shapes[2].hole: meets hole1 in plate; keep holes apart")
+    else:
+        assert len(cage().holes) == 2
+
+
 def test_a_mouth_over_two_parts_that_meet_flush_is_within_both():
     halves = [Box((4, 4, 2), at(-2, 0, 0), "left"), Box((4, 4, 2), at(2, 0, 0), "right")]
     Cage(shapes=[*halves, hole(0.8, 1.0, at(0, 0, 1), "left", "right")])

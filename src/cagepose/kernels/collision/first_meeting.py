@@ -18,11 +18,12 @@ from cagepose.kernels.shapes.advancement import (
 )
 from cagepose.kernels.shapes.along_motion import ahead, can_touch, clear_step, first_touch, safe_step
 from cagepose.kernels.shapes.body import place_asked
-from cagepose.kernels.shapes.features import EDGE, HOLE, RIM, SOLID, Feature, Shapes, is_end
+from cagepose.kernels.shapes.features import EDGE, HOLE, RIM, SOLID, Feature, Shapes, is_end, is_of_mouth
 from cagepose.kernels.shapes.meeting import Meeting, both_reach, meeting
-from cagepose.kernels.shapes.meetings import SAME_PLACE, Meetings, balls_apart, slack_of
+from cagepose.kernels.shapes.meetings import Meetings, balls_apart, slack_of
 from cagepose.kernels.shapes.motion import Motion, velocity_at
 from cagepose.kernels.shapes.rims import lie_flat
+from cagepose.kernels.shapes.side_by_side import SAME_PLACE
 
 SAFE = 1.0 + 1e-9
 THIN = 0.1
@@ -89,7 +90,7 @@ def are_convex(held: Shapes, one: int, cage: Shapes, other: int) -> bool:
 @kernel
 def is_hollow(feature: Feature) -> bool:
     """Whether a feature is the wall or the mouth of a hole: what leaves it straight ahead may meet it again."""
-    return feature.radius < 0.0 or (feature.kind == RIM and feature.length < 0.0)
+    return feature.radius < 0.0 or is_of_mouth(feature)
 
 
 @kernel

@@ -26,7 +26,7 @@ from cagepose.kernels.contact.metric import (
     write_scaled_wrench,
 )
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.features import RIM, Shapes, place_feature
+from cagepose.kernels.shapes.features import Shapes, is_of_mouth, place_feature
 from cagepose.kernels.shapes.meeting import meeting
 
 ROUNDS = 12
@@ -176,10 +176,14 @@ def lack(
 
 
 @kernel
-def is_of_arc(geometry: Geometry, constraint: PositionConstraint) -> bool:
-    """Whether a constraint is about an arc of a rim."""
-    held, cage = geometry.held.features, geometry.cage.features
-    return held[constraint.feature].kind == RIM or cage[constraint.cage_feature].kind == RIM
+def may_be_elsewhere(geometry: Geometry, constraint: PositionConstraint) -> bool:
+    """Whether a constraint is about the second place on an arc of a rim where another feature is nearest, or an arc of
+    a mouth, which may lie flat on what it touches: without such a place, the others count.
+    """
+    held, cage = geometry.held.features[constraint.feature], geometry.cage.features[constraint.cage_feature]
+    if held.is_second or cage.is_second:
+        return True
+    return is_of_mouth(held) or is_of_mouth(cage)
 
 
 @kernel
@@ -225,7 +229,7 @@ def projected(
         worst = 0.0
         for i in range(work.used):
             lacks = lack(geometry, rows[i], position, quaternion, moved)
-            if lacks.value == math.inf and is_of_arc(geometry, rows[i]):  # what is nearest there is on another arc
+            if lacks.value == math.inf and may_be_elsewhere(geometry, rows[i]):
                 continue
             if lacks.value == math.inf:
                 return False, position, quaternion

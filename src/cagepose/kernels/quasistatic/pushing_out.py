@@ -25,7 +25,7 @@ from cagepose.kernels.quasistatic.projection import (
     projected,
 )
 from cagepose.kernels.quasistatic.setting import Setting
-from cagepose.kernels.shapes.features import RIM
+from cagepose.kernels.shapes.features import is_of_mouth
 from cagepose.kernels.shapes.meeting import meeting
 from cagepose.kernels.shapes.meetings import most_meetings
 from cagepose.kernels.shapes.rims import EQUALLY_FAR
@@ -75,11 +75,11 @@ def constrain_to_face(geometry: Geometry, placement: Placement, point: int, box:
 def kept_gap(geometry: Geometry, placement: Placement, contact: ContactRow, closed_m: float) -> float:
     """Return the gap that a contact of shapes keeps: see `constrain_contacts`.
 
-    An arc that lies flat is within the touch tolerance as its vertices are, with a gap of its own, which may be below
-    zero: a point that was added on it has that of a vertex.
+    An arc of a mouth that lies flat is within the touch tolerance as its vertices are, with a gap of its own, which may
+    be below zero: a point that was added on it has that of a vertex.
     """
     held, cage = placement.body.world, geometry.cage
-    if held.features[contact.feature].kind == RIM or cage.features[contact.cage_feature].kind == RIM:
+    if is_of_mouth(held.features[contact.feature]) or is_of_mouth(cage.features[contact.cage_feature]):
         met = meeting(held, contact.feature, cage, contact.cage_feature)
         if met.is_one:
             return met.gap if abs(met.gap) > closed_m else 0.0

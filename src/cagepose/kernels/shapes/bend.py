@@ -30,6 +30,8 @@ from cagepose.kernels.shapes.rims import HALF_ARC, lie_flat, nearest_on_edge, ou
 
 FLAT = 1e-9
 """Sine between a rim's axis and the normal: less, it is straight as an edge along its tangent."""
+RANK_ONE = 1e-13
+"""Of the square of radii of curvature."""
 NOTHING: Matrix = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
@@ -176,9 +178,13 @@ def finite(side: Side, normal: Vector) -> Matrix:
 
 @kernel
 def inverse_across(matrix: Matrix, normal: Vector) -> Matrix:
-    """Return the inverse of a symmetric matrix across a unit normal: its adjugate there over its determinant."""
+    """Return the inverse of a symmetric matrix across a unit normal: its adjugate there over its determinant; of rank
+    one, as of two sharp rims with one tangent, the pseudo-inverse.
+    """
     trace = matrix[0][0] + matrix[1][1] + matrix[2][2]
     squares = dot(matrix[0], matrix[0]) + dot(matrix[1], matrix[1]) + dot(matrix[2], matrix[2])
+    if abs(trace * trace - squares) <= RANK_ONE * squares:
+        return scaled_matrix(matrix, 1.0 / squares)
     factor = 2.0 / (trace * trace - squares)
     whole = across(normal, trace * factor)
     return added(whole, scaled_matrix(matrix, -factor))

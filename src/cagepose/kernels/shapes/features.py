@@ -151,6 +151,12 @@ def is_bar(feature: Feature) -> bool:
 
 
 @kernel
+def is_of_mouth(feature: Feature) -> bool:
+    """Whether a feature is an arc of a hole's rim."""
+    return feature.kind == RIM and feature.length < 0.0
+
+
+@kernel
 def is_end(feature: Feature) -> bool:
     """Whether a part may end in a feature, along some direction: it is a vertex, or the rim of a bar."""
     return feature.kind == VERTEX or (feature.kind == RIM and is_bar(feature) and not feature.is_second)

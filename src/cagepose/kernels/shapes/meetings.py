@@ -16,7 +16,6 @@ import numpy as np
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import (
     Vector,
-    cross,
     dot,
     minus,
     norm,
@@ -33,13 +32,11 @@ from cagepose.kernels.shapes.bend import bends_by, curvatures
 from cagepose.kernels.shapes.body import PlacedBody, place_asked, rotation_of
 from cagepose.kernels.shapes.covered import covers, is_in_parts, place_around
 from cagepose.kernels.shapes.features import (
-    EDGE,
     FACE,
     HOLE,
     RIM,
     SOLID,
     VERTEX,
-    Feature,
     Shapes,
     height_of_end,
     is_end,
@@ -50,19 +47,21 @@ from cagepose.kernels.shapes.meeting import (
     common_normal,
     farthest_beyond,
     meeting,
-    reaches,
     toward_vertex,
 )
-from cagepose.kernels.shapes.rims import beyond_normals, lie_flat, outward_at
+from cagepose.kernels.shapes.rims import lie_flat
+from cagepose.kernels.shapes.side_by_side import (
+    SAME_PLACE,
+    ends_at_edge,
+    has_flat_ends,
+    is_flush,
+    lie_side_by_side,
+)
 
 ROOM_FOR_PAIR, MOST_ROOM = 128, 4096
 """Meetings that there is memory for: of each pair of parts, and of all."""
 SAME_NORMAL = 1e-9
 """Radians. Meetings at one place with normals nearer than this are one."""
-SAME_PLACE = 4.0
-"""In touch tolerances: meetings nearer to each other are at one place."""
-SIDE_BY_SIDE = 1e-6
-"""Sine between the tangents of rims: a lesser one is none."""
 DEEPEST = 0.05
 """Of the shortest edge or least radius: features of parts with holes that are deeper in each other do not touch."""
 
@@ -174,25 +173,6 @@ def deepest_gap(a: Shapes, one: int, b: Shapes, other: int) -> float:
 
 
 @kernel
-def lie_side_by_side(one: Feature, other: Feature, met: Meeting) -> bool:
-    """Whether a rim and the mouth of a hole, or a rim and a sharp edge, touch with one tangent, as at the same height:
-    the wall below, or the side that ends at the rim, tells the normal to all digits, which circles that nearly coincide
-    would leave to rounding; and where no side does, they pass each other as parallel edges do.
-    """
-    rim, beside = (other, one) if other.kind == RIM and (one.kind != RIM or other.length < 0.0) else (one, other)
-    if rim.kind != RIM:
-        return False
-    along = vector_from(beside.direction)
-    if beside.kind == RIM:
-        if rim.length > 0.0:
-            return False
-        along = cross(along, outward_at(beside, met.place))
-    elif beside.kind != EDGE or beside.radius != 0.0 or beside.taper != 0.0:
-        return False
-    return norm(cross(cross(vector_from(rim.direction), outward_at(rim, met.place)), along)) < SIDE_BY_SIDE
-
-
-@kernel
 def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, touch_m: float, found: Meetings) -> float:
     """Append the meetings of two parts; return how far apart they are at least, below zero how deep in each other (not
     of parts with holes: see `find_meetings`); NaN: there is no room.
@@ -221,7 +201,8 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
             least_gap = on_far_side(max(separation, at_least_m), touch_m) if deepest == -math.inf else deepest
             if met.gap < least_gap or lie_flat(a.features[i], b.features[j], touch_m):
                 continue
-            if lie_side_by_side(a.features[i], b.features[j], met):
+            beside = lie_side_by_side(a.features[i], b.features[j], met)
+            if beside or (has_flat_ends(a, one, b, other) and ends_at_edge(a.features[i], b.features[j], met, touch_m)):
                 nearest = min(nearest, met.gap)
                 continue
             if found.used[0] == len(found.rows):
@@ -254,8 +235,8 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
 def add_flat_ends(
     a: Shapes, one: int, b: Shapes, other: int, at: int, slack: float, touch_m: float, found: Meetings
 ) -> None:
-    """Append, where a rim meets the side of a part in a place of its face, with a face that is flush with the rim, its
-    meeting with this face: the parts are apart along its normal, too.
+    """Append, where a rim meets the side of a part at the height of a face there, its meeting with this face: the parts
+    are apart along its normal, too.
     """
     met = found.rows[at]
     place, normal = vector_from(met.place), vector_from(met.normal)
@@ -265,7 +246,9 @@ def add_flat_ends(
                 out = scaled(vector_from(b.features[j].direction), -1.0)
                 if is_flush(a.features[met.feature], place, b, j, out, slack, touch_m):
                     gap = dot(out, minus(vector_from(b.features[j].point), place))
-                    write_touching(one, other, met.feature, j, Meeting(True, gap, out, place), found.rows[found.used[0]])
+                    write_touching(
+                        one, other, met.feature, j, Meeting(True, gap, out, place), found.rows[found.used[0]]
+                    )
                     found.used[0] += 1
     there = plus(place, scaled(normal, met.gap))
     if b.features[met.cage_feature].kind == RIM:
@@ -277,18 +260,6 @@ def add_flat_ends(
                     beside = Meeting(True, gap, out, minus(there, scaled(out, gap)))
                     write_touching(one, other, i, met.cage_feature, beside, found.rows[found.used[0]])
                     found.used[0] += 1
-
-
-@kernel
-def is_flush(rim: Feature, place: Vector, shapes: Shapes, i: int, out: Vector, slack: float, touch_m: float) -> bool:
-    """Whether a place of a sharp rim lies on a sharp face, whose opposite normal is one of the rim."""
-    face = shapes.features[i]
-    height = dot(out, minus(place, vector_from(face.point)))
-    if face.kind != FACE or face.radius != 0.0 or abs(height) > touch_m:
-        return False
-    if not reaches(shapes, i, scaled(out, -1.0), place, slack, 2.0 * touch_m):
-        return False
-    return beyond_normals(rim, place, out) <= slack
 
 
 @kernel
