@@ -88,7 +88,9 @@ def test_a_refined_map_of_a_rail_is_its_whole_grid(
     assert np.array_equal(refined.accepted, whole.accepted)
     assert np.array_equal(refined.verdicts, whole.verdicts)
     assert refined.box == whole.box
-    assert (len(refined.quantities), len(whole.quantities)) == (0, 6)
+    assert len(whole.lattice) == count > len(refined.lattice) >= 4
+    for name, ends in whole.quantities.items():
+        assert np.array_equal(refined.quantities[name], ends[np.ix_(refined.lattice, refined.lattice)], equal_nan=True)
 
 
 @pytest.mark.usefixtures("small_designs")
@@ -187,11 +189,13 @@ def test_a_third_number_makes_a_map_for_each_of_a_few_values(
     study = StudyResults(tmp_path / "out").study
     paths = {one.key: one.path for one in study.varied}
     for one in maps[:3]:
-        assert (one["over"], one["ends"]) == (keys[:2], {})
+        assert (one["over"], one["ends_at"]) == (keys[:2], [0, 1, 2, 3])
         for up in range(4):
             numbers = {keys[0]: one["across"][2], keys[1]: one["up"][up], keys[2]: one["layer"][keys[2]]}
             ended = run(study.scene_text.scene_with({paths[key]: value for key, value in numbers.items()}).scene)
             assert one["verdicts"][one["verdict_cells"][up][2]] == ended.verdict
+            yaw = math.degrees(ended.pose.euler_zyx[0]) if ended.verdict == "rests" else None
+            assert one["ends"]["yaw_deg"][up][2] == (yaw if yaw is None else pytest.approx(yaw, abs=1e-12))
             good = abs(math.degrees(ended.pose.euler_zyx[0])) < 0.3 and ended.verdict == "rests"
             assert one["accepted_cells"][up][2] == good
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")

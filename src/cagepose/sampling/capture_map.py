@@ -46,9 +46,10 @@ class CaptureMap:
         good; None: the nominal one is not, or is not on the map.
     n_runs
         How many cells were run; the others lie among cells that agree.
+    lattice
+        Of the lines that were run whole, (m,): all of them, if there are few.
     quantities
-        Where the part is at the end, by name, (n, n) each, rows up; NaN where it does not come to rest. Nothing if not
-        all cells were run, or there is a third number.
+        Where the part is at the end, by name, (m, m) each, on the lattice, rows up; NaN where it does not come to rest.
     """
 
     keys: tuple[str, str]
@@ -59,6 +60,7 @@ class CaptureMap:
     accepted: NDArray[np.bool_]
     box: tuple[tuple[float, float], tuple[float, float]] | None
     n_runs: int
+    lattice: Indices
     quantities: Mapping[str, FloatArray]
 
 
@@ -130,8 +132,22 @@ def _map(
         box = (float(across[left]), float(across[right])), (float(up[bottom]), float(up[top]))
     names = [runner.study.varied[one].key for one in chosen]
     layer = (names[2], float(nominal[chosen[2]])) if len(names) > 2 else None
-    known = ends if n_runs == cells.size and layer is None else {}
-    return CaptureMap((names[0], names[1]), layer, across, up, verdicts, good, box, n_runs, known)
+    lattice = _lattice(len(across), _first_stride(len(across)))
+    known = {name: found[np.ix_(lattice, lattice)] for name, found in ends.items()}
+    return CaptureMap((names[0], names[1]), layer, across, up, verdicts, good, box, n_runs, lattice, known)
+
+
+def _first_stride(count: int) -> int:
+    stride = 1
+    while count > 2 * stride * LINES:
+        stride *= 2
+    return stride
+
+
+def _lattice(count: int, stride: int) -> Indices:
+    """Return every so many of count lines, and the last one."""
+    n_blocks = -(-(count - 1) // stride)
+    return np.minimum(np.arange(n_blocks + 1) * stride, count - 1)
 
 
 def refined_map(count: int, kinds_of: Callable[[Indices, Indices], Indices]) -> tuple[Indices, int]:
@@ -143,10 +159,8 @@ def refined_map(count: int, kinds_of: Callable[[Indices, Indices], Indices]) -> 
     block of the first lattice, and lies within one, can be missed.
     """
     cells = np.full((count, count), -1)
-    stride = 1
-    while count > 2 * stride * LINES:
-        stride *= 2
-    n_blocks = -(-(count - 1) // stride)
+    stride = _first_stride(count)
+    n_blocks = len(_lattice(count, stride)) - 1
     is_active = np.ones((n_blocks, n_blocks), np.bool_)
     n_runs = 0
     while True:

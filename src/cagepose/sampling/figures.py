@@ -169,7 +169,8 @@ def _ends_figure(found: CaptureMap, ends: dict[str, FloatArray]) -> Figure:
     figure, panels = _panels(len(ends), 2.3, 3)
     for panel, (name, values) in zip(panels, ends.items(), strict=True):
         panel.set_facecolor(PALE)
-        picture = panel.imshow(values, origin="lower", extent=_extent(found), aspect="auto", interpolation="none")
+        across, up = found.across[found.lattice], found.up[found.lattice]
+        picture = panel.pcolormesh(across, up, values, shading="nearest", rasterized=True)
         figure.colorbar(picture, ax=panel, location="bottom", shrink=0.9).locator = MaxNLocator(4)
         _draw_boundary(panel, found)
         panel.set_title(name)

@@ -163,6 +163,7 @@ def _map(found: CaptureMap) -> dict[str, Any]:
         "verdicts": names.tolist(),
         "verdict_cells": codes.reshape(found.verdicts.shape).tolist(),
         "accepted_cells": found.accepted.astype(np.int64).tolist(),
+        "ends_at": found.lattice.tolist(),
         "ends": {name: values.tolist() for name, values in found.quantities.items()},
         "box": None if found.box is None else [list(side) for side in found.box],
     }
