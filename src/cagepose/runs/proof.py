@@ -59,8 +59,8 @@ class Proof:
     needs_friction
         Whether there is a balance with friction only.
     stability
-        Against small disturbances; "not shown" where loads that have no potential may decide it; None where the object
-        moves.
+        Against small disturbances; "not shown" where loads that have no potential may decide it, or a contact lies
+        where surfaces meet that bend by different amounts; None where the object moves.
     undetermined
         Freedoms in the cage's frame ("x", "y", "z", "roll", "pitch", "yaw") along which the load does not tell poses
         apart, with "and others" where these do not span them all.

@@ -86,4 +86,7 @@ def proof_warnings(phases: Sequence[PhaseRun], friction: float) -> Iterator[str]
         if phase.verdict in ("stable", "rests", "may rest") and proof.stability == "unstable":
             yield f"{phase.name}: the balance is unstable: the least disturbance moves the object on"
         elif phase.verdict in ("stable", "rests", "may rest") and proof.stability == "not shown":
-            yield f"{phase.name}: the load has no potential here, so whether the balance is stable was not shown"
+            yield (
+                f"{phase.name}: whether the balance is stable was not shown: part of the load has no potential, or a"
+                " contact lies where surfaces meet that bend by different amounts"
+            )
