@@ -99,7 +99,9 @@ def covers(shapes: Shapes, which: int, i: int, place: Vector, normal: Vector, to
         along = vector_from(feature.direction)
         height, (first, last) = dot(along, minus(probe, vector_from(feature.point))), heights_of_wall(feature)
         within = min(max(height, first + PROBE * touch_m), last - PROBE * touch_m)
-        probe = plus(probe, scaled(along, within - height))
+        rise = dot(along, normal)
+        down_wall = minus(along, scaled(normal, rise))
+        probe = plus(probe, scaled(down_wall, (within - height) / (1.0 - rise * rise)))
     return is_in_parts(shapes, which, probe, PROBE_MARGIN * touch_m)
 
 
