@@ -21,7 +21,7 @@ ACCURACY, ON = 1e-6, 1e-4
 """Of a size: of coal's distances; and so much farther sharp tips that glance off each other are apart still."""
 ASIDE = 1e-6
 """Of a size: so much beside the line two sharp tips do not meet in a point."""
-KNOWN_MISSED = 0.005
+KNOWN_MISSED = 0.003
 """Of pairs that are aimed at each other's nearest points. Known: sharp tips and rims that come to each other a
 millionth of a size beside a hit may be missed, most of them tips of cones.
 """

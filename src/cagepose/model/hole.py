@@ -137,7 +137,7 @@ class Hole(Turned):
 
     def meets(self, other: Hole, parts: Sequence[Shape]) -> bool:
         """Return whether two holes in the same parts have a place in common; of ones that are aslant to each other,
-        less than a hundredth of a radius in each other, the answer may be no.
+        points are asked, so that the answer may be no where they are a little in each other.
         """
         axis, mouth = self.pose_body_shape.rotation[:, 2], self.pose_body_shape.position_m
         between, along = other.pose_body_shape.position_m - mouth, other.pose_body_shape.rotation[:, 2]
