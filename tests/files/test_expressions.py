@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+import gc
 import json
 import math
 import random
+import weakref
 
 import numpy as np
 import pytest
@@ -201,3 +204,18 @@ def test_parameters_that_vary_reach_what_hangs_on_them() -> None:
     found = Expressions(data).values({"a": np.array([1.0, 2.0])})
     assert found["object", "mass"].tolist() == [3.0, 6.0]
     assert found["cage", 0] == 3.0
+
+
+@pytest.mark.parametrize("text", ["play / 2 < 1", "play ** 2", "unknown + play"])
+def test_an_expression_lets_its_rows_go_at_once(text: str) -> None:
+    # The command line lets Python look for rings so seldom that a million rows would stay in memory.
+    rows = np.ones(3)
+    kept = weakref.ref(rows)
+    gc.disable()
+    try:
+        with contextlib.suppress(ValueError):
+            Expression(text).value({"play": rows})
+        del rows
+        assert kept() is None
+    finally:
+        gc.enable()

@@ -79,6 +79,8 @@ class Expression:
             raise ValueError(f"cannot be worked out ({error}); give each operator and function what it takes") from None
         except RecursionError:
             raise ValueError("is nested too deep; simplify it") from None
+        finally:
+            evaluator.let_go()
 
 
 def _short(text: str) -> str:
@@ -138,6 +140,11 @@ class _Evaluator(SimpleEval):  # type: ignore[misc]  # it has no types
             ast.Call: self._eval_call,
             ast.Constant: self._eval_constant,
         }
+
+    def let_go(self) -> None:
+        """Break the ring of this object and its own methods, which would keep all rows until Python looks for rings."""
+        self.nodes.clear()
+        self.operators.clear()
 
     def known(self, found: Any) -> Any:
         """Return what was found without the rows of which a part is an error: a comparison hides that it was NaN."""
