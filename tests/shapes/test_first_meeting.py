@@ -110,7 +110,7 @@ def check(first, part, cage_part, pose: Pose, motion: Motion, end: float) -> Hit
 
 def test_random_motions(first, cases, say):
     rng = np.random.default_rng(3)
-    n_cases, seen = cases(200, 1000), {"met": 0, "not met": 0, "pressed": 0}
+    n_cases, seen = cases(200, 2600), {"met": 0, "not met": 0, "pressed": 0}
     for _ in range(n_cases):
         scale = float(rng.choice([1.0, 1.0, 1e-3, 1e3]))
         part, cage_part = (changed(random_part(rng), scale) for _ in range(2))
@@ -147,6 +147,16 @@ def test_a_cube_falls_on_a_slab(first, turn, offset, height, radius):
     hit = check(first, cube, SLAB, pose, DOWN, 10.0)
     if offset != (3.0, 3.0) or radius == 0.1:  # sharp corners may pass each other
         assert hit.amount == pytest.approx(5.0 - height - radius, abs=1e-8)
+
+
+@pytest.mark.parametrize("radius", [1e-13, 1e-12, 1e-10, 1e-6])
+@pytest.mark.parametrize("drop", [3.0, 300.0, 12345.6])
+def test_edges_that_are_hardly_rounded_cross_after_the_way_between_them(first, radius, drop):
+    """Two roots, as near as the radius: their discriminant is less than the rounding of its terms."""
+    above, below = (Convex(Pose(euler_zyx=turn).transform(CUBE), radius) for turn in ((0, 0.3, 0), (0, 0, 0.7)))
+    lowest, highest = -above.vertices_m[:, 2].min(), below.vertices_m[:, 2].max()
+    hit = check(first, above, below, Pose((0.01, 0.02, drop + lowest + highest)), DOWN, 2.0 * drop)
+    assert hit.amount == pytest.approx(drop - 2.0 * radius, abs=1e-9 * drop)
 
 
 def test_a_cube_that_tips_over_its_edge_lands_on_its_face(first):

@@ -11,7 +11,7 @@ import numpy as np
 
 from cagepose.kernels.contact.contact_set import SAME_NORMAL
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
-from cagepose.kernels.shapes.side_by_side import SAME_PLACE
+from cagepose.kernels.shapes.meeting import SAME_PLACE
 from cagepose.model.checks import FloatArray, expect
 from cagepose.model.wording import counted
 from cagepose.runs.actions import wrench_at

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from cagepose.kernels.shapes.meeting import SAME_PLACE
 from cagepose.kernels.shapes.rims import ARCS
-from cagepose.kernels.shapes.side_by_side import SAME_PLACE
 from cagepose.model.checks import FloatArray
 from cagepose.model.parts import Object
 from cagepose.model.scene import Scene

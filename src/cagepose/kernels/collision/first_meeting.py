@@ -19,11 +19,10 @@ from cagepose.kernels.shapes.advancement import (
 from cagepose.kernels.shapes.along_motion import ahead, can_touch, clear_step, first_touch, safe_step
 from cagepose.kernels.shapes.body import place_asked
 from cagepose.kernels.shapes.features import EDGE, HOLE, RIM, SOLID, Feature, Shapes, is_end, is_of_mouth
-from cagepose.kernels.shapes.meeting import Meeting, both_reach, meeting
+from cagepose.kernels.shapes.meeting import SAME_PLACE, Meeting, both_reach, meeting
 from cagepose.kernels.shapes.meetings import Meetings, balls_apart, slack_of
 from cagepose.kernels.shapes.motion import Motion, velocity_at
 from cagepose.kernels.shapes.rims import lie_flat
-from cagepose.kernels.shapes.side_by_side import SAME_PLACE
 
 SAFE = 1.0 + 1e-9
 THIN = 0.1
@@ -60,6 +59,30 @@ class Hit(NamedTuple):
 
 
 NO_HIT = Hit(math.inf, -1, -1, -1, -1, math.inf)
+
+
+class Search(NamedTuple):
+    """What the first meeting of two parts is asked with.
+
+    Attributes
+    ----------
+    near_m, near_depth_m
+        Features nearer than the one may go so deep as the other.
+    slack, exact
+        Sines: whether features touch now is asked with the one, as contacts are; where they meet first with the other,
+        that which a touch tolerance makes across both parts: slender parts would meet long before they do.
+    speed
+        That no point of the object's part exceeds.
+    touch_m
+        The touch tolerance.
+    """
+
+    near_m: float
+    near_depth_m: float
+    slack: float
+    exact: float
+    speed: float
+    touch_m: float
 
 
 @kernel
@@ -146,26 +169,11 @@ def first_meeting(
         until = until_past(held, one, cage, other, motion, min(end, hit.amount))
         speed = greatest_speed(motion, vector_from(held.parts[one].middle), held.parts[one].reach)
         depth = min(near_depth_m, THIN * min(held.parts[one].reach, max(cage.parts[other].reach, touch_m)))
-        slack = slack_of(held, one, cage, other, touch_m)
         exact = max(LEAST_SLACK, touch_m / (held.parts[one].reach + cage.parts[other].reach))
+        search = Search(near_m, depth, slack_of(held, one, cage, other, touch_m), exact, speed, touch_m)
         for i in range(held.parts[one].first, held.parts[one].last):
             for j in range(cage.parts[other].first, cage.parts[other].last):
-                found = first_of_features(
-                    held,
-                    i,
-                    cage,
-                    j,
-                    motion,
-                    until,
-                    near_m,
-                    depth,
-                    slack,
-                    exact,
-                    speed,
-                    touch_m,
-                    placement.meetings,
-                    placement.moved,
-                )
+                found = first_of_features(held, i, cage, j, motion, until, search, placement.meetings, placement.moved)
                 if found[0] < until:
                     until = found[0]
                     hit = Hit(until, other, one, i, j, found[1])
@@ -234,21 +242,14 @@ def first_of_features(
     j: int,
     motion: Motion,
     until: float,
-    near_m: float,
-    near_depth_m: float,
-    slack: float,
-    exact: float,
-    speed: float,
-    touch_m: float,
+    search: Search,
     meetings: Meetings,
     moved: Shapes,
 ) -> tuple[float, float]:
     """Return when two features that do not touch, or leave each other, reach each other, inf if they do not, and how
     far apart they are now.
-
-    Whether they touch now is asked with ``slack``, as contacts are. Where they meet first is asked with ``exact``, the
-    sine that a touch tolerance makes across both parts: slender parts would meet long before they do.
     """
+    touch_m, speed = search.touch_m, search.speed
     if not can_touch(held, i, cage, j):
         return math.inf, math.inf
     curved = are_curved(held, i, cage, j)
@@ -264,7 +265,7 @@ def first_of_features(
         return math.inf, math.inf
     met = meeting(held, i, cage, j)
     touches = met.is_one and abs(met.gap) <= touch_m
-    leaves = touches and both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
+    leaves = touches and both_reach(held, i, cage, j, met, search.slack, 2.0 * touch_m)
     is_hollow_pair = is_hollow(held.features[i]) or is_hollow(cage.features[j])
     curls = is_hollow_pair and (held.features[i].kind != RIM or cage.features[j].kind != RIM)
     curls = curls and leaves and not is_kept(meetings, met, touch_m)
@@ -274,13 +275,13 @@ def first_of_features(
     if closing >= (1.0 if curls else -1.0) * LEAVES * speed:  # a contact that carries, or it would not go into it
         return math.inf, math.inf
     level, side = 0.0, 0.0
-    if met.is_one and abs(met.gap) <= max(near_m, touch_m):
-        level = near_depth_m if leaves or abs(met.gap) <= near_m else 0.0
+    if met.is_one and abs(met.gap) <= max(search.near_m, touch_m):
+        level = search.near_depth_m if leaves or abs(met.gap) <= search.near_m else 0.0
         if not leaves or closing >= -LEAVES * speed:
             level = max(level, 2.0 * touch_m)  # they do not reach there now, but might; or a wall bends into the way
         if held.features[i].kind == EDGE and cage.features[j].kind == EDGE:
             crossed = cross(vector_from(held.features[i].direction), vector_from(cage.features[j].direction))
             side = -math.copysign(1.0, dot(met.normal, crossed))
     if curved:
-        return first_curved_touch(held, i, cage, j, motion, until, level, exact, touch_m, moved), met.gap
-    return first_touch(held, i, cage, j, motion, until, level, side, exact, touch_m, moved), met.gap
+        return first_curved_touch(held, i, cage, j, motion, until, level, search.exact, touch_m, moved), met.gap
+    return first_touch(held, i, cage, j, motion, until, level, side, search.exact, touch_m, moved), met.gap

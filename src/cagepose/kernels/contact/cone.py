@@ -102,7 +102,7 @@ def generator_price(contacts: ContactSet, i: int, friction: float, cone: ConeWor
     their tangents counts: mu |r_t| (1 - cos), which has its digits however small it is.
     """
     passive = cone.passive
-    slip, one, two = steepest_tangent(contacts.rows[i], passive.residual)
+    slip, one, two = steepest_tangent(contacts.rows[i], passive.residual) if friction > 0.0 else (0.0, 1.0, 0.0)
     nearest = math.inf
     for k in range(passive.used):
         label = passive.labels[k]

@@ -24,8 +24,6 @@ ENTERS = 1e-10
 """Of the motion: a point of a rim that goes in more slowly does not count."""
 ROUNDING = 3e-16
 """Of the terms of the load: so much of a speed is their rounding."""
-SAME = 1e-12
-"""Of the radius: two points of a rim that are nearer are one, and what goes in there is rounding."""
 
 
 @kernel
@@ -74,15 +72,6 @@ def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
 
 
 @kernel
-def is_listed(contacts: ContactSet, new: int, within_m: float) -> bool:
-    """Whether a contact is at the place of one before it."""
-    there, found = vector_from(contacts.rows[new].arm), False
-    for before in range(new):
-        found = found or norm(minus(vector_from(contacts.rows[before].arm), there)) <= within_m
-    return found
-
-
-@kernel
 def add_on_rims(contacts: ContactSet, frame: Frame, y: FloatArray, terms: float) -> bool:
     """Append the point of a flat rim that a motion y goes in fastest at; False: none counts, or there is no room.
 
@@ -103,7 +92,7 @@ def add_on_rims(contacts: ContactSet, frame: Frame, y: FloatArray, terms: float)
         add_point(contacts, i, angle, frame)
         speed = inner(contacts.rows[n_listed].columns[0], y, WRENCH)
         contacts.used[0] = n_listed
-        if speed > least and not is_listed(contacts, n_listed, SAME * abs(rim.length)):
+        if speed > least:
             fastest, least = i, speed
     if fastest < 0:
         return False

@@ -152,13 +152,11 @@ def first_contact(
 def note_kept(placement: Placement, contacts: ContactSet) -> None:
     """Note which meetings a motion keeps."""
     for at in range(placement.meetings.used[0]):
-        placement.meetings.rows[at].is_kept = False
-    for i in range(contacts.used[0]):
-        contact = contacts.rows[i]
-        for at in range(placement.meetings.used[0] if contact.feature >= 0 and stays_on_face(contacts, i) else 0):
-            row = placement.meetings.rows[at]
-            if row.feature == contact.feature and row.cage_feature == contact.cage_feature:
-                row.is_kept = True
+        row = placement.meetings.rows[at]
+        row.is_kept = False
+        for i in range(contacts.used[0]):
+            is_same = contacts.rows[i].feature == row.feature and contacts.rows[i].cage_feature == row.cage_feature
+            row.is_kept = row.is_kept or (is_same and stays_on_face(contacts, i))
 
 
 @kernel

@@ -38,6 +38,9 @@ LEAST_STEP = 1e-15
 BEHIND, FARTHER = 1e-9, 8.0
 """In amounts of the whole motion: how far behind a root that is no contact the search goes on, and how many times that
 if it is still at one."""
+GRAZING = 1e-14
+"""Of the square of the slope: less of a discriminant may be rounding, as where a small radius makes two roots one. The
+step then ends before them."""
 NARROWER = 4.0
 """Bounds over the rest of the motion are too wide where only a small part of it is stepped over: they are asked again
 over so many times that part."""
@@ -168,9 +171,9 @@ def safe_step(now: Ahead) -> float:
     if value < 0.0:
         value, slope, bend = -value, -slope, -now.high
     discriminant = slope * slope - 2.0 * bend * value
-    if discriminant < 0.0:
+    if discriminant < -GRAZING * slope * slope:
         return math.inf
-    down = math.sqrt(discriminant) - slope
+    down = math.sqrt(max(discriminant, GRAZING * slope * slope)) - slope
     return math.inf if down <= 0.0 else 2.0 * value / down
 
 

@@ -256,19 +256,18 @@ def write_on_rim(a: Shapes, i: int, b: Shapes, j: int, center: Vector, touch_m: 
         return
     out.length, out.arc_before, out.arc_after = vertex.length, vertex.arc_before, vertex.arc_after
     out.is_on_ball = other.kind != FACE
-    ball = minus(vector_from(other.point), center)
+    ball = vector_from(other.point)
     if other.kind == EDGE:
-        ball = minus(nearest_on_edge(other, vector_from(vertex.point)).place, center)
-    for k in range(3):
-        out.axis[k], out.outward[k], out.ball[k] = vertex.direction[k], vertex.toward[k], ball[k]
-    if other.kind == EDGE:
+        ball = nearest_on_edge(other, vector_from(vertex.point)).place
         arcs = b if out.is_of_cage else a
         out.before_reaches = lie_flat(arcs.features[vertex.arc_before], other, touch_m)
         out.after_reaches = lie_flat(arcs.features[vertex.arc_after], other, touch_m)
-        return
-    bodies, which = (a, i) if out.is_of_cage else (b, j)
-    out.before_reaches = is_over_arc(bodies, which, vertex, -1.0)
-    out.after_reaches = is_over_arc(bodies, which, vertex, 1.0)
+    else:
+        bodies, which = (a, i) if out.is_of_cage else (b, j)
+        out.before_reaches = is_over_arc(bodies, which, vertex, -1.0)
+        out.after_reaches = is_over_arc(bodies, which, vertex, 1.0)
+    for k in range(3):
+        out.axis[k], out.outward[k], out.ball[k] = vertex.direction[k], vertex.toward[k], ball[k] - center[k]
 
 
 @kernel

@@ -22,14 +22,13 @@ from cagepose.kernels.shapes.rims import (
     outward_at,
 )
 
+SAME_PLACE = 4.0
+"""In touch tolerances: meetings nearer to each other are at one place."""
 PARALLEL = 1e-7
 """Sine: edges that make a smaller angle lie side by side, and meet at their ends."""
-
 SHARP = 1e-6
 """Of the length of edges: those of a smaller radius, if any, are told by their faces which way is out, as cores may be
 into each other by the touch tolerance; those of a greater one by where they are."""
-
-
 TIP = 1e-9
 """Of the radius of a rim that touches the side of a cone: where this has a smaller one, it is at its tip."""
 CENTRED = 1e-10

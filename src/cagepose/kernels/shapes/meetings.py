@@ -42,19 +42,20 @@ from cagepose.kernels.shapes.features import (
     is_end,
 )
 from cagepose.kernels.shapes.meeting import (
+    SAME_PLACE,
     Meeting,
     both_reach,
     common_normal,
     farthest_beyond,
     meeting,
+    swapped,
     toward_vertex,
 )
 from cagepose.kernels.shapes.rims import lie_flat
 from cagepose.kernels.shapes.side_by_side import (
-    SAME_PLACE,
     ends_at_edge,
+    flush,
     has_flat_ends,
-    is_flush,
     lie_side_by_side,
 )
 
@@ -182,6 +183,7 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
     slack, slack_m = slack_of(a, one, b, other, touch_m), 2.0 * touch_m
     first = found.used[0]
     separation, nearest, deepest = -math.inf, math.inf, deepest_gap(a, one, b, other)
+    is_flat = has_flat_ends(a, one, b, other)
     for i in range(a.parts[one].first, a.parts[one].last):
         for j in range(b.parts[other].first, b.parts[other].last):
             if not can_touch(a, i, b, j):
@@ -202,7 +204,7 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
             if met.gap < least_gap or lie_flat(a.features[i], b.features[j], touch_m):
                 continue
             beside = lie_side_by_side(a.features[i], b.features[j], met)
-            if beside or (has_flat_ends(a, one, b, other) and ends_at_edge(a.features[i], b.features[j], met, touch_m)):
+            if beside or (is_flat and ends_at_edge(a.features[i], b.features[j], met, touch_m)):
                 nearest = min(nearest, met.gap)
                 continue
             if found.used[0] == len(found.rows):
@@ -238,28 +240,25 @@ def add_flat_ends(
     """Append, where a rim meets the side of a part at the height of a face there, its meeting with this face: the parts
     are apart along its normal, too.
     """
-    met = found.rows[at]
-    place, normal = vector_from(met.place), vector_from(met.normal)
-    if a.features[met.feature].kind == RIM:
-        for j in range(b.parts[other].first_face, b.parts[other].last):
-            if j != met.cage_feature and found.used[0] < len(found.rows):
-                out = scaled(vector_from(b.features[j].direction), -1.0)
-                if is_flush(a.features[met.feature], place, b, j, out, slack, touch_m):
-                    gap = dot(out, minus(vector_from(b.features[j].point), place))
-                    write_touching(
-                        one, other, met.feature, j, Meeting(True, gap, out, place), found.rows[found.used[0]]
-                    )
-                    found.used[0] += 1
-    there = plus(place, scaled(normal, met.gap))
-    if b.features[met.cage_feature].kind == RIM:
-        for i in range(a.parts[one].first_face, a.parts[one].last):
-            if i != met.feature and found.used[0] < len(found.rows):
-                out = vector_from(a.features[i].direction)
-                if is_flush(b.features[met.cage_feature], there, a, i, scaled(out, -1.0), slack, touch_m):
-                    gap = dot(out, minus(there, vector_from(a.features[i].point)))
-                    beside = Meeting(True, gap, out, minus(there, scaled(out, gap)))
-                    write_touching(one, other, i, met.cage_feature, beside, found.rows[found.used[0]])
-                    found.used[0] += 1
+    i, j = found.rows[at].feature, found.rows[at].cage_feature
+    place = vector_from(found.rows[at].place)
+    there = plus(place, scaled(vector_from(found.rows[at].normal), found.rows[at].gap))
+    if a.features[i].kind == RIM:
+        for face in range(b.parts[other].first_face, b.parts[other].last):
+            if face != j:
+                append_if_one(found, one, other, i, face, flush(a.features[i], place, b, face, slack, touch_m))
+    if b.features[j].kind == RIM:
+        for face in range(a.parts[one].first_face, a.parts[one].last):
+            if face != i:
+                append_if_one(found, one, other, face, j, swapped(flush(b.features[j], there, a, face, slack, touch_m)))
+
+
+@kernel
+def append_if_one(found: Meetings, one: int, other: int, i: int, j: int, met: Meeting) -> None:
+    """Append a meeting of two features, if they meet and there is room."""
+    if met.is_one and found.used[0] < len(found.rows):
+        write_touching(one, other, i, j, met, found.rows[found.used[0]])
+        found.used[0] += 1
 
 
 @kernel

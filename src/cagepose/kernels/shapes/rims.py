@@ -21,7 +21,7 @@ SEARCHED = 1.05 * HALF_ARC
 """To each side of an arc's middle: a little beyond its ends."""
 FLAT = 1e-13
 """Sine: flatter, a face lies on all of a rim, and its vertices meet it."""
-PARALLEL = 1e-12
+UPRIGHT = 1e-12
 """Sine: what is less along a rim's plane is across it."""
 SECTIONS = 6
 """Of an arc, that are searched for a foot each: two rims in nearly the same plane have several."""
@@ -264,7 +264,7 @@ def steepest_angle(seen: Seen) -> float:
     """Return the angle from an arc's middle, a quarter turn at most, at which the rim is farthest along the other one's
     direction, or the least far; inf: nowhere. Feet lie to both sides of it.
     """
-    if seen.tilt_ahead == 0.0 or math.hypot(seen.tilt_ahead, seen.tilt_aside) <= PARALLEL:
+    if seen.tilt_ahead == 0.0 or math.hypot(seen.tilt_ahead, seen.tilt_aside) <= UPRIGHT:
         return math.inf
     return math.atan(seen.tilt_aside / seen.tilt_ahead)
 

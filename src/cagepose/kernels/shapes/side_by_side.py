@@ -7,11 +7,9 @@ from __future__ import annotations
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, scaled, vector_from
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.features import EDGE, FACE, RIM, Feature, Shapes
-from cagepose.kernels.shapes.meeting import Meeting, reaches
+from cagepose.kernels.shapes.meeting import SAME_PLACE, Meeting, apart, reaches
 from cagepose.kernels.shapes.rims import beyond_normals, outward_at
 
-SAME_PLACE = 4.0
-"""In touch tolerances: meetings nearer to each other are at one place."""
 SIDE_BY_SIDE = 1e-6
 """Sine between tangents: a lesser one is none."""
 DISC = -1.0
@@ -57,13 +55,18 @@ def has_flat_ends(a: Shapes, one: int, b: Shapes, other: int) -> bool:
 
 
 @kernel
-def is_flush(rim: Feature, place: Vector, shapes: Shapes, i: int, out: Vector, slack: float, touch_m: float) -> bool:
-    """Whether a place of a sharp rim lies on a sharp face, whose opposite normal is one of the rim."""
+def flush(rim: Feature, place: Vector, shapes: Shapes, i: int, slack: float, touch_m: float) -> Meeting:
+    """Return how a place of a sharp rim, that of the object, lies on a sharp face, whose opposite normal is one of the
+    rim; or that it does not.
+    """
     face = shapes.features[i]
-    height = dot(out, minus(place, vector_from(face.point)))
-    if face.kind != FACE or face.radius != 0.0 or abs(height) > touch_m:
-        return False
+    out = scaled(vector_from(face.direction), -1.0)
+    gap = dot(out, minus(vector_from(face.point), place))
+    if face.kind != FACE or face.radius != 0.0 or abs(gap) > touch_m:
+        return apart()
     if not reaches(shapes, i, scaled(out, -1.0), place, slack, 2.0 * touch_m):
-        return False
+        return apart()
     tangent = cross(vector_from(rim.direction), outward_at(rim, place))
-    return abs(dot(tangent, out)) < SIDE_BY_SIDE and beyond_normals(rim, place, out) <= slack
+    if abs(dot(tangent, out)) >= SIDE_BY_SIDE or beyond_normals(rim, place, out) > slack:
+        return apart()
+    return Meeting(True, gap, out, place)
