@@ -15,10 +15,12 @@ from bench.rail_table import rail_rows
 from bench.report import show
 from bench.rows import RESULTS, Row, machine, save
 from bench.scenes_table import scene_rows
+from bench.shapes_table import shape_rows
 
 TABLES: dict[str, Callable[[], Iterator[Row]]] = {
     "rail": rail_rows,
     "scenes": scene_rows,
+    "shapes": shape_rows,
     "growth": growth_rows,
     "batch": batch_rows,
     "first-use": first_use_rows,
