@@ -35,7 +35,7 @@ $(LOCKED): requirements.lock
 
 # A kernel's change makes a new library; `pip install` below then finds it built.
 $(BUILT): $(LOCKED) $(shell find src/cagepose/kernels -name '*.py') $(wildcard build_kernels/*.*)
-	@echo "Compiling the kernels (about a minute) ..."
+	@echo "Compiling the kernels (two to three minutes) ..."
 	@PYTHONPATH=src $(BIN)/python -m build_kernels
 	@touch $@
 
