@@ -59,13 +59,13 @@ export class Drawing {
   }
 
   build(data) {
-    const { paint } = this;
+    const { paint, world: { isSoftware } } = this;
     this.built = (this.built ?? 0) + 1;
     this.world.scene.remove(...(this.things ?? []).map((thing) => thing.group));
     this.holes = new Holes(data.holes, data.forms);
     this.cageHoles = new Holes(data.cageHoles, data.forms);
-    this.object = new Body(data.parts, data.forms, this.holes, { face: paint.object, edge: paint.objectEdge });
-    this.bodies = data.bodies.map(({ form }) => new Body([{ form, position: [0, 0, 0], quaternion: [1, 0, 0, 0] }], data.forms, this.cageHoles, { face: paint.cage, edge: paint.cageEdge }));
+    this.object = new Body(data.parts, data.forms, this.holes, { face: paint.object, edge: paint.objectEdge }, isSoftware);
+    this.bodies = data.bodies.map(({ form }) => new Body([{ form, position: [0, 0, 0], quaternion: [1, 0, 0, 0] }], data.forms, this.cageHoles, { face: paint.cage, edge: paint.cageEdge }, isSoftware));
     this.walls = new Walls(data.holes, data.forms, { face: paint.objectWall, edge: paint.objectEdge });
     this.cageWalls = new Walls(data.cageHoles, data.forms, { face: paint.cageWall, edge: paint.cageEdge });
     this.things = [this.object, ...this.bodies, this.walls, this.cageWalls];

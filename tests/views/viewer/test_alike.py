@@ -15,13 +15,17 @@ from cagepose.views.viewer.page import page
 from cagepose.views.viewer.picture import SIZE, PictureMaker
 from cagepose.views.viewer.playback import playback
 from cagepose.views.viewer.stage import Stage
-from driving import state, wait_until
+from driving import pretend_graphics_card, state, wait_until
 
 SCENES = Path(__file__).resolve().parents[3] / "scenes"
 
 
+@pytest.mark.parametrize("has_card", [False, True])
 @pytest.mark.parametrize("name", ["drawer", "peg-in-hole", "plate-on-pins", "rail-pitch"])
-def test_the_page_draws_what_a_picture_shows(watched, tmp_path, name):
+def test_the_page_draws_what_a_picture_shows(watched, tmp_path, name, has_card):
+    """Without a graphics card light is worked out at corners alone, with one for each pixel."""
+    if has_card:
+        pretend_graphics_card(watched.page)
     film = playback(run(load_scene(SCENES / f"{name}.yaml")))
     maker = PictureMaker(Stage(film))
     picture = np.asarray(maker.picture(film.shots[-1]), dtype=float)
