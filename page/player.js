@@ -146,7 +146,8 @@ function fill() {
     const motion = element("td", row.verdict ? [row.motion, row.verdict].filter(Boolean).join(", ") : row.motion);
     if (row.verdict) motion.className = row.verdictKind;
     line.append(element("td", String(index + 1)), element("td", data.phases[row.phase].name), element("td", row.rule), motion,
-      element("td", row.amount), namesCell(row.hit), namesCell(row.contacts));
+      element("td", row.amount), namesCell(row.reached), namesCell(row.left));
+    line.title = row.contacts.length ? `touching: ${row.contacts.join(", ")}` : "nothing touches";
     line.addEventListener("click", () => { pause(); seek(row.last); });
     $("events").tBodies[0].append(line);
   });
@@ -159,7 +160,7 @@ function fill() {
 function namesCell(names) {
   const between = names.some((name) => name.includes(" ")) ? ", " : " ";
   const cell = element("td", names.length > 9 ? `${names.slice(0, 6).join(between)} and ${names.length - 6} more` : names.join(between));
-  cell.title = names.join(between);
+  if (names.length > 9) cell.title = names.join(between);
   return cell;
 }
 
