@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import http.client
 import json
+import re
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -180,6 +181,13 @@ def test_bad_values_are_refused_with_the_reason(server, values, told):
     status, body = post(server, "/run", json.dumps(values).encode())
     assert status == 422
     assert told in " ".join(json.loads(body)["problems"])
+
+
+def test_a_start_that_was_dragged_into_the_cage_is_told_without_its_numbers(server):
+    status, body = post(server, "/run", json.dumps({"start": [-3.0, -2.0, -2.0]}).encode())
+    assert status == 422
+    problems = json.loads(body)["problems"]
+    assert all(re.match(r"cage\.points\.C\d+: starts \S+ mm inside object\.boxes", problem) for problem in problems)
 
 
 def test_from_slider_to_new_pose_takes_less_than_50_ms_on_the_server():
