@@ -3,8 +3,8 @@
 
 import { BackSide, BufferAttribute, BufferGeometry, FrontSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
   Quaternion, Vector3, Vector4, Matrix3 } from "three";
-import { carried, composed, conjugate, inverse, norm, rotated, sub } from "./geometry.js";
-import { hit, placed, surfaceOf, wallOf, within } from "./surfaces.js";
+import { carried, composed, conjugate, dot, inverse, norm, rotated, sub } from "./geometry.js";
+import { foldsOf, hit, placed, surfaceOf, wallOf, within } from "./surfaces.js";
 
 const FINEST = 0.02; // times half the height of a picture: what looks straight
 const SLACK = 1e-4; // of a hole's depth, by which its mouth is cut beyond the face that it is in
@@ -161,6 +161,13 @@ export class Body {
       for (const key of Object.keys(found)) found[key].push(...cut[key]);
     }
     return found;
+  }
+
+  // The lines that bound it for an eye at a place in its frame: its edges, and where it turns away.
+  outline(eye) {
+    this.folds ??= foldsOf(this.whole);
+    const faces = (normal, place) => dot(normal, sub(eye, place)) > 0;
+    return [...this.whole.lines, ...this.folds.filter(([from, , one, other]) => faces(one, from) !== faces(other, from)).flatMap(([from, to]) => [from, to])];
   }
 
   // How far along a ray from about the target it is met.
