@@ -138,6 +138,11 @@ export class Camera {
     return this.half / Math.tan(this.look.field_deg / 2 * Math.PI / 180);
   }
 
+  // Where the eye is; of parallel lines very far off.
+  eye() {
+    return add(this.target, times(this.perspective ? this.distance() : 1e6, this.axes()[2]));
+  }
+
   isClose() {
     return this.half < CLOSE;
   }

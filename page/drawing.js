@@ -1,7 +1,7 @@
 // Draws the stage at one time: the object, the cage, what touches and presses, what pushes, what it turns about.
 
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, LineSegments } from "three";
-import { add, carried, composed, cross, dot, norm, rotated, sub, times, turnedTo, unit } from "./geometry.js";
+import { add, carried, composed, cross, dot, inverse, norm, rotated, sub, times, turnedTo, unit } from "./geometry.js";
 import { Camera } from "./camera.js";
 import { color, Marks } from "./marks.js";
 import { Overlay } from "./overlay.js";
@@ -59,13 +59,13 @@ export class Drawing {
   }
 
   build(data) {
-    const { paint } = this;
+    const { paint, world: { isSoftware } } = this;
     this.built = (this.built ?? 0) + 1;
     this.world.scene.remove(...(this.things ?? []).map((thing) => thing.group));
     this.holes = new Holes(data.holes, data.forms);
     this.cageHoles = new Holes(data.cageHoles, data.forms);
-    this.object = new Body(data.parts, data.forms, this.holes, { face: paint.object, edge: paint.objectEdge });
-    this.bodies = data.bodies.map(({ form }) => new Body([{ form, position: [0, 0, 0], quaternion: [1, 0, 0, 0] }], data.forms, this.cageHoles, { face: paint.cage, edge: paint.cageEdge }));
+    this.object = new Body(data.parts, data.forms, this.holes, { face: paint.object, edge: paint.objectEdge }, isSoftware);
+    this.bodies = data.bodies.map(({ form }) => new Body([{ form, position: [0, 0, 0], quaternion: [1, 0, 0, 0] }], data.forms, this.cageHoles, { face: paint.cage, edge: paint.cageEdge }, isSoftware));
     this.walls = new Walls(data.holes, data.forms, { face: paint.objectWall, edge: paint.objectEdge });
     this.cageWalls = new Walls(data.cageHoles, data.forms, { face: paint.cageWall, edge: paint.cageEdge });
     this.things = [this.object, ...this.bodies, this.walls, this.cageWalls];
@@ -287,7 +287,7 @@ export class Drawing {
     const way = stage.shots.slice(0, Math.floor(time) + 1).map((_, index) => this.shown(index).pose).concat([this.shown(time).pose]);
     const places = way.map((pose) => sub(carried(pose, stage.data.center), camera.target));
     const start = this.shown(0).pose;
-    const corners = this.object.whole.lines.map((corner) => sub(carried(start, corner), camera.target));
+    const corners = this.object.outline(carried(inverse(start), camera.eye())).map((corner) => sub(carried(start, corner), camera.target));
     for (const [line, list] of [[this.trace, places], [this.ghost, corners]]) {
       line.visible = !camera.isClose();
       line.geometry.dispose();

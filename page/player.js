@@ -16,7 +16,7 @@ let stage = new Stage(data);
 let end = stage.shots.length - 1;
 const player = { time: end, playing: false, drawn: 0, drawnTime: null, drawnExaggeration: null, answers: 0, drawnAnswers: 0, drawMs: null };
 let exaggerations = data.phases.map((phase) => phase.proposed); // of each phase
-let drawing = null, waiting = false, resting = 0, lastTick = null;
+let drawing = null, waiting = false, isShown = true, isAhead = false, resting = 0, lastTick = null;
 let panel = null, carries = false; // the object's start, which follows the pointer
 let shownAt = -Infinity;
 let told = null; // on what that depends which stands around the picture now
@@ -44,9 +44,22 @@ function exaggerate(k) {
 }
 
 function refresh() {
+  isShown = false;
   if (waiting) return;
   waiting = true;
-  requestAnimationFrame(() => { waiting = false; show(); });
+  requestAnimationFrame(() => {
+    waiting = isAhead = false;
+    if (!isShown) show();
+  });
+}
+
+// Draws ahead of the browser's next picture, which need not wait for the drawing then; once for each, as drawings would
+// queue up.
+function showAhead() {
+  if (isAhead) return;
+  isAhead = true;
+  show();
+  drawing?.world.renderer.getContext().flush();
 }
 
 function seek(time) {
@@ -104,6 +117,7 @@ function replaceRun(answer) {
   fill();
   pause();
   seek(carries ? 0 : end);
+  showAhead();
 }
 
 // Takes the way of the pointer, bit by bit: the start goes along it, and the run from there is shown when it is let go.
@@ -132,7 +146,8 @@ function fill() {
     const motion = element("td", row.verdict ? [row.motion, row.verdict].filter(Boolean).join(", ") : row.motion);
     if (row.verdict) motion.className = row.verdictKind;
     line.append(element("td", String(index + 1)), element("td", data.phases[row.phase].name), element("td", row.rule), motion,
-      element("td", row.amount), namesCell(row.hit), namesCell(row.contacts));
+      element("td", row.amount), namesCell(row.reached), namesCell(row.left));
+    line.title = row.contacts.length ? `touching: ${row.contacts.join(", ")}` : "nothing touches";
     line.addEventListener("click", () => { pause(); seek(row.last); });
     $("events").tBodies[0].append(line);
   });
@@ -145,7 +160,7 @@ function fill() {
 function namesCell(names) {
   const between = names.some((name) => name.includes(" ")) ? ", " : " ";
   const cell = element("td", names.length > 9 ? `${names.slice(0, 6).join(between)} and ${names.length - 6} more` : names.join(between));
-  cell.title = names.join(between);
+  if (names.length > 9) cell.title = names.join(between);
   return cell;
 }
 
@@ -158,6 +173,7 @@ function reveal(line) {
 
 function show() {
   const start = performance.now();
+  isShown = true;
   if (drawing) drawing.draw(player.time);
   if (drawing && start - shownAt < IN_A_ROW_MS) drawing.world.paced(start - shownAt);
   shownAt = start;

@@ -3,8 +3,8 @@
 
 import { BackSide, BufferAttribute, BufferGeometry, FrontSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
   Quaternion, Vector3, Vector4, Matrix3 } from "three";
-import { carried, composed, conjugate, inverse, norm, rotated, sub } from "./geometry.js";
-import { hit, placed, surfaceOf, wallOf, within } from "./surfaces.js";
+import { carried, composed, conjugate, dot, inverse, norm, rotated, sub } from "./geometry.js";
+import { foldsOf, hit, placed, surfaceOf, wallOf, within } from "./surfaces.js";
 
 const FINEST = 0.02; // times half the height of a picture: what looks straight
 const SLACK = 1e-4; // of a hole's depth, by which its mouth is cut beyond the face that it is in
@@ -17,31 +17,60 @@ const geometryOf = (places, normals = null) => {
 };
 
 // A material that leaves out what lies in holes. Each hole is told about the target: the square of the distance from its
-// axis is a number there, a slope and a square, so that its wall is sharp at any zoom.
-export function faceMaterial(look, holes) {
+// axis is a number there, a slope and a square, so that its wall is sharp at any zoom. Without a graphics card light is
+// worked out at corners alone, and shadows are none: for every pixel it would cost more than all else.
+export function faceMaterial(look, holes, isSoftware) {
   const material = new MeshLambertMaterial({ polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, ...look });
-  if (!holes.count) return material;
+  if (!holes.count && !isSoftware) return material;
   material.onBeforeCompile = (shader) => {
-    Object.assign(shader.uniforms, holes.uniforms);
-    shader.vertexShader = shader.vertexShader.replace("#include <common>", "#include <common>\nvarying vec3 vPlace;")
-      .replace("#include <begin_vertex>", "#include <begin_vertex>\nvPlace = (modelMatrix * vec4(position, 1.0)).xyz;");
-    shader.fragmentShader = shader.fragmentShader.replace("#include <common>", `#include <common>
-      varying vec3 vPlace;
-      uniform mat3 holeTurns[${holes.count}];
-      uniform vec4 holeAxes[${holes.count}];
-      uniform vec4 holeSizes[${holes.count}];`)
-      .replace("#include <clipping_planes_fragment>", `#include <clipping_planes_fragment>
-      for (int i = 0; i < ${holes.count}; i++) {
-        vec3 place = holeTurns[i] * vPlace;
-        float height = holeAxes[i].w + place.z;
-        if (height > holeSizes[i].y || height < holeSizes[i].x) continue;
-        float beyond = holeAxes[i].x + dot(holeAxes[i].yz, place.xy) + dot(place.xy, place.xy);
-        float widened = max(0.0, height + holeSizes[i].z) * holeSizes[i].w;
-        if (beyond < widened) discard;
-      }`);
+    if (isSoftware) lightCorners(shader);
+    if (holes.count) cutHoles(shader, holes);
   };
-  material.customProgramCacheKey = () => `holes ${holes.count}`;
+  material.customProgramCacheKey = () => `holes ${holes.count}, software ${isSoftware}`;
   return material;
+}
+
+// As look.py's `lit`, and the same lights.
+function lightCorners(shader) {
+  shader.vertexShader = shader.vertexShader.replace("#include <common>", `#include <common>
+    #include <lights_pars_begin>
+    uniform vec3 diffuse;
+    varying vec3 vLit;`)
+    .replace("#include <defaultnormal_vertex>", `#include <defaultnormal_vertex>
+    vec3 normal_ = normalize(transformedNormal);
+    vec3 light = mix(hemisphereLights[0].groundColor, hemisphereLights[0].skyColor, 0.5 + 0.5 * dot(normal_, hemisphereLights[0].direction));
+    for (int i = 0; i < NUM_DIR_LIGHTS; i++) light += directionalLights[i].color * max(0.0, dot(normal_, directionalLights[i].direction));
+    vec3 linear = min(diffuse * light * RECIPROCAL_PI, 1.0);
+    vLit = mix(12.92 * linear, 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, linear));`);
+  shader.fragmentShader = `#include <common>
+    #include <fog_pars_fragment>
+    uniform float opacity;
+    varying vec3 vLit;
+    void main() {
+      #include <clipping_planes_fragment>
+      gl_FragColor = vec4(vLit, opacity);
+      #include <fog_fragment>
+    }`;
+}
+
+function cutHoles(shader, holes) {
+  Object.assign(shader.uniforms, holes.uniforms);
+  shader.vertexShader = shader.vertexShader.replace("#include <common>", "#include <common>\nvarying vec3 vPlace;")
+    .replace("#include <begin_vertex>", "#include <begin_vertex>\nvPlace = (modelMatrix * vec4(position, 1.0)).xyz;");
+  shader.fragmentShader = shader.fragmentShader.replace("#include <common>", `#include <common>
+    varying vec3 vPlace;
+    uniform mat3 holeTurns[${holes.count}];
+    uniform vec4 holeAxes[${holes.count}];
+    uniform vec4 holeSizes[${holes.count}];`)
+    .replace("#include <clipping_planes_fragment>", `#include <clipping_planes_fragment>
+    for (int i = 0; i < ${holes.count}; i++) {
+      vec3 place = holeTurns[i] * vPlace;
+      float height = holeAxes[i].w + place.z;
+      if (height > holeSizes[i].y || height < holeSizes[i].x) continue;
+      float beyond = holeAxes[i].x + dot(holeAxes[i].yz, place.xy) + dot(place.xy, place.xy);
+      float widened = max(0.0, height + holeSizes[i].z) * holeSizes[i].w;
+      if (beyond < widened) discard;
+    }`);
 }
 
 // The holes of a body, as its faces are cut out.
@@ -77,7 +106,7 @@ export class Holes {
 
 // Parts that move as one. `look` has the colours of faces and edges, and how much of the faces is seen through.
 export class Body {
-  constructor(parts, forms, holes, { face, edge }) {
+  constructor(parts, forms, holes, { face, edge }, isSoftware) {
     this.parts = parts.map(({ form, position, quaternion }) => {
       const surface = surfaceOf(forms[form]);
       return { form: forms[form], pose: { p: position, q: quaternion }, surface, reach: Math.max(...surface.corners.map(norm)) };
@@ -90,8 +119,8 @@ export class Body {
     this.ends = [low[0], high[0]].flatMap((x) => [low[1], high[1]].flatMap((y) => [low[2], high[2]].map((z) => [x, y, z]))); // of the box around it
     this.group = new Group();
     this.far = [geometryOf(this.whole.corners, this.whole.normals), geometryOf(this.whole.lines)];
-    this.front = new Mesh(this.far[0], faceMaterial({ color: face, side: FrontSide }, holes));
-    this.back = new Mesh(this.far[0], faceMaterial({ color: face, side: BackSide }, holes));
+    this.front = new Mesh(this.far[0], faceMaterial({ color: face, side: FrontSide }, holes, isSoftware));
+    this.back = new Mesh(this.far[0], faceMaterial({ color: face, side: BackSide }, holes, isSoftware));
     this.lines = new LineSegments(this.far[1], new LineBasicMaterial({ color: edge }));
     this.front.castShadow = this.front.receiveShadow = true;
     this.group.add(this.front, this.back, this.lines);
@@ -132,6 +161,13 @@ export class Body {
       for (const key of Object.keys(found)) found[key].push(...cut[key]);
     }
     return found;
+  }
+
+  // The lines that bound it for an eye at a place in its frame: its edges, and where it turns away.
+  outline(eye) {
+    this.folds ??= foldsOf(this.whole);
+    const faces = (normal, place) => dot(normal, sub(eye, place)) > 0;
+    return [...this.whole.lines, ...this.folds.filter(([from, , one, other]) => faces(one, from) !== faces(other, from)).flatMap(([from, to]) => [from, to])];
   }
 
   // How far along a ray from about the target it is met.

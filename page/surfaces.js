@@ -122,6 +122,24 @@ function hullSurface({ vertices, triangles }) {
   return made;
 }
 
+// Edges between triangles, as both ends and both normals.
+export function foldsOf({ corners }) {
+  const key = (place) => place.map((value) => value.toFixed(7)).join();
+  const sides = new Map(), folds = [];
+  for (let i = 0; i < corners.length; i += 3) {
+    const triangle = corners.slice(i, i + 3);
+    const area = cross(sub(triangle[1], triangle[0]), sub(triangle[2], triangle[0]));
+    if (norm(area) === 0) continue;
+    const normal = unit(area), keys = triangle.map(key);
+    triangle.forEach((from, k) => {
+      const beside = sides.get(`${keys[(k + 1) % 3]} ${keys[k]}`);
+      if (beside) folds.push([from, triangle[(k + 1) % 3], normal, beside]);
+      else sides.set(`${keys[k]} ${keys[(k + 1) % 3]}`, normal);
+    });
+  }
+  return folds;
+}
+
 // What lies within `reach` of the origin along each axis, of a surface, with the rest cut off.
 export function within(surface, reach) {
   const made = empty();

@@ -21,7 +21,7 @@ export class World {
   constructor(canvas, data) {
     this.data = data;
     const { paper, paint, sky, ground, sun, lamp } = data.look;
-    const isSoftware = SOFTWARE.test(graphicsCard());
+    const isSoftware = this.isSoftware = SOFTWARE.test(graphicsCard());
     this.renderer = new WebGLRenderer({ canvas, antialias: !isSoftware, preserveDrawingBuffer: true });
     this.renderer.setClearColor(color(paper));
     this.scene = new Scene();

@@ -84,3 +84,13 @@ def wait_until(page: Page, condition: str) -> None:
 
 def set_range(page: Page, name: str, value: float) -> None:
     page.evaluate(f"(v) => {{ {name}.value = v; {name}.dispatchEvent(new Event('input')); }}", value)
+
+
+def pretend_graphics_card(page: Page) -> None:
+    """What the page draws from now on, it draws as for a machine that has one."""
+    page.add_init_script("""
+        const told = WebGL2RenderingContext.prototype.getParameter;
+        WebGL2RenderingContext.prototype.getParameter = function (name) {
+            return name === 0x9246 ? "some graphics card" : told.call(this, name);
+        };
+    """)

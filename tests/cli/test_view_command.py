@@ -38,8 +38,8 @@ def test_a_saved_run_gives_the_same_page_as_its_scene_but_for_the_time_it_took(c
 @pytest.mark.parametrize(
     ("export", "reason"),
     [
-        ("run.gltf", ".gltf is no known kind of file; use one of: .html, .png, .gif"),
-        ("run", "has no suffix that names its kind; use one of: .html, .png, .gif"),
+        ("run.gltf", ".gltf is no known kind of file; use one of: .html, .png, .gif, .mp4"),
+        ("run", "has no suffix that names its kind; use one of: .html, .png, .gif, .mp4"),
         ("no/run.html", "its folder does not exist; make the folder first"),
     ],
 )
@@ -50,19 +50,26 @@ def test_an_export_that_cannot_be_is_refused_before_the_run(
 
 
 def test_a_picture_and_a_film_are_written_and_may_be_written_again(command: Command, sample: str) -> None:
-    for name in ("run.png", "run.gif", "run.png", "run.gif"):
+    for name in ("run.png", "run.gif", "run.mp4") * 2:
         assert command("view", sample, "--export", name, "--method", "stepwise").code == 0
     with Image.open("run.gif") as film:
         assert (film.n_frames, film.size) == (32, (720, 480))
 
 
-def test_without_pillow_the_extra_is_named_before_the_run(
-    command: Command, sample: str, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("module", "export", "need"),
+    [
+        ("PIL", "run.png", "pictures need Pillow"),
+        ("PIL", "run.gif", "pictures need Pillow"),
+        ("av", "run.mp4", "videos need PyAV"),
+    ],
+)
+def test_a_missing_library_is_named_with_its_extra_before_the_run(
+    command: Command, sample: str, monkeypatch: pytest.MonkeyPatch, module: str, export: str, need: str
 ) -> None:
-    monkeypatch.setattr(extra, "find_spec", lambda name: None if name == "PIL" else object())
-    answer = command("view", sample, "--export", "run.png")
-    assert (answer.code, answer.out) == (2, "")
-    assert "pip install 'cagepose[view]'" in answer.err
+    monkeypatch.setattr(extra, "find_spec", lambda name: None if name == module else object())
+    told = f"{need}, which is not installed; install the view extra: pip install 'cagepose[view]'\n"
+    assert command("view", sample, "--export", export) == (2, "", told)
     assert command("view", sample, "--export", "run.html").code == 0
 
 

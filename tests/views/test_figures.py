@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import itertools
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from pathlib import Path
@@ -226,3 +227,14 @@ def test_every_scene_of_ours_can_be_drawn(name):
     result = run(load_scene(SCENES / f"{name}.yaml"), method="stepwise")
     assert "P1" in [label.get_text() for label in pose_figure(result).axes[2].get_yticklabels()]
     assert figure_bytes(event_figure(result), ".svg")
+
+
+def test_names_of_contacts_in_a_view_along_the_weight_do_not_cover_each_other():
+    """The drawer's rollers lie in two rows, and their names are longer than the way from one to the next."""
+    view = event_figure(run(load_scene(SCENES / "drawer.yaml"))).axes[-1]
+    assert {text.get_text() for text in view.texts} == {
+        "left top roller", "left front roller", "right top roller", "right front roller"
+    }  # fmt: skip
+    boxes = [text.get_window_extent() for text in view.texts if text.get_visible()]
+    assert len(boxes) == 4
+    assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))

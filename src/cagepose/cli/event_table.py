@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Sequence
 
 from rich.console import RenderableType
 from rich.table import Table
@@ -12,20 +11,11 @@ from rich.text import Text
 from cagepose.cli.console import fits
 from cagepose.cli.styles import plain_table, verdict_style
 from cagepose.files.words import LengthWords, line_of, names_of
-from cagepose.runs.run import Event, PhaseRun, Run
+from cagepose.runs.changes import Change, changes_of
+from cagepose.runs.run import Run
 
 MOST_NAMES = 12
 """Of points and shapes in a row; ``--verbose`` prints all."""
-
-
-class _Row(NamedTuple):
-    """An event, its number in the run, its phase, and the names that touch from it on, and no more."""
-
-    number: int
-    event: Event
-    phase: PhaseRun
-    reached: tuple[str, ...]
-    left: tuple[str, ...]
 
 
 def event_table(run: Run, words: LengthWords, width: int, *, is_verbose: bool) -> list[RenderableType]:
@@ -34,21 +24,8 @@ def event_table(run: Run, words: LengthWords, width: int, *, is_verbose: bool) -
     return [table] if fits(table, width) else _lists(run, words, is_verbose=is_verbose)
 
 
-def _rows(run: Run) -> Iterator[_Row]:
-    number = 0
-    before: tuple[str, ...] = ()
-    for phase in run.phases:
-        for event in phase.events:
-            number += 1
-            is_new = set(event.hit if number == 1 else (*event.hit, *(set(event.contacts) - set(before))))
-            reached = tuple(name for name in event.contacts if name in is_new)
-            left = tuple(name for name in before if name not in event.contacts)
-            yield _Row(number, event, phase, reached, left)
-            before = event.contacts
-
-
 def _table(run: Run, words: LengthWords, *, is_verbose: bool) -> Table:
-    rows = list(_rows(run))
+    rows = list(changes_of(run))
     has_left = any(row.left for row in rows)
     table = plain_table("#", "phase", "rule", "motion", "along / about", "amount", "reaches")
     if has_left:
@@ -71,7 +48,7 @@ def _table(run: Run, words: LengthWords, *, is_verbose: bool) -> Table:
 
 def _lists(run: Run, words: LengthWords, *, is_verbose: bool) -> list[RenderableType]:
     """Return the same in two lines for each event: what moved, and what touches now and no more."""
-    rows = list(_rows(run))
+    rows = list(changes_of(run))
     widths = len(str(len(rows))), max(len(row.event.rule) for row in rows)
     parts: list[RenderableType] = []
     for phase in run.phases:
@@ -84,7 +61,7 @@ def _lists(run: Run, words: LengthWords, *, is_verbose: bool) -> list[Renderable
     return parts
 
 
-def _told(row: _Row, words: LengthWords, *, is_verbose: bool) -> Text:
+def _told(row: Change, words: LengthWords, *, is_verbose: bool) -> Text:
     told, motion = _what(row), row.event.motion
     if motion is not None:
         told.append(f" {words.amount(motion)} {'along' if motion.kind == 'travel' else 'about'} {line_of(motion)}")
@@ -103,7 +80,7 @@ def listed(names: Sequence[str], *, is_verbose: bool) -> str:
     return f"{names_of(names[:MOST_NAMES])} and {len(names) - MOST_NAMES} more"
 
 
-def _what(row: _Row) -> Text:
+def _what(row: Change) -> Text:
     """The motion, or what the phase came to where nothing moved."""
     if row.event.motion is not None:
         return Text(row.event.motion.kind)

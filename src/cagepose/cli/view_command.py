@@ -24,8 +24,8 @@ def view_command(
     export: Annotated[
         str | None,
         Parameter(
-            help="Write a file instead: .html, a page that plays in any browser with no network; .gif, a film; .png, a"
-            " picture of the end."
+            help="Write a file instead: .html, a page that plays in any browser with no network; .gif or .mp4, a film;"
+            " .png, a picture of the end."
         ),
     ] = None,
     method: MethodOption = None,
@@ -37,14 +37,15 @@ def view_command(
 ) -> int:
     """Show the object in its cage, the timeline, the events and the forces; a scene is run first."""
     from cagepose.errors import printable
-    from cagepose.views.extra import require_pillow
+    from cagepose.views.extra import require_film, require_pillow
     from cagepose.views.output_files import EXPORTS, check_output, output_suffix
+
+    required = {".png": require_pillow, ".gif": require_pillow, ".mp4": require_film}
 
     def check_out() -> None:
         if export is not None:
             check_output(export, EXPORTS)
-            if output_suffix(export, EXPORTS) != ".html":
-                require_pillow()
+            required.get(output_suffix(export, EXPORTS), lambda: None)()
 
     if not 0 < port < 2**16:
         sys.stderr.write(f"--port {port}: is no port; give a number from 1 to 65535\n")
@@ -78,9 +79,11 @@ def _content(shown: Playback, suffix: str) -> bytes:
         from cagepose.views.viewer.page import page
 
         return page(shown).encode()
-    from cagepose.views.viewer.film import gif_bytes, png_bytes
+    from cagepose.views.viewer.film import gif_bytes, mp4_bytes, png_bytes
 
-    return png_bytes(shown) if suffix == ".png" else gif_bytes(shown.run, shown.length_unit)
+    if suffix == ".png":
+        return png_bytes(shown)
+    return (mp4_bytes if suffix == ".mp4" else gif_bytes)(shown.run, shown.length_unit)
 
 
 def _what_if(scene: str, set_values: tuple[str, ...], method: str | None) -> WhatIf:

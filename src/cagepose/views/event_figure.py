@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,6 +35,7 @@ from cagepose.views.style import (
     Look,
     styled,
 )
+from cagepose.views.viewer.labels import laid_out
 from cagepose.views.viewer.picture import PictureMaker
 from cagepose.views.viewer.playback import playback
 from cagepose.views.viewer.stage import Stage
@@ -173,12 +175,8 @@ def _draw_view(panel: Axes, run: Run, phase_index: int, length_unit: LengthUnit)
         if contact.point not in cage.names and contact.place_world is not None:
             place = from_metres(view.project(contact.place_world[None])[0], length_unit)
             marks.append((contact.point, place, True))
-    named = set[str]()
-    for name, point, touches in marks:
+    for _, point, touches in marks:
         panel.plot(*point, "o", zorder=2.0 + touches, **POINT_LOOKS["touching" if touches else "free"])
-        if touches and name not in named:
-            panel.annotate(name, point, xytext=(3.0, 3.0), textcoords="offset points", fontsize=7.0)
-            named.add(name)
     panel.plot(*from_metres(view.load_point, length_unit), marker="D", color=BLUE, markersize=5.0)
     title = f"end of {_cut(phase.name)}, seen along it:\n{_position(region, run.scene.size_m, length_unit)}"
     panel.set_title(title, fontsize=8.5, pad=8.0)
@@ -194,6 +192,26 @@ def _draw_view(panel: Axes, run: Run, phase_index: int, length_unit: LengthUnit)
     panel.set_xlabel(f"{horizontal} [{length_unit}]", fontsize=7.5)
     panel.set_ylabel(f"{vertical} [{length_unit}]", fontsize=7.5)
     panel.tick_params(labelsize=7.0)
+    _write_names(panel, {name: point for name, point, touches in reversed(marks) if touches})
+
+
+def _write_names(panel: Axes, places: Mapping[str, FloatArray]) -> None:
+    """Write names beside places of a panel, (2,) each in its units, so that none covers another."""
+    panel.apply_aspect()  # else places move when the figure is drawn
+    points_per_pixel = 72.0 / panel.figure.dpi
+    area = panel.bbox
+    drawn = panel.transData.transform(np.reshape(list(places.values()), (-1, 2)))
+    pixels = [(x - area.x0, area.y1 - y) for x, y in drawn.tolist()]
+    texts = [
+        panel.annotate(name, (x, y), (0.0, 0.0), textcoords="offset points", fontsize=7.0)
+        for name, (x, y) in places.items()
+    ]
+    extents = [text.get_window_extent() for text in texts]
+    corners = laid_out(pixels, [(extent.width, extent.height) for extent in extents], (area.width, area.height))
+    for text, extent, (x, y), corner in zip(texts, extents, pixels, corners, strict=True):
+        text.set_visible(corner is not None)
+        left, top = corner or (0.0, 0.0)
+        text.set_position(((left - x) * points_per_pixel, (y - top - extent.height) * points_per_pixel))
 
 
 def _position(region: SupportRegion | None, size_m: float, length_unit: LengthUnit) -> str:
@@ -224,11 +242,11 @@ def _draw_legend(figure: Figure, scene: Scene) -> None:
         handles=[
             Line2D([], [], label="reached by this motion", **point, **POINT_LOOKS["reached"]),
             Line2D([], [], label="touches as well", **point, **POINT_LOOKS["touching"]),
-            Line2D([], [], label="cage point", **point, **POINT_LOOKS["free"]),
+            *([Line2D([], [], label="cage point", **point, **POINT_LOOKS["free"])] if scene.cage.names else []),
             Line2D([], [], color=BLUE, marker="D", linestyle="none", markersize=4.0, label="centre of gravity (CoG)"),
-            Line2D([], [], color=PURPLE, linestyle="-.", label="axis of turning, or travel"),
+            Line2D([], [], color=PURPLE, label="axis of turning, or travel"),
             Line2D([], [], color=BLACK, label="load"),
-            Line2D([], [], color=GREY, linestyle=":", label="before the motion"),
+            Line2D([], [], color=GREY, linewidth=0.7, label="before the motion"),
             *patches,
         ],
         loc="lower center",

@@ -24,6 +24,18 @@ def require_pillow() -> None:
     require("PIL", "pictures need Pillow", "view")
 
 
+def require_film() -> None:
+    """Do nothing if all is installed that videos need.
+
+    Raises
+    ------
+    MissingExtraError
+        As `require_pillow`.
+    """
+    require_pillow()
+    require("av", "videos need PyAV", "view")
+
+
 def require_matplotlib() -> None:
     """Do nothing if matplotlib is installed.
 

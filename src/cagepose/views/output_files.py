@@ -7,7 +7,7 @@ from pathlib import PurePath
 
 from cagepose.files.write import check_can_write, is_made_by_us
 
-FIGURES, EXPORTS = (".png", ".svg", ".pdf"), (".html", ".png", ".gif")
+FIGURES, EXPORTS = (".png", ".svg", ".pdf"), (".html", ".png", ".gif", ".mp4")
 
 
 def output_suffix(name: str, suffixes: Sequence[str]) -> str:

@@ -6,14 +6,14 @@ import itertools
 
 import numpy as np
 
-from cagepose.views.viewer.labels import BESIDE, laid_out
+from cagepose.views.viewer.labels import BESIDE, EDGE, laid_out
 
 PICTURE = (200.0, 150.0)
 
 
-def test_a_name_at_the_edge_stays_in_the_picture():
-    [corner] = laid_out([(195.0, 1.0)], [(60.0, 12.0)], PICTURE)
-    assert corner == (140.0, 0.0)
+def test_a_name_at_the_edge_stays_in_the_picture_and_does_not_touch_its_edge():
+    corners = laid_out([(195.0, 1.0), (2.0, 8.0)], [(60.0, 12.0)] * 2, PICTURE)
+    assert corners == [(200.0 - 60.0 - EDGE, EDGE), (2.0 + BESIDE, EDGE)]
 
 
 def test_a_name_alone_stands_to_the_right_and_above():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import http.client
 import json
+import re
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,7 +17,7 @@ from cagepose.files.scene_edit import edited_text
 from cagepose.files.scene_file import parse_scene, read_scene_text
 from cagepose.views.viewer.server import ViewServer
 from cagepose.views.viewer.what_if import WhatIf
-from driving import opened, served, shown_angles, slide, state, wait_until
+from driving import opened, pretend_graphics_card, served, shown_angles, slide, state, wait_until
 
 SCENES = Path(__file__).resolve().parents[3] / "scenes"
 RAIL = SCENES / "rail-pitch.yaml"
@@ -182,6 +183,13 @@ def test_bad_values_are_refused_with_the_reason(server, values, told):
     assert told in " ".join(json.loads(body)["problems"])
 
 
+def test_a_start_that_was_dragged_into_the_cage_is_told_without_its_numbers(server):
+    status, body = post(server, "/run", json.dumps({"start": [-3.0, -2.0, -2.0]}).encode())
+    assert status == 422
+    problems = json.loads(body)["problems"]
+    assert all(re.match(r"cage\.points\.C\d+: starts \S+ mm inside object\.boxes", problem) for problem in problems)
+
+
 def test_from_slider_to_new_pose_takes_less_than_50_ms_on_the_server():
     """In processor time, which does not hang on what else the machine does."""
     what_if = WhatIf(read_scene_text(RAIL))
@@ -218,13 +226,24 @@ def test_a_server_that_is_gone_is_told_and_the_last_answer_stays(watched, server
     watched.complaints.clear()  # the browser notes the lost connection itself
 
 
+def test_an_answer_is_drawn_before_the_browser_asks_for_a_picture_but_once_for_each(watched, server):
+    """In a browser that asks for pictures when it is told to. It need not wait for them then, nor do any queue up."""
+    page = opened(watched, server)
+    page.evaluate("() => { window.asked = []; window.requestAnimationFrame = (draw) => asked.push(draw); }")
+    slide(page, "cage: pitch", 0.2)
+    assert state(page)["drawnAnswers"] == 1
+    page.get_by_label("cage: pitch", exact=True).last.fill("0.25")
+    wait_until(page, "cagepose.state().answers === 2")
+    assert state(page)["drawnAnswers"] == 1
+    page.evaluate("asked.splice(0).forEach((draw) => draw())")
+    assert state(page)["drawnAnswers"] == 2
+    assert shown_angles(page) == pytest.approx(expected_angles("cage.pose.euler_zyx_deg=[0,0.25,0]"), abs=1e-5)
+
+
 def test_shadows_go_where_pictures_come_slowly(watched):
     """A machine that says it has a graphics card, and takes 60 ms more for each picture."""
+    pretend_graphics_card(watched.page)
     watched.page.add_init_script("""
-        const told = WebGL2RenderingContext.prototype.getParameter;
-        WebGL2RenderingContext.prototype.getParameter = function (name) {
-            return name === 0x9246 ? "some graphics card" : told.call(this, name);
-        };
         const next = window.requestAnimationFrame.bind(window);
         window.requestAnimationFrame = (draw) => next(() => setTimeout(() => draw(performance.now()), 60));
     """)

@@ -5,13 +5,23 @@ from __future__ import annotations
 import io
 from pathlib import Path
 
+import av
 import numpy as np
 import pytest
 from PIL import Image
 
 from cagepose import Cage, Cylinder, Force, Hole, Load, Object, Pose, Scene, load_scene, run
 from cagepose.files.write import MADE_BY
-from cagepose.views.viewer.film import END_MS, SHOTS_PER_MOTION, gif_bytes, png_bytes
+from cagepose.views.viewer.film import (
+    END_MS,
+    FILM_SIZE,
+    PAUSE_MS,
+    SHOT_MS,
+    SHOTS_PER_MOTION,
+    gif_bytes,
+    mp4_bytes,
+    png_bytes,
+)
 from cagepose.views.viewer.look import FEW_NAMES, PAPER, ink
 from cagepose.views.viewer.picture import SIZE, PictureMaker
 from cagepose.views.viewer.playback import playback
@@ -122,3 +132,19 @@ def test_a_film_has_all_shots_rests_where_events_end_and_does_not_stand_still():
         assert film.info["comment"] == MADE_BY.encode()
     assert n_changes >= SHOTS_PER_MOTION
     assert total > END_MS + 80 * (len(shown.shots) - 1)
+
+
+def test_a_video_shows_the_pictures_of_the_run_for_as_long_as_they_stand():
+    answer = run(load_scene(SCENES / "slope.yaml"))
+    shown = playback(answer, "mm", SHOTS_PER_MOTION)
+    maker = PictureMaker(Stage(shown), size=FILM_SIZE)
+    with av.open(io.BytesIO(mp4_bytes(answer, "mm"))) as file:
+        assert file.metadata["comment"] == MADE_BY
+        assert file.streams.video[0].codec_context.name == "h264"
+        frames = [(frame.time, frame.to_ndarray(format="rgb24").astype(float)) for frame in file.decode(video=0)]
+    ended_ms = PAUSE_MS * (1 + sum(row.last_shot < len(shown.shots) - 1 for row in shown.rows))
+    on_the_way_ms = SHOT_MS * (len(shown.shots) - 2 - sum(row.last_shot < len(shown.shots) - 1 for row in shown.rows))
+    assert frames[-1][0] * 1000.0 + SHOT_MS == pytest.approx(ended_ms + on_the_way_ms + END_MS)
+    pictures = [np.asarray(maker.picture(shown.shots[index]), dtype=float) for index in (0, -1)]
+    for (_, frame), picture, other in zip((frames[0], frames[-1]), pictures, pictures[::-1], strict=True):
+        assert np.abs(frame - picture).mean() < 3.0 < np.abs(frame - other).mean()

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 BESIDE = 7.0
 """Pixels from a place to its name."""
+EDGE = 4.0
+"""Pixels from the edge of the picture to a name."""
 
 Pair = tuple[float, float]
 
@@ -49,7 +51,7 @@ def _beside(place: Pair, size: Pair) -> list[Pair]:
 
 
 def _inside(corner: Pair, size: Pair, picture: Pair) -> Pair:
-    x, y = (max(0.0, min(room - extent, at)) for at, extent, room in zip(corner, size, picture, strict=True))
+    x, y = (max(EDGE, min(room - extent - EDGE, at)) for at, extent, room in zip(corner, size, picture, strict=True))
     return x, y
 
 

@@ -14,6 +14,7 @@ from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Capsule, Shape, Sphere, Turned
 from cagepose.runs.cases import contact_friction
+from cagepose.runs.changes import Change, changes_of
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, FAILURES
@@ -80,7 +81,7 @@ class _Writer:
                 {**view._asdict(), "name": phase.name, "loads": [self._load(act) for act in acts]}
                 for phase, view, acts in zip(run.phases, stage.phases, self.shown.loads, strict=True)
             ],
-            "rows": [self._row(row) for row in self.shown.rows],
+            "rows": list(map(self._row, self.shown.rows, changes_of(run))),
             "touches": [self._touch(touches) for touches in self.touches],
             "shots": [self._shot(shot) for shot in self.shown.shots],
             "notes": notes(self.shown),
@@ -175,7 +176,7 @@ class _Writer:
         scene = self.run.scene
         return contact_friction(scene, chosen_method(scene, self.run.method).friction(scene), element, part)
 
-    def _row(self, row: Row) -> dict[str, Any]:
+    def _row(self, row: Row, change: Change) -> dict[str, Any]:
         motion = row.event.motion
         return {
             "phase": row.phase,
@@ -183,6 +184,8 @@ class _Writer:
             "motion": "" if motion is None else motion.kind,
             "amount": "" if motion is None else self.words.amount(motion, AMOUNT_DIGITS),
             "hit": list(row.event.hit),
+            "reached": list(change.reached),
+            "left": list(change.left),
             "contacts": list(row.event.contacts),
             "verdict": row.verdict,
             "verdictKind": None if row.verdict is None else verdict_kind(row.verdict),

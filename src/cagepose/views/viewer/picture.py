@@ -20,6 +20,7 @@ from cagepose.views.viewer.caption import LOUD_INK, QUIET_INK, Caption, Label
 from cagepose.views.viewer.eye import Eye
 from cagepose.views.viewer.look import PAINT, ink
 from cagepose.views.viewer.paint_bodies import BodyPainter, ShownHole
+from cagepose.views.viewer.paint_marks import MarkPainter
 from cagepose.views.viewer.playback import Shot
 from cagepose.views.viewer.raster import Raster
 from cagepose.views.viewer.stage import Look, Stage
@@ -60,6 +61,7 @@ class PictureMaker:
         self.eye.fit(stage.radius, self._content)
         self.raster = Raster(self.width * FINER, self.height * FINER)
         self.bodies = BodyPainter(stage, self.eye, self.raster, FINER)
+        self.marks = MarkPainter(self.bodies)
         self._draw_ground()
         units_per_pixel = float(from_metres(stage.size_m, self.shown.length_unit)) * self.eye.pixel()
         self.caption = Caption(self.shown, size, units_per_pixel)
@@ -135,25 +137,6 @@ class PictureMaker:
         low, high = np.concatenate(cage).min(axis=0), np.concatenate(cage).max(axis=0)
         room = max(look.NEAR_CAGE * float((high - low).max()), look.LEAST_NEAR)
         return low - room, high + room
-
-    def _rod(
-        self, start: FloatArray, end: FloatArray, pixels: float, paint: str, end_pixels: float | None = None
-    ) -> None:
-        first, last = self.bodies.pixels(np.stack([start, end]))
-        last_radius = None if end_pixels is None else end_pixels * FINER
-        self.raster.rod(first, last, pixels * FINER, ink(paint), last_radius)
-
-    def _arrow(self, tail: FloatArray, tip: FloatArray, pixels: float, paint: str) -> None:
-        length, pixel = float(np.linalg.norm(tip - tail)), self.eye.pixel(tip)
-        if length < pixel:
-            return
-        head = min(look.HEAD[1] * pixel, 0.7 * length)
-        neck = tip - head / length * (tip - tail)
-        self._rod(tail, neck, pixels, paint)
-        self._rod(neck, tip, max(look.HEAD[0], 2.3 * pixels), paint, 0.0)
-
-    def _ball(self, place: FloatArray, pixels: float, paint: str) -> None:
-        self.raster.ball(self.bodies.pixels(place), pixels * FINER, ink(paint))
 
     def _name(self, place: FloatArray, text: str, *, is_loud: bool) -> None:
         x, y = self.seen_at(place).tolist()
@@ -246,7 +229,7 @@ class PictureMaker:
                 self._draw_pin(index, points[index], shot, pose)
                 marks = points[index : index + 1]
             for mark in marks if kind != "free" else ():
-                self._ball(mark, look.BALL, PAINT[kind])
+                self.marks.ball(mark, look.BALL, PAINT[kind])
             counts = kind == "reached" or (
                 kind == "touching" and (len(touching) <= look.FEW_NAMES or index in pressing)
             )
@@ -263,10 +246,7 @@ class PictureMaker:
                 pose.rotation @ shot.touches.normals_object[touches[0]] if len(touches) else np.array((0.0, 0.0, -1.0))
             )
             length = 1.0
-        base = place + self.pin / length * out
-        radius = look.PIN_SLOPE * self.pin / self.eye.pixel(base) * FINER
-        first, last = self.bodies.pixels(np.stack([place, base]))
-        self.raster.rod(first, last, 0.0, ink(PAINT["pin"]), radius, faint=0.0)
+        self.marks.pin(place, self.pin / length * out)
 
     def _pressing(self, shot: Shot) -> set[int]:
         """Return the points that bear some of the load in a shot."""
@@ -278,12 +258,12 @@ class PictureMaker:
     def _draw_touches(self, shot: Shot, pose: Pose) -> None:
         places, forces = self.places(shot), shot.touches.forces_object
         for place, normal in zip(places, shot.touches.normals_object @ pose.rotation.T, strict=True):
-            self._rod(place, place + look.NORMAL * self.eye.pixel(place) * normal, look.THIN, PAINT["normal"])
+            self.marks.rod(place, place + look.NORMAL * self.eye.pixel(place) * normal, look.THIN, PAINT["normal"])
         if forces is None:
             return
         for place, force in zip(places, self.force_scale * forces @ pose.rotation.T, strict=True):
             if np.linalg.norm(force) >= look.LEAST_SHOWN * look.FORCE:
-                self._arrow(place - self.eye.pixel(place) * force, place, look.ROD, PAINT["force"])
+                self.marks.arrow(place - self.eye.pixel(place) * force, place, look.ROD, PAINT["force"])
 
     def _draw_loads(self, shot: Shot, pose: Pose) -> None:
         for act in self.shown.loads[shot.phase]:
@@ -291,11 +271,11 @@ class PictureMaker:
             if act.kind == "spring":
                 line = coil(start, end, look.COIL * self.eye.pixel(start))
                 for one, other in itertools.pairwise(line):
-                    self._rod(one, other, look.THIN, PAINT["load"])
+                    self.marks.rod(one, other, look.THIN, PAINT["load"])
             else:
-                self._arrow(start, end, 1.3 * look.ROD, PAINT["load"])
+                self.marks.arrow(start, end, 1.3 * look.ROD, PAINT["load"])
             if act.kind == "moment":  # two heads
-                self._arrow(start, start + look.SECOND_HEAD * (end - start), 1.3 * look.ROD, PAINT["load"])
+                self.marks.arrow(start, start + look.SECOND_HEAD * (end - start), 1.3 * look.ROD, PAINT["load"])
             self._name(end if act.kind == "spring" else start, act.name, is_loud=True)
 
     def _ends(self, act: Act, pose: Pose) -> tuple[FloatArray, FloatArray]:
@@ -321,13 +301,13 @@ class PictureMaker:
         direction = self.stage.normal(along, before.pose_world_object, carried)
         if motion.through_world is None:
             center = self.stage.place(pose.transform(self.stage.center_object_m))
-            self._arrow(center, center + look.TRAVEL * self.eye.pixel(center) * direction, look.ROD, PAINT["axis"])
+            self.marks.arrow(center, center + look.TRAVEL * self.eye.pixel(center) * direction, look.ROD, PAINT["axis"])
             return
         through = carried.transform(before.pose_world_object.inverse_transform(motion.through_world))
         middle = self.stage.place(through)
         middle = middle - (middle @ direction) * direction
         half = math.sqrt(max(0.04, self.stage.radius**2 - float(middle @ middle)))
-        self._arrow(middle - half * direction, middle + half * direction, 0.6 * look.ROD, PAINT["axis"])
+        self.marks.arrow(middle - half * direction, middle + half * direction, 0.6 * look.ROD, PAINT["axis"])
 
     def _draw_way(self, shot: Shot, pose: Pose) -> None:
         """Draw the centre of gravity, and its way up to a shot."""
@@ -336,7 +316,7 @@ class PictureMaker:
         poses = [self.stage.pose(before.pose_world_object, self._look(before)) for before in shots]
         way = self.bodies.pixels(self.stage.place(np.stack([before.transform(center) for before in poses])))
         self.raster.lines(way[:-1], way[1:], ink(PAINT["trace"]))
-        self._ball(self.stage.place(pose.transform(center)), look.BALL - 1.0, PAINT["trace"])
+        self.marks.ball(self.stage.place(pose.transform(center)), look.BALL - 1.0, PAINT["trace"])
 
     def _middle(self, body: int) -> FloatArray:
         """Return the middle of what is shown of a shape of the cage, or the mouth of a hole behind these, (3,)."""

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.errors import CageposeError, SceneFileError
+from cagepose.errors import CageposeError, Problem, SceneFileError
 from cagepose.files.key_path import parse_key_path, set_value, value_at
 from cagepose.files.parameters import evaluated
 from cagepose.files.scene_edit import ANGLE_DECIMALS, edited, edited_text, setting, with_cage_angles
@@ -92,7 +92,7 @@ class WhatIf:
     def problems(self, error: CageposeError | ValueError) -> list[str]:
         """Return what is wrong, in words for people who look at sliders and not at the file."""
         if isinstance(error, SceneFileError):
-            return [str(problem).split(": ", 1)[-1] for problem in error.problems]
+            return [str(Problem(problem.path, problem.message)) for problem in error.problems]
         return [str(error)]
 
     def _settings(self, values: object) -> tuple[str, ...]:
