@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from cagepose.errors import FileProblem, SceneError, SceneFileError
-from cagepose.exchange.solids_note import read_solids_note
+from cagepose.exchange.solids_note import SHOWN, read_solids_note
 from cagepose.exchange.step_solids import read_step
 from cagepose.exchange.stl import MM
 from cagepose.files.meshes import mesh_file
@@ -20,9 +20,9 @@ from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
 from cagepose.files.scene_document import SceneWriter
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
-from cagepose.model.pose import Pose
+from cagepose.model.pose import Pose, turn_from_z
 from cagepose.model.shape_moments import shape_moments
-from cagepose.model.shapes import Sphere
+from cagepose.model.shapes import Capsule, Convex, Shape, Sphere
 from cagepose.model.wording import few
 
 Data = dict[str, Any]
@@ -32,6 +32,7 @@ STEP = (".step", ".stp")
 SOLIDS = (*STEP, *mesh_file.SUFFIXES)
 MAX_STEP_BYTES = 32 * 1024 * 1024
 METRES = SceneWriter("m")
+ALONE = "has no solid but the object; give that as a `mesh` in a scene file with its cage"
 SAME_VOLUME = 1e-7
 """Of itself: shapes that have it are the solid, and its triangles alone are off."""
 
@@ -58,13 +59,14 @@ def solids_document(
             notes.append(f"solids left out: {few(left, 12)}")
         points = [name for name in walls if _short(name, walls) in note.get("points", ())]
         walls = [name for name in walls if name not in points]
-        of_object, of_cage = (Pose(*note[body]) if note else Pose() for body in ("shown_object", "shown_cage"))
+        of_object, of_cage = (Pose(*note[key]) if note else Pose() for key in SHOWN.values())
         shapes: dict[str, list[Data]] = {"object": [], "cage": []}
         listed = [("object", name, held, of_object.inverse()) for name in held]
         listed += [("cage", name, walls, of_cage.inverse()) for name in walls]
         for number, (body, name, names, frame) in enumerate(listed):
             progress(f"solid {number + 1} of {len(listed)}: {name}")
-            shapes[body] += _shapes(path, _short(name, names), solids[name], frame, notes)
+            of_solid = _shapes(path, _short(name, names), solids[name], frame, notes)
+            shapes[body] += [METRES.shape(shape) for shape in of_solid]
     except SceneError as error:
         raise SceneFileError([FileProblem((), problem.message, source) for problem in error.problems]) from None
     found: Data = {"name": note.get("name") or path.stem, "units": {"length": "m"}}
@@ -132,13 +134,15 @@ def _chosen(names: list[str], object_name: str | None, cage_names: Sequence[str]
             raise mesh_file.refused(f"has no solid {wanted!r}; its solids: {few(names, 12) or 'none'}")
         return found
 
+    if len(names) == 1 and object_name is None:
+        raise mesh_file.refused(ALONE)
     if object_name is None and not any(is_of(name, "object") for name in names):
         raise mesh_file.refused(f"does not say which solid is held; give --object and one of: {few(names, 12)}")
     held = of(object_name or "object")
     chosen = [name for wanted in cage_names for name in of(wanted)] or names
     walls = [name for name in dict.fromkeys(chosen) if name not in held]
     if not walls:
-        raise mesh_file.refused("has no solid but the object; give that as a `mesh` in a scene file with its cage")
+        raise mesh_file.refused(ALONE)
     return held, walls
 
 
@@ -149,23 +153,31 @@ def _short(name: str, names: Sequence[str]) -> str:
 
 
 def _middle(solid: Data) -> FloatArray:
-    if "center" in solid:
-        return np.array(solid["center"]) / MM
-    corners = np.asarray(solid["vertices"])
+    corners = np.asarray(solid["core"] if "core" in solid else solid["vertices"])
     middle: FloatArray = (corners.max(axis=0) + corners.min(axis=0)) / 2.0 / MM
     return middle
 
 
-def _shapes(path: Path, name: str, solid: Data, frame: Pose, notes: list[str]) -> list[Data]:
-    """Return a solid as shapes of a scene file, in the frame of its body, in metres."""
-    if "center" in solid:
-        return [METRES.shape(Sphere(solid["radius"] / MM, frame @ Pose(_middle(solid)), name))]
-    mesh = mesh_file.checked(Triangles(np.array(solid["vertices"]), np.array(solid["faces"])), f"{name!r} ")
-    found = mesh_shapes(mesh, name, "mm", partial(kept_beside, path))
-    if not _is_exact(found, solid):
-        notes += found.notes
-    metres = [mesh_file.scaled(shape, 1.0 / MM) for shape in found.shapes]
-    return [METRES.shape(shape.moved(frame @ shape.pose_body_shape)) for shape in metres]
+def _shapes(path: Path, name: str, solid: Data, frame: Pose, notes: list[str]) -> list[Shape]:
+    """Return a solid as shapes in the frame of its body, in metres."""
+    if "core" in solid:
+        shapes: Sequence[Shape] = [_rounded(np.array(solid["core"]), solid["radius"], name)]
+    else:
+        mesh = mesh_file.checked(Triangles(np.array(solid["vertices"]), np.array(solid["faces"])), f"{name!r} ")
+        found = mesh_shapes(mesh, name, "mm", partial(kept_beside, path))
+        notes += [] if _is_exact(found, solid) else found.notes
+        shapes = found.shapes
+    metres = [mesh_file.scaled(shape, 1.0 / MM) for shape in shapes]
+    return [shape.moved(frame @ shape.pose_body_shape) for shape in metres]
+
+
+def _rounded(core: FloatArray, radius: float, name: str) -> Shape:
+    if len(core) == 1:
+        return Sphere(radius, Pose(core[0]), name)
+    if len(core) == 2:
+        span = core[1] - core[0]
+        return Capsule(radius, float(np.linalg.norm(span)), Pose(core.mean(axis=0), turn_from_z(span)), name)
+    return Convex(core, radius, None, name)
 
 
 def _is_exact(found: MeshShapes, solid: Data) -> bool:

@@ -18,6 +18,8 @@ from cagepose.model.scene import Scene
 
 OF_OBJECT = ("mass", "center_of_gravity", "inertia", "pose")
 """Keys of the scene file's object that stand in the note as they are."""
+SHOWN = {"object": "shown_object", "cage": "shown_cage"}
+"""Keys of where each body is in the file: position and quaternion."""
 MOST_BYTES = 4 * 1024 * 1024
 IN_STEP = re.compile(r"/\* cagepose (.*?) \*/", re.DOTALL)
 
@@ -29,7 +31,7 @@ def solids_note(scene: Scene, pose_world_object: Pose) -> str:
     note["what"] = f"a scene's loads, points and poses, {MADE_BY}"
     note["object"] = {key: document["object"][key] for key in OF_OBJECT if key in document["object"]}
     for body, pose in (("object", pose_world_object), ("cage", scene.cage.pose_world_cage)):
-        note[f"shown_{body}"] = [pose.position_m.tolist(), pose.quaternion_wxyz.tolist()]
+        note[SHOWN[body]] = [pose.position_m.tolist(), pose.quaternion_wxyz.tolist()]
     return json.dumps(note)
 
 
@@ -56,4 +58,9 @@ def read_solids_note(path: Path) -> dict[str, Any]:
         found = IN_STEP.search(text)
         text = found.group(1) if found else ""
     note = read_beside(text) or {}
-    return note if {"object", "shown_object", "shown_cage", "points"} <= note.keys() else {}
+    is_whole = isinstance(note.get("object"), dict) and all(_is_pose(note.get(key)) for key in SHOWN.values())
+    return note if is_whole else {}
+
+
+def _is_pose(found: Any) -> bool:
+    return isinstance(found, list) and [len(part) if isinstance(part, list) else 0 for part in found] == [3, 4]

@@ -127,7 +127,7 @@ def tidied(shape: Shape, scale: float, origin: FloatArray) -> Shape:
     if isinstance(shape, Box):
         return Box(lengths(shape.size_m), pose, shape.name)
     if isinstance(shape, Convex):
-        return Convex(lengths(shape.vertices_m + origin / scale), 0.0, None, shape.name)
+        return Convex(lengths(shape.vertices_m + origin / scale), float(lengths(shape.radius_m)), None, shape.name)
     numbers: dict[str, Any] = {key: float(lengths(value)) for key, value in vars(shape).items() if key.endswith("_m")}
     if isinstance(shape, Hole):
         chamfer = shape.chamfer and Chamfer(float(lengths(shape.chamfer.width_m)), shape.chamfer.angle_rad)
