@@ -73,7 +73,7 @@ def imported(
         document, notes = solids_document(source, object_name, cage_names, progress)
         return _import(source, document, notes)
     mujoco()
-    text = read_model_text(source)
+    text = read_model_text(source, SOLIDS)
     reader = _Reader(source, ModelBodies(source, compiled(source)), _beside(text), is_urdf=text.is_urdf)
     return _import(source, reader.document(object_name, cage_names), reader.notes)
 
