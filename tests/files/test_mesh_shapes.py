@@ -242,6 +242,23 @@ def test_numbers_of_a_mesh_of_several_shapes_cannot_be_adjusted(tmp_path):
         scene_with(tmp_path, UNIONS["boss"][0], (), text)
 
 
+def test_holes_of_a_finely_divided_plate_are_recognised():
+    """Corners lie throughout its faces and along the edges of its walls, of which one pass leaves some."""
+    plate = body(PLATE, without=tuple(Cylinder(5, 30, Pose((x, 0, 0))) for x in (-15.0, 15.0)))
+    found = shapes_of(plate.refine_to_length(0.6), single=True)
+    assert [shape.kind for shape in found.shapes] == ["convex", "hole", "hole"]
+    assert found.error == pytest.approx(5 * (1 - math.cos(math.pi / SEGMENTS)), rel=0.01)
+
+
+def test_a_convex_body_of_many_corners_keeps_as_many_as_may_be_and_their_distance_is_measured():
+    """Corners of an egg: what 300 of them leave of a ball of radius 20 is some 20 (1 - cos(7 deg))."""
+    egg = shape_mesh(Sphere(20.0), 80)
+    found = shapes_of(Triangles(egg.vertices_m * (1.0, 0.7, 0.5), egg.triangles).body())
+    (one,) = found.shapes
+    assert 250 <= len(one.vertices_m) <= 300
+    assert 0.1 < found.error < 0.5
+
+
 def test_a_long_thin_rod_is_no_flat_mesh():
     """Its volume is a millionth of the cube of its length."""
     (rod,) = shapes_of(body(Box((1000.0, 1.0, 1.0)))).shapes

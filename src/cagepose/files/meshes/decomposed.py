@@ -44,7 +44,7 @@ def decomposed(mesh: Triangles) -> Decomposition:
     """
     hulls = [manifold3d().Manifold.hull_points(corners) for corners in run_coacd.convex_parts(_simplified(mesh))]
     union = Triangles.of(together(hulls))
-    error = max(_from(mesh, union, outside=False), _from(union, mesh, outside=True))
+    error = max(farthest_from(mesh, union), farthest_from(union, mesh, outside=True))
     return Decomposition([Triangles.of(hull).vertices for hull in hulls], error)
 
 
@@ -92,7 +92,7 @@ def _simplified(mesh: Triangles) -> Triangles:
     return Triangles.of(body)
 
 
-def _from(one: Triangles, other: Triangles, *, outside: bool) -> float:
+def farthest_from(one: Triangles, other: Triangles, *, outside: bool = False) -> float:
     """Return how far points of one surface, spread evenly and at its corners, are from another at most.
 
     ``outside``: of those alone that are outside of it, as between the parts of a body there may be gaps within it.
