@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -257,6 +258,28 @@ def test_a_convex_body_of_many_corners_keeps_as_many_as_may_be_and_their_distanc
     (one,) = found.shapes
     assert 250 <= len(one.vertices_m) <= 300
     assert 0.1 < found.error < 0.5
+
+
+def test_what_takes_seconds_is_told_on_a_terminal(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    mesh = shape_mesh(Convex([(0, 0, 0), (3, 0, 0), (0, 4, 0), (0, 0, 5)]), 3)
+    Path("part.stl").write_bytes(binary_stl(mesh))
+    Path("scene.yaml").write_text(
+        "name: s\nobject: {shapes: [{mesh: {file: part.stl}}]}\ncage: {points: [[0, 0, -9]]}\n"
+        "loads: [{name: weight, gravity: [0, 0, -1]}]\n"
+    )
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    assert main(["check", "scene.yaml"]) == 0
+    told = capsys.readouterr().err.split("\r")
+    assert [line.strip() for line in told if line.strip()] == [
+        "part.stl: read, 0.0 MiB",
+        "4 triangles: searched for crossings",
+        "'mesh1': 4 triangles, its shape recognised",
+    ]
+    assert told[-2:] == [" " * 78, ""]
+    monkeypatch.undo()
+    assert main(["check", str(tmp_path / "scene.yaml")]) == 0
+    assert capsys.readouterr().err == ""
 
 
 def test_a_long_thin_rod_is_no_flat_mesh():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ from cagepose.files.meshes import mesh_file
 from cagepose.files.meshes.decomposed import kept_beside
 from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
+from cagepose.files.progress import tell
 from cagepose.files.scene_document import SceneWriter
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
@@ -26,7 +27,6 @@ from cagepose.model.shapes import Capsule, Convex, Shape, Sphere
 from cagepose.model.wording import few
 
 Data = dict[str, Any]
-Progress = Callable[[str], None]
 
 STEP = (".step", ".stp")
 SOLIDS = (*STEP, *mesh_file.SUFFIXES)
@@ -35,12 +35,12 @@ METRES = SceneWriter("m")
 ALONE = "has no solid but the object; give that as a `mesh` in a scene file with its cage"
 SAME_VOLUME = 1e-7
 """Of itself: shapes that have it are the solid, and its triangles alone are off."""
+SAME_MOUTH = 1e-6
+"""Of a hole's radius: ends that are this near are one."""
 
 
-def solids_document(
-    source: str, object_name: str | None, cage_names: Sequence[str], progress: Progress
-) -> tuple[Data, list[str]]:
-    """Return the data of a scene of solids, and what is not in it as in the file; ``progress`` is told of each.
+def solids_document(source: str, object_name: str | None, cage_names: Sequence[str]) -> tuple[Data, list[str]]:
+    """Return the data of a scene of solids, and what is not in it as in the file.
 
     Raises
     ------
@@ -63,12 +63,13 @@ def solids_document(
         shapes: dict[str, list[Data]] = {"object": [], "cage": []}
         listed = [("object", name, held, of_object.inverse()) for name in held]
         listed += [("cage", name, walls, of_cage.inverse()) for name in walls]
-        for number, (body, name, names, frame) in enumerate(listed):
-            progress(f"solid {number + 1} of {len(listed)}: {name}")
+        for body, name, names, frame in listed:
             of_solid = _shapes(path, _short(name, names), solids[name], frame, notes)
-            shapes[body] += [METRES.shape(shape) for shape in of_solid]
+            shapes[body] += [METRES.shape(_named(shape, note.get("holes", {}))) for shape in of_solid]
     except SceneError as error:
         raise SceneFileError([FileProblem((), problem.message, source) for problem in error.problems]) from None
+    finally:
+        tell("")
     found: Data = {"name": note.get("name") or path.stem, "units": {"length": "m"}}
     found["object"] = {**note.get("object", {}), "shapes": shapes["object"]}
     found["cage"] = {"shapes": shapes["cage"], "pose": METRES.pose(of_cage)}
@@ -81,7 +82,10 @@ def solids_document(
         notes.append("loads: the weight alone, with a gravity of (0, 0, -9.81) m/s^2; no friction")
     found["loads"] = note.get("loads") or [{"name": "weight", "gravity": [0.0, 0.0, -9.81]}]
     elements = [*(shape["name"] for body in shapes.values() for shape in body), *found["cage"].get("points", ())]
-    found |= kept_friction(note, elements) if note else {}
+    if note:
+        found |= kept_friction(note, elements)
+        lost = [one for one in note["friction"]["of"] if not any(is_of(name, one) for name in elements)]
+        notes += [f"friction of {few(lost)} is lost, as nothing there has the name"] if lost else []
     return found | {key: note[key] for key in ("method", "metric", "tolerances") if key in note}, notes
 
 
@@ -102,6 +106,7 @@ def _of_step(path: Path, notes: list[str]) -> dict[str, Data]:
         raise mesh_file.refused("is no file; check the name and the folder")
     if path.stat().st_size > MAX_STEP_BYTES:
         raise mesh_file.refused(f"is larger than {MAX_STEP_BYTES // 1024**2} MiB; export the parts that touch alone")
+    tell(f"{path.name}: read by Open CASCADE")
     found = read_step(path)
     if found["out"]:
         notes.append(f"left out: {few(found['out'], 12)}")
@@ -169,6 +174,17 @@ def _shapes(path: Path, name: str, solid: Data, frame: Pose, notes: list[str]) -
         shapes = found.shapes
     metres = [mesh_file.scaled(shape, 1.0 / MM) for shape in shapes]
     return [shape.moved(frame @ shape.pose_body_shape) for shape in metres]
+
+
+def _named(shape: Shape, mouths: Data) -> Shape:
+    """Return a shape, with its name of old if it is a hole one of whose ends is where that had its mouth."""
+    if isinstance(shape, Hole):
+        ends = shape.nodes_body()[[0, -1]]
+        for name, mouth in mouths.items():
+            if np.linalg.norm(ends - mouth, axis=1).min() <= SAME_MOUTH * shape.radius_m:
+                del mouths[name]
+                return shape.renamed(name)
+    return shape
 
 
 def _rounded(core: FloatArray, radius: float, name: str) -> Shape:

@@ -13,6 +13,7 @@ from cagepose.files.extra import files_library
 from cagepose.files.meshes import run_coacd
 from cagepose.files.meshes.cuts import together
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
+from cagepose.files.progress import tell
 from cagepose.files.write import MADE_BY, check_can_write, is_made_by_us, json_line, write_whole
 from cagepose.model.checks import FloatArray
 
@@ -42,7 +43,9 @@ def decomposed(mesh: Triangles) -> Decomposition:
     MissingExtraError
         coacd is not installed.
     """
+    tell(f"coacd makes convex parts of {len(mesh.faces):,} triangles, which takes it {run_coacd.SECONDS:g} s at most")
     hulls = [manifold3d().Manifold.hull_points(corners) for corners in run_coacd.convex_parts(_simplified(mesh))]
+    tell(f"{len(hulls)} convex parts: how far they are off")
     union = Triangles.of(together(hulls))
     error = max(farthest_from(mesh, union), farthest_from(union, mesh, outside=True))
     return Decomposition([Triangles.of(hull).vertices for hull in hulls], error)

@@ -14,6 +14,7 @@ from cagepose.files.meshes.decomposed import kept_beside
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes, tidied
 from cagepose.files.meshes.run_trimesh import surfaces
+from cagepose.files.progress import tell
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.shapes import Shape
 
@@ -59,6 +60,8 @@ def read_mesh(path: Path, given: LengthUnit | None, of_scene: LengthUnit, name: 
         raise refused("is no file; check the name and the folder") from None
     except OSError as error:
         raise refused(f"cannot be read ({error.strerror or error}); check its permissions") from None
+    finally:
+        tell("")
 
 
 @lru_cache(maxsize=KEPT)
@@ -96,6 +99,7 @@ def read_solids(path: Path, *, split: bool = True) -> dict[str, Triangles]:
         raise refused("is empty; copy or export it again")
     if suffix == ".stl":
         _check_whole(content)
+    tell(f"{path.name}: read, {len(content) / 1024**2:.1f} MiB")
     found = surfaces(content, suffix, split=split)
     if not all(np.isfinite(mesh.vertices).all() for mesh in found.values()):
         raise refused("holds points that are no numbers; export it again")
@@ -135,6 +139,7 @@ def checked(mesh: Triangles, which: str) -> Triangles:
         )
     if centered.body().volume() < 0.0:
         raise refused(f"{which}is inside out: its triangles face inwards; flip them")
+    tell(f"{which}{len(mesh.faces):,} triangles: searched for crossings")
     if crosses_itself(centered):
         raise refused(f"{which}crosses itself; repair it, as by a union of its parts")
     return mesh

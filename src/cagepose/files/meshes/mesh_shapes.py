@@ -18,6 +18,7 @@ from cagepose.files.meshes.cuts import cut_above, cut_until, is_convex, separate
 from cagepose.files.meshes.decomposed import Decomposition, farthest_from
 from cagepose.files.meshes.manifolds import Triangles, without_rounding
 from cagepose.files.meshes.round_holes import RoundHole, filled
+from cagepose.files.progress import tell
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Chamfer, Hole
@@ -82,6 +83,7 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str, decompose: Decompose) -> 
     notes: list[str] = []
     errors = [0.0]
     for part in separate(body):
+        tell(f"{name!r}: {part.num_tri():,} triangles, its shape recognised")
         simple, tolerance = _simplified(part)
         if tolerance > 0.0:
             notes.append(
