@@ -9,7 +9,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cagepose import Box, Cage, Capsule, Convex, Cylinder, Load, MissingExtraError, Object, Pose, Scene, load_scene, run
+from cagepose import (
+    Box,
+    Cage,
+    Capsule,
+    Convex,
+    Cylinder,
+    Hole,
+    Load,
+    MissingExtraError,
+    Object,
+    Pose,
+    Scene,
+    load_scene,
+    run,
+)
 from cagepose.cli.app import main
 from cagepose.exchange import step_solids
 from cagepose.exchange.export import exported
@@ -94,9 +108,48 @@ def test_what_is_round_at_one_end_alone_has_no_core(tmp_path):
     assert solid["volume"] == pytest.approx(np.pi * 9 * (17 + 10) + 2 / 3 * np.pi * 27, rel=1e-9)
 
 
+def with_rough_hole() -> Scene:
+    block, bore = (
+        Box((0.06, 0.06, 0.03), Pose((0, 0, -0.015)), "block"),
+        Hole(0.0051, 0.02, None, ["block"], name="bore"),
+    )
+    peg = Object(shapes=[Cylinder(0.005, 0.06, name="peg")], pose=Pose((0, 0, 0.025)))
+    of = {"bore": 0.7}
+    loads = [Load("weight", gravity=(0.1, 0, -9.81))]
+    return Scene(peg, Cage(shapes=[block, bore]), loads, friction_coefficient=0.2, friction_of=of)
+
+
+@pytest.mark.parametrize("to", ["step", "stl"])
+def test_a_hole_keeps_its_name_and_its_friction(to, tmp_path):
+    pytest.importorskip("OCP")
+    found = there_and_back(with_rough_hole(), f"scene.{to}", tmp_path).scene
+    assert found.friction_of == {"bore": 0.7}
+    (bore,) = found.cage.holes
+    assert (bore.name, bore.depth_m) == ("bore", 0.02)
+
+
+def test_friction_that_comes_back_nowhere_is_told(tmp_path):
+    (tmp_path / "scene.stl").write_bytes(exported(run(with_rough_hole()), "stl", "scene.stl").files["scene.stl"])
+    note = solids_note(with_rough_hole(), run(with_rough_hole()).pose)
+    file_beside(tmp_path / "scene.stl").write_text(note.replace('"holes": {"bore"', '"holes": {"other"'))
+    assert "friction of bore is lost, as nothing there has the name" in imported(str(tmp_path / "scene.stl")).notes
+
+
+def test_models_without_holes_say_that_their_friction_is_not_there():
+    for to in ("mjcf", "urdf"):
+        notes = exported(run(with_rough_hole()), to, "scene.xml").notes
+        assert "bore, a hole with a friction of its own, has that of 'block' here" in notes
+
+
 @pytest.mark.parametrize(
     ("old", "new"),
-    [('"points": [', '"points": 3, "p": ['), ('"friction": {', '"friction": 7, "f": {'), ("[[", "[[0, "), ("{", "[{")],
+    [
+        ('"points": [', '"points": 3, "p": ['),
+        ('"friction": {', '"friction": 7, "f": {'),
+        ("[[", "[[0, "),
+        ("{", "[{"),
+        ('"holes": {', '"holes": {"x": 3'),
+    ],
 )
 def test_a_note_that_somebody_spoilt_is_none(old, new, tmp_path):
     """The bodies are read then as those of another program are."""

@@ -69,18 +69,21 @@ def _radius_m(shape: Shape) -> float:
 
 def _drilled(part: Shape, holes: Sequence[Hole]) -> Mesh:
     scale, library = Scale.of(part), manifold3d()
-    bodies = [scale.body(mesh) for mesh in (shape_mesh(part, SEGMENTS), *(_longer(hole, scale) for hole in holes))]
+    bodies = [
+        scale.body(mesh) for mesh in (shape_mesh(part, SEGMENTS), *(_longer(hole, part, scale) for hole in holes))
+    ]
     return scale.mesh(library.Manifold.batch_boolean(bodies, library.OpType.Subtract))
 
 
-def _longer(hole: Hole, scale: Scale) -> Mesh:
-    """Return the surface of a hole whose ends are moved out by nearly nothing: where they lie in faces of the part,
-    rounding would leave films over them.
+def _longer(hole: Hole, part: Shape, scale: Scale) -> Mesh:
+    """Return the surface of a hole whose open ends are moved out by nearly nothing: they lie in faces of the part,
+    where rounding would leave films over them.
     """
     mesh = shape_mesh(hole, SEGMENTS)
     heights = hole.pose_body_shape.inverse_transform(mesh.vertices_m)[:, 2]
     is_end = np.abs(heights[:, None] - (0.0, -hole.depth_m)) < 1e-9 * hole.depth_m
-    out = PAST_FACE * scale.unit_m * (is_end @ (1.0, -1.0))
+    _, is_open = hole.run_through([part])
+    out = PAST_FACE * scale.unit_m * (is_end @ (1.0, -float(is_open)))
     return Mesh(mesh.vertices_m + np.outer(out, hole.pose_body_shape.rotation[:, 2]), mesh.triangles)
 
 
