@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cagepose.files.extra import files_library
+from cagepose.files.extra import files_library, require
 from cagepose.files.meshes import run_coacd
 from cagepose.files.meshes.cuts import together
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
@@ -43,6 +43,7 @@ def decomposed(mesh: Triangles) -> Decomposition:
     MissingExtraError
         coacd is not installed.
     """
+    require("rtree", "a mesh that is not convex needs rtree", "files")  # which is asked for only after a minute
     tell(f"coacd makes convex parts of {len(mesh.faces):,} triangles, which takes it {run_coacd.SECONDS:g} s at most")
     hulls = [manifold3d().Manifold.hull_points(corners) for corners in run_coacd.convex_parts(_simplified(mesh))]
     tell(f"{len(hulls)} convex parts: how far they are off")
