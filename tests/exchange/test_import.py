@@ -247,6 +247,13 @@ def test_a_mesh_that_is_not_convex_is_said(arm):
 
 BOMB = '<!DOCTYPE m [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]><mujoco model="&b;"/>'
 HOSTILE = {
+    "suffix": (ARM, "has the suffix '.zip'; give a file of one of: .xml, .urdf, .step, .stp, .stl,"),
+    "nowhere": (ARM.replace('pos="1 0 0"', 'pos="nan 0 0"'), "has a body, 'stand', at a place that is no number"),
+    "no size": (ARM.replace('size="0.1 0.2"', 'size="nan 0.2"'), "is refused by MuJoCo's compiler: "),  # writes a log
+    "texture": (
+        ARM.replace("<asset>", '<asset><texture type="cube" fileup="/etc/passwd"/>'),
+        "lies outside of the model's folder",
+    ),
     "truncated": (ARM[:400], "is not XML"),
     "no model": ("<svg/>", "is XML with the root <svg>; give MJCF"),
     "entities": (BOMB, "declares a document type or entities"),
@@ -280,14 +287,24 @@ def test_hostile_files_are_clear_errors_and_nothing_is_written(name, arm, monkey
     (folder / "meshes" / "bomb.xml").write_text(BOMB)
     (folder / "meshes" / "link.stl").symlink_to("/etc/passwd")
     text, message = HOSTILE[name]
-    Path("model.xml").write_text(text)
+    model = Path("model.zip" if name == "suffix" else "model.xml")
+    model.write_text(text)
+    before = sorted(folder.rglob("*"))
     began = time.monotonic()
-    assert main(["import", "model.xml", "-o", "scene.yaml"]) == 2
+    assert main(["import", str(model), "-o", "scene.yaml"]) == 2
     assert time.monotonic() - began < 10.0
     error = capsys.readouterr().err
     assert message in error
+    assert error.startswith(f"{model}") or name == "included"
     assert len(error.splitlines()) == 1
-    assert not Path("scene.yaml").exists()
+    assert sorted(folder.rglob("*")) == before
+
+
+def test_a_module_that_lies_beside_a_model_is_not_run(arm, monkeypatch):
+    """Python would find it there, under the name of one that MuJoCo's process takes."""
+    monkeypatch.chdir(arm.parent)
+    Path("mujoco.py").write_text("import os; os.kill(os.getpid(), 9)")
+    assert imported.imported("arm.xml").scene.object.mass_kg == pytest.approx(3.0)
 
 
 def test_a_model_that_asks_for_too_much_is_stopped(arm, monkeypatch):

@@ -9,11 +9,26 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cagepose import Box, Cage, Convex, Cylinder, Load, MissingExtraError, Object, Pose, Scene, load_scene, run
+from cagepose import (
+    Box,
+    Cage,
+    Capsule,
+    Convex,
+    Cylinder,
+    Hole,
+    Load,
+    MissingExtraError,
+    Object,
+    Pose,
+    Scene,
+    load_scene,
+    run,
+)
 from cagepose.cli.app import main
 from cagepose.exchange import step_solids
 from cagepose.exchange.export import exported
 from cagepose.exchange.imported import imported
+from cagepose.exchange.solids_note import file_beside, read_solids_note, solids_note
 from cagepose.exchange.step import step_solid
 from cagepose.exchange.step_solids import write_step
 from exchange.poses_apart import apart
@@ -28,9 +43,9 @@ def there_and_back(scene: Scene, name: str, folder: Path):
     return imported(str(folder / name))
 
 
-@pytest.mark.parametrize("name", ["rollers", "peg-in-hole", "plate-on-pins", "v-groove"])
+@pytest.mark.parametrize("name", ["rollers", "peg-in-hole", "plate-on-pins", "v-groove", "phone-dock"])
 def test_step_gives_the_same_final_pose(name, tmp_path):
-    """Balls, bars, pins, points, and holes through and blind: to a billionth of the size."""
+    """Balls, bars, pins, points, holes through and blind, a part with round edges: to a billionth of the size."""
     pytest.importorskip("OCP")
     scene = load_scene(FILES[name])
     found = there_and_back(scene, "scene.step", tmp_path)
@@ -64,7 +79,7 @@ def test_a_taper_and_a_chamfer_come_back(to, n_notes, tmp_path):
     assert len(found.notes) == n_notes
 
 
-@pytest.mark.parametrize("name", ["rollers", "rail-pitch", "v-groove"])
+@pytest.mark.parametrize("name", ["rollers", "rail-pitch", "v-groove", "plate-on-pins"])
 def test_stl_gives_the_same_final_pose_within_its_error(name, tmp_path):
     """Here far within, as all corners of the triangles are on the true surface and have all their digits."""
     scene = load_scene(FILES[name])
@@ -73,15 +88,78 @@ def test_stl_gives_the_same_final_pose_within_its_error(name, tmp_path):
     assert all("flat sides where it is round" in note for note in found.notes)
 
 
-def test_a_rounded_hull_is_one_solid_of_step(tmp_path):
-    """Of volume: that of its core, of its faces moved out, of its edges and its corners (Steiner)."""
+@pytest.mark.parametrize("n_corners", [1, 2, 3, 8])
+def test_what_is_round_all_over_is_one_solid_of_step_and_its_core(n_corners, tmp_path):
     pytest.importorskip("OCP")
-    corners = np.array([(x, y, z) for x in (-0.02, 0.02) for y in (-0.01, 0.01) for z in (-0.005, 0.005)])
+    corners = np.array([(x, y, z) for x in (-0.02, 0.02) for y in (-0.01, 0.01) for z in (-0.005, 0.005)])[:n_corners]
     write_step([step_solid("part", Convex(corners, 0.003), [], Pose())], tmp_path / "part.step")
     (solid,) = step_solids.read_step(tmp_path / "part.step")["solids"]
-    edges, faces, core = 4 * (40 + 20 + 10), 2 * (40 * 20 + 40 * 10 + 20 * 10), 40 * 20 * 10
-    wanted = core + 3 * faces + np.pi / 4 * 9 * edges + 4 / 3 * np.pi * 27
-    assert solid["volume"] == pytest.approx(wanted, rel=1e-6)
+    assert solid["radius"] == pytest.approx(3.0)
+    assert np.sort(solid["core"], axis=0) == pytest.approx(np.sort(1e3 * corners, axis=0), abs=1e-9)
+
+
+def test_what_is_round_at_one_end_alone_has_no_core(tmp_path):
+    pytest.importorskip("OCP")
+    bar, sleeve = step_solid("bullet", Capsule(0.003, 0.02), [], Pose()), Cylinder(0.003, 0.014, Pose((0, 0, 0.01)))
+    bar["added"] += step_solid("", sleeve, [], Pose())["added"]
+    write_step([bar], tmp_path / "part.step")
+    (solid,) = step_solids.read_step(tmp_path / "part.step")["solids"]
+    assert "core" not in solid
+    assert solid["volume"] == pytest.approx(np.pi * 9 * (17 + 10) + 2 / 3 * np.pi * 27, rel=1e-9)
+
+
+def with_rough_hole() -> Scene:
+    block, bore = (
+        Box((0.06, 0.06, 0.03), Pose((0, 0, -0.015)), "block"),
+        Hole(0.0051, 0.02, None, ["block"], name="bore"),
+    )
+    peg = Object(shapes=[Cylinder(0.005, 0.06, name="peg")], pose=Pose((0, 0, 0.025)))
+    of = {"bore": 0.7}
+    loads = [Load("weight", gravity=(0.1, 0, -9.81))]
+    return Scene(peg, Cage(shapes=[block, bore]), loads, friction_coefficient=0.2, friction_of=of)
+
+
+@pytest.mark.parametrize("to", ["step", "stl"])
+def test_a_hole_keeps_its_name_and_its_friction(to, tmp_path):
+    pytest.importorskip("OCP")
+    found = there_and_back(with_rough_hole(), f"scene.{to}", tmp_path).scene
+    assert found.friction_of == {"bore": 0.7}
+    (bore,) = found.cage.holes
+    assert (bore.name, bore.depth_m) == ("bore", 0.02)
+
+
+def test_friction_that_comes_back_nowhere_is_told(tmp_path):
+    (tmp_path / "scene.stl").write_bytes(exported(run(with_rough_hole()), "stl", "scene.stl").files["scene.stl"])
+    note = solids_note(with_rough_hole(), run(with_rough_hole()).pose)
+    file_beside(tmp_path / "scene.stl").write_text(note.replace('"holes": {"bore"', '"holes": {"other"'))
+    assert "friction of bore is lost, as nothing there has the name" in imported(str(tmp_path / "scene.stl")).notes
+
+
+def test_models_without_holes_say_that_their_friction_is_not_there():
+    for to in ("mjcf", "urdf"):
+        notes = exported(run(with_rough_hole()), to, "scene.xml").notes
+        assert "bore, a hole with a friction of its own, has that of 'block' here" in notes
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('"points": [', '"points": 3, "p": ['),
+        ('"friction": {', '"friction": 7, "f": {'),
+        ("[[", "[[0, "),
+        ("{", "[{"),
+        ('"holes": {', '"holes": {"x": 3'),
+    ],
+)
+def test_a_note_that_somebody_spoilt_is_none(old, new, tmp_path):
+    """The bodies are read then as those of another program are."""
+    path = tmp_path / "scene.stl"
+    scene = load_scene(FILES["rail-pitch"])
+    text = solids_note(scene, scene.object.pose_world_object)
+    file_beside(path).write_text(text)
+    assert len(read_solids_note(path)["points"]) == 14
+    file_beside(path).write_text(text.replace(old, new))
+    assert read_solids_note(path) == {}
 
 
 def assembly(folder: Path) -> str:

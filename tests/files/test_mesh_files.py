@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+import json
 import os
+import struct
 import sys
 import time
 from pathlib import Path
@@ -13,7 +15,9 @@ import pytest
 
 from cagepose import MissingExtraError, Pose, SceneFileError, load_scene, run, save_scene
 from cagepose.cli.app import main
-from cagepose.files.meshes import mesh_file
+from cagepose.files.meshes import crossings, mesh_file, run_trimesh
+from cagepose.files.meshes.manifolds import Triangles
+from cagepose.files.meshes.run_trimesh import MOST_SOLIDS, surfaces_here
 from cagepose.model.volume import BOX_SIGNS
 
 trimesh = pytest.importorskip("trimesh")
@@ -139,6 +143,24 @@ def inside_out():
     return mesh
 
 
+def glb_of_nothing() -> bytes:
+    """Two thousand million points, of which the file holds none: the standard has them zero then."""
+    points = {"componentType": 5126, "count": 2_000_000_000, "type": "VEC3"}
+    content = {
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [points],
+        "bufferViews": [{"buffer": 0, "byteLength": 4}],
+        "buffers": [{"byteLength": 4}],
+    }
+    text = json.dumps(content).encode()
+    text += b" " * (-len(text) % 4)
+    head = struct.pack("<IIII", 2, 32 + len(text), len(text), 0x4E4F534A)
+    return b"glTF" + head + text + struct.pack("<III", 4, 0x004E4942, 0)
+
+
 HOSTILE = {
     "open.stl": (open_mesh, "is not closed: triangles are missing"),
     "inverted.stl": (inside_out, "is inside out: its triangles face inwards; flip them"),
@@ -150,7 +172,16 @@ HOSTILE = {
     ),
 }
 BYTES = {
-    "empty.stl": (b"", "is truncated: 84 bytes expected, 0 found; copy or export it again"),
+    "empty.stl": (b"", "is empty; copy or export it again"),
+    "cut-text.stl": (
+        trimesh.creation.box().export(file_type="stl_ascii").encode()[:800],
+        "is truncated: its last line is no endsolid",
+    ),
+    "no-numbers.stl": (
+        trimesh.creation.box().export(file_type="stl_ascii").replace("0.5", "nan").encode(),
+        "holds points that are no numbers",
+    ),
+    "eight-gigabytes.glb": (glb_of_nothing(), "cannot be read as a mesh (Unable to allocate"),
     "no-header.stl": (b" " * 50, "is truncated: 84 bytes expected, 50 found"),
     "no-triangles.stl": (bytes(84), "holds no triangles"),
     "no-triangles-in-text.stl": (b"solid facet\nendsolid\n", "holds no triangles"),
@@ -212,9 +243,50 @@ def test_other_files_that_a_mesh_names_are_not_opened(tmp_path):
     (tmp_path / "part.obj").write_text(text.getvalue())
     opened = []
     sys.addaudithook(lambda event, args: opened.append(str(args[0])) if event == "open" else None)
-    scene_of(tmp_path, "mesh: {file: part.obj}")
+    with (tmp_path / "part.obj").open("rb") as stream:
+        surfaces_here(stream.read(), ".obj", split=True)
     assert any(name.endswith("part.obj") for name in opened)
     assert "/etc/passwd" not in opened
+
+
+def test_bodies_of_a_file_are_counted():
+    text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "".join(f"o {number}\nf 1 2 3\n" for number in range(MOST_SOLIDS + 1))
+    with pytest.raises(ValueError, match=r"holds 1,001 bodies, more than 1,000; export those that touch alone"):
+        surfaces_here(text.encode(), ".obj", split=True)
+
+
+def test_a_reader_that_takes_too_long_is_stopped(tmp_path, monkeypatch):
+    written(tmp_path, part(), "slow.stl")
+    monkeypatch.setattr(run_trimesh, "WALL_SECONDS", 0.1)
+    assert refusal(tmp_path, "slow.stl").startswith("takes trimesh more than 0.1 s; simplify it")
+
+
+def test_what_is_seen_from_within_is_not_searched_for_crossings(monkeypatch):
+    """What is round is a little hollow between its facets, as programs for CAD divide it."""
+    mesh = trimesh.creation.icosphere(3)
+    mesh.vertices *= 1.0 + 0.01 * np.random.default_rng(3).random((len(mesh.vertices), 1))
+    monkeypatch.setattr(crossings, "ASKED", None)
+    assert not crossings.crosses_itself(Triangles(np.array(mesh.vertices), np.array(mesh.faces)))
+
+
+def test_a_surface_that_goes_around_twice_crosses_itself():
+    """Its triangles are all seen from within, but they cover the view twice: a ball whose skin winds about an axis."""
+    turns, levels = np.linspace(0.0, 4.0 * np.pi, 63, endpoint=False), np.linspace(0.0, np.pi, 17)[1:-1]
+    ring = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    rows = [np.column_stack([np.sin(level) * ring, np.full(63, np.cos(level))]) for level in levels]
+    vertices = np.concatenate([*rows, [(0, 0, 1), (0, 0, -1)]])
+    here = np.arange(63)
+    beside = np.roll(here, -1)
+    faces = [np.stack([here, beside, np.full(63, len(vertices) - 2)], axis=1)[:, [2, 0, 1]]]
+    for row in range(len(levels) - 1):
+        above, below = 63 * row, 63 * (row + 1)
+        faces += [np.stack([above + here, below + here, below + beside], axis=1)]
+        faces += [np.stack([above + here, below + beside, above + beside], axis=1)]
+    last = 63 * (len(levels) - 1)
+    faces += [np.stack([last + beside, last + here, np.full(63, len(vertices) - 1)], axis=1)]
+    mesh = Triangles(vertices, np.concatenate(faces))
+    assert mesh.body().volume() == pytest.approx(2 * 4 / 3 * np.pi, rel=0.05)
+    assert crossings.crosses_itself(mesh)
 
 
 def test_a_missing_extra_is_named(tmp_path, monkeypatch, capsys):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -240,6 +241,45 @@ def test_numbers_of_a_mesh_of_several_shapes_cannot_be_adjusted(tmp_path):
     text += 'adjustable: {x: {key: "object.shapes[0].position[0]", range: [0, 1]}}\n'
     with pytest.raises(SceneFileError, match=r"adjustable.x.key: points into a mesh that is several shapes"):
         scene_with(tmp_path, UNIONS["boss"][0], (), text)
+
+
+def test_holes_of_a_finely_divided_plate_are_recognised():
+    """Corners lie throughout its faces and along the edges of its walls, of which one pass leaves some."""
+    plate = body(PLATE, without=tuple(Cylinder(5, 30, Pose((x, 0, 0))) for x in (-15.0, 15.0)))
+    found = shapes_of(plate.refine_to_length(0.6), single=True)
+    assert [shape.kind for shape in found.shapes] == ["convex", "hole", "hole"]
+    assert found.error == pytest.approx(5 * (1 - math.cos(math.pi / SEGMENTS)), rel=0.01)
+
+
+def test_a_convex_body_of_many_corners_keeps_as_many_as_may_be_and_their_distance_is_measured():
+    """Corners of an egg: what 300 of them leave of a ball of radius 20 is some 20 (1 - cos(7 deg))."""
+    egg = shape_mesh(Sphere(20.0), 80)
+    found = shapes_of(Triangles(egg.vertices_m * (1.0, 0.7, 0.5), egg.triangles).body())
+    (one,) = found.shapes
+    assert 250 <= len(one.vertices_m) <= 300
+    assert 0.1 < found.error < 0.5
+
+
+def test_what_takes_seconds_is_told_on_a_terminal(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    mesh = shape_mesh(Convex([(0, 0, 0), (3, 0, 0), (0, 4, 0), (0, 0, 5)]), 3)
+    Path("part.stl").write_bytes(binary_stl(mesh))
+    Path("scene.yaml").write_text(
+        "name: s\nobject: {shapes: [{mesh: {file: part.stl}}]}\ncage: {points: [[0, 0, -9]]}\n"
+        "loads: [{name: weight, gravity: [0, 0, -1]}]\n"
+    )
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    assert main(["check", "scene.yaml"]) == 0
+    told = capsys.readouterr().err.split("\r")
+    assert [line.strip() for line in told if line.strip()] == [
+        "part.stl: read, 0.0 MiB",
+        "4 triangles: searched for crossings",
+        "'mesh1': 4 triangles, its shape recognised",
+    ]
+    assert told[-2:] == [" " * 78, ""]
+    monkeypatch.undo()
+    assert main(["check", str(tmp_path / "scene.yaml")]) == 0
+    assert capsys.readouterr().err == ""
 
 
 def test_a_long_thin_rod_is_no_flat_mesh():

@@ -52,8 +52,8 @@ REMARKED = {
         " frame",
     ),
     "millimetres in the place of metres": (
-        scene(scale=10_000.0),
-        "the scene is 173205 mm across; check the unit (units.length of a file, which is mm if left out; metres in"
+        scene(scale=1000.0),
+        "the scene is 17320.5 mm across; check the unit (units.length of a file, which is mm if left out; metres in"
         " Python)",
     ),
     "metres in the place of millimetres": (

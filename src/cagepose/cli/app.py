@@ -15,6 +15,8 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from cagepose.files.progress import told_to
+
 if TYPE_CHECKING:
     from cyclopts import CycloptsError
 
@@ -22,6 +24,8 @@ BAD_INPUT = 2
 BUG = 3
 INTERRUPTED = 130  # 128 + SIGINT, as shells have it
 OBJECTS_BETWEEN_COLLECTIONS = 100_000
+SHOWN = 78
+"""Columns of what a command is doing."""
 BROKEN_PIPE = 141  # 128 + SIGPIPE
 STANDARD_INPUT = "/dev/stdin"
 """Its name where there are such files, and in messages elsewhere, too."""
@@ -89,7 +93,8 @@ def _run(tokens: list[str]) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # a name that the terminal cannot show is no reason to stop
     try:
-        code = _dispatch(tokens)
+        with told_to(_show if sys.stderr.isatty() else None):
+            code = _dispatch(tokens)
         sys.stdout.flush()
         return code
     except KeyboardInterrupt:
@@ -108,6 +113,12 @@ def _run(tokens: list[str]) -> int:
         traceback.print_exc()
         sys.stderr.write("cagepose: this is a bug of ours; please report it with the lines above and the scene file\n")
         return BUG
+
+
+def _show(doing: str) -> None:
+    """Show on a terminal what is being done, in the place of what was before."""
+    sys.stderr.write(f"\r{doing[:SHOWN]:{SHOWN}}\r")
+    sys.stderr.flush()
 
 
 def _abandon_output() -> None:

@@ -38,7 +38,7 @@ def import_command(
 
     try:
         check_can_save_scene(out)
-        found = imported(file, object, cage, _show)
+        found = imported(file, object, cage)
         save_scene(found.scene, out)
     except OSError as error:
         sys.stderr.write(refusal(f"--out {out}", error) + "\n")
@@ -47,9 +47,3 @@ def import_command(
     sys.stdout.write(printable(f"wrote {out}: {contents}") + "\n")
     sys.stdout.write("".join(printable(f"note: {note}") + "\n" for note in found.notes))
     return 0
-
-
-def _show(told: str) -> None:
-    if sys.stderr.isatty():
-        sys.stderr.write(f"\r{told[:70]:70}\r")
-        sys.stderr.flush()

@@ -29,9 +29,13 @@ def beside_text(scene: Scene, *, with_friction: bool = False) -> str:
 
 
 def read_beside(text: str) -> dict[str, Any] | None:
-    """Return what `beside_text` wrote; None: it is something else."""
+    """Return what `beside_text` wrote; None: it is something else, or somebody spoilt it."""
     try:
         found = json.loads(text)
     except ValueError:
         return None
-    return found if isinstance(found, dict) and found.get("version") == VERSION else None
+    if not isinstance(found, dict) or found.get("version") != VERSION:
+        return None
+    friction = found.get("friction", {"of": {}, "coefficient": None})
+    is_whole = isinstance(friction, dict) and "coefficient" in friction and isinstance(friction.get("of"), dict)
+    return found if is_whole and isinstance(found.get("points"), list) else None

@@ -15,7 +15,7 @@ import numpy as np
 from cagepose.errors import FileProblem, SceneError, SceneFileError
 from cagepose.files.own_process import answer, ask
 
-SECONDS = 10.0
+SECONDS = 8.0
 SURFACES = ("plane", "sphere", "capsule", "cylinder", "box", "mesh")
 """Kinds of geoms that are passed on; others only by name."""
 
@@ -29,7 +29,9 @@ def compiled(source: str) -> dict[str, Any]:
         The compiler refuses the model, or takes too long.
     """
     try:
-        found: dict[str, Any] = json.loads(ask(__name__, os.fsencode(source), SECONDS, "MuJoCo's compiler"))
+        found: dict[str, Any] = json.loads(
+            ask(__name__, os.fsencode(os.path.abspath(source)), SECONDS, "MuJoCo's compiler")
+        )
     except SceneError as error:
         raise SceneFileError([FileProblem((), problem.message, source) for problem in error.problems]) from None
     return found
@@ -77,6 +79,11 @@ def _document(mujoco: Any, model: Any) -> dict[str, Any]:
         for body in range(model.nbody)
     ]
     geoms = [_geom(model, geom, kinds) for geom in range(model.ngeom)]
+    for kind, found in (("body", bodies), ("geom", geoms)):
+        for number, one in enumerate(found):
+            if not np.isfinite([*one["position"], *one["quaternion"]]).all():
+                which = repr(one["name"]) if one["name"] else str(number)
+                raise ValueError(f"has a {kind}, {which}, at a place that is no number; correct it")
     return {"bodies": bodies, "geoms": geoms, "gravity": model.opt.gravity.tolist()}
 
 

@@ -16,7 +16,7 @@ from cagepose.exchange.extra import mujoco
 from cagepose.exchange.model_bodies import WORLD, ModelBodies
 from cagepose.exchange.model_friction import scene_friction
 from cagepose.exchange.model_text import ModelText, read_model_text
-from cagepose.exchange.solids_document import METRES, SOLIDS, Progress, kept_friction, solids_document
+from cagepose.exchange.solids_document import METRES, SOLIDS, kept_friction, solids_document
 from cagepose.files.meshes.mesh_shapes import MOST_CORNERS
 from cagepose.files.scene_file import SceneText
 from cagepose.files.yaml_source import YamlSource
@@ -42,13 +42,8 @@ class Import(NamedTuple):
     notes: tuple[str, ...]
 
 
-def imported(
-    source: str,
-    object_name: str | None = None,
-    cage_names: Sequence[str] = (),
-    progress: Progress = lambda told: None,  # noqa: ARG005
-) -> Import:
-    """Read a model.
+def imported(source: str, object_name: str | None = None, cage_names: Sequence[str] = ()) -> Import:
+    """Read a model; what takes seconds is told, see `cagepose.files.progress`.
 
     Parameters
     ----------
@@ -59,8 +54,6 @@ def imported(
         names, or what they begin with before a "/".
     cage_names
         Bodies that hold it, each with all that hangs on it; none: all others.
-    progress
-        Is told which solid is being recognised, as large ones take seconds.
 
     Raises
     ------
@@ -70,10 +63,10 @@ def imported(
         There is no MuJoCo, or what reads solids.
     """
     if Path(source).suffix.lower() in SOLIDS:
-        document, notes = solids_document(source, object_name, cage_names, progress)
+        document, notes = solids_document(source, object_name, cage_names)
         return _import(source, document, notes)
     mujoco()
-    text = read_model_text(source)
+    text = read_model_text(source, SOLIDS)
     reader = _Reader(source, ModelBodies(source, compiled(source)), _beside(text), is_urdf=text.is_urdf)
     return _import(source, reader.document(object_name, cage_names), reader.notes)
 

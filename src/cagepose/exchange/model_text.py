@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree
@@ -15,8 +16,8 @@ MAX_MESH_BYTES = 64 * 1024 * 1024
 SUFFIXES = (".xml", ".urdf")
 FOLDERS = ("meshdir", "texturedir", "assetdir")
 """Attributes that name a folder."""
-NAMES = ("file", "filename")
-"""Attributes that name a file."""
+NAME = "file"
+"""Attributes that name a file begin so: file, filename, fileright of a texture."""
 SCHEMES = re.compile("^(package|file|model)://")
 DECLARATIONS = re.compile("<!(DOCTYPE|ENTITY)", re.IGNORECASE)
 
@@ -28,8 +29,9 @@ class ModelText(NamedTuple):
     is_urdf: bool
 
 
-def read_model_text(source: str) -> ModelText:
-    """Read and check a model and the files that it includes.
+def read_model_text(source: str, others: Sequence[str] = ()) -> ModelText:
+    """Read and check a model and the files that it includes; ``others``: what suffixes files may have that are read
+    elsewhere.
 
     Raises
     ------
@@ -37,12 +39,10 @@ def read_model_text(source: str) -> ModelText:
         It cannot be read, is no MJCF or URDF, declares entities, names a file outside of its folder, or is too large.
     """
     folder = Path(source).parent
-    root = _parsed(Path(source), source)
     if Path(source).suffix not in SUFFIXES:
-        message = (
-            f"has the suffix {Path(source).suffix!r}, which MuJoCo's compiler does not read; name it .xml or .urdf"
-        )
+        message = f"has the suffix {Path(source).suffix!r}; give a file of one of: {', '.join((*SUFFIXES, *others))}"
         raise SceneFileError([FileProblem((), message, source)])
+    root = _parsed(Path(source), source)
     if root.tag not in ("mujoco", "robot"):
         message = f"is XML with the root <{root.tag}>; give MJCF (<mujoco>) or URDF (<robot>)"
         raise SceneFileError([FileProblem((), message, source)])
@@ -53,7 +53,7 @@ def read_model_text(source: str) -> ModelText:
         given = [name for element in model.iter() for key in FOLDERS if (name := element.get(key)) is not None]
         folders += [_inside(folder, name, source) for name in given]
         for element in model.iter():
-            names = [name for key in NAMES if (name := element.get(key)) is not None]
+            names = [name for key, name in element.attrib.items() if key.startswith(NAME)]
             for path in dict.fromkeys(_inside(where, name, source) for where in folders for name in names):
                 if path in seen or not path.is_file():
                     continue  # a missing one is told by the compiler, which knows where else to look

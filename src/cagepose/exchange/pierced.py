@@ -7,13 +7,13 @@ The walls touch the hole from outside, so that what is round meets them where it
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from cagepose.files.meshes.manifolds import Triangles
+from cagepose.exchange.bodies import Scale
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.hole import Hole
 from cagepose.model.shapes import Convex, Shape
@@ -35,15 +35,8 @@ def pierced_pieces(part: Shape, holes: Sequence[Hole]) -> list[Convex]:
     MissingExtraError
         manifold3d is not installed.
     """
-    origin = part.nodes_body().mean(axis=0)
-    unit_m = 2.0 ** float(np.frexp(part.farthest_m(origin))[1])
-    mesh = shape_mesh(part, OUTSIDE)
-    whole = Triangles((mesh.vertices_m - origin) / unit_m, mesh.triangles).body()
-
-    def cut(body: Any, outwards: FloatArray, point: FloatArray) -> Any:
-        """Keep what lies on the side of a plane that ``outwards`` points to."""
-        return body.trim_by_plane(outwards.tolist(), float(outwards @ (point - origin)) / unit_m)
-
+    scale = Scale.of(part)
+    whole = scale.body(shape_mesh(part, OUTSIDE))
     pieces = []
     for hole in holes:
         cell = whole
@@ -52,14 +45,14 @@ def pierced_pieces(part: Shape, holes: Sequence[Hole]) -> list[Convex]:
                 one, two = hole.pose_body_shape.position_m, other.pose_body_shape.position_m
                 axis = hole.pose_body_shape.rotation[:, 2]
                 across = (one - two) - ((one - two) @ axis) * axis
-                cell = cut(cell, unit_rows(across[None])[0], (one + two) / 2.0)
-        pieces += _around(cell, hole, cut)
+                cell = scale.above(cell, unit_rows(across[None])[0], (one + two) / 2.0)
+        pieces += _around(cell, hole, scale.above)
     least = NOTHING * whole.volume()
-    return [Convex(Triangles.of(piece).vertices * unit_m + origin) for piece in pieces if piece.volume() > least]
+    return [Convex(scale.mesh(piece).vertices_m) for piece in pieces if piece.volume() > least]
 
 
-def _around(cell: Any, hole: Hole, cut: Any) -> list[Any]:
-    """Return the pieces of a cell around its hole."""
+def _around(cell: Any, hole: Hole, cut: Callable[[Any, FloatArray, FloatArray], Any]) -> list[Any]:
+    """Return the pieces of a cell around its hole; ``cut`` as `Scale.above`."""
     place, turn = hole.pose_body_shape, hole.pose_body_shape.rotation
     axis = turn[:, 2]
     pieces = [cut(cell, -axis, place.transform((0.0, 0.0, hole.rims[0][0])))]

@@ -8,7 +8,7 @@ a part with holes many wedges around them.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +21,7 @@ from cagepose.model.pose import Pose, turn_from_z
 from cagepose.model.scene import Scene
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Disc, Rounded, Shape, Sphere, Turned
 from cagepose.model.surface import shape_mesh
+from cagepose.model.wording import few
 
 POINT_OF_SIZE = 1e-8
 """Radius of the ball that stands for a cage point, as a fraction of the scene's size."""
@@ -103,7 +104,7 @@ def assembly_of(scene: Scene) -> Assembly:
         ("object", scene.object.parts, scene.object.holes, scene.size_m),
         ("cage", scene.cage.shapes, scene.cage.holes, 2.0 * scene.object.reach_m),
     ):
-        made = _Body(body, holes, reach_m, notes, errors_m, problems)
+        made = _Body(body, holes, reach_m, notes, errors_m, problems, scene.friction_of)
         bodies.append([solid for shape in (*shapes, *_alone(holes)) for solid in made.solids(shape)])
     if problems:
         raise SceneError(problems)
@@ -125,6 +126,7 @@ class _Body:
     notes: list[str]
     errors_m: list[float]
     problems: list[Problem]
+    friction_of: Mapping[str, float]
 
     def solids(self, shape: Shape) -> list[Solid]:
         name = str(shape.name)
@@ -184,6 +186,9 @@ class _Body:
                 else f", and the part {OUTSIDE} sides, up to {within_m:.3g} m within it"
             )
         )
+        rough = [str(hole.name) for hole in holes if hole.name in self.friction_of and hole.name != name]
+        if rough:
+            self.notes.append(f"{few(rough)}, a hole with a friction of its own, has that of {name!r} here")
         return [Solid(f"{name}/{index + 1}", name, piece) for index, piece in enumerate(pierced_pieces(part, holes))]
 
 

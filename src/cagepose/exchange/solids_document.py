@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -10,36 +10,37 @@ from typing import Any
 import numpy as np
 
 from cagepose.errors import FileProblem, SceneError, SceneFileError
-from cagepose.exchange.solids_note import read_solids_note
+from cagepose.exchange.solids_note import SHOWN, read_solids_note
 from cagepose.exchange.step_solids import read_step
 from cagepose.exchange.stl import MM
 from cagepose.files.meshes import mesh_file
 from cagepose.files.meshes.decomposed import kept_beside
 from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
+from cagepose.files.progress import tell
 from cagepose.files.scene_document import SceneWriter
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
-from cagepose.model.pose import Pose
+from cagepose.model.pose import Pose, turn_from_z
 from cagepose.model.shape_moments import shape_moments
-from cagepose.model.shapes import Sphere
+from cagepose.model.shapes import Capsule, Convex, Shape, Sphere
 from cagepose.model.wording import few
 
 Data = dict[str, Any]
-Progress = Callable[[str], None]
 
 STEP = (".step", ".stp")
 SOLIDS = (*STEP, *mesh_file.SUFFIXES)
 MAX_STEP_BYTES = 32 * 1024 * 1024
 METRES = SceneWriter("m")
+ALONE = "has no solid but the object; give that as a `mesh` in a scene file with its cage"
 SAME_VOLUME = 1e-7
 """Of itself: shapes that have it are the solid, and its triangles alone are off."""
+SAME_MOUTH = 1e-6
+"""Of a hole's radius: ends that are this near are one."""
 
 
-def solids_document(
-    source: str, object_name: str | None, cage_names: Sequence[str], progress: Progress
-) -> tuple[Data, list[str]]:
-    """Return the data of a scene of solids, and what is not in it as in the file; ``progress`` is told of each.
+def solids_document(source: str, object_name: str | None, cage_names: Sequence[str]) -> tuple[Data, list[str]]:
+    """Return the data of a scene of solids, and what is not in it as in the file.
 
     Raises
     ------
@@ -58,15 +59,17 @@ def solids_document(
             notes.append(f"solids left out: {few(left, 12)}")
         points = [name for name in walls if _short(name, walls) in note.get("points", ())]
         walls = [name for name in walls if name not in points]
-        of_object, of_cage = (Pose(*note[body]) if note else Pose() for body in ("shown_object", "shown_cage"))
+        of_object, of_cage = (Pose(*note[key]) if note else Pose() for key in SHOWN.values())
         shapes: dict[str, list[Data]] = {"object": [], "cage": []}
         listed = [("object", name, held, of_object.inverse()) for name in held]
         listed += [("cage", name, walls, of_cage.inverse()) for name in walls]
-        for number, (body, name, names, frame) in enumerate(listed):
-            progress(f"solid {number + 1} of {len(listed)}: {name}")
-            shapes[body] += _shapes(path, _short(name, names), solids[name], frame, notes)
+        for body, name, names, frame in listed:
+            of_solid = _shapes(path, _short(name, names), solids[name], frame, notes)
+            shapes[body] += [METRES.shape(_named(shape, note.get("holes", {}))) for shape in of_solid]
     except SceneError as error:
         raise SceneFileError([FileProblem((), problem.message, source) for problem in error.problems]) from None
+    finally:
+        tell("")
     found: Data = {"name": note.get("name") or path.stem, "units": {"length": "m"}}
     found["object"] = {**note.get("object", {}), "shapes": shapes["object"]}
     found["cage"] = {"shapes": shapes["cage"], "pose": METRES.pose(of_cage)}
@@ -79,7 +82,10 @@ def solids_document(
         notes.append("loads: the weight alone, with a gravity of (0, 0, -9.81) m/s^2; no friction")
     found["loads"] = note.get("loads") or [{"name": "weight", "gravity": [0.0, 0.0, -9.81]}]
     elements = [*(shape["name"] for body in shapes.values() for shape in body), *found["cage"].get("points", ())]
-    found |= kept_friction(note, elements) if note else {}
+    if note:
+        found |= kept_friction(note, elements)
+        lost = [one for one in note["friction"]["of"] if not any(is_of(name, one) for name in elements)]
+        notes += [f"friction of {few(lost)} is lost, as nothing there has the name"] if lost else []
     return found | {key: note[key] for key in ("method", "metric", "tolerances") if key in note}, notes
 
 
@@ -100,6 +106,7 @@ def _of_step(path: Path, notes: list[str]) -> dict[str, Data]:
         raise mesh_file.refused("is no file; check the name and the folder")
     if path.stat().st_size > MAX_STEP_BYTES:
         raise mesh_file.refused(f"is larger than {MAX_STEP_BYTES // 1024**2} MiB; export the parts that touch alone")
+    tell(f"{path.name}: read by Open CASCADE")
     found = read_step(path)
     if found["out"]:
         notes.append(f"left out: {few(found['out'], 12)}")
@@ -132,13 +139,15 @@ def _chosen(names: list[str], object_name: str | None, cage_names: Sequence[str]
             raise mesh_file.refused(f"has no solid {wanted!r}; its solids: {few(names, 12) or 'none'}")
         return found
 
+    if len(names) == 1 and object_name is None:
+        raise mesh_file.refused(ALONE)
     if object_name is None and not any(is_of(name, "object") for name in names):
         raise mesh_file.refused(f"does not say which solid is held; give --object and one of: {few(names, 12)}")
     held = of(object_name or "object")
     chosen = [name for wanted in cage_names for name in of(wanted)] or names
     walls = [name for name in dict.fromkeys(chosen) if name not in held]
     if not walls:
-        raise mesh_file.refused("has no solid but the object; give that as a `mesh` in a scene file with its cage")
+        raise mesh_file.refused(ALONE)
     return held, walls
 
 
@@ -149,23 +158,42 @@ def _short(name: str, names: Sequence[str]) -> str:
 
 
 def _middle(solid: Data) -> FloatArray:
-    if "center" in solid:
-        return np.array(solid["center"]) / MM
-    corners = np.asarray(solid["vertices"])
+    corners = np.asarray(solid["core"] if "core" in solid else solid["vertices"])
     middle: FloatArray = (corners.max(axis=0) + corners.min(axis=0)) / 2.0 / MM
     return middle
 
 
-def _shapes(path: Path, name: str, solid: Data, frame: Pose, notes: list[str]) -> list[Data]:
-    """Return a solid as shapes of a scene file, in the frame of its body, in metres."""
-    if "center" in solid:
-        return [METRES.shape(Sphere(solid["radius"] / MM, frame @ Pose(_middle(solid)), name))]
-    mesh = mesh_file.checked(Triangles(np.array(solid["vertices"]), np.array(solid["faces"])), f"{name!r} ")
-    found = mesh_shapes(mesh, name, "mm", partial(kept_beside, path))
-    if not _is_exact(found, solid):
-        notes += found.notes
-    metres = [mesh_file.scaled(shape, 1.0 / MM) for shape in found.shapes]
-    return [METRES.shape(shape.moved(frame @ shape.pose_body_shape)) for shape in metres]
+def _shapes(path: Path, name: str, solid: Data, frame: Pose, notes: list[str]) -> list[Shape]:
+    """Return a solid as shapes in the frame of its body, in metres."""
+    if "core" in solid:
+        shapes: Sequence[Shape] = [_rounded(np.array(solid["core"]), solid["radius"], name)]
+    else:
+        mesh = mesh_file.checked(Triangles(np.array(solid["vertices"]), np.array(solid["faces"])), f"{name!r} ")
+        found = mesh_shapes(mesh, name, "mm", partial(kept_beside, path))
+        notes += [] if _is_exact(found, solid) else found.notes
+        shapes = found.shapes
+    metres = [mesh_file.scaled(shape, 1.0 / MM) for shape in shapes]
+    return [shape.moved(frame @ shape.pose_body_shape) for shape in metres]
+
+
+def _named(shape: Shape, mouths: Data) -> Shape:
+    """Return a shape, with its name of old if it is a hole one of whose ends is where that had its mouth."""
+    if isinstance(shape, Hole):
+        ends = shape.nodes_body()[[0, -1]]
+        for name, mouth in mouths.items():
+            if np.linalg.norm(ends - mouth, axis=1).min() <= SAME_MOUTH * shape.radius_m:
+                del mouths[name]
+                return shape.renamed(name)
+    return shape
+
+
+def _rounded(core: FloatArray, radius: float, name: str) -> Shape:
+    if len(core) == 1:
+        return Sphere(radius, Pose(core[0]), name)
+    if len(core) == 2:
+        span = core[1] - core[0]
+        return Capsule(radius, float(np.linalg.norm(span)), Pose(core.mean(axis=0), turn_from_z(span)), name)
+    return Convex(core, radius, None, name)
 
 
 def _is_exact(found: MeshShapes, solid: Data) -> bool:

@@ -18,18 +18,23 @@ from cagepose.model.scene import Scene
 
 OF_OBJECT = ("mass", "center_of_gravity", "inertia", "pose")
 """Keys of the scene file's object that stand in the note as they are."""
+SHOWN = {"object": "shown_object", "cage": "shown_cage"}
+"""Keys of where each body is in the file: position and quaternion."""
 MOST_BYTES = 4 * 1024 * 1024
 IN_STEP = re.compile(r"/\* cagepose (.*?) \*/", re.DOTALL)
 
 
 def solids_note(scene: Scene, pose_world_object: Pose) -> str:
-    """Return the note for solids that show the object at a pose."""
+    """Return the note for solids that show the object at a pose. Holes have no names there, but mouths."""
     document = scene_document(scene, "m")
     note = json.loads(beside_text(scene, with_friction=True))
     note["what"] = f"a scene's loads, points and poses, {MADE_BY}"
     note["object"] = {key: document["object"][key] for key in OF_OBJECT if key in document["object"]}
+    note["holes"] = {
+        str(hole.name): hole.pose_body_shape.position_m.tolist() for hole in (*scene.object.holes, *scene.cage.holes)
+    }
     for body, pose in (("object", pose_world_object), ("cage", scene.cage.pose_world_cage)):
-        note[f"shown_{body}"] = [pose.position_m.tolist(), pose.quaternion_wxyz.tolist()]
+        note[SHOWN[body]] = [pose.position_m.tolist(), pose.quaternion_wxyz.tolist()]
     return json.dumps(note)
 
 
@@ -56,4 +61,19 @@ def read_solids_note(path: Path) -> dict[str, Any]:
         found = IN_STEP.search(text)
         text = found.group(1) if found else ""
     note = read_beside(text) or {}
-    return note if {"object", "shown_object", "shown_cage", "points"} <= note.keys() else {}
+    mouths = note.get("holes")
+    is_whole = (
+        isinstance(note.get("object"), dict)
+        and isinstance(mouths, dict)
+        and all(_lengths([mouth]) == [3] for mouth in mouths.values())
+        and all(_lengths(note.get(key)) == [3, 4] for key in SHOWN.values())
+    )
+    return note if is_whole else {}
+
+
+def _lengths(found: Any) -> list[int]:
+    """Return how many numbers there are in each list of a list; 0: it is no list of numbers."""
+    rows = found if isinstance(found, list) else []
+    return [
+        len(row) if isinstance(row, list) and all(isinstance(one, int | float) for one in row) else 0 for row in rows
+    ]

@@ -11,20 +11,24 @@ import numpy as np
 
 from cagepose.files.extra import require
 from cagepose.files.own_process import answer, ask
+from cagepose.model.shape_moments import shape_moments
+from cagepose.model.shapes import Convex
 
 Data = dict[str, Any]
 
-CPU_SECONDS, WALL_SECONDS = 10, 60.0
+CPU_SECONDS, WALL_SECONDS = 8, 60.0
 """Of the process; the start of Open CASCADE is one second of it."""
 AROUND = 64
 """Chords of a full circle at least."""
 CHORD_OF_SIZE = 1e-2
 """How far triangles may be from the surface, where that is less than `AROUND` gives."""
+SAME = 1e-7
+"""Of the size: places and moments that are this near are one."""
 
 
 def read_step(path: Path) -> Data:
-    """Return the ``solids`` of a file, each with ``name``, ``vertices`` and ``faces`` of its triangles, and ``volume``,
-    or ``center`` and ``radius`` of a ball; and what was left ``out``, in words.
+    """Return the ``solids`` of a file, each with ``name``, and ``vertices`` and ``faces`` of its triangles, and
+    ``volume``, or the ``core`` of a rounded hull and its ``radius``; and what was left ``out``, in words.
 
     Raises
     ------
@@ -33,7 +37,7 @@ def read_step(path: Path) -> Data:
     MissingExtraError
         Open CASCADE is not installed.
     """
-    return _ask({"read": str(path)})
+    return _ask({"read": str(path.resolve())})
 
 
 def write_step(solids: list[Data], path: Path) -> None:
@@ -44,7 +48,7 @@ def write_step(solids: list[Data], path: Path) -> None:
     SceneError, MissingExtraError
         As `read_step`.
     """
-    _ask({"write": str(path), "solids": solids})
+    _ask({"write": str(path.resolve()), "solids": solids})
 
 
 def _ask(task: Data) -> Data:
@@ -121,9 +125,7 @@ def _leaves(label: Any, place: Any, name: str) -> Iterator[tuple[str, Any]]:
 
 
 def _solid(solid: Any) -> Data:
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.BRepGProp import BRepGProp
-    from OCP.GeomAbs import GeomAbs_Sphere
     from OCP.GProp import GProp_GProps
     from OCP.TopAbs import TopAbs_FACE
     from OCP.TopExp import TopExp_Explorer
@@ -135,12 +137,51 @@ def _solid(solid: Any) -> Data:
     while explorer.More():
         faces.append(TopoDS.Face(explorer.Current()))
         explorer.Next()
-    surface = BRepAdaptor_Surface(faces[0])
-    if len(faces) == 1 and surface.GetType() == GeomAbs_Sphere:
-        ball = surface.Sphere()
-        center = ball.Location()
-        return {"center": [center.X(), center.Y(), center.Z()], "radius": ball.Radius()}
-    return {"volume": abs(mass.Mass()), **_triangles(solid, faces)}
+    return _rounded(faces, mass) or {"volume": abs(mass.Mass()), **_triangles(solid, faces)}
+
+
+def _rounded(faces: list[Any], mass: Any) -> Data | None:
+    """Return the ``core`` of a convex solid all of whose edges are round, such as a ball or a bar with round ends, and
+    the ``radius`` that it is blown up by; None: it is another.
+
+    The corners of the core are the middles of the spheres. That their hull is the solid is seen by the volume, its
+    middle and its second moments.
+    """
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+    from OCP.GeomAbs import GeomAbs_Cylinder, GeomAbs_Plane, GeomAbs_Sphere
+
+    radii, centers = [], []
+    for face in faces:
+        surface = BRepAdaptor_Surface(face)
+        if surface.GetType() == GeomAbs_Sphere:
+            ball = surface.Sphere()
+            radii.append(ball.Radius())
+            centers.append(_xyz(ball.Location()))
+        elif surface.GetType() == GeomAbs_Cylinder:
+            radii.append(surface.Cylinder().Radius())
+        elif surface.GetType() != GeomAbs_Plane:
+            return None
+    if len(centers) == len(faces) == 1:  # as of points far away, whose moments are but rounding
+        return {"core": centers, "radius": radii[0]}
+    if not centers or np.ptp(radii) > SAME * radii[0]:
+        return None
+    size = float(np.ptp(centers, axis=0).max()) + radii[0]
+    _, corners = np.unique(np.round(np.array(centers) / (SAME * size)), axis=0, return_index=True)
+    core = np.array(centers)[corners]
+    found = shape_moments(Convex(core, radii[0]))
+    second = mass.MatrixOfInertia()
+    inertia = np.array([[second.Value(row, column) for column in (1, 2, 3)] for row in (1, 2, 3)]) / mass.Mass()
+    of_core = np.trace(found.second_moment_m2) * np.eye(3) - found.second_moment_m2
+    is_it = (
+        abs(found.volume_m3 - mass.Mass()) <= SAME * found.volume_m3
+        and np.abs(found.centroid_m - _xyz(mass.CentreOfMass())).max() <= SAME * size
+        and np.abs(of_core - inertia).max() <= SAME * size**2
+    )
+    return {"core": core.tolist(), "radius": radii[0]} if is_it else None
+
+
+def _xyz(point: Any) -> list[float]:
+    return [point.X(), point.Y(), point.Z()]
 
 
 def _is_ball(face: Any) -> bool:
@@ -176,7 +217,7 @@ def _triangles(solid: Any, faces: list[Any]) -> Data:
             raise ValueError("has a face that Open CASCADE cannot make triangles of; repair it, or export it again")
         turn, first = place.Transformation(), len(points) - 1
         nodes = [mesh.Node(index).Transformed(turn) for index in range(1, mesh.NbNodes() + 1)]
-        points += [[node.X(), node.Y(), node.Z()] for node in nodes]
+        points += [_xyz(node) for node in nodes]
         order = (1, 3, 2) if face.Orientation() == TopAbs_REVERSED else (1, 2, 3)
         for index in range(1, mesh.NbTriangles() + 1):
             triangle = mesh.Triangle(index)

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from cagepose.exchange.bodies import Scale
 from cagepose.exchange.world_parts import world_parts
-from cagepose.files.meshes.manifolds import Triangles, manifold3d
+from cagepose.files.meshes.manifolds import manifold3d
 from cagepose.files.write import MADE_BY
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
@@ -21,8 +22,8 @@ SEGMENTS = 64
 """Chords of a full circle."""
 POINT_SEGMENTS = 4
 """Of the ball that stands for a cage point."""
-
-
+PAST_FACE = 1e-11
+"""Of a part's size: so far holes go on beyond their ends."""
 MM = 1e3
 """Millimetres of a metre."""
 NOTE_BESIDE = "loads, mass, friction and the start pose are in the note for cagepose alone"
@@ -67,12 +68,23 @@ def _radius_m(shape: Shape) -> float:
 
 
 def _drilled(part: Shape, holes: Sequence[Hole]) -> Mesh:
-    origin = part.nodes_body().mean(axis=0)
-    unit_m = 2.0 ** float(np.frexp(part.farthest_m(origin))[1])
-    meshes = [shape_mesh(shape, SEGMENTS) for shape in (part, *holes)]
-    bodies = [Triangles((mesh.vertices_m - origin) / unit_m, mesh.triangles).body() for mesh in meshes]
-    found = Triangles.of(manifold3d().Manifold.batch_boolean(bodies, manifold3d().OpType.Subtract))
-    return Mesh(found.vertices * unit_m + origin, found.faces)
+    scale, library = Scale.of(part), manifold3d()
+    bodies = [
+        scale.body(mesh) for mesh in (shape_mesh(part, SEGMENTS), *(_longer(hole, part, scale) for hole in holes))
+    ]
+    return scale.mesh(library.Manifold.batch_boolean(bodies, library.OpType.Subtract))
+
+
+def _longer(hole: Hole, part: Shape, scale: Scale) -> Mesh:
+    """Return the surface of a hole whose open ends are moved out by nearly nothing: they lie in faces of the part,
+    where rounding would leave films over them.
+    """
+    mesh = shape_mesh(hole, SEGMENTS)
+    heights = hole.pose_body_shape.inverse_transform(mesh.vertices_m)[:, 2]
+    is_end = np.abs(heights[:, None] - (0.0, -hole.depth_m)) < 1e-9 * hole.depth_m
+    _, is_open = hole.run_through([part])
+    out = PAST_FACE * scale.unit_m * (is_end @ (1.0, -float(is_open)))
+    return Mesh(mesh.vertices_m + np.outer(out, hole.pose_body_shape.rotation[:, 2]), mesh.triangles)
 
 
 def _normals(corners: FloatArray) -> FloatArray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable
 
 from cagepose.errors import Problem, SceneError
@@ -17,15 +18,18 @@ REFUSED = 2
 def ask(module: str, given: bytes, seconds: float, library: str) -> bytes:
     """Return what a module, run as a program, answers; it takes so much time at most.
 
+    It runs in a folder of its own, so that names of files in what is given must be whole, and takes no modules (``-P``)
+    from the folder where the user is.
+
     Raises
     ------
     SceneError
         The library refuses what it is given, breaks, or takes too much.
     """
     try:
-        done = subprocess.run(
-            [sys.executable, "-m", module], input=given, capture_output=True, timeout=seconds, check=False
-        )
+        with tempfile.TemporaryDirectory() as folder:  # libraries write logs to where they run
+            command = [sys.executable, "-P", "-m", module, folder]
+            done = subprocess.run(command, input=given, capture_output=True, timeout=seconds, check=False)
     except subprocess.TimeoutExpired:
         raise SceneError([Problem((), f"takes {library} more than {seconds:g} s; simplify it")]) from None
     if done.returncode == 0:
@@ -41,6 +45,7 @@ def answer(work: Callable[[bytes], bytes], cpu_seconds: int | None = None) -> No
     limit(cpu_seconds)
     answers = os.dup(1)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # libraries print there
+    os.chdir(sys.argv[1])
     try:
         found = work(sys.stdin.buffer.read())
     except (ValueError, RuntimeError) as error:

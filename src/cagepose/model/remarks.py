@@ -16,7 +16,7 @@ APART = 0.1
 """In sizes of the smaller of two parts: what joins parts that are nearer is often left out of a model on purpose."""
 OUTSIDE = 1.0
 """In sizes of the object: a centre of gravity that is farther from it is hardly meant."""
-SMALLEST_M, LARGEST_M = 1e-4, 50.0
+SMALLEST_M, LARGEST_M = 1e-4, 10.0
 """Scenes beyond these sizes are mostly given in another unit than was meant."""
 
 

@@ -9,10 +9,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cagepose.files.extra import files_library
+from cagepose.files.extra import files_library, require
 from cagepose.files.meshes import run_coacd
 from cagepose.files.meshes.cuts import together
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
+from cagepose.files.progress import tell
 from cagepose.files.write import MADE_BY, check_can_write, is_made_by_us, json_line, write_whole
 from cagepose.model.checks import FloatArray
 
@@ -42,9 +43,12 @@ def decomposed(mesh: Triangles) -> Decomposition:
     MissingExtraError
         coacd is not installed.
     """
+    require("rtree", "a mesh that is not convex needs rtree", "files")  # which is asked for only after a minute
+    tell(f"coacd makes convex parts of {len(mesh.faces):,} triangles, which takes it {run_coacd.SECONDS:g} s at most")
     hulls = [manifold3d().Manifold.hull_points(corners) for corners in run_coacd.convex_parts(_simplified(mesh))]
+    tell(f"{len(hulls)} convex parts: how far they are off")
     union = Triangles.of(together(hulls))
-    error = max(_from(mesh, union, outside=False), _from(union, mesh, outside=True))
+    error = max(farthest_from(mesh, union), farthest_from(union, mesh, outside=True))
     return Decomposition([Triangles.of(hull).vertices for hull in hulls], error)
 
 
@@ -92,7 +96,7 @@ def _simplified(mesh: Triangles) -> Triangles:
     return Triangles.of(body)
 
 
-def _from(one: Triangles, other: Triangles, *, outside: bool) -> float:
+def farthest_from(one: Triangles, other: Triangles, *, outside: bool = False) -> float:
     """Return how far points of one surface, spread evenly and at its corners, are from another at most.
 
     ``outside``: of those alone that are outside of it, as between the parts of a body there may be gaps within it.

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import io
 import os
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from cagepose.errors import Problem, SceneError
-from cagepose.files.extra import files_library
 from cagepose.files.meshes.crossings import crosses_itself
 from cagepose.files.meshes.decomposed import kept_beside
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes, tidied
+from cagepose.files.meshes.run_trimesh import surfaces
+from cagepose.files.progress import tell
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.shapes import Shape
 
@@ -27,6 +25,8 @@ MAX_MESH_BYTES = 32 * 1024 * 1024
 """Of one file: 650,000 triangles of a binary STL."""
 STL_HEADER_BYTES, STL_TRIANGLE_BYTES = 84, 50
 """Of a binary STL file; the last four bytes of its header are the number of triangles."""
+STL_LAST_LINE = 1024
+"""Of a text, bytes: it ends with a name."""
 FLAT = 1e-6
 """Of its size: what is thinner is flat."""
 KEPT = 64
@@ -60,6 +60,8 @@ def read_mesh(path: Path, given: LengthUnit | None, of_scene: LengthUnit, name: 
         raise refused("is no file; check the name and the folder") from None
     except OSError as error:
         raise refused(f"cannot be read ({error.strerror or error}); check its permissions") from None
+    finally:
+        tell("")
 
 
 @lru_cache(maxsize=KEPT)
@@ -85,7 +87,6 @@ def read_solids(path: Path, *, split: bool = True) -> dict[str, Triangles]:
     MissingExtraError
         trimesh is not installed.
     """
-    trimesh = files_library("trimesh", "meshes need trimesh")
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise refused(f"has the suffix {path.suffix!r}; give a file of one of: {', '.join(SUFFIXES)}")
@@ -94,39 +95,27 @@ def read_solids(path: Path, *, split: bool = True) -> dict[str, Triangles]:
     if path.stat().st_size > MAX_MESH_BYTES:
         raise refused(f"is larger than {MAX_MESH_BYTES // 1024**2} MiB; simplify it")
     content = path.read_bytes()
+    if not content:
+        raise refused("is empty; copy or export it again")
     if suffix == ".stl":
         _check_whole(content)
-    # No resolver: a file may name others, such as textures, which are not opened.
-    given: dict[str, Any] = {"file_type": suffix[1:], "skip_materials": True, "process": False}
-    try:
-        if split:
-            scene = trimesh.load_scene(
-                io.BytesIO(content), **given, **({"split_objects": True} if suffix == ".obj" else {})
-            )
-            meshes = {str(mesh.metadata["name"]): mesh for mesh in scene.dump()}
-        else:
-            meshes = {"": trimesh.load_mesh(io.BytesIO(content), **given)}
-        return {name: _merged(mesh.vertices, mesh.faces) for name, mesh in meshes.items()}
-    except Exception as error:  # whatever trimesh's readers raise on a damaged file
-        words = " ".join(str(error).split())[:80] or type(error).__name__
-        raise refused(f"cannot be read as a mesh ({words}); export it again") from None
+    tell(f"{path.name}: read, {len(content) / 1024**2:.1f} MiB")
+    found = surfaces(content, suffix, split=split)
+    if not all(np.isfinite(mesh.vertices).all() for mesh in found.values()):
+        raise refused("holds points that are no numbers; export it again")
+    return found
 
 
 def _check_whole(stl: bytes) -> None:
     """Refuse a binary STL file that is shorter than it says."""
     if stl.lstrip().startswith(b"solid") and b"facet" in stl:
-        return  # text, which does not say how long it is
+        if b"endsolid" not in stl[-STL_LAST_LINE:]:
+            raise refused("is truncated: its last line is no endsolid; copy or export it again")
+        return
     n_triangles = int.from_bytes(stl[STL_HEADER_BYTES - 4 : STL_HEADER_BYTES], "little")
     expected = STL_HEADER_BYTES + STL_TRIANGLE_BYTES * n_triangles
     if len(stl) < expected:
         raise refused(f"is truncated: {expected:,} bytes expected, {len(stl):,} found; copy or export it again")
-
-
-def _merged(vertices: ArrayLike, faces: ArrayLike) -> Triangles:
-    """Return triangles whose corners are one where they are at the same place; those with two such are left out."""
-    points, same = np.unique(np.array(vertices, dtype=np.float64), axis=0, return_inverse=True)
-    corners = same.ravel()[np.array(faces, dtype=np.int64).reshape(-1, 3)]
-    return Triangles(points, corners[(corners != np.roll(corners, 1, axis=1)).all(axis=1)])
 
 
 def checked(mesh: Triangles, which: str) -> Triangles:
@@ -137,8 +126,8 @@ def checked(mesh: Triangles, which: str) -> Triangles:
     SceneError
         It is empty, flat, open, inside out, or crosses itself.
     """
-    if len(mesh.faces) == 0 or not np.isfinite(mesh.vertices).all():
-        raise refused(f"{which}holds no triangles with an area, or points that are no numbers; export it again")
+    if len(mesh.faces) == 0:
+        raise refused(f"{which}holds no triangles with an area; export it again")
     size = mesh.size
     centered = Triangles((mesh.vertices - mesh.vertices.mean(axis=0)) / (size or 1.0), mesh.faces)
     spread = np.linalg.svd(centered.vertices, compute_uv=False)
@@ -150,6 +139,7 @@ def checked(mesh: Triangles, which: str) -> Triangles:
         )
     if centered.body().volume() < 0.0:
         raise refused(f"{which}is inside out: its triangles face inwards; flip them")
+    tell(f"{which}{len(mesh.faces):,} triangles: searched for crossings")
     if crosses_itself(centered):
         raise refused(f"{which}crosses itself; repair it, as by a union of its parts")
     return mesh

@@ -15,9 +15,10 @@ import numpy as np
 
 from cagepose.files.meshes.convex_shapes import Recognised, convex_shape
 from cagepose.files.meshes.cuts import cut_above, cut_until, is_convex, separate
-from cagepose.files.meshes.decomposed import Decomposition
-from cagepose.files.meshes.manifolds import ROUNDING, Triangles
+from cagepose.files.meshes.decomposed import Decomposition, farthest_from
+from cagepose.files.meshes.manifolds import Triangles, without_rounding
 from cagepose.files.meshes.round_holes import RoundHole, filled
+from cagepose.files.progress import tell
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Chamfer, Hole
@@ -30,6 +31,8 @@ MOST_TRIANGLES = 10_000
 """Of a body that is not convex: more of them are simplified first."""
 FIRST = 1e-5
 """Of the size: by how much triangles are moved first."""
+HALVINGS = 4
+"""Of the last such step, for a convex body: as many of its corners as may be should stay."""
 HOLLOW = 0.97
 """Of its hull's volume: what is round has more."""
 DIGITS = 11
@@ -74,12 +77,13 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str, decompose: Decompose) -> 
     """
     middle = (mesh.vertices.max(axis=0) + mesh.vertices.min(axis=0)) / 2.0
     scale = 2.0 ** float(np.frexp(mesh.size)[1])
-    body = Triangles((mesh.vertices - middle) / scale, mesh.faces).body().simplify(ROUNDING * mesh.size / scale)
+    body = without_rounding(Triangles((mesh.vertices - middle) / scale, mesh.faces).body())
     found: list[Recognised] = []
     holes: list[RoundHole] = []
     notes: list[str] = []
     errors = [0.0]
     for part in separate(body):
+        tell(f"{name!r}: {part.num_tri():,} triangles, its shape recognised")
         simple, tolerance = _simplified(part)
         if tolerance > 0.0:
             notes.append(
@@ -127,7 +131,7 @@ def tidied(shape: Shape, scale: float, origin: FloatArray) -> Shape:
     if isinstance(shape, Box):
         return Box(lengths(shape.size_m), pose, shape.name)
     if isinstance(shape, Convex):
-        return Convex(lengths(shape.vertices_m + origin / scale), 0.0, None, shape.name)
+        return Convex(lengths(shape.vertices_m + origin / scale), float(lengths(shape.radius_m)), None, shape.name)
     numbers: dict[str, Any] = {key: float(lengths(value)) for key, value in vars(shape).items() if key.endswith("_m")}
     if isinstance(shape, Hole):
         chamfer = shape.chamfer and Chamfer(float(lengths(shape.chamfer.width_m)), shape.chamfer.angle_rad)
@@ -157,13 +161,8 @@ def _simplified(body: Any) -> tuple[Any, float]:
     """Return a body that is not convex with fewer triangles, where it has too many, and how far they are moved."""
     if body.num_tri() <= MOST_TRIANGLES or is_convex(body):
         return body, 0.0
-    return _fewer(body, lambda simple: simple.num_tri() <= MOST_TRIANGLES)
-
-
-def _fewer(body: Any, is_enough: Callable[[Any], bool]) -> tuple[Any, float]:
-    """Return a body with so few triangles that it is enough, and how far they are moved at most."""
     tolerance, moved = FIRST, 0.0
-    while not is_enough(body):
+    while body.num_tri() > MOST_TRIANGLES:
         body, moved = body.simplify(tolerance), moved + tolerance
         tolerance *= 2.0
     return body, moved
@@ -178,12 +177,31 @@ def _recognised(piece: Any) -> Recognised | None:
     is_full = is_convex(piece)
     if not is_full and piece.volume() < HOLLOW * hull.volume():
         return None
-    surface = hull.simplify(ROUNDING * Triangles.of(hull).size) if is_full else piece
+    surface = without_rounding(hull) if is_full else piece
     found = convex_shape(Triangles.of(surface))
     if found is not None or not is_full:
         return found
-    fewer, moved = _fewer(surface, lambda simple: simple.num_vert() <= MOST_CORNERS)
-    return Recognised(Convex(Triangles.of(fewer.hull()).vertices), moved)
+    if surface.num_vert() <= MOST_CORNERS:
+        return Recognised(Convex(Triangles.of(surface).vertices), 0.0)
+    fewer = Triangles.of(_with_fewer_corners(surface).hull())
+    return Recognised(Convex(fewer.vertices), farthest_from(Triangles.of(surface), fewer))
+
+
+def _with_fewer_corners(body: Any) -> Any:
+    """Return a body with as many corners as are allowed, and not many fewer."""
+    found, tolerance = body.simplify(FIRST), FIRST
+    while found.num_vert() > MOST_CORNERS:
+        body, tolerance = found, 2.0 * tolerance
+        found = body.simplify(tolerance)
+    few, many = tolerance, tolerance / 2.0
+    for _ in range(HALVINGS):
+        middle = (few + many) / 2.0
+        simple = body.simplify(middle)
+        if simple.num_vert() <= MOST_CORNERS:
+            found, few = simple, middle
+        else:
+            many = middle
+    return found
 
 
 def _as_convex(shape: Shape) -> Shape:
