@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import Any
 
 from bench import ours
 from bench.peer_body import SPHERE_RADIUS_MM, peer_body
 from bench.peers import TIME_STEPPERS, load_time_stepper
 from bench.rail_case import PLAY_M, Answer, rail_scenes, tilt_error
-from bench.rows import Row
+from bench.rows import Row, with_ratios
 from bench.settle import QUIET_PART_OF_PLAY, NotSettledError, run_to_rest
 from bench.timing import median_cpu_s, median_s
 from cagepose import Scene
@@ -27,9 +27,9 @@ def rail_rows() -> Iterator[Row]:
         own = list(_own_rows(scene))
         slower = max((row for row in own if row.engine in REFERENCE), key=lambda row: row.median_s or 0.0)
         for row in own:
-            yield _with_ratios(row, slower)
+            yield with_ratios(row, slower)
         for engine in PEERS:
-            yield _with_ratios(peer_row(scene, engine), slower)
+            yield with_ratios(peer_row(scene, engine), slower)
 
 
 REFERENCE = tuple(ours.engine_name(method) for method in METHODS)
@@ -95,11 +95,3 @@ PEERS: dict[str, Callable[[Scene, str], Prepared]] = {
     "scipy-lp": _linear_programs,
     "numpy-sweep": _numpy_sweep,
 }
-
-
-def _with_ratios(row: Row, slower: Row) -> Row:
-    """Compare wall times, and CPU times: on a busy machine a long run has to wait, a short one not."""
-    if row.median_s is None or slower.median_s is None:
-        return row
-    details = row.details | {"cpu_ratio": row.details["cpu_s"] / slower.details["cpu_s"]}
-    return replace(row, ratio_to_ours=row.median_s / slower.median_s, details=details)

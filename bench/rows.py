@@ -8,7 +8,7 @@ import os
 import platform
 import tempfile
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -53,6 +53,14 @@ class Row:
         if self.error is not None and not math.isfinite(self.error):
             document["error"] = "inf"
         return document
+
+
+def with_ratios(row: Row, ours: Row) -> Row:
+    """Return a row beside one of ours, by wall and by CPU times: on a busy machine long runs wait, short ones not."""
+    if row.median_s is None or ours.median_s is None:
+        return row
+    details = row.details | {"cpu_ratio": row.details["cpu_s"] / ours.details["cpu_s"]}
+    return replace(row, ratio_to_ours=row.median_s / ours.median_s, details=details)
 
 
 def machine() -> dict[str, Any]:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import asdict, replace
+from dataclasses import asdict
 
 import numpy as np
 
 from bench import ours
-from bench.rail_case import SCENES, FloatArray
-from bench.rows import Row
+from bench.rail_case import SCENES
+from bench.rows import Row, with_ratios
 from bench.timing import median_cpu_s, median_s
 from cagepose import Box, MissingExtraError, Object, Pose, Run, Scene, load_scene, run
-from cagepose.exchange.crosscheck import surface_points
+from cagepose.exchange.crosscheck import apart_m, surface_points
 from cagepose.exchange.mujoco_run import SETTINGS, MujocoRest, MujocoScene
 from cagepose.exchange.solids import assembly_of
 
@@ -32,13 +32,12 @@ def shape_rows() -> Iterator[Row]:
         done = run(scene, METHOD)
         times_s, _ = ours.measure(scene, METHOD, BUDGET_S)
         n_events = sum(len(phase.events) for phase in done.phases)
+        own = []
         for part in ours.PARTS:
             wall_s, cpu_s = times_s[part]
             details = {"verdict": done.verdict, "events": n_events, "cpu_s": cpu_s}
-            yield _with_ratios(
-                Row("shapes", name, ours.engine_name(METHOD, part), wall_s, details=details), times_s[""]
-            )
-        yield _with_ratios(_mujoco_row(name, done), times_s[""])
+            own.append(Row("shapes", name, ours.engine_name(METHOD, part), wall_s, details=details))
+        yield from (with_ratios(row, own[0]) for row in (*own, _mujoco_row(name, done)))
 
 
 def with_faceted_holes(scene: Scene) -> Scene:
@@ -48,7 +47,7 @@ def with_faceted_holes(scene: Scene) -> Scene:
     """
     held, boxes = scene.object, list[Box]()
     for hole in held.holes:
-        middle = hole.pose_body_shape.transform(np.array([[0.0, 0.0, -hole.depth_m / 2.0]]))[0]
+        middle = hole.pose_body_shape.transform((0.0, 0.0, -hole.depth_m / 2.0))
         width = 2.0 * (hole.radius_m + WALL_M) * math.tan(math.pi / BOXES_A_HOLE)
         for angle in np.arange(BOXES_A_HOLE) * 2.0 * math.pi / BOXES_A_HOLE:
             away = (hole.radius_m + WALL_M / 2.0) * np.array([math.cos(angle), math.sin(angle), 0.0])
@@ -90,21 +89,10 @@ def _mujoco_row(name: str, done: Run) -> Row:
     rests = settled()
     if not all(rest.settled.is_quiet for rest in rests):
         return Row("shapes", name, "mujoco", settings=asdict(SETTINGS), skipped="found no rest")
-    apart = max(_apart(points, rest.pose, phase.pose) for rest, phase in zip(rests, done.phases, strict=True))
+    apart = max(apart_m(points, rest.pose, phase.pose) for rest, phase in zip(rests, done.phases, strict=True))
     details = {
         "cpu_s": median_cpu_s(settled, BUDGET_S),
         "apart": apart / done.scene.size_m,
         "penetration": max(rest.penetration_m for rest in rests) / done.scene.size_m,
     }
     return Row("shapes", name, "mujoco", median_s(settled, BUDGET_S), settings=asdict(SETTINGS), details=details)
-
-
-def _apart(points: FloatArray, one: Pose, other: Pose) -> float:
-    return float(np.linalg.norm(one.transform(points) - other.transform(points), axis=1).max())
-
-
-def _with_ratios(row: Row, ours_s: tuple[float, float]) -> Row:
-    if row.median_s is None:
-        return row
-    details = row.details | {"cpu_ratio": row.details["cpu_s"] / ours_s[1]}
-    return replace(row, ratio_to_ours=row.median_s / ours_s[0], details=details)

@@ -146,6 +146,7 @@ def test_models_without_holes_say_that_their_friction_is_not_there():
     [
         ('"points": [', '"points": 3, "p": ['),
         ('"friction": {', '"friction": 7, "f": {'),
+        ('"friction": {', '"f": {'),
         ("[[", "[[0, "),
         ("{", "[{"),
         ('"holes": {', '"holes": {"x": 3'),

@@ -112,7 +112,7 @@ def _checked(
 ) -> PhaseCheck:
     phase, scene = done.phases[index], done.scene
     there = mujoco.settle(index, start)
-    distance_m = _apart(points, there.pose, phase.pose)
+    distance_m = apart_m(points, there.pose, phase.pose)
     angle_rad = _angle(there.pose, phase.pose)
     allowed_m = ALLOWED * (there.penetration_m + assembly.error_m)
     escapes = phase.verdict == "escapes" and not there.settled.is_quiet and distance_m > scene.size_m
@@ -120,7 +120,7 @@ def _checked(
         return PhaseCheck(phase, there, distance_m, angle_rad, allowed_m, None, None, ())
     theirs_m = ours_m = None
     if phase.verdict in AT_REST:
-        ours_m = _apart(points, mujoco.settle(index, phase.pose).pose, phase.pose)
+        ours_m = apart_m(points, mujoco.settle(index, phase.pose).pose, phase.pose)
         if there.settled.is_quiet:
             theirs_m = _left(done, index, there, points)
     reasons = (
@@ -160,7 +160,7 @@ def _left(done: Run, index: int, there: MujocoRest, points: FloatArray) -> float
     except SceneError:
         return None
     ended = run(again, done.method)
-    return None if ended.failed else _apart(points, ended.pose, there.pose)
+    return None if ended.failed else apart_m(points, ended.pose, there.pose)
 
 
 def _from(load: Load, start: Pose, other: Pose) -> Load:
@@ -188,7 +188,8 @@ def _from(load: Load, start: Pose, other: Pose) -> Load:
     )
 
 
-def _apart(points: FloatArray, one: Pose, other: Pose) -> float:
+def apart_m(points: FloatArray, one: Pose, other: Pose) -> float:
+    """Return how far points of an object, (n, 3), are from where they are at another pose, at most."""
     return float(np.linalg.norm(one.transform(points) - other.transform(points), axis=1).max())
 
 

@@ -63,7 +63,8 @@ def read_solids_note(path: Path) -> dict[str, Any]:
     note = read_beside(text) or {}
     mouths = note.get("holes")
     is_whole = (
-        isinstance(note.get("object"), dict)
+        "friction" in note
+        and isinstance(note.get("object"), dict)
         and isinstance(mouths, dict)
         and all(_lengths([mouth]) == [3] for mouth in mouths.values())
         and all(_lengths(note.get(key)) == [3, 4] for key in SHOWN.values())
