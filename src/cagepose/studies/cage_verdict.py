@@ -13,11 +13,12 @@ from cagepose.kernels.algebra.pose import euler_zyx_from_quaternion
 from cagepose.kernels.algebra.record import Rows, empty_rows
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
 from cagepose.kernels.collision.geometry import empty_placement
-from cagepose.kernels.play.certificate import CAGED, FREE, OFF_EDGE, RAN_OFF, UNSOLVED, CertificateWorkspace
+from cagepose.kernels.play.certificate import FREE, OFF_EDGE, RAN_OFF, UNSOLVED
 from cagepose.kernels.play.escape import N_RANDOM, Station, grow_tree
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.run import Motion
+from cagepose.studies.bounds import Bounds
 from cagepose.studies.play_frame import PlayFrame, motion_after
 
 Caged = Literal["caged", "not certified", "escapes"]
@@ -73,31 +74,34 @@ class CageVerdict:
 def judge_cage(
     scene: Scene,
     frame: PlayFrame,
-    proof: CertificateWorkspace,
+    bounds: Bounds,
     free_directions: tuple[str, ...],
     search_s: float,
     progress: Callable[[float], None] | None,
 ) -> tuple[CageVerdict, np.ndarray]:
     """Return the verdict, and the stations of a search that found no way out; it follows where there is no proof."""
-    if proof.certificate.outcome == CAGED:
-        reason = "every pose on the way out puts a point inside the object"
-        return CageVerdict("caged", reason, (), None, None, 0), np.asarray(empty_rows(Station, 0))
+    if bounds.is_caged:
+        return is_caged("a point"), np.asarray(empty_rows(Station, 0))
     stations, n_stations, is_out, n_tried = search_way_out(scene, frame, search_s, progress)
     if is_out:
         path = _path(frame, stations, n_stations - 1)
         reason = f"a way out of {len(path)} {'motion' if len(path) == 1 else 'motions'} was found"
         return CageVerdict("escapes", reason, free_directions, path, None, n_tried), np.asarray(stations)[:0]
-    reason, leaves_at = _reason(scene, frame, proof, free_directions)
+    reason, leaves_at = why_not_caged(scene, frame, bounds, free_directions)
     searched = "no way out was found" if n_tried else "no way out was looked for"
     verdict = CageVerdict("not certified", f"{reason}; {searched}", free_directions, None, leaves_at, n_tried)
     return verdict, np.asarray(stations)[:n_stations]
 
 
-def _reason(
-    scene: Scene, frame: PlayFrame, proof: CertificateWorkspace, free_directions: tuple[str, ...]
+def is_caged(what: str) -> CageVerdict:
+    return CageVerdict("caged", f"every pose on the way out puts {what} inside the object", (), None, None, 0)
+
+
+def why_not_caged(
+    scene: Scene, frame: PlayFrame, bounds: Bounds, free_directions: tuple[str, ...]
 ) -> tuple[str, Pose | None]:
     """Return why there is no proof, and the pose at which a point leaves its face."""
-    certificate = proof.certificate
+    proof, certificate = bounds.proof, bounds.proof.certificate
     if certificate.outcome == FREE:
         return f"nothing limits {' '.join(free_directions)}", None
     if certificate.outcome == UNSOLVED:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,16 +12,27 @@ from numpy.typing import ArrayLike
 from cagepose.errors import Problem, SceneError
 from cagepose.model.checks import FloatArray, expect, finite_array, unit_vector
 from cagepose.model.scene import FARTHEST_START, Scene, millimetres
-from cagepose.studies.cage_verdict import CageVerdict, judge_cage
+from cagepose.studies.bounds import Bounds
+from cagepose.studies.cage_verdict import CageVerdict, is_caged, judge_cage, why_not_caged
+from cagepose.studies.inner_cage import inner_scene
 from cagepose.studies.play_frame import FREEDOMS, PlayFrame, range_goals
-from cagepose.studies.play_result import Play, PlayRange, PointPlay
+from cagepose.studies.play_result import Play, PlayEnd, PlayRange, PointPlay
 from cagepose.studies.polytope_play import MOST_STARTS, PolytopePlay
 from cagepose.studies.pushed_play import PushedPlay
 from cagepose.studies.pushes import unseated
 from cagepose.studies.seat import seated as seated_pushes
 
+NO_INNER_CAGE = "bounds are known of the object's boxes alone, among points and solid shapes over their faces"
+PROVEN_WITHIN = 0.01
+"""Of an end: one that no motion can pass by more is proven. Certified bounds include more than the end itself."""
 SEARCH_S = 2.0
 """Seconds that the search for a way out may take, if the object is not proven to be caged."""
+
+Ends = tuple[PlayEnd, PlayEnd]
+"""Least and greatest."""
+Shifts = Sequence[tuple[FloatArray, FloatArray]]
+"""Points of the object, and a direction for each."""
+Progress = Callable[[float], None] | None
 
 
 def play(
@@ -59,27 +72,67 @@ def play(
     points = [_point_near(scene, point) for point in at]
     along = [unit_vector(direction, "direction") for direction in (directions if len(directions) else np.eye(3))]
     shifts = [(point, direction) for point in points for direction in along]
-    cage: CageVerdict | None = None
     if seated is not None:
         pushed = PushedPlay(scene, seated_pushes(scene, seated), shifts)
-        ranges, times = pushed.ranges(), (pushed.analysis_s, 0.0)
+        found = _Found(None, pushed.ranges(), pushed.analysis_s, 0.0)
     elif scene.has_other_shapes:
-        pushed = PushedPlay(scene, unseated(scene), shifts)
-        cage, ranges, times = pushed.judge(search_s, progress), pushed.ranges(), (pushed.analysis_s, 0.0)
+        found = _of_shapes(scene, shifts, search_s, progress)
     else:
-        frame = PlayFrame(scene)
-        found = PolytopePlay(scene, frame, range_goals(frame, shifts))
-        cage, stations = judge_cage(scene, frame, found.proof, found.free_directions(), search_s, progress)
-        found.search_from(stations[:MOST_STARTS])
-        ranges, times = found.ranges(), (found.analysis_s, found.certificate_s)
+        found = _of_boxes_among_points(scene, shifts, search_s, progress)
     return Play(
         scene,
-        {name: PlayRange(*ranges[index]) for index, name in enumerate(FREEDOMS)},
-        tuple(PointPlay(*shift, *ends) for shift, ends in zip(shifts, ranges[len(FREEDOMS) :], strict=True)),
-        cage,
+        {name: PlayRange(*found.ranges[index]) for index, name in enumerate(FREEDOMS)},
+        tuple(PointPlay(*shift, *ends) for shift, ends in zip(shifts, found.ranges[len(FREEDOMS) :], strict=True)),
+        found.cage,
         seated,
-        *times,
+        found.analysis_s,
+        found.certificate_s,
     )
+
+
+class _Found(NamedTuple):
+    """An answer: the cage, the ends of all freedoms and then of all ways of points, and seconds."""
+
+    cage: CageVerdict | None
+    ranges: list[Ends]
+    analysis_s: float
+    certificate_s: float
+
+
+def _of_boxes_among_points(scene: Scene, shifts: Shifts, search_s: float, progress: Progress) -> _Found:
+    frame = PlayFrame(scene)
+    goals = range_goals(frame, shifts)
+    found, bounds = PolytopePlay(scene, frame, goals), Bounds(frame, goals, scene.touch_m)
+    cage, stations = judge_cage(scene, frame, bounds, found.free_directions(), search_s, progress)
+    found.search_from(stations[:MOST_STARTS])
+    return _Found(cage, _bounded(found.ranges(), bounds.ends), found.analysis_s, bounds.certificate_s)
+
+
+def _of_shapes(scene: Scene, shifts: Shifts, search_s: float, progress: Progress) -> _Found:
+    pushed, inner = PushedPlay(scene, unseated(scene), shifts), inner_scene(scene)
+    if inner is None:
+        cage = pushed.judge(NO_INNER_CAGE, None, search_s, progress)
+        return _Found(cage, pushed.ranges(), pushed.analysis_s, 0.0)
+    frame = PlayFrame(inner)
+    bounds = Bounds(frame, range_goals(frame, shifts), inner.touch_m)
+    if bounds.is_caged:
+        cage = is_caged("a point of the cage's shapes")
+    else:
+        cage = pushed.judge(*why_not_caged(inner, frame, bounds, pushed.free_directions()), search_s, progress)
+    return _Found(cage, _bounded(pushed.ranges(), bounds.ends), pushed.analysis_s, bounds.certificate_s)
+
+
+def _bounded(ranges: list[Ends], bounds: Sequence[float | None]) -> list[Ends]:
+    """Return ends with what no motion passes, two for each range."""
+    pairs = zip(ranges, bounds[::2], bounds[1::2], strict=True)
+    return [(_bounded_end(low, least), _bounded_end(high, greatest)) for (low, high), least, greatest in pairs]
+
+
+def _bounded_end(end: PlayEnd, certified: float | None) -> PlayEnd:
+    if certified is None or end.reached is None:
+        return end
+    is_proven = end.status == "local" and abs(certified) <= (1.0 + PROVEN_WITHIN) * abs(end.reached)
+    return replace(end, certified=certified, status="proven" if is_proven else end.status)
 
 
 def _point_near(scene: Scene, value: ArrayLike) -> FloatArray:

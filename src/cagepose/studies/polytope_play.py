@@ -1,4 +1,4 @@
-"""Play of boxes among points: ends by linear programs and Newton steps over their gaps, with certified bounds."""
+"""Play of boxes among points: ends by linear programs and Newton steps over their gaps."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ import numpy as np
 
 from cagepose.kernels.algebra.record import Rows, empty_rows
 from cagepose.kernels.native.slots import Slots
-from cagepose.kernels.play.certificate import CAGED, certify, empty_certificate_workspace
-from cagepose.kernels.play.extreme import OPEN, REACHED, Extreme
+from cagepose.kernels.play.extreme import OPEN, REACHED, UNFINISHED, Extreme
 from cagepose.kernels.play.goal import SHIFT, Goal
 from cagepose.kernels.play.polytope import empty_play_workspace
 from cagepose.kernels.play.search import find_play, find_play_from
@@ -25,8 +24,7 @@ MOST_STARTS = 2000
 """Poses of the search for a way out that ends are looked for from: a millisecond, and as many on any machine."""
 MOST_ROUNDS = 5
 """Of searches from the ends of others. One round that finds nothing is usual."""
-PROVEN_WITHIN = 0.01
-"""Of an end: one that no motion can pass by more is proven. Certified bounds include more than the end itself."""
+STATUS: dict[int, EndStatus] = {REACHED: "local", OPEN: "open", UNFINISHED: "not converged"}
 
 
 class PolytopePlay:
@@ -37,18 +35,10 @@ class PolytopePlay:
         self.frame = frame
         self.goals = goals
         self.extremes = empty_rows(Extreme, len(goals))
-        self.bounds = np.full(len(goals), np.inf)
-        work = empty_play_workspace(frame.geometry)
-        self.proof = empty_certificate_workspace(len(work.faces))
-        geometry, workspace = self._given = Slots(frame.geometry), Slots(work)
-        touch = scene.tolerances.touch * scene.size_m / frame.length_m
+        geometry, workspace = self._given = Slots(frame.geometry), Slots(empty_play_workspace(frame.geometry))
         started = perf_counter()
         find_play(geometry, goals, self.extremes, workspace)
-        analysed = perf_counter()
-        certify(geometry, touch, goals, self.bounds, workspace, self.proof)
-        self.analysis_s = analysed - started
-        self.certificate_s = perf_counter() - analysed
-        self.is_caged = bool(self.proof.certificate.outcome == CAGED)
+        self.analysis_s = perf_counter() - started
 
     def search_from(self, stations: np.ndarray) -> None:
         """Search for ends again, from the farthest of all other ends and of these poses.
@@ -72,19 +62,12 @@ class PolytopePlay:
         units = np.where(goals["kind"] == SHIFT, self.frame.length_m, 1.0)
         linear = _known(units * found["linear"], found["linear_outcome"] == REACHED)
         reached = _known(units * found["value"], found["outcome"] != OPEN)
-        certified = _known(units * goals["sign"] * self.bounds, self.is_caged & np.isfinite(self.bounds))
+        status = [STATUS[outcome] for outcome in found["outcome"].tolist()]
         ends = [
-            PlayEnd(*values, self._status(index), partial(self._pose, index), partial(self._clearances, index))
-            for index, values in enumerate(zip(linear, reached, certified, strict=True))
+            PlayEnd(first, far, None, status[index], partial(self._pose, index), partial(self._clearances, index))
+            for index, (first, far) in enumerate(zip(linear, reached, strict=True))
         ]
         return list(zip(ends[::2], ends[1::2], strict=True))
-
-    def _status(self, index: int) -> EndStatus:
-        extreme = self.extremes[index]
-        if extreme.outcome != REACHED:
-            return "open" if extreme.outcome == OPEN else "not converged"
-        is_proven = self.is_caged and self.bounds[index] <= (1.0 + PROVEN_WITHIN) * abs(extreme.value)
-        return "proven" if is_proven else "local"
 
     def _pose(self, index: int) -> Pose | None:
         extreme = self.extremes[index]

@@ -164,8 +164,13 @@ class PushedPlay:
                 names.append(name if low and high else f"{'-' if low else '+'}{name}")
         return tuple(names)
 
-    def judge(self, search_s: float, progress: Callable[[float], None] | None) -> CageVerdict:
-        """Say whether a push led out; if none of those did, push points of the object at random for a time."""
+    def judge(
+        self, why_not: str, leaves_at: Pose | None, search_s: float, progress: Callable[[float], None] | None
+    ) -> CageVerdict:
+        """Say whether a push led out; if none of those did, push points of the object at random for a time.
+
+        ``why_not`` and ``leaves_at`` say why there is no proof that none does.
+        """
         rng, started, n_tried = np.random.default_rng(SEED), perf_counter(), 0
         chains = [(), *self._chains(range(len(FREEDOMS)))]
         reach, center = self.scene.object.reach_m, self.scene.object.center_of_gravity_m
@@ -191,8 +196,7 @@ class PushedPlay:
             reason = f"pushed {self._escape_by}{after}, it gets out"
             return CageVerdict("escapes", reason, self.free_directions(), self._path(self.escape), None, n_tried)
         searched = f"no way out was found by {n_tried} random pushes" if n_tried else "no way out was looked for"
-        reason = f"bounds are known of boxes among points alone; {searched}"
-        return CageVerdict("not certified", reason, self.free_directions(), None, None, n_tried)
+        return CageVerdict("not certified", f"{why_not}; {searched}", self.free_directions(), None, leaves_at, n_tried)
 
     def _note_escape(self, chain: Chain, by: str) -> None:
         """Keep the shortest way out."""

@@ -1,0 +1,171 @@
+"""Cages of true shapes, proven by points within them: rollers, pins and walls, random solids, and holes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import nnls
+from scipy.spatial.transform import Rotation
+
+from caged_scenes import caged_scene
+from cagepose import (
+    Box,
+    Cage,
+    Capsule,
+    Cone,
+    Convex,
+    Cylinder,
+    Hole,
+    Load,
+    Object,
+    Pose,
+    Scene,
+    SceneError,
+    Shape,
+    Sphere,
+    play,
+)
+from cagepose.model.shapes import Rounded
+from cagepose.studies.bounds import Bounds
+from cagepose.studies.inner_cage import inner_scene
+from cagepose.studies.play_frame import PlayFrame, range_goals
+from cagepose.studies.pushed_play import PushedPlay
+from cagepose.studies.pushes import unseated
+
+MM = 1e-3
+DOWN = (Load("weight", gravity=(0, 0, -1)),)
+LYING = (math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0)
+
+
+def bar_in_its_slide(stops: bool) -> Scene:
+    """A bar of 200 x 40 x 40 mm: 0.25 mm to four rollers, 0.2 mm to four pins, 0.3 mm to two stops."""
+    shapes: list[Shape] = [
+        Capsule(8 * MM, 80 * MM, Pose(np.array([x, 0, z]) * MM, LYING)) for x in (-90, 90) for z in (-28.25, 28.25)
+    ]
+    shapes += [
+        Cylinder(6 * MM, 30 * MM, Pose(np.array([x, y, 0]) * MM)) for x in (-60, 60) for y in (-26.2, 26.2)
+    ]  # fmt: skip
+    if stops:
+        shapes += [Box(np.array([20, 80, 80]) * MM, Pose(np.array([x, 0, 0]) * MM)) for x in (-110.3, 110.3)]
+    return Scene(Object([Box(np.array([200, 40, 40]) * MM)]), Cage(shapes=shapes), DOWN)
+
+
+def test_a_bar_among_rollers_pins_and_stops_is_caged_within_bounds_as_near_as_those_of_points():
+    found = play(bar_in_its_slide(stops=True))
+    assert found.verdict == "caged"
+    for ends in found.freedoms.values():
+        for end in (ends.low, ends.high):
+            assert abs(end.reached) <= abs(end.certified) <= 1.05 * abs(end.reached)
+    along = found.freedoms["x"]
+    assert (along.low.reached, along.high.reached) == pytest.approx((-0.3 * MM, 0.3 * MM), abs=1e-12)
+    assert along.low.status == along.high.status == "proven"
+
+
+def test_without_its_stops_it_is_not():
+    found = play(bar_in_its_slide(stops=False), search_s=0.0)
+    assert found.verdict == "escapes"
+    assert found.freedoms["z"].high.certified is None
+
+
+def box_under_a_lid(hole_mm: float | None) -> Scene:
+    """A cube of 10 mm amid four walls, on a floor and under a lid, 0.2 mm away each; a hole in the lid over it."""
+    walls = [
+        Box(np.where(axis, 10, 40) * MM, Pose(side * 10.2 * MM * axis), f"wall {number} {side}")
+        for number, axis in enumerate(np.eye(3)[:2])
+        for side in (-1, 1)
+    ]
+    floor, lid = (
+        Box(np.array([40, 40, 10]) * MM, Pose((0, 0, side * 10.2 * MM)), name)
+        for name, side in (("floor", -1), ("lid", 1))
+    )
+    holes = [Hole(hole_mm * MM, 10 * MM, in_=["lid"], pose_body_shape=Pose((0, 0, 15.2 * MM)))] if hole_mm else []
+    return Scene(Object([Box((10 * MM,) * 3)]), Cage(shapes=[*walls, floor, lid], holes=holes), DOWN)
+
+
+def test_a_wall_with_a_hole_holds_nothing():
+    """The cube leaves by a hole of 8 mm radius; in a closed chamber it is caged, and all six ends are proven."""
+    closed = play(box_under_a_lid(None))
+    assert closed.verdict == "caged"
+    assert play(box_under_a_lid(8.0), search_s=0.0).verdict == "escapes"
+    scene = inner_scene(box_under_a_lid(8.0))
+    assert not [name for name in scene.cage.names if name.startswith("lid")]
+    assert [name for name in scene.cage.names if name.startswith("floor")]
+
+
+def test_a_box_of_the_object_with_a_hole_does_not_count():
+    scene = bar_in_its_slide(stops=True)
+    bore = Hole(3 * MM, 40 * MM, in_=["box1"], pose_body_shape=Pose((0, 0, 20 * MM)))
+    bar = Object(scene.object.boxes, shapes=[Sphere(1 * MM, Pose((0.05, 0, 0)))], holes=[bore])
+    assert inner_scene(Scene(bar, scene.cage, DOWN)) is None
+
+
+def solid_at(rng: np.random.Generator, point: np.ndarray, outward: np.ndarray) -> Shape:
+    """A random solid beyond a plane through a point, which it touches there or along an edge or a face."""
+    size, across = 10 ** rng.uniform(-0.5, 1) * MM, np.cross(outward, rng.normal(size=3))
+    turned = np.stack([across, np.cross(outward, across), outward], axis=1) / np.linalg.norm(across) ** np.array(
+        [1, 1, 0]
+    )
+    there = Pose(point, Rotation.from_matrix(turned).as_quat(scalar_first=True))
+    on_its_side = there @ Pose((0, 0, size), LYING)
+    corners = rng.uniform(-size, size, (8, 3))
+    corners[:, 2] += 0.3 * size - corners[:, 2].min()
+    return (
+        Sphere(size, there @ Pose((0, 0, size))),
+        Capsule(size, 3 * size, on_its_side),
+        Cylinder(size, 4 * size, on_its_side),
+        Cone(size, 0.6 * size, 2 * size, there @ Pose((0, 0, size))),
+        Box((size, 2 * size, 3 * size), there @ Pose((0, 0, 1.5 * size))),
+        Convex(corners, 0.3 * size, there),
+    )[rng.integers(6)]
+
+
+def cage_of_solids(rng: np.random.Generator) -> Scene:
+    """A caged scene of points, each with a random solid behind it; some solids are left out as they reach the box."""
+    scene = caged_scene(rng)
+    pose = scene.cage.pose_world_cage.inverse() @ scene.object.pose_world_object
+    kept = list[Shape]()
+    for point in scene.cage.points_cage:
+        place = pose.inverse_transform(point) / (scene.object.boxes[0].size_m / 2)
+        axis = int(np.argmax(np.abs(place)))
+        outward = math.copysign(1.0, place[axis]) * pose.rotation[:, axis]
+        try:
+            solid = solid_at(rng, point, outward)
+            Scene(scene.object, Cage(shapes=[solid], pose=scene.cage.pose_world_cage), DOWN)
+        except SceneError:
+            continue
+        kept.append(solid)
+    return Scene(scene.object, Cage(shapes=kept, pose=scene.cage.pose_world_cage), DOWN)
+
+
+def depth_within(shape: Shape, point: np.ndarray) -> float:
+    """How far a point of the body's frame lies outside a shape, metres, by non-negative least squares on its core."""
+    if not isinstance(shape, Rounded | Box):
+        return 0.0 if shape.holds(point[None])[0] else math.inf
+    corners, heavy = shape.nodes_body(), 1e4
+    system = np.vstack([corners.T, np.full(len(corners), heavy)])
+    _, left = nnls(system, np.append(point, heavy))
+    return float(left) - (shape.radius_m if isinstance(shape, Rounded) else 0.0)
+
+
+def test_random_solids_hold_what_points_within_them_hold(cases):
+    """No push leads out, none of 12 ends passes its bound, and all points lie within the solids."""
+    rng, n_caged, n_cases = np.random.default_rng(8), 0, cases(3, 150)
+    for _ in range(n_cases):
+        scene = cage_of_solids(rng)
+        inner = inner_scene(scene)
+        named = {shape.name: shape for shape in scene.cage.shapes}
+        for name, point in zip(inner.cage.names, inner.cage.points_cage, strict=True):
+            assert depth_within(named[name.rpartition(" ")[0]], point) < 1e-9 * scene.size_m
+        frame = PlayFrame(inner)
+        bounds = Bounds(frame, range_goals(frame), inner.touch_m)
+        if not bounds.is_caged:
+            continue
+        n_caged += 1
+        pushed = PushedPlay(scene, unseated(scene), [])
+        for ends, low, high in zip(pushed.ranges(), bounds.ends[::2], bounds.ends[1::2], strict=True):
+            assert low <= ends[0].reached <= ends[1].reached <= high
+        assert pushed.judge("", None, 0.3, None).verdict == "not certified"
+    print(f"{n_caged} of {n_cases} scenes caged")
+    assert n_caged >= 0.5 * n_cases
