@@ -166,7 +166,9 @@ def test_the_command_prints_and_writes_what_python_finds(capsys: pytest.CaptureF
     assert json.loads(capsys.readouterr().out) == results.document()
     Path("out/design.svg").write_text("mine", encoding="utf-8")
     assert main(["design", "design.yaml", "--out", "out"]) == 2
-    assert "holds something else than what cagepose design wrote" in capsys.readouterr().err
+    captured = capsys.readouterr()
+    assert "holds something else than what cagepose design wrote" in captured.err
+    assert results.sentence() in captured.out  # what was found is not lost
     assert main(["design", "design.yaml", "--workers", "0"]) == 2
     assert "--workers is 0; give 1 or more" in capsys.readouterr().err
 

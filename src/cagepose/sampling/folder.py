@@ -41,6 +41,8 @@ class StudyFolder:
             raise self._refused("is not a folder's name; remove the unprintable character")
         if self.path.exists() and not self.path.is_dir():
             raise self._refused("is not a folder; name one, or a new one")
+        if not self.path.parent.is_dir():
+            raise self._refused("its folder does not exist; make the folder first")
         self.path.mkdir(exist_ok=True)
         if not (self.path / STUDY_NAME).exists():
             if not all(_is_remnant(path) or _holds(path, wanted.get(path.name)) for path in self.path.iterdir()):
