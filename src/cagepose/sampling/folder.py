@@ -100,7 +100,8 @@ class StudyFolder:
         """
         sink = pa.BufferOutputStream()
         texts = [field.name for field in table.schema if pa.types.is_dictionary(field.type)]  # numbers differ
-        pq.write_table(table, sink, compression="zstd", compression_level=1, use_dictionary=texts)
+        how = {"compression": "zstd", "compression_level": 1, "write_page_checksum": True}
+        pq.write_table(table, sink, use_dictionary=texts, **how)
         write_whole(self._part(first, last), sink.getvalue())
 
     def batches(self, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
@@ -113,7 +114,7 @@ class StudyFolder:
         """
         for path in self.parts():
             try:
-                with pq.ParquetFile(path) as part:
+                with pq.ParquetFile(path, page_checksum_verification=True) as part:
                     self._check_version(part.metadata)
                     table = part.read(columns=None if columns is None else list(columns))
             except (OSError, pa.ArrowException) as error:
