@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
 from SALib.sample import sobol as design
 from scipy import stats
 from scipy.stats import qmc
@@ -19,6 +21,8 @@ from cagepose import Study, StudyResults, load_scene, run
 from cagepose.cli.app import main
 from cagepose.model.checks import FloatArray
 from cagepose.sampling import contact_table, runner
+from cagepose.sampling.figures import draw
+from cagepose.sampling.findings import findings_of
 from cagepose.sampling.outcome import Outcomes
 from cagepose.sampling.runner import Runner
 from cagepose.sampling.sensitivity import _indices, saltelli_rows
@@ -286,6 +290,21 @@ def test_a_report_of_one_number_and_one_quantity_has_room_for_its_pictures(
     run_study({"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}}, 20, scene=peg, watch=watch).report()
     for suffix in ("svg", "png"):
         assert {path.stem for path in tmp_path.glob(f"out/*.{suffix}")} == {"sobol", "tornado", "spread"}
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_long_names_stay_within_their_pictures(run_study: RunStudy, peg: Path) -> None:
+    peg.write_text(PEG.replace("0.02, 3]", "0.02, 3], euler_zyx_deg: [0, 0, 0]"), encoding="utf-8")
+    watch = {"top_of_the_block_at_its_far_and_front_end": {"point": [0.3, 0, 0.5]}}
+    vary = {**HEIGHTS, "object.pose.euler_zyx_deg[0]": {"uniform": [-3, 3]}}
+    figures = draw(findings_of(run_study(vary, 20, scene=peg, watch=watch)))
+    for name in ("sobol", "tornado"):
+        FigureCanvasAgg(figures[name]).draw()
+        edges = figures[name].bbox
+        texts = [text for text in figures[name].findobj(Text) if text.get_text().startswith(tuple(watch))]
+        assert len(texts) > 1
+        for extent in (text.get_window_extent() for text in texts):
+            assert edges.x0 <= extent.x0 < extent.x1 <= edges.x1
 
 
 @pytest.mark.usefixtures("small_designs")
