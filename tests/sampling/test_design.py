@@ -216,5 +216,6 @@ def test_a_grid_of_samples_leaves_out_what_is_chosen(scene: Path) -> None:
                    accept="position.z < 0.7").run()  # fmt: skip
     assert {round(3 * point.reached) for point in results.trade_off.points} == {0, 1, 2, 3}
     assert results.loosest == pytest.approx(0.2, abs=1e-3)
+    assert results.sentence().endswith("no value keeps it with 95 % confidence by 3 runs: ask for more")
     with pytest.raises(SceneFileError, match=r"design: sample: is a Latin hypercube|design:.*sample: is a Latin"):
         make(scene, {"parameters.a": [0, 1]}, {"yield": 0.6}, NORMAL, {"method": "latin hypercube", "runs": 2**30})
