@@ -53,6 +53,15 @@ def test_a_parameter_changes_all_that_hangs_on_it() -> None:
     assert parse_scene(SCENE, "s.yaml", ["object.mass==half/2"]).object.mass_kg == 2.0
 
 
+def test_a_name_is_known_in_whichever_form_unicode_has_for_it() -> None:
+    """Keyboards have the micro sign, which Python reads as the Greek letter."""
+    micro, letter = "\N{MICRO SIGN}", "\N{GREEK SMALL LETTER MU}"
+    for name in (micro, letter):
+        text = SCENE.replace("half: 4,", f"half: 4, {name}: 0.2,").replace("=half/40", f"={micro}*half/4 + {letter}")
+        assert parse_scene(text).friction_coefficient == 0.4
+        assert Expression(f"{micro}.z < 3").value({f"{name}_z": 2.0})
+
+
 def test_a_number_may_be_an_expression_whatever_its_key_or_its_parameter_is_called() -> None:
     """``length`` is a unit in one place and a number in others; ``in`` holds names, and may be the name of a point."""
     text = """\

@@ -163,7 +163,8 @@ def test_set_can_mend_a_broken_file(sample_text: str) -> None:
         ("object.boxes[1].name=x", "object.boxes holds 1 values, so it has no index 1; give an index from 0 to 0"),
         ("object.boxes.size=3", "object.boxes is a list, which has no key 'size'; give an index from 0 to 0"),
         ("name.first=x", "name is a single value, which holds no 'first'; set name itself"),
-        ("object.inertia[0]=1", "object.inertia is missing, so it has no index 0; set object.inertia as a whole"),
+        ("object.inertia[0]=1", "object.inertia is missing, so it has no index 0; write it into the scene, or set it as"
+                                " a whole"),
         ("object.mass=[1", "is not YAML: expected ',' or ']', but got the end of the file;"
                            " close the bracket or quote that is open"),
         ("object.mass=!x 1", "has the tag !x; remove it (scene files have no tags)"),

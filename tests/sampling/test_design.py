@@ -166,7 +166,9 @@ def test_the_command_prints_and_writes_what_python_finds(capsys: pytest.CaptureF
     assert json.loads(capsys.readouterr().out) == results.document()
     Path("out/design.svg").write_text("mine", encoding="utf-8")
     assert main(["design", "design.yaml", "--out", "out"]) == 2
-    assert "holds something else than what cagepose design wrote" in capsys.readouterr().err
+    captured = capsys.readouterr()
+    assert "holds something else than what cagepose design wrote" in captured.err
+    assert results.sentence() in captured.out  # what was found is not lost
     assert main(["design", "design.yaml", "--workers", "0"]) == 2
     assert "--workers is 0; give 1 or more" in capsys.readouterr().err
 
@@ -214,5 +216,6 @@ def test_a_grid_of_samples_leaves_out_what_is_chosen(scene: Path) -> None:
                    accept="position.z < 0.7").run()  # fmt: skip
     assert {round(3 * point.reached) for point in results.trade_off.points} == {0, 1, 2, 3}
     assert results.loosest == pytest.approx(0.2, abs=1e-3)
+    assert results.sentence().endswith("no value keeps it with 95 % confidence by 3 runs: ask for more")
     with pytest.raises(SceneFileError, match=r"design: sample: is a Latin hypercube|design:.*sample: is a Latin"):
         make(scene, {"parameters.a": [0, 1]}, {"yield": 0.6}, NORMAL, {"method": "latin hypercube", "runs": 2**30})

@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
 from SALib.sample import sobol as design
 from scipy import stats
 from scipy.stats import qmc
@@ -18,6 +20,9 @@ from scipy.stats import qmc
 from cagepose import Study, StudyResults, load_scene, run
 from cagepose.cli.app import main
 from cagepose.model.checks import FloatArray
+from cagepose.sampling import contact_table, runner
+from cagepose.sampling.figures import draw
+from cagepose.sampling.findings import findings_of
 from cagepose.sampling.outcome import Outcomes
 from cagepose.sampling.runner import Runner
 from cagepose.sampling.sensitivity import _indices, saltelli_rows
@@ -288,6 +293,21 @@ def test_a_report_of_one_number_and_one_quantity_has_room_for_its_pictures(
 
 
 @pytest.mark.usefixtures("small_designs")
+def test_long_names_stay_within_their_pictures(run_study: RunStudy, peg: Path) -> None:
+    peg.write_text(PEG.replace("0.02, 3]", "0.02, 3], euler_zyx_deg: [0, 0, 0]"), encoding="utf-8")
+    watch = {"top_of_the_block_at_its_far_and_front_end": {"point": [0.3, 0, 0.5]}}
+    vary = {**HEIGHTS, "object.pose.euler_zyx_deg[0]": {"uniform": [-3, 3]}}
+    figures = draw(findings_of(run_study(vary, 20, scene=peg, watch=watch)))
+    for name in ("sobol", "tornado"):
+        FigureCanvasAgg(figures[name]).draw()
+        edges = figures[name].bbox
+        texts = [text for text in figures[name].findobj(Text) if text.get_text().startswith(tuple(watch))]
+        assert len(texts) > 1
+        for extent in (text.get_window_extent() for text in texts):
+            assert edges.x0 <= extent.x0 < extent.x1 <= edges.x1
+
+
+@pytest.mark.usefixtures("small_designs")
 def test_chosen_runs_are_scenes_that_run_as_their_rows_do(run_study: RunStudy, tmp_path: Path) -> None:
     vary = {"cage.points.*[2]": {"normal": {"sigma": 0.02}}, "friction.coefficient": {"uniform": [0, 0.2]}}
     results = run_study(vary, 300, accept="verdict == 'rests' and abs(pitch_deg) < 0.215")
@@ -318,6 +338,34 @@ def test_contacts_say_how_often_and_how_much(run_study: RunStudy) -> None:
         if (forces > 0.0).any():
             assert row["mean_force"] == pytest.approx(forces[forces > 0.0].mean())
             assert row["greatest_force"] == forces.max()
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_forces_are_those_of_the_first_rows_at_rest_in_whichever_part(
+    run_study: RunStudy, peg: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(runner, "ROWS_OF_A_BATCH", 8)
+    results = run_study({"object.pose.position[0]": {"uniform": [-0.1, 0.9]}, **RISES}, 64, scene=peg)
+    n_at_rest = int((results.to_frame()["verdict"] == "rests").sum())
+    assert results.report()["contacts"]["forces_of_runs"] == n_at_rest > 8
+    monkeypatch.setattr(contact_table, "MOST_RUNS", 9)
+    assert results.report()["contacts"]["forces_of_runs"] == 9
+
+
+@pytest.mark.usefixtures("small_designs")
+@pytest.mark.parametrize(("away", "verdict"), [("position[0]", "escapes"), ("position[2]", "refused")])
+def test_where_no_row_rests_there_is_a_report_all_the_same(
+    run_study: RunStudy, peg: Path, tmp_path: Path, away: str, verdict: str
+) -> None:
+    """The cube falls beside its points, or starts on them; each scene is built, by two processes."""
+    start = {"position[0]": [2, 3], "position[2]": [0.1, 0.2]}[away]
+    results = run_study(
+        {"object.mass": {"uniform": [1, 2]}, f"object.pose.{away}": {"uniform": start}}, 6, scene=peg, workers=2
+    )
+    numbers = results.report(workers=2)
+    assert {name: one["runs"] for name, one in numbers["verdicts"].items()} == {verdict: 6}
+    assert numbers["contacts"]["forces_of_runs"] == numbers["yield"]["runs"] == 0
+    assert "of the runs are good" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.usefixtures("small_designs")

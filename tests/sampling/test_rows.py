@@ -272,6 +272,16 @@ def test_damaged_parts_and_those_of_another_version_are_named(run_study: RunStud
         run_study(ANGLES, 10, resume=True)
 
 
+def test_a_bit_that_has_changed_on_the_disk_is_no_other_number(run_study: RunStudy) -> None:
+    results = run_study(ANGLES, 10)
+    (part,) = results.folder.parts()
+    content, column = bytearray(part.read_bytes()), pq.read_metadata(part).row_group(0).column(1)
+    content[column.data_page_offset + column.total_compressed_size - 1] ^= 1  # of the last number of a varied key
+    part.write_bytes(content)
+    with pytest.raises(StudyFolderError, match=r"cannot be read .*; remove it and add --resume"):
+        results.table()
+
+
 def test_points_of_a_file_go_with_the_study(run_study: RunStudy, scene_with: Callable[..., Path]) -> None:
     points = read_scene_text(RAIL).scene_file().scene.cage.points_cage * 1000.0
     scene = scene_with("cage.points={file: rollers.csv}")

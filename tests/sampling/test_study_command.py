@@ -128,7 +128,7 @@ def rows_as_csv(capsys: pytest.CaptureFixture[str]) -> None:
         (("study.yaml", "--out", "o", "--workers", "0"), "--workers is 0; give 1 or more"),
         (("none.yaml", "--out", "o"), "none.yaml: does not exist"),
         (("show", "none"), "none: holds no study"),
-        (("study.yaml", "--out", "no/such"), "no/such: cannot be written (No such file or directory)"),
+        (("study.yaml", "--out", "no/such"), "no/such: its folder does not exist; make the folder first"),
         (("study.yaml", "--out", "study.yaml"), "study.yaml: is not a folder"),
         (("study.yaml", "--out", "a\0b"), "is not a folder's name"),
     ],
@@ -143,19 +143,26 @@ def test_what_cannot_be_done_is_said_in_one_line(
     assert len(err.splitlines()) == 1
 
 
-def test_a_full_disk_is_a_clear_error_and_can_be_resumed(
-    study: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("number", "told", "remedy"),
+    [
+        (errno.ENOSPC, "No space left on device", "make room"),
+        (errno.EACCES, "Permission denied", "put that right"),
+    ],
+)
+def test_what_cannot_be_written_is_a_clear_error_and_can_be_resumed(
+    study: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, number: int, told: str, remedy: str
 ) -> None:
     def full(path: Any, content: bytes) -> None:
         if str(path).endswith(".parquet"):
-            raise OSError(errno.ENOSPC, "No space left on device")
+            raise OSError(number, told)
         write.write_whole(path, content)
 
     with monkeypatch.context() as patch:
         patch.setattr(folder_module, "write_whole", full)
         code, _, err = answer(capsys, study, "--out", "out")
     assert code == 2
-    assert err.splitlines()[-1] == "out: cannot be written (No space left on device); make room and add --resume"
+    assert err.splitlines()[-1] == f"out: cannot be written ({told}); {remedy} and add --resume"
     assert answer(capsys, "show", "out") == (2, "", "out: holds no rows yet; run the study with --resume\n")
     assert answer(capsys, study, "--out", "out", "--resume")[0] == 0
     assert len(StudyResults("out")) == 300

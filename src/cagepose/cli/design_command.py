@@ -39,18 +39,18 @@ def design_command(
     n_values, seconds = len(results.trade_off.points), time.perf_counter() - began
     told = f"cagepose: {n_values} values, {results.n_runs:,} runs in {seconds:.1f} s"
     sys.stderr.write(f"\r{told:60}\n" if sys.stderr.isatty() else f"{told}\n")
-    written = []
-    if out is not None:
-        try:
-            written = results.write(out)
-        except OSError as error:
-            sys.stderr.write(refusal(f"--out {out}", error) + "\n")
-            return 2
     if json:
         sys.stdout.write(json_text(results.document()))
+    else:
+        _print(results)
+    if out is None:
         return 0
-    _print(results)
-    if written:
+    try:
+        written = results.write(out)
+    except OSError as error:
+        sys.stderr.write(refusal(f"--out {out}", error) + "\n")
+        return 2
+    if not json:
         sys.stdout.write(printable(f"wrote {', '.join(written)}") + "\n")
     return 0
 

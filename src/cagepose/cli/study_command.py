@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import time
@@ -59,8 +60,9 @@ def study_command(
             results = Study.load(file).run(out, resume=resume, workers=workers, dask=dask, progress=_progress())
             numbers, written = _reported(results, workers, is_shown=False)
     except OSError as error:
-        remedy = "make room and add --resume" if folder is None else "make room"
-        reason = f"cannot be written ({error.strerror or error}); {remedy}"
+        remedy = "make room" if error.errno in (errno.ENOSPC, errno.EDQUOT) else "put that right"
+        again = "" if out is None else " and add --resume"
+        reason = f"cannot be written ({error.strerror or error}); {remedy}{again}"
         sys.stderr.write(printable(f"{folder or out}: {reason}") + "\n")
         return 2
     except KeyboardInterrupt:

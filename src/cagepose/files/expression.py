@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 import operator
+import unicodedata
 from collections.abc import Callable, Mapping
 from functools import reduce
 from typing import Any
@@ -58,7 +59,7 @@ class Expression:
         ValueError
             An unknown name, something else than arithmetic and comparisons, or a number that there is not.
         """
-        evaluator = _Evaluator(names)
+        evaluator = _Evaluator({_read_as(name): value for name, value in names.items()})
         try:
             with np.errstate(all="ignore"):
                 return evaluator.known(evaluator.eval(self.text, previously_parsed=self._tree))
@@ -81,6 +82,11 @@ class Expression:
             raise ValueError("is nested too deep; simplify it") from None
         finally:
             evaluator.let_go()
+
+
+def _read_as(name: str) -> str:
+    """As Python reads a name: the micro sign of keyboards, for one, as the Greek letter."""
+    return name if name.isascii() else unicodedata.normalize("NFKC", name)
 
 
 def _short(text: str) -> str:

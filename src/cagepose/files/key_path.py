@@ -96,7 +96,7 @@ def _check_step(here: object, key: Key, held: str) -> None:
         if key >= len(here):
             raise ValueError(f"{held} holds {len(here)} values, so it has no index {key}; {allowed}")
     elif here is None:
-        raise ValueError(f"{held} is missing, so it has no index {key}; set {held} as a whole")
+        raise ValueError(f"{held} is missing, so it has no index {key}; write it into the scene, or set it as a whole")
     elif not isinstance(here, dict):
         raise ValueError(f"{held} is a single value, which holds no {key!r}; set {held} itself")
 

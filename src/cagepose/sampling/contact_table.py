@@ -73,13 +73,15 @@ def contact_table(results: StudyResults, runner: Runner, statistics: Statistics)
 
 def _forces(results: StudyResults, runner: Runner) -> Iterator[FloatArray]:
     """Yield forces in parts of the rows that come to rest, (n, n_elements)."""
-    names = tuple(results.columns.forces) or results.columns.varied
+    names, n_left = tuple(results.columns.forces) or results.columns.varied, MOST_RUNS
     for part in results.parts([*names, "verdict"]):
         values = np.stack([part[name] for name in names], axis=1)[at_rest(part["verdict"])]
         if results.columns.forces:
             yield values
             continue
-        forces = runner.run(values[:MOST_RUNS], with_forces=True).forces
+        forces = runner.run(values[:n_left], with_forces=True).forces
         assert forces is not None, "they were asked for"
         yield forces
-        return
+        n_left -= len(forces)
+        if n_left == 0:
+            return

@@ -83,7 +83,7 @@ class DesignResults:
         surely, perhaps = self.trade_off.between
         to = "" if perhaps == self.file.loose else f" and {perhaps:.5g}"
         if surely is None:
-            n_runs = self.file.study.model.sample.runs
+            n_runs = self.n_runs // len(self.trade_off.points)
             return f"but no value keeps it with 95 % confidence by {n_runs} runs: ask for more"
         if not to:
             return f"with 95 % confidence at least {surely:.5g}"

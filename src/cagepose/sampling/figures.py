@@ -98,7 +98,7 @@ def _sobol_figure(known: Sequence[Sensitivity], names: Sequence[str]) -> Figure:
         )  # fmt: skip
         panel.set_yticks(places, [names[one] for one in order])
         panel.set_xlim(left=min(0.0, panel.get_xlim()[0]))
-        panel.set_title(found.name)
+        panel.set_title(found.name, loc="right")  # there is room for a long one over the labels, and none beside
         panel.set_xlabel("share of the variance")
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=2)
@@ -122,7 +122,7 @@ def _tornado_figure(
         panel.locator_params(axis="x", nbins=5)
         panel.xaxis.set_major_formatter("{x:g}")
         panel.set_yticks(np.arange(n_bars), [names[one] for one in order])
-        panel.set_title(row.name)
+        panel.set_title(row.name, loc="right")
         panel.set_xlabel("change to either end")
     return figure
 

@@ -41,6 +41,8 @@ class StudyFolder:
             raise self._refused("is not a folder's name; remove the unprintable character")
         if self.path.exists() and not self.path.is_dir():
             raise self._refused("is not a folder; name one, or a new one")
+        if not self.path.parent.is_dir():
+            raise self._refused("its folder does not exist; make the folder first")
         self.path.mkdir(exist_ok=True)
         if not (self.path / STUDY_NAME).exists():
             if not all(_is_remnant(path) or _holds(path, wanted.get(path.name)) for path in self.path.iterdir()):
@@ -98,7 +100,8 @@ class StudyFolder:
         """
         sink = pa.BufferOutputStream()
         texts = [field.name for field in table.schema if pa.types.is_dictionary(field.type)]  # numbers differ
-        pq.write_table(table, sink, compression="zstd", compression_level=1, use_dictionary=texts)
+        how = {"compression": "zstd", "compression_level": 1, "write_page_checksum": True}
+        pq.write_table(table, sink, use_dictionary=texts, **how)
         write_whole(self._part(first, last), sink.getvalue())
 
     def batches(self, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
@@ -111,7 +114,7 @@ class StudyFolder:
         """
         for path in self.parts():
             try:
-                with pq.ParquetFile(path) as part:
+                with pq.ParquetFile(path, page_checksum_verification=True) as part:
                     self._check_version(part.metadata)
                     table = part.read(columns=None if columns is None else list(columns))
             except (OSError, pa.ArrowException) as error:

@@ -95,7 +95,7 @@ class Runner:
         has_forces = with_forces or self._is_judged_by_forces
         if self.is_batch:
             return self._run_batch(values, has_forces)
-        if (self._workers or 1) == 1:
+        if (self._workers or 1) == 1 or len(values) <= ROWS_OF_A_TASK:
             return self._run_one_by_one(values, has_forces)
         tasks = [values[first : first + ROWS_OF_A_TASK] for first in range(0, len(values), ROWS_OF_A_TASK)]
         return _joined(list(self._processes().map(_run_task, tasks, repeat(has_forces))))
