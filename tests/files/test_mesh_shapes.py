@@ -97,6 +97,34 @@ def test_what_is_round_is_recognised_with_the_sagitta_as_its_error(shape, single
     assert found.notes == (f"'part' has flat sides where it is round here, up to {found.error:.2g} mm off",)
 
 
+CORE = np.array([(x, y, z) for x in (-20.0, 20.0) for y in (-10.0, 10.0) for z in (-4.0, 4.0)])
+CORES = {"block": CORE, "slab": CORE[::2], "tetrahedron": CORE[[0, 3, 5, 6]], "triangle": CORE[:5:2]}
+
+
+@pytest.mark.parametrize(("single", "rounding"), [(False, 1e-9), (True, 1e-5)])
+@pytest.mark.parametrize("name", CORES)
+def test_a_hull_that_is_round_all_over_is_recognised(name, single, rounding):
+    """Its corners are found to the last digits, and its error is that of the faces about a corner."""
+    found = shapes_of(body(Convex(CORES[name], 1.5)), single=single)
+    (one,) = found.shapes
+    assert isinstance(one, Convex)
+    assert one.radius_m == pytest.approx(1.5, abs=rounding)
+    corners, wanted = (np.array(sorted(c.round(3).tolist())) for c in (one.vertices_m, PLACE.transform(CORES[name])))
+    assert corners == pytest.approx(wanted, abs=2e-3)
+    assert max(gap_of(one, corner) for corner in PLACE.transform(CORES[name])) < rounding
+    sagitta = 1.5 * (1.0 - math.cos(math.pi / SEGMENTS))
+    assert sagitta * (1.0 - 1e-3) < found.error < 6.0 * sagitta
+
+
+def test_a_hull_whose_edges_are_round_with_two_radii_stays_flat():
+    """And one that is nearly round all over."""
+    two = body(Convex(CORE, 1.5), Convex(CORE * (1.0, 1.0, 0.5), 3.0)).hull()
+    stretched = body(Convex(CORE, 1.5)).scale((1.0, 1.0, 1.01))
+    for solid in (two, stretched):
+        (one,) = shapes_of(solid).shapes
+        assert one.radius_m == 0.0
+
+
 def test_prisms_and_what_is_nearly_round_stay_as_they_are():
     octagon = Convex(shape_mesh(Cylinder(2.0, 5.0), 8).vertices_m)
     flattened = shape_mesh(Cylinder(2.0, 5.0), 64).vertices_m * (1.0, 1.001, 1.0)

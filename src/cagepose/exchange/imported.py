@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cagepose.errors import FileProblem, SceneFileError
-from cagepose.exchange.beside import read_beside
+from cagepose.exchange.beside import read_beside, spoilt
 from cagepose.exchange.compile_model import compiled
 from cagepose.exchange.extra import mujoco
 from cagepose.exchange.model_bodies import WORLD, ModelBodies
@@ -67,7 +67,11 @@ def imported(source: str, object_name: str | None = None, cage_names: Sequence[s
         return _import(source, document, notes)
     mujoco()
     text = read_model_text(source, SOLIDS)
-    reader = _Reader(source, ModelBodies(source, compiled(source)), _beside(text), is_urdf=text.is_urdf)
+    kept, notes = _beside(text), list[str]()
+    beside = read_beside(kept) if kept else {}
+    if beside is None:
+        notes.append(spoilt(Path(source).name))
+    reader = _Reader(source, ModelBodies(source, compiled(source)), beside or {}, notes, is_urdf=text.is_urdf)
     return _import(source, reader.document(object_name, cage_names), reader.notes)
 
 
@@ -76,18 +80,17 @@ def _import(source: str, document: Data, notes: Sequence[str]) -> Import:
     return Import(scene, tuple(dict.fromkeys(notes)))
 
 
-def _beside(text: ModelText) -> Data:
+def _beside(text: ModelText) -> str:
     """Return what `cagepose export` kept beside the bodies; nothing, of other files."""
     if text.is_urdf:
-        return read_beside(text.root.findtext("cagepose") or "") or {}
+        return text.root.findtext("cagepose") or ""
     kept = text.root.find("custom/text[@name='cagepose']")
-    return {} if kept is None else read_beside(kept.get("data") or "") or {}
+    return "" if kept is None else kept.get("data") or ""
 
 
 class _Reader:
-    def __init__(self, source: str, bodies: ModelBodies, beside: Data, *, is_urdf: bool) -> None:
-        self.source, self.bodies, self.beside, self.is_urdf = source, bodies, beside, is_urdf
-        self.notes: list[str] = []
+    def __init__(self, source: str, bodies: ModelBodies, beside: Data, notes: list[str], *, is_urdf: bool) -> None:
+        self.source, self.bodies, self.beside, self.notes, self.is_urdf = source, bodies, beside, notes, is_urdf
 
     def document(self, object_name: str | None, cage_names: Sequence[str]) -> Data:
         """Return the scene file's data."""

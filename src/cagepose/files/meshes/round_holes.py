@@ -64,19 +64,24 @@ def _walls(mesh: Triangles) -> list[FloatArray]:
     spans = mesh.vertices[edges[:, 1]] - mesh.vertices[edges[:, 0]]
     lengths = np.linalg.norm(spans, axis=1)
     left, walls = np.ones(len(edges), bool), []
-    for seed in np.argsort(-lengths).tolist():
+    slack = 3.0 * SINGLE_PRECISION * mesh.size
+    longest_first = np.argsort(-lengths)
+    falling = -lengths[longest_first]
+    for seed in longest_first.tolist():
         if not left[seed]:
             continue
+        ends = np.searchsorted(falling, -lengths[seed] + (-2.0 * slack, 2.0 * slack))  # a wavy body has many edges
+        rows = longest_first[slice(*ends)]
+        rows = rows[left[rows]]
+        if len(rows) < FEWEST_SIDES:
+            continue
         axis = spans[seed] / lengths[seed]
-        across = np.linalg.norm(np.cross(spans, axis), axis=1)
-        low, high = np.sort(mesh.vertices[edges] @ axis, axis=1).T
-        slack = 3.0 * SINGLE_PRECISION * mesh.size
-        is_level = (np.abs(low - low[seed]) < slack) & (np.abs(high - high[seed]) < slack)
-        alike = left & is_level & (across <= PARALLEL * lengths)
-        rows = np.flatnonzero(alike)
+        across = np.linalg.norm(np.cross(spans[rows], axis), axis=1)
+        off = np.sort(mesh.vertices[edges[rows]] @ axis, axis=1) - np.sort(mesh.vertices[edges[seed]] @ axis)
+        rows = rows[(np.abs(off) < slack).all(axis=1) & (across <= PARALLEL * lengths[rows])]
         bottoms = np.where((spans[rows] @ axis > 0.0)[:, None], edges[rows], edges[rows][:, ::-1])
         row_of = {int(bottom): int(row) for row, bottom in zip(rows, bottoms[:, 0], strict=True)}
-        start = next(bottom for bottom, row in row_of.items() if row == seed)
+        start = int(edges[seed, 0])
         ring, waiting = {start}, [start]
         while waiting:
             beside = (links.get(waiting.pop(), set()) & row_of.keys()) - ring
