@@ -255,6 +255,20 @@ def test_bodies_of_a_file_are_counted():
         surfaces_here(text.encode(), ".obj", split=True)
 
 
+def test_solids_of_a_text_stl_are_one_body_where_none_is_asked_for_by_name():
+    """Some programs make a solid of each triangle, of which trimesh reads 100,000 in half a minute."""
+    text = trimesh.creation.box().subdivide().subdivide().subdivide().export(file_type="stl_ascii")
+    facets = text.replace("endfacet", "endfacet\nendsolid one \r\nSolid another")
+    n_solids = facets.count("endsolid")
+    assert n_solids == 769
+    (mesh,) = surfaces_here(facets.encode(), ".stl", split=False).values()
+    assert len(mesh.faces) == 768
+    assert mesh.body().volume() == pytest.approx(1.0)
+    assert len(surfaces_here(facets.encode(), ".stl", split=True)) == 768
+    with pytest.raises(ValueError, match=r"holds 1,538 bodies, more than 1,000; export those that touch alone"):
+        surfaces_here(2 * facets.encode(), ".stl", split=True)
+
+
 def test_a_reader_that_takes_too_long_is_stopped(tmp_path, monkeypatch):
     written(tmp_path, part(), "slow.stl")
     monkeypatch.setattr(run_trimesh, "WALL_SECONDS", 0.1)

@@ -13,7 +13,7 @@ from cagepose.files.meshes.crossings import crosses_itself
 from cagepose.files.meshes.decomposed import kept_beside
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes, tidied
-from cagepose.files.meshes.run_trimesh import surfaces
+from cagepose.files.meshes.run_trimesh import is_text, surfaces
 from cagepose.files.progress import tell
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.shapes import Shape
@@ -108,7 +108,7 @@ def read_solids(path: Path, *, split: bool = True) -> dict[str, Triangles]:
 
 def _check_whole(stl: bytes) -> None:
     """Refuse a binary STL file that is shorter than it says."""
-    if stl.lstrip().startswith(b"solid") and b"facet" in stl:
+    if is_text(stl):
         if b"endsolid" not in stl[-STL_LAST_LINE:]:
             raise refused("is truncated: its last line is no endsolid; copy or export it again")
         return
