@@ -150,6 +150,7 @@ def test_models_without_holes_say_that_their_friction_is_not_there():
         ("[[", "[[0, "),
         ("{", "[{"),
         ('"holes": {', '"holes": {"x": 3'),
+        ("{", 100_000 * "["),
     ],
 )
 def test_a_note_that_somebody_spoilt_is_said_and_passed_over(old, new, tmp_path):

@@ -44,7 +44,7 @@ def read_beside(text: str) -> dict[str, Any] | None:
     """Return what `beside_text` wrote; None: it is something else, or somebody spoilt it."""
     try:
         found = json.loads(text)
-    except ValueError:
+    except (ValueError, RecursionError):
         return None
     if not isinstance(found, dict) or found.get("version") != VERSION:
         return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
@@ -62,9 +63,21 @@ def imported(source: str, object_name: str | None = None, cage_names: Sequence[s
     MissingExtraError
         There is no MuJoCo, or what reads solids.
     """
-    if Path(source).suffix.lower() in SOLIDS:
-        document, notes = solids_document(source, object_name, cage_names)
-        return _import(source, document, notes)
+    is_solids = Path(source).suffix.lower() in SOLIDS
+    if any("\udc80" <= letter <= "\udcff" for letter in os.path.abspath(source)):  # the bytes of no UTF-8
+        message = "has a name, or is in a folder, whose letters are no UTF-8; rename it"
+        raise SceneFileError([FileProblem((), message, source)])
+    try:
+        document, notes = (solids_document if is_solids else _model_document)(source, object_name, cage_names)
+    except OSError as error:
+        message = f"cannot be read ({error.strerror or error}); check the names of its files and their permissions"
+        raise SceneFileError([FileProblem((), message, source)]) from None
+    scene = SceneText("", YamlSource(document, source), Path(source).parent).scene_file().scene
+    return Import(scene, tuple(dict.fromkeys(notes)))
+
+
+def _model_document(source: str, object_name: str | None, cage_names: Sequence[str]) -> tuple[Data, list[str]]:
+    """Return the data of a scene of bodies, and what is not in it as in the model."""
     mujoco()
     text = read_model_text(source, SOLIDS)
     kept, notes = _beside(text), list[str]()
@@ -72,12 +85,7 @@ def imported(source: str, object_name: str | None = None, cage_names: Sequence[s
     if beside is None:
         notes.append(spoilt(Path(source).name))
     reader = _Reader(source, ModelBodies(source, compiled(source)), beside or {}, notes, is_urdf=text.is_urdf)
-    return _import(source, reader.document(object_name, cage_names), reader.notes)
-
-
-def _import(source: str, document: Data, notes: Sequence[str]) -> Import:
-    scene = SceneText("", YamlSource(document, source), Path(source).parent).scene_file().scene
-    return Import(scene, tuple(dict.fromkeys(notes)))
+    return reader.document(object_name, cage_names), notes
 
 
 def _beside(text: ModelText) -> str:

@@ -17,8 +17,8 @@ from cagepose.files.progress import tell
 from cagepose.files.write import MADE_BY, check_can_write, is_made_by_us, json_line, write_whole
 from cagepose.model.checks import FloatArray
 
-TRIANGLES = 4000
-"""Of what coacd is given, which takes it some ten seconds."""
+TRIANGLES = 2000
+"""Of what coacd is given: of twice as many it makes parts that are no nearer, in half as much time again."""
 SAMPLES = 4000
 """Points of each surface that are asked how far they are from the other."""
 MOST_KEPT = 8
@@ -89,7 +89,7 @@ def kept_beside(mesh_file: Path, mesh: Triangles) -> Decomposition:
 def _kept(path: Path) -> dict[str, Any]:
     try:
         found = json.loads(path.read_text()) if path.is_file() else {}
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return {}
     return dict(found.get("parts_of") or {}) if isinstance(found, dict) else {}
 

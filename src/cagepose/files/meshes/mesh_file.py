@@ -29,6 +29,10 @@ STL_LAST_LINE = 1024
 """Of a text, bytes: it ends with a name."""
 FLAT = 1e-6
 """Of its size: what is thinner is flat."""
+LONGEST, SHORTEST = 1e9, 1e-9
+"""In the unit of the file."""
+MOST_AWAY = 1e6
+"""From the origin, in sizes: the corners of what is farther away have too few digits."""
 KEPT = 64
 """Meshes that are not read again for each scene of a study."""
 
@@ -124,11 +128,18 @@ def checked(mesh: Triangles, which: str) -> Triangles:
     Raises
     ------
     SceneError
-        It is empty, flat, open, inside out, or crosses itself.
+        It is empty, huge, tiny, far away, flat, open, inside out, or crosses itself.
     """
     if len(mesh.faces) == 0:
         raise refused(f"{which}holds no triangles with an area; export it again")
+    farthest = float(np.abs(mesh.vertices).max())
+    if farthest > LONGEST:
+        raise refused(f"{which}has a corner at {farthest:.2g}, more than {LONGEST:g}; check its unit and its place")
     size = mesh.size
+    if 0.0 < size < SHORTEST:
+        raise refused(f"{which}is {size:.2g} long, less than {SHORTEST:g}; check its unit")
+    if farthest > MOST_AWAY * size > 0.0:
+        raise refused(f"{which}is {farthest / size:.2g} times its size away from the origin; move both bodies there")
     centered = Triangles((mesh.vertices - mesh.vertices.mean(axis=0)) / (size or 1.0), mesh.faces)
     spread = np.linalg.svd(centered.vertices, compute_uv=False)
     if size == 0.0 or len(spread) < 3 or spread[2] <= FLAT * spread[0]:

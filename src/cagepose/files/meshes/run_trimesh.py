@@ -67,6 +67,8 @@ def surfaces_here(content: bytes, suffix: str, *, split: bool) -> dict[str, Tria
         raise ValueError("holds no triangles; export it again")
     if len(meshes) > MOST_SOLIDS:
         raise _too_many(len(meshes))
+    if any(mesh.faces.max() >= len(mesh.vertices) or mesh.faces.min() < 0 for mesh in meshes):
+        raise ValueError("has a triangle whose corner is not there; export it again")
     return {str(mesh.metadata["name"]) if split else "": _merged(mesh.vertices, mesh.faces) for mesh in meshes}
 
 
