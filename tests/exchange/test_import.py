@@ -166,7 +166,7 @@ def test_a_foreign_model_is_read_and_what_it_loses_is_said(arm):
         "joints stay where the model has them, of flap",
         "left out, as they touch nothing: shell",
         "left out: 'egg', as it is neither box, ball, capsule, cylinder, plane nor mesh",
-        "'floor' is a plane; here, a box, 8 m by 8 m, its top there",
+        "'floor' is a plane; here, a box 8 m wide under the object, its top there",
         "loads: the weight alone, with a gravity of (0, 0, -3) m/s^2",
     )
     held = scene.object
@@ -199,6 +199,16 @@ def test_inertia_of_bodies_that_are_one_is_theirs_together(tmp_path):
     assert two.center_of_gravity_m == pytest.approx(one.center_of_gravity_m, abs=1e-15)
     assert np.trace(two.gyration_m2) == pytest.approx(np.trace(one.gyration_m2), rel=1e-12)  # a cube turns as it likes
     assert two.gyration_m2 == pytest.approx(one.gyration_m2, abs=1e-12)
+
+
+@pytest.mark.usefixtures("here")
+def test_a_plane_has_no_end_and_is_under_the_object(arm):
+    """Its size is that of its picture: MuJoCo's planes go on."""
+    far = ARM.replace('size="0 0 1"', 'size="1 1 1" euler="0 0 30"').replace('pos="0 0 0.3"', 'pos="30 -20 0.3"')
+    arm.write_text(far)
+    ended = run(imported.imported(str(arm)).scene)
+    assert ended.verdict == "rests"
+    assert ended.pose.position_m == pytest.approx((30.0, -20.0, 0.05), abs=1e-9)
 
 
 @pytest.mark.usefixtures("here")

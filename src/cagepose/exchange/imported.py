@@ -33,7 +33,7 @@ Data = dict[str, Any]
 NOT_CONVEX = 1e-3
 """Of a hull's volume: a mesh that is less by more is not convex."""
 PLANE_OF_REACH = 20.0
-"""Width of the box that stands for a plane without edges, in distances of the object's farthest point."""
+"""Width of the box that stands for a plane, in distances of the object's farthest point: no plane of MuJoCo ends."""
 
 
 class Import(NamedTuple):
@@ -116,14 +116,14 @@ class _Reader:
         name_them([*parts, *walls])
         with_geoms = {geom["body"] for geom in walls}
         frame = with_geoms.pop() if len(with_geoms) == 1 else WORLD
-        shapes = [self.shape(geom, held, 0.0) for geom in parts]
+        shapes = [self.shape(geom, held, held, 0.0) for geom in parts]
         reach_m = max((_reach_m(shape) for shape in shapes if shape), default=0.0)
         points = {
             geom["label"]: self.place(geom, frame).position_m.tolist()
             for geom in walls
             if geom["kind"] == "sphere" and geom["label"] in beside.get("points", ())
         }
-        others = [self.shape(geom, frame, reach_m) for geom in walls if geom["label"] not in points]
+        others = [self.shape(geom, frame, held, reach_m) for geom in walls if geom["label"] not in points]
         found: Data = {"name": beside.get("name") or Path(self.source).stem, "units": {"length": "m"}}
         found["object"] = {"shapes": [shape for shape in shapes if shape], **self.inertial(of_object, held)}
         found["object"]["pose"] = METRES.pose(bodies.pose(held))
@@ -148,7 +148,7 @@ class _Reader:
     def place(self, geom: Data, frame: int) -> Pose:
         return self.bodies.in_frame(geom["body"], Pose(geom["position"], geom["quaternion"]), frame)
 
-    def shape(self, geom: Data, frame: int, reach_m: float) -> Data | None:
+    def shape(self, geom: Data, frame: int, held: int, reach_m: float) -> Data | None:
         """Return a geom as a shape of a scene file in the frame of a body; None: it is left out."""
         label, place, size = geom["label"], self.place(geom, frame), geom["size"]
         if geom["kind"] == "box":
@@ -159,9 +159,9 @@ class _Reader:
             numbers = {geom["kind"]: {"radius": size[0], "length": 2.0 * size[1]}}
         elif geom["kind"] == "plane":
             width_m = PLANE_OF_REACH * reach_m
-            sides = [2.0 * half or width_m for half in size[:2]]
-            self.notes.append(f"{label!r} is a plane; here, a box, {sides[0]:.3g} m by {sides[1]:.3g} m, its top there")
-            numbers, place = {"box": {"size": [*sides, width_m]}}, place @ Pose((0.0, 0.0, -width_m / 2.0))
+            self.notes.append(f"{label!r} is a plane; here, a box {width_m:.3g} m wide under the object, its top there")
+            x, y, _ = place.inverse_transform(self.bodies.in_frame(held, Pose(), frame).position_m).tolist()
+            numbers, place = {"box": {"size": [width_m, width_m, reach_m]}}, place @ Pose((x, y, -reach_m / 2.0))
         elif "vertices" in geom:
             numbers = self.hull(geom, label)
         else:
