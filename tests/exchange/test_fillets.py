@@ -148,7 +148,8 @@ def test_a_great_rounding_stays(read):
     whole = rounded(whole, 30.0, lambda middle: middle[0] == 8.0 and middle[2] == TOP)
     scene, notes = read(whole)
     assert len(scene.object.parts) > 10
-    assert notes[0].startswith("'part' has flat sides where it is round there, up to 0.036 mm off")
+    assert notes[0].startswith("'part' is hollow and round somewhere, as in a fillet")
+    assert notes[1].startswith("'part' has flat sides where it is round there, up to 0.036 mm off")
 
 
 def test_a_part_without_fillets_stays_what_it_is(read):

@@ -29,6 +29,7 @@ from cagepose.files.meshes import decomposed, mesh_file, run_coacd
 from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.meshes.mesh_file import checked
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
+from cagepose.model.checks import ProblemList
 from cagepose.model.shapes import Shape
 from cagepose.model.surface import Mesh, shape_mesh
 from cagepose.model.union import body_moments
@@ -269,6 +270,30 @@ def test_numbers_of_a_mesh_of_several_shapes_cannot_be_adjusted(tmp_path):
     text += 'adjustable: {x: {key: "object.shapes[0].position[0]", range: [0, 1]}}\n'
     with pytest.raises(SceneFileError, match=r"adjustable.x.key: points into a mesh that is several shapes"):
         scene_with(tmp_path, UNIONS["boss"][0], (), text)
+
+
+def test_a_fillet_in_a_mesh_is_named_and_a_hole_beside_it_goes_through_all_that_it_cuts():
+    """Its flat sides cut the plate below into thin wedges, which all have to let the peg through."""
+    corner = body(
+        Box((6, 40, 6), Pose((10, 0, 10))),
+        without=(Cylinder(5, 60, Pose((13, 0, 13), euler_zyx=(0, 0, math.pi / 2))),),
+    )
+    walls = body(Box((60, 40, 8), Pose((30, 0, 4))), Box((8, 40, 50), Pose((4, 0, 25))))
+    bored = walls + corner - body(Cylinder(4, 30, Pose((40, 0, 4))))
+    found = shapes_of(bored)
+    (hole,) = (shape for shape in found.shapes if isinstance(shape, Hole))
+    problems = ProblemList()
+    hole.check_mouth([shape for shape in found.shapes if shape.name in hole.in_], (), problems)
+    assert not problems.problems
+    middle = hole.pose_body_shape.transform(
+        [(x, y, z) for x in (-3, 0, 3) for y in (-2, 0, 2) for z in (-0.1, -1, -4, -7.9)]
+    )
+    for shape in found.shapes:
+        assert shape is hole or shape.name in hole.in_ or not shape.holds(middle).any()
+    assert found.notes[-1].startswith(
+        "'part' is hollow and round somewhere, as in a fillet, which makes many parts of it: here, "
+    )
+    assert not any("hollow" in note for note in shapes_of(walls).notes)
 
 
 def test_holes_of_a_finely_divided_plate_are_recognised():

@@ -175,16 +175,12 @@ def _shapes(path: Path, name: str, solid: Data, frame: Pose, notes: list[str]) -
             solid, mesh = _sharp(solid, mesh, name, notes)
         found = mesh_shapes(mesh, name, "mm", partial(kept_beside, path))
         if not _is_exact(found, solid):
-            notes += found.notes or _of_flat_sides(solid, name)
+            notes += found.notes
+            if solid.get("off", 0.0) > found.error:
+                notes.append(f"{name!r} has flat sides where it is round there, up to {solid['off']:.2g} mm off")
         shapes = found.shapes
     metres = [mesh_file.scaled(shape, 1.0 / MM) for shape in shapes]
     return [shape.moved(frame @ shape.pose_body_shape) for shape in metres]
-
-
-def _of_flat_sides(solid: Data, name: str) -> list[str]:
-    """Return what is said of a solid of STEP that keeps the flat sides of its triangles."""
-    off = solid.get("off", 0.0)
-    return [f"{name!r} has flat sides where it is round there, up to {off:.2g} mm off"] if off else []
 
 
 def _surface(solid: Data, name: str) -> Triangles:
