@@ -31,8 +31,6 @@ def without_fillets(solid: Any, faces: list[Any]) -> Sharp | None:
     from OCP.BRepAlgoAPI import BRepAlgoAPI_Defeaturing
     from OCP.BRepCheck import BRepCheck_Analyzer
     from OCP.BRepLib import BRepLib
-    from OCP.TopAbs import TopAbs_SOLID
-    from OCP.TopExp import TopExp_Explorer
 
     BRepLib.EncodeRegularity_s(solid, TANGENT)
     fillets = [(face, radius) for face in faces if (radius := _hollow_radius(face)) and _joins_smoothly(face)]
@@ -45,12 +43,13 @@ def without_fillets(solid: Any, faces: list[Any]) -> Sharp | None:
     work.Build()
     if not work.IsDone():
         return None
-    found = TopExp_Explorer(work.Shape(), TopAbs_SOLID)
-    if not found.More() or not BRepCheck_Analyzer(found.Current()).IsValid():
+    found = next(each("Solid", work.Shape()), None)
+    if found is None or not BRepCheck_Analyzer(found).IsValid():
         return None
-    if _volume(found.Current()) > (1.0 - LEAST) * _volume(solid):  # some that meet are left as they are
+    after, before = (abs(moments_of(one).Mass()) for one in (found, solid))
+    if after > (1.0 - LEAST) * before:  # some that meet are left as they are
         return None
-    return Sharp(found.Current(), len(fillets), max(radius for _, radius in fillets))
+    return Sharp(found, len(fillets), max(radius for _, radius in fillets))
 
 
 def _hollow_radius(face: Any) -> float:
@@ -94,7 +93,7 @@ def _joins_smoothly(face: Any) -> bool:
 
     smooth = [
         edge
-        for edge in _edges(face)
+        for edge in each("Edge", face)
         if not BRep_Tool.Degenerated_s(edge)
         and not BRep_Tool.IsClosed_s(edge, face)
         and BRep_Tool.MaxContinuity_s(edge) != GeomAbs_C0
@@ -102,23 +101,25 @@ def _joins_smoothly(face: Any) -> bool:
     return len(smooth) >= 2
 
 
-def _volume(solid: Any) -> float:
+def moments_of(solid: Any) -> Any:
+    """Return what Open CASCADE says of a solid's volume, middle and inertia."""
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
 
-    mass = GProp_GProps()
-    BRepGProp.VolumeProperties_s(solid, mass)
-    return abs(float(mass.Mass()))
+    found = GProp_GProps()
+    BRepGProp.VolumeProperties_s(solid, found)
+    return found
 
 
-def _edges(face: Any) -> Iterator[Any]:
-    from OCP.TopAbs import TopAbs_EDGE
+def each(kind: str, shape: Any) -> Iterator[Any]:
+    """Yield the parts of a shape that are of a kind: "Solid", "Face" or "Edge"."""
+    from OCP import TopAbs
     from OCP.TopExp import TopExp_Explorer
     from OCP.TopoDS import TopoDS
 
-    explorer = TopExp_Explorer(face, TopAbs_EDGE)
+    explorer = TopExp_Explorer(shape, getattr(TopAbs, f"TopAbs_{kind.upper()}"))
     while explorer.More():
-        yield TopoDS.Edge(explorer.Current())
+        yield getattr(TopoDS, kind)(explorer.Current())
         explorer.Next()
 
 

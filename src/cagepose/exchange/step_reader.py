@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.exchange.step_fillets import without_fillets
+from cagepose.exchange.step_fillets import each, moments_of, without_fillets
 from cagepose.model.shape_moments import shape_moments
 from cagepose.model.shapes import Convex
 
@@ -57,10 +57,7 @@ def read_here(path: str) -> Data:
     out: list[str] = []
     for index in range(1, roots.Length() + 1):
         for name, shape in _leaves(roots.Value(index), TopLoc_Location(), ""):
-            explorer, of_leaf = TopExp_Explorer(shape, TopAbs_SOLID), []
-            while explorer.More():
-                of_leaf.append(_solid(explorer.Current()))
-                explorer.Next()
+            of_leaf = [_solid(solid) for solid in each("Solid", shape)]
             if TopExp_Explorer(shape, TopAbs_FACE, TopAbs_SOLID).More() or not of_leaf:
                 out.append(f"what is no solid in {name or 'a part without a name'}")
             for number, solid in enumerate(of_leaf):
@@ -93,18 +90,7 @@ def _leaves(label: Any, place: Any, name: str) -> Iterator[tuple[str, Any]]:
 
 
 def _solid(solid: Any) -> Data:
-    from OCP.BRepGProp import BRepGProp
-    from OCP.GProp import GProp_GProps
-    from OCP.TopAbs import TopAbs_FACE
-    from OCP.TopExp import TopExp_Explorer
-    from OCP.TopoDS import TopoDS
-
-    mass = GProp_GProps()
-    BRepGProp.VolumeProperties_s(solid, mass)
-    faces, explorer = [], TopExp_Explorer(solid, TopAbs_FACE)
-    while explorer.More():
-        faces.append(TopoDS.Face(explorer.Current()))
-        explorer.Next()
+    faces, mass = [*each("Face", solid)], moments_of(solid)
     core = _rounded(faces, mass)
     if core is not None:
         return core
