@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from cagepose.files.meshes.manifolds import Triangles
 
-BLUNT, SEVERAL = 0.9, 4
-"""Cosine between the faces of an edge of a round; how many of them tell one."""
+BLUNT, FLAT, SEVERAL = 0.9, 0.9997, 4
+"""Cosines between the faces of an edge of a round (others are a little hollow by chance), and how many tell one."""
 
 
 class Edges(NamedTuple):
@@ -36,7 +36,8 @@ def edges_of(mesh: Triangles) -> Edges:
 def is_hollow_and_round(mesh: Triangles, allowed: float) -> bool:
     """Whether a surface has several hollow edges of a blunt angle in it, as a fillet does; ``allowed`` as below."""
     faces = mesh.normals[reflex_edges(mesh, allowed).faces]
-    return int((np.einsum("ij,ij->i", faces[:, 0], faces[:, 1]) > BLUNT).sum()) >= SEVERAL
+    cosines = np.einsum("ij,ij->i", faces[:, 0], faces[:, 1])
+    return int(((cosines > BLUNT) & (cosines < FLAT)).sum()) >= SEVERAL
 
 
 def reflex_edges(mesh: Triangles, allowed: float) -> Edges:

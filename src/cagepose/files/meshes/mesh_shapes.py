@@ -115,7 +115,7 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str, decompose: Decompose) -> 
     error = scale * (of_shapes + max(errors))
     if of_shapes > 0.0 and not notes:
         notes.append(f"{name!r} has flat sides where it is round here, up to {_words(error, unit)} off")
-    if is_filleted:
+    if is_filleted and len(found) > 1:
         notes.append(
             f"{name!r} is hollow and round somewhere, as in a fillet, which makes many parts of it: here, {len(found)};"
             " leave fillets that do not matter out in CAD"

@@ -52,8 +52,6 @@ def _walls(mesh: Triangles) -> list[FloatArray]:
     """Return the corners of each wall: those of hollow edges that are parallel, equally long and in a ring."""
     allowed = ROUNDING * mesh.size
     edges = reflex_edges(mesh, allowed).corners
-    if len(edges) < FEWEST_SIDES:
-        return []
     links: dict[int, set[int]] = {}
     all_edges = edges_of(mesh)
     one_side, other_side = np.moveaxis(mesh.normals[all_edges.faces], 1, 0)
@@ -61,6 +59,9 @@ def _walls(mesh: Triangles) -> list[FloatArray]:
     for one, other in all_edges.corners[is_sharp].tolist():
         links.setdefault(one, set()).add(other)
         links.setdefault(other, set()).add(one)
+    edges = edges[np.isin(edges, all_edges.corners[is_sharp]).any(axis=1)]  # what is round all over has many others
+    if len(edges) < FEWEST_SIDES:
+        return []
     spans = mesh.vertices[edges[:, 1]] - mesh.vertices[edges[:, 0]]
     lengths = np.linalg.norm(spans, axis=1)
     left, walls = np.ones(len(edges), bool), []
