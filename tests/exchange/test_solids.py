@@ -21,6 +21,7 @@ from cagepose import (
     Object,
     Pose,
     Scene,
+    SceneFileError,
     load_scene,
     run,
 )
@@ -181,6 +182,17 @@ def test_a_spoilt_note_within_a_file_is_said(name, tmp_path):
         assert old in content
         (tmp_path / name).write_bytes(content.replace(old, new, 1))
         assert told in imported(str(tmp_path / name)).notes
+
+
+def test_solids_that_cannot_be_used_without_their_note_say_that_it_is_damaged(tmp_path):
+    """Cage points are balls of nearly no size then."""
+    path, scene = tmp_path / "scene.stl", load_scene(FILES["rail-pitch"])
+    path.write_bytes(exported(run(scene), "stl", "scene.stl").files["scene.stl"])
+    file_beside(path).write_text("{")
+    with pytest.raises(SceneFileError) as caught:
+        imported(str(path))
+    assert "times its size away from the origin" in str(caught.value.problems[0])
+    assert "the note of cagepose in scene.stl.json is damaged" in str(caught.value.problems[1])
 
 
 @pytest.mark.parametrize("to", ["mjcf", "urdf", "step", "stl"])

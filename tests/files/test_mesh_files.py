@@ -266,6 +266,10 @@ def test_truncated_files_are_clear_errors(share, tmp_path):
         assert suffix != "stl" or told.startswith(f"is truncated: {len(content):,} bytes expected, ")
 
 
+def test_a_name_with_a_null_character_is_no_name(tmp_path):
+    assert refusal(tmp_path, '"a\\0.stl"').endswith("is not a file name; remove the unprintable character")
+
+
 def test_missing_and_huge_files(tmp_path, monkeypatch):
     assert refusal(tmp_path, "none.stl") == "is no file; check the name and the folder"
     written(tmp_path, part(), "part.stl")

@@ -53,6 +53,7 @@ def solids_document(source: str, object_name: str | None, cage_names: Sequence[s
     """
     path, notes = Path(source), list[str]()
     note = read_solids_note(path, notes)
+    damaged = [*notes]
     try:
         solids = _of_step(path, notes) if path.suffix.lower() in STEP else _of_mesh(path, bool(note), notes)
         held, walls = _chosen(list(solids), object_name, cage_names)
@@ -69,7 +70,8 @@ def solids_document(source: str, object_name: str | None, cage_names: Sequence[s
             of_solid = _shapes(path, _short(name, names), solids[name], frame, notes)
             shapes[body] += [METRES.shape(_named(shape, note.get("holes", {}))) for shape in of_solid]
     except SceneError as error:
-        raise SceneFileError([FileProblem((), problem.message, source) for problem in error.problems]) from None
+        messages = [*(problem.message for problem in error.problems), *damaged]
+        raise SceneFileError([FileProblem((), message, source) for message in messages]) from None
     finally:
         tell("")
     found: Data = {"name": note.get("name") or path.stem, "units": {"length": "m"}}

@@ -56,6 +56,8 @@ def read_mesh(path: Path, given: LengthUnit | None, of_scene: LengthUnit, name: 
     MissingExtraError
         trimesh is not installed.
     """
+    if "\0" in os.fspath(path):
+        raise refused("is not a file name; remove the unprintable character")
     unit = given or (UNIT_OF_GLB if path.suffix.lower() == ".glb" else of_scene)
     try:
         found = path.stat()
