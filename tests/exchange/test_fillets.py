@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from cagepose import Box, Cylinder, run
-from cagepose.exchange import solids_document, step_reader
+from cagepose.exchange import solids_document, step_fillets, step_reader
 from cagepose.exchange.imported import Import, imported
 
 pytest.importorskip("OCP")
@@ -150,6 +150,14 @@ def test_a_great_rounding_stays(read):
     assert len(scene.object.parts) > 10
     assert notes[0].startswith("'part' is hollow and round somewhere, as in a fillet")
     assert notes[1].startswith("'part' has flat sides where it is round there, up to 0.036 mm off")
+
+
+def test_too_many_fillets_stay(read, monkeypatch):
+    """Open CASCADE would take minutes, and the file be refused."""
+    monkeypatch.setattr(step_fillets, "MOST", 0)
+    scene, notes = read(bracket())
+    assert len(scene.object.parts) > 10
+    assert not any("hollow rounding" in note for note in notes)
 
 
 def test_a_part_without_fillets_stays_what_it_is(read):

@@ -191,7 +191,10 @@ def _surface(solid: Data, name: str) -> Triangles:
 
 def _sharp(solid: Data, mesh: Triangles, name: str, notes: list[str]) -> tuple[Data, Triangles]:
     """Return a solid without its hollow roundings, and its surface; with them, where they are a great part of it."""
-    sharp = _surface(solid["sharp"], name)
+    try:
+        sharp = _surface(solid["sharp"], name)
+    except SceneError:  # Open CASCADE left it open or crossing itself
+        return solid, mesh
     off = max(farthest_from(mesh, sharp), farthest_from(sharp, mesh))
     if off > MOST_OFF * mesh.size:
         return solid, mesh

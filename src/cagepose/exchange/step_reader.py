@@ -17,6 +17,8 @@ AROUND = 64
 """Chords of a full circle at least."""
 CHORD_OF_SIZE = 1e-2
 """How far triangles may be from the surface, where that is less than `AROUND` gives."""
+MOST_FILLETS = 300
+"""Faces of them in one file that are left out, which takes seconds."""
 SAME = 1e-7
 """Of the size: places and moments that are this near are one."""
 
@@ -55,9 +57,13 @@ def read_here(path: str) -> Data:
     tool.GetFreeShapes(roots)
     solids: list[Data] = []
     out: list[str] = []
+    most_fillets = MOST_FILLETS
     for index in range(1, roots.Length() + 1):
         for name, shape in _leaves(roots.Value(index), TopLoc_Location(), ""):
-            of_leaf = [_solid(solid) for solid in each("Solid", shape)]
+            of_leaf = []
+            for solid in each("Solid", shape):
+                of_leaf.append(_solid(solid, most_fillets))
+                most_fillets -= of_leaf[-1].get("n_fillets", 0)
             if TopExp_Explorer(shape, TopAbs_FACE, TopAbs_SOLID).More() or not of_leaf:
                 out.append(f"what is no solid in {name or 'a part without a name'}")
             for number, solid in enumerate(of_leaf):
@@ -89,15 +95,20 @@ def _leaves(label: Any, place: Any, name: str) -> Iterator[tuple[str, Any]]:
         yield own or name, XCAFDoc_ShapeTool.GetShape_s(label).Moved(place)
 
 
-def _solid(solid: Any) -> Data:
+def _solid(solid: Any, most_fillets: int) -> Data:
     faces, mass = [*each("Face", solid)], moments_of(solid)
     core = _rounded(faces, mass)
     if core is not None:
         return core
     found = {"volume": abs(mass.Mass()), **_triangles(solid, faces)}
-    sharp = without_fillets(solid, faces)
+    sharp = without_fillets(solid, faces, most_fillets)
     if sharp is not None:
-        found |= {"sharp": _solid(sharp.solid), "n_fillets": sharp.n_faces, "radius": sharp.radius}
+        try:
+            without = _triangles(sharp.solid, [*each("Face", sharp.solid)])
+        except ValueError:  # it stays as it is
+            return found
+        without["volume"] = abs(moments_of(sharp.solid).Mass())
+        found |= {"sharp": without, "n_fillets": sharp.n_faces, "radius": sharp.radius}
     return found
 
 
