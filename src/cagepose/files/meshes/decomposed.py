@@ -51,7 +51,9 @@ def decomposed(mesh: Triangles) -> Decomposition:
     """
     require("rtree", "a mesh that is not convex needs rtree", "files")  # which is asked for only after a minute
     tell(f"coacd makes convex parts of {len(mesh.faces):,} triangles, which takes it {run_coacd.SECONDS:g} s at most")
-    parts = [_on_flat_sides(corners, mesh) for corners in run_coacd.convex_parts(_simplified(mesh))]
+    found = run_coacd.convex_parts(_simplified(mesh))
+    ends = np.cumsum([len(corners) for corners in found])
+    parts = np.split(_on_flat_sides(np.concatenate(found), mesh), ends[:-1])
     hulls = [manifold3d().Manifold.hull_points(corners) for corners in parts]
     tell(f"{len(hulls)} convex parts: how far they are off")
     union = Triangles.of(together(hulls))
