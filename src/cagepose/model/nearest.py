@@ -62,12 +62,15 @@ def core_of(part: Box | Shape | FloatArray, pose_world_body: Pose) -> Core:
 
 
 def _farthest_of_turned(part: Turned, pose: Pose) -> Callable[[FloatArray], FloatArray]:
+    rotation = pose.rotation
+
     def farthest(way: FloatArray) -> FloatArray:
-        x, y, z = (way @ pose.rotation).tolist()
+        x, y, z = (way @ rotation).tolist()
         across = float(np.hypot(x, y))
         height, radius = max(part.rims, key=lambda rim: z * rim[0] + across * rim[1])
         outward = radius / across if across > 0.0 else 0.0
-        return pose.transform(np.array([outward * x, outward * y, height]))
+        found: FloatArray = rotation @ (outward * x, outward * y, height) + pose.position_m
+        return found
 
     return farthest
 
