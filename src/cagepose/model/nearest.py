@@ -47,6 +47,11 @@ class Core(NamedTuple):
         """Return how far apart two parts are at least, metres, by the balls around them."""
         return float(np.linalg.norm(self.middle - other.middle)) - self.reach_m - other.reach_m
 
+    def gap_along(self, way: FloatArray, other: Core) -> float:
+        """Return how far apart two parts are along a unit vector, which is how far they are at least."""
+        between = other.farthest(-way) - self.farthest(way)
+        return float(between @ way) - self.radius_m - other.radius_m
+
 
 def core_of(part: Box | Shape | FloatArray, pose_world_body: Pose) -> Core:
     """Return a part of a body at a pose as `nearest_points` takes it; a single point (3,) of the world is one, too."""
