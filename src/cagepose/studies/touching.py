@@ -34,6 +34,11 @@ class PlacesOfContact(NamedTuple):
     places_world: FloatArray
     normals_world: FloatArray
 
+    def chosen(self, which: NDArray[np.bool_]) -> PlacesOfContact:
+        """Return those pairs of which ``which``, (n,), says so."""
+        places, normals = self.places_world[which], self.normals_world[which]
+        return PlacesOfContact(self.elements[which], self.parts[which], places, normals)
+
 
 class TouchFinder:
     """Finds contacts of one scene, at pose after pose, in the same memory."""

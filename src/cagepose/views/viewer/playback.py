@@ -184,7 +184,7 @@ class _TouchesAt:
         if self.finder is not None and names:
             all_places = self.finder.at(pose)
             is_asked = np.isin(all_places.elements, elements)
-            found.append(PlacesOfContact(*(column[is_asked] for column in all_places)))
+            found.append(all_places.chosen(is_asked))
             left = np.setdiff1d(elements, all_places.elements)
             left = left[left < n_solid]  # a hole has no place but where it touches
         if len(left) or not found:
