@@ -119,6 +119,11 @@ def _nearest_subset(pairs: list[_Pair]) -> tuple[list[_Pair], FloatArray]:
     """
     points = [as_vector(place - foot) for place, foot in pairs]
     last, best = len(pairs) - 1, (math.inf, [len(pairs) - 1], [1.0])
+    if last < 4:
+        shares = _shares([minus(point, points[last]) for point in points[:last]], points[last])
+        all_shares = [*shares, 1.0 - sum(shares)]
+        if min(all_shares) > 0.0:  # within the simplex: all points bear it
+            return pairs, np.array(all_shares)
     for size in range(min(len(pairs), 4)):
         for others in combinations(range(last), size):
             shares = _shares([minus(points[index], points[last]) for index in others], points[last])
