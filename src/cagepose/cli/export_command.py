@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import MethodOption, SetOption, refusal
+from cagepose.cli.options import FILE, FileName, MethodOption, SetOption, refusal
 from cagepose.cli.run_source import RunOrSceneArgument, read_run_or_scene, run_of
 
 
@@ -23,7 +23,7 @@ def export_command(
             " poses alone."
         ),
     ],
-    out: Annotated[str, Parameter(name=("--out", "-o"), help="File to write, such as rollers.xml.")],
+    out: Annotated[FileName, FILE, Parameter(name=("--out", "-o"), help="File to write, such as rollers.xml.")],
     method: MethodOption = None,
     set_values: SetOption = (),
 ) -> int:
