@@ -129,8 +129,10 @@ def _bounded(ranges: list[Ends], bounds: Sequence[float | None]) -> list[Ends]:
 
 
 def _bounded_end(end: PlayEnd, certified: float | None) -> PlayEnd:
-    if certified is None or end.reached is None:
+    if certified is None:
         return end
+    if end.reached is None:  # a push that seemed to go on for ever
+        return replace(end, reached=0.0, certified=certified, status="not converged")
     is_proven = end.status == "local" and abs(certified) <= (1.0 + PROVEN_WITHIN) * abs(end.reached)
     return replace(end, certified=certified, status="proven" if is_proven else end.status)
 
