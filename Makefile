@@ -90,7 +90,7 @@ page:  ## bundle the page of `cagepose view` anew, from page/ and three.js (need
 lock:  ## renew requirements.lock from pyproject.toml
 	@$(PYTHON) -m venv build/lock
 	@build/lock/bin/python -m pip install -qq uv==$(UV_VERSION)
-	@build/lock/bin/uv pip compile pyproject.toml --extra cad --extra dask --extra files --extra plot --extra shapes --extra study --extra view --group dev --group docs --output-file requirements.lock --upgrade \
+	@build/lock/bin/uv pip compile pyproject.toml --extra cad --extra dask --extra files --extra film --extra plot --extra shapes --extra study --extra view --group dev --group docs --output-file requirements.lock --upgrade \
 	    --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-annotate --no-emit-index-url \
 	    --no-config --custom-compile-command "make lock" --quiet
 	@build/lock/bin/uv pip compile pyproject.toml --extra bench --constraint requirements.lock --output-file bench/requirements.lock \

@@ -139,6 +139,8 @@ function fill() {
   $("name").textContent = data.name;
   $("verdict").textContent = data.verdict;
   $("verdict").className = data.verdictKind;
+  $("contradicted").textContent = data.contradicted;
+  $("contradicted").className = data.verdictKind;
   $("method").textContent = `${data.method}, solved in ${data.solve}`;
   $("events").tBodies[0].replaceChildren();
   data.rows.forEach((row, index) => {
@@ -224,8 +226,15 @@ function whyNoForces(shot) {
   return row.verdictKind === "failure" ? "not known, since no rest was found" : "none balance the load";
 }
 
+function wideRow(text) {
+  const line = element("tr", ""), cell = element("td", text);
+  cell.colSpan = 3;
+  line.append(cell);
+  return line;
+}
+
 function forceRows(shot) {
-  if (!shot.touches.some((touch) => touch.force)) return [element("tr", whyNoForces(shot))];
+  if (!shot.touches.some((touch) => touch.force)) return [wideRow(whyNoForces(shot))];
   const loaded = shot.touches.filter((touch) => norm(touch.force) > data.look.least_force * data.greatestForce);
   const idle = shot.touches.length - loaded.length;
   const lines = loaded.map((touch) => {
@@ -240,7 +249,7 @@ function forceRows(shot) {
     line.append(element("td", `${data.names[touch.point]} on ${touch.box}`), element("td", size.toPrecision(4)), cell);
     return line;
   });
-  return idle ? [...lines, element("tr", `${idle} more touch without a force`)] : lines;
+  return idle ? [...lines, wideRow(`${idle} more touch without a force`)] : lines;
 }
 
 const toggle = () => (player.playing ? pause() : play());

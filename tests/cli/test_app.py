@@ -124,10 +124,23 @@ def test_schema_prints_the_json_schema(command: Command) -> None:
     assert json.loads(answer.out) == scene_json_schema()
 
 
-def test_a_shell_completes_commands_and_options(command: Command, tmp_path: Path) -> None:
+def test_a_shell_completes_commands_options_methods_and_files(command: Command, tmp_path: Path) -> None:
     script = tmp_path / "cagepose"
     assert command("--install-completion", "--shell", "bash", "--output", str(script)).code == 0
-    for words, offered in ((["pl"], "play plot"), (["run", "--ma"], "--margin")):
-        line = f"COMP_WORDS=(cagepose {' '.join(words)}); COMP_CWORD={len(words)}; _cagepose; echo ${{COMPREPLY[@]}}"
-        asked = subprocess.run(["bash", "-c", f"source {script}; {line}"], capture_output=True, text=True, check=True)
-        assert asked.stdout.split() == offered.split()
+    (tmp_path / "my drawer.yaml").touch()
+    for words, offered in (
+        (["pl"], "play plot"),
+        (["run", "--ma"], "--margin"),
+        (["run", "--method", "st"], "stepwise"),
+        (["run", "my"], "my drawer.yaml"),
+        (["view", "drawer.yaml", "--export", "my"], "my drawer.yaml"),
+    ):
+        given = f"COMP_WORDS=(cagepose {' '.join(words)}); COMP_CWORD={len(words)}"
+        line = f"{given}; _cagepose; printf '%s\\n' ${{#COMPREPLY[@]}} \"${{COMPREPLY[@]}}\""
+        asked = subprocess.run(
+            ["bash", "-c", f"source {script}; {line}"], capture_output=True, text=True, check=True, cwd=tmp_path
+        )
+        n_offered, *found = asked.stdout.splitlines()
+        assert (" ".join(found), len(found)) == (offered, int(n_offered))
+    asked = subprocess.run(["bash", "-c", f"source {script}; complete -p cagepose"], capture_output=True, text=True)
+    assert "-o filenames" in asked.stdout  # else a space comes behind a folder

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -246,6 +247,7 @@ def test_a_hole_that_no_method_runs_is_told_by_name(
         answer = command(asked, "scene.yaml")
         assert answer.code == (0 if says is None else 2), answer.err
         assert (says or "") in answer.err
+        assert (re.match(r"scene\.yaml:\d+:\d+: cage\.shapes\[1\]: ", answer.err) is None) == (says is None)
 
 
 def test_a_part_that_starts_in_a_plate_beside_its_hole_is_refused(command: Callable[..., Any], in_folder: Path) -> None:

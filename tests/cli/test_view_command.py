@@ -57,18 +57,19 @@ def test_a_picture_and_a_film_are_written_and_may_be_written_again(command: Comm
 
 
 @pytest.mark.parametrize(
-    ("module", "export", "need"),
+    ("module", "export", "need", "name"),
     [
-        ("PIL", "run.png", "pictures need Pillow"),
-        ("PIL", "run.gif", "pictures need Pillow"),
-        ("av", "run.mp4", "videos need PyAV"),
+        ("PIL", "run.png", "pictures need Pillow", "view"),
+        ("PIL", "run.gif", "pictures need Pillow", "view"),
+        ("PIL", "run.mp4", "videos need Pillow", "film"),
+        ("av", "run.mp4", "videos need PyAV", "film"),
     ],
 )
 def test_a_missing_library_is_named_with_its_extra_before_the_run(
-    command: Command, sample: str, monkeypatch: pytest.MonkeyPatch, module: str, export: str, need: str
+    command: Command, sample: str, monkeypatch: pytest.MonkeyPatch, module: str, export: str, need: str, name: str
 ) -> None:
     monkeypatch.setattr(extra, "find_spec", lambda name: None if name == module else object())
-    told = f"{need}, which is not installed; install the view extra: pip install 'cagepose[view]'\n"
+    told = f"{need}, which is not installed; install the {name} extra: pip install 'cagepose[{name}]'\n"
     assert command("view", sample, "--export", export) == (2, "", told)
     assert command("view", sample, "--export", "run.html").code == 0
 

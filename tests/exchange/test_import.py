@@ -166,7 +166,7 @@ def test_a_foreign_model_is_read_and_what_it_loses_is_said(arm):
         "joints stay where the model has them, of flap",
         "left out, as they touch nothing: shell",
         "left out: 'egg', as it is neither box, ball, capsule, cylinder, plane nor mesh",
-        "'floor' is a plane; here, a box, 8 m by 8 m, its top there",
+        "'floor' is a plane; here, a box 8 m wide under the object, its top there",
         "loads: the weight alone, with a gravity of (0, 0, -3) m/s^2",
     )
     held = scene.object
@@ -199,6 +199,16 @@ def test_inertia_of_bodies_that_are_one_is_theirs_together(tmp_path):
     assert two.center_of_gravity_m == pytest.approx(one.center_of_gravity_m, abs=1e-15)
     assert np.trace(two.gyration_m2) == pytest.approx(np.trace(one.gyration_m2), rel=1e-12)  # a cube turns as it likes
     assert two.gyration_m2 == pytest.approx(one.gyration_m2, abs=1e-12)
+
+
+@pytest.mark.usefixtures("here")
+def test_a_plane_has_no_end_and_is_under_the_object(arm):
+    """Its size is that of its picture: MuJoCo's planes go on."""
+    far = ARM.replace('size="0 0 1"', 'size="1 1 1" euler="0 0 30"').replace('pos="0 0 0.3"', 'pos="30 -20 0.3"')
+    arm.write_text(far)
+    ended = run(imported.imported(str(arm)).scene)
+    assert ended.verdict == "rests"
+    assert ended.pose.position_m == pytest.approx((30.0, -20.0, 0.05), abs=1e-9)
 
 
 @pytest.mark.usefixtures("here")
@@ -261,6 +271,8 @@ HOSTILE = {
     "absolute": (ARM.replace("wedge.stl", "/etc/passwd"), "lies outside of the model's folder"),
     "folder": (ARM.replace('meshdir="meshes"', 'meshdir="/"'), "lies outside of the model's folder"),
     "link": (ARM.replace("wedge.stl", "link.stl"), "lies outside of the model's folder"),
+    "loop": (ARM.replace("wedge.stl", "loop.stl"), "names 'loop.stl', a link that leads to itself"),
+    "long": (ARM.replace("wedge.stl", "w" * 300 + ".stl"), "cannot be read (File name too long); check the names"),
     "missing": (ARM.replace("wedge.stl", "none.stl"), "is refused by MuJoCo's compiler: "),
     "garbage": (ARM.replace("wedge.stl", "garbage.stl"), "refused by MuJoCo's compiler"),
     "flat": (ARM.replace("wedge.stl", "flat.stl"), "refused by MuJoCo's compiler"),
@@ -286,6 +298,7 @@ def test_hostile_files_are_clear_errors_and_nothing_is_written(name, arm, monkey
     (folder / "meshes" / "flat.stl").write_bytes(binary_stl(Mesh(WEDGE * (1, 1, 0), SIDES)))
     (folder / "meshes" / "bomb.xml").write_text(BOMB)
     (folder / "meshes" / "link.stl").symlink_to("/etc/passwd")
+    (folder / "meshes" / "loop.stl").symlink_to("loop.stl")
     text, message = HOSTILE[name]
     model = Path("model.zip" if name == "suffix" else "model.xml")
     model.write_text(text)
@@ -300,6 +313,14 @@ def test_hostile_files_are_clear_errors_and_nothing_is_written(name, arm, monkey
     assert sorted(folder.rglob("*")) == before
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have names in Unicode")
+def test_a_name_that_is_no_utf_8_is_said(arm, capsys):
+    named = arm.with_name(os.fsdecode(b"arm\xe9.xml"))
+    arm.rename(named)
+    assert main(["import", str(named), "-o", str(arm.with_name("x.yaml"))]) == 2
+    assert "has a name, or is in a folder, whose letters are no UTF-8; rename it" in capsys.readouterr().err
+
+
 def test_a_module_that_lies_beside_a_model_is_not_run(arm, monkeypatch):
     """Python would find it there, under the name of one that MuJoCo's process takes."""
     monkeypatch.chdir(arm.parent)
@@ -310,7 +331,7 @@ def test_a_module_that_lies_beside_a_model_is_not_run(arm, monkeypatch):
 def test_a_model_that_asks_for_too_much_is_stopped(arm, monkeypatch):
     many = '<replicate count="30000"><replicate count="30000"><geom size="1"/></replicate></replicate>'
     arm.write_text(f"<mujoco><worldbody>{many}</worldbody></mujoco>")
-    monkeypatch.setattr(compile_model, "SECONDS", 1.0)
+    monkeypatch.setattr(compile_model, "WALL_SECONDS", 1.0)
     with pytest.raises(SceneFileError, match="takes MuJoCo's compiler more than 1 s; simplify it"):
         imported.imported(str(arm))
 

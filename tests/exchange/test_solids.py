@@ -21,6 +21,7 @@ from cagepose import (
     Object,
     Pose,
     Scene,
+    SceneFileError,
     load_scene,
     run,
 )
@@ -79,7 +80,7 @@ def test_a_taper_and_a_chamfer_come_back(to, n_notes, tmp_path):
     assert len(found.notes) == n_notes
 
 
-@pytest.mark.parametrize("name", ["rollers", "rail-pitch", "v-groove", "plate-on-pins"])
+@pytest.mark.parametrize("name", ["rollers", "rail-pitch", "v-groove", "plate-on-pins", "phone-dock"])
 def test_stl_gives_the_same_final_pose_within_its_error(name, tmp_path):
     """Here far within, as all corners of the triangles are on the true surface and have all their digits."""
     scene = load_scene(FILES[name])
@@ -150,17 +151,55 @@ def test_models_without_holes_say_that_their_friction_is_not_there():
         ("[[", "[[0, "),
         ("{", "[{"),
         ('"holes": {', '"holes": {"x": 3'),
+        ("{", 100_000 * "["),
     ],
 )
-def test_a_note_that_somebody_spoilt_is_none(old, new, tmp_path):
+def test_a_note_that_somebody_spoilt_is_said_and_passed_over(old, new, tmp_path):
     """The bodies are read then as those of another program are."""
     path = tmp_path / "scene.stl"
     scene = load_scene(FILES["rail-pitch"])
     text = solids_note(scene, scene.object.pose_world_object)
     file_beside(path).write_text(text)
-    assert len(read_solids_note(path)["points"]) == 14
+    notes: list[str] = []
+    assert len(read_solids_note(path, notes)["points"]) == 14
+    assert notes == []
     file_beside(path).write_text(text.replace(old, new))
-    assert read_solids_note(path) == {}
+    assert read_solids_note(path, notes) == {}
+    (told,) = notes
+    assert told.startswith("the note of cagepose in scene.stl.json is damaged")
+
+
+@pytest.mark.parametrize("name", ["scene.step", "scene.xml", "scene.urdf"])
+def test_a_spoilt_note_within_a_file_is_said(name, tmp_path):
+    pytest.importorskip("OCP")
+    pytest.importorskip("mujoco")
+    to = {"xml": "mjcf"}.get(name.rpartition(".")[2], name.rpartition(".")[2])
+    ((_, content),) = exported(run(load_scene(FILES["rollers"])), to, name).files.items()
+    told = f"the note of cagepose in {name} is damaged or of another version: here, the bodies alone; export it again"
+    (tmp_path / name).write_bytes(content)
+    assert told not in imported(str(tmp_path / name)).notes
+    for old, new in ((b"version", b"vision"), (b"points", b"pints")):
+        assert old in content
+        (tmp_path / name).write_bytes(content.replace(old, new, 1))
+        assert told in imported(str(tmp_path / name)).notes
+
+
+def test_solids_that_cannot_be_used_without_their_note_say_that_it_is_damaged(tmp_path):
+    """Cage points are balls of nearly no size then."""
+    path, scene = tmp_path / "scene.stl", load_scene(FILES["rail-pitch"])
+    path.write_bytes(exported(run(scene), "stl", "scene.stl").files["scene.stl"])
+    file_beside(path).write_text("{")
+    with pytest.raises(SceneFileError) as caught:
+        imported(str(path))
+    assert "times its size away from the origin" in str(caught.value.problems[0])
+    assert "the note of cagepose in scene.stl.json is damaged" in str(caught.value.problems[1])
+
+
+@pytest.mark.parametrize("to", ["mjcf", "urdf", "step", "stl"])
+def test_what_is_adjustable_is_said_not_to_be_in_a_file(to):
+    pytest.importorskip("OCP")
+    told = "what is adjustable in the scene is not in the file: radius of the hole, friction"
+    assert told in exported(run(load_scene(FILES["peg-in-hole"])), to, f"scene.{to}").notes
 
 
 def assembly(folder: Path) -> str:

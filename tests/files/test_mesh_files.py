@@ -161,6 +161,36 @@ def glb_of_nothing() -> bytes:
     return b"glTF" + head + text + struct.pack("<III", 4, 0x004E4942, 0)
 
 
+def glb_of_one(index: bytes) -> bytes:
+    """A triangle whose last corner has an index."""
+    corners, indices = np.eye(3, dtype="<f4").tobytes(), bytes(4) + b"\x01\0\0\0" + index
+    content = {
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+            {"bufferView": 1, "componentType": 5125, "count": 3, "type": "SCALAR"},
+        ],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": 0, "byteLength": 36},
+            {"buffer": 0, "byteOffset": 36, "byteLength": 12},
+        ],
+        "buffers": [{"byteLength": 48}],
+    }
+    text = json.dumps(content).encode()
+    text += b" " * (-len(text) % 4)
+    head = struct.pack("<IIII", 2, 28 + len(text) + 48, len(text), 0x4E4F534A)
+    return b"glTF" + head + text + struct.pack("<II", 48, 0x004E4942) + corners + indices
+
+
+def of_size(size: str, away: int = 0) -> bytes:
+    """A tetrahedron."""
+    corners = [f"{away} 0 0", f"{away} 0 {size}", f"{away} {size} 0", f"{away + float(size)} 0 0"]
+    return "".join([*(f"v {corner}\n" for corner in corners), "f 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n"]).encode()
+
+
 HOSTILE = {
     "open.stl": (open_mesh, "is not closed: triangles are missing"),
     "inverted.stl": (inside_out, "is inside out: its triangles face inwards; flip them"),
@@ -191,6 +221,13 @@ BYTES = {
         b" " * 80 + b"\xff\xff\xff\x7f" + bytes(500),
         "is truncated: 107,374,182,434 bytes expected, 584 found",
     ),
+    "huge.obj": (of_size("1e308"), "has a corner at 1e+308, more than 1e+09; check its unit"),
+    "tiny.obj": (of_size("1e-300"), "is 1e-300 long, less than 1e-09; check its unit"),
+    "far.obj": (
+        of_size("1", 10**8),
+        "is 1e+08 times its size away from the origin; move both bodies there",
+    ),
+    "no-corner.glb": (glb_of_one(b"\x07\0\0\0"), "has a triangle whose corner is not there; export it again"),
     "part.step": (b"ISO-10303-21;", "has the suffix '.step'; give a file of one of: .stl, .obj, .ply, .glb"),
 }
 
@@ -229,6 +266,10 @@ def test_truncated_files_are_clear_errors(share, tmp_path):
         assert suffix != "stl" or told.startswith(f"is truncated: {len(content):,} bytes expected, ")
 
 
+def test_a_name_with_a_null_character_is_no_name(tmp_path):
+    assert refusal(tmp_path, '"a\\0.stl"').endswith("is not a file name; remove the unprintable character")
+
+
 def test_missing_and_huge_files(tmp_path, monkeypatch):
     assert refusal(tmp_path, "none.stl") == "is no file; check the name and the folder"
     written(tmp_path, part(), "part.stl")
@@ -253,6 +294,20 @@ def test_bodies_of_a_file_are_counted():
     text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "".join(f"o {number}\nf 1 2 3\n" for number in range(MOST_SOLIDS + 1))
     with pytest.raises(ValueError, match=r"holds 1,001 bodies, more than 1,000; export those that touch alone"):
         surfaces_here(text.encode(), ".obj", split=True)
+
+
+def test_solids_of_a_text_stl_are_one_body_where_none_is_asked_for_by_name():
+    """Some programs make a solid of each triangle, of which trimesh reads 100,000 in half a minute."""
+    text = trimesh.creation.box().subdivide().subdivide().subdivide().export(file_type="stl_ascii")
+    facets = text.replace("endfacet", "endfacet\nendsolid one \r\nSolid another")
+    n_solids = facets.count("endsolid")
+    assert n_solids == 769
+    (mesh,) = surfaces_here(facets.encode(), ".stl", split=False).values()
+    assert len(mesh.faces) == 768
+    assert mesh.body().volume() == pytest.approx(1.0)
+    assert len(surfaces_here(facets.encode(), ".stl", split=True)) == 768
+    with pytest.raises(ValueError, match=r"holds 1,538 bodies, more than 1,000; export those that touch alone"):
+        surfaces_here(2 * facets.encode(), ".stl", split=True)
 
 
 def test_a_reader_that_takes_too_long_is_stopped(tmp_path, monkeypatch):

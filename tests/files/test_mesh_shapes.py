@@ -29,6 +29,7 @@ from cagepose.files.meshes import decomposed, mesh_file, run_coacd
 from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.meshes.mesh_file import checked
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
+from cagepose.model.checks import ProblemList
 from cagepose.model.shapes import Shape
 from cagepose.model.surface import Mesh, shape_mesh
 from cagepose.model.union import body_moments
@@ -95,6 +96,34 @@ def test_what_is_round_is_recognised_with_the_sagitta_as_its_error(shape, single
     sagitta = radius * (1.0 - math.cos(math.pi / SEGMENTS))
     assert sagitta * (1.0 - 1e-3) < found.error < 2.1 * sagitta
     assert found.notes == (f"'part' has flat sides where it is round here, up to {found.error:.2g} mm off",)
+
+
+CORE = np.array([(x, y, z) for x in (-20.0, 20.0) for y in (-10.0, 10.0) for z in (-4.0, 4.0)])
+CORES = {"block": CORE, "slab": CORE[::2], "tetrahedron": CORE[[0, 3, 5, 6]], "triangle": CORE[:5:2]}
+
+
+@pytest.mark.parametrize(("single", "rounding"), [(False, 1e-9), (True, 1e-5)])
+@pytest.mark.parametrize("name", CORES)
+def test_a_hull_that_is_round_all_over_is_recognised(name, single, rounding):
+    """Its corners are found to the last digits, and its error is that of the faces about a corner."""
+    found = shapes_of(body(Convex(CORES[name], 1.5)), single=single)
+    (one,) = found.shapes
+    assert isinstance(one, Convex)
+    assert one.radius_m == pytest.approx(1.5, abs=rounding)
+    corners, wanted = (np.array(sorted(c.round(3).tolist())) for c in (one.vertices_m, PLACE.transform(CORES[name])))
+    assert corners == pytest.approx(wanted, abs=2e-3)
+    assert max(gap_of(one, corner) for corner in PLACE.transform(CORES[name])) < rounding
+    sagitta = 1.5 * (1.0 - math.cos(math.pi / SEGMENTS))
+    assert sagitta * (1.0 - 1e-3) < found.error < 6.0 * sagitta
+
+
+def test_a_hull_whose_edges_are_round_with_two_radii_stays_flat():
+    """And one that is nearly round all over."""
+    two = body(Convex(CORE, 1.5), Convex(CORE * (1.0, 1.0, 0.5), 3.0)).hull()
+    stretched = body(Convex(CORE, 1.5)).scale((1.0, 1.0, 1.01))
+    for solid in (two, stretched):
+        (one,) = shapes_of(solid).shapes
+        assert one.radius_m == 0.0
 
 
 def test_prisms_and_what_is_nearly_round_stay_as_they_are():
@@ -241,6 +270,30 @@ def test_numbers_of_a_mesh_of_several_shapes_cannot_be_adjusted(tmp_path):
     text += 'adjustable: {x: {key: "object.shapes[0].position[0]", range: [0, 1]}}\n'
     with pytest.raises(SceneFileError, match=r"adjustable.x.key: points into a mesh that is several shapes"):
         scene_with(tmp_path, UNIONS["boss"][0], (), text)
+
+
+def test_a_fillet_in_a_mesh_is_named_and_a_hole_beside_it_goes_through_all_that_it_cuts():
+    """Its flat sides cut the plate below into thin wedges, which all have to let the peg through."""
+    corner = body(
+        Box((6, 40, 6), Pose((10, 0, 10))),
+        without=(Cylinder(5, 60, Pose((13, 0, 13), euler_zyx=(0, 0, math.pi / 2))),),
+    )
+    walls = body(Box((60, 40, 8), Pose((30, 0, 4))), Box((8, 40, 50), Pose((4, 0, 25))))
+    bored = walls + corner - body(Cylinder(4, 30, Pose((40, 0, 4))))
+    found = shapes_of(bored)
+    (hole,) = (shape for shape in found.shapes if isinstance(shape, Hole))
+    problems = ProblemList()
+    hole.check_mouth([shape for shape in found.shapes if shape.name in hole.in_], (), problems)
+    assert not problems.problems
+    middle = hole.pose_body_shape.transform(
+        [(x, y, z) for x in (-3, 0, 3) for y in (-2, 0, 2) for z in (-0.1, -1, -4, -7.9)]
+    )
+    for shape in found.shapes:
+        assert shape is hole or shape.name in hole.in_ or not shape.holds(middle).any()
+    assert found.notes[-1].startswith(
+        "'part' is hollow and round somewhere, as in a fillet, which makes many parts of it: here, "
+    )
+    assert not any("hollow" in note for note in shapes_of(walls).notes)
 
 
 def test_holes_of_a_finely_divided_plate_are_recognised():

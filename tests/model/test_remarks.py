@@ -78,6 +78,7 @@ def test_what_is_unusual_and_right_is_not_remarked() -> None:
         scene(box(0, "base"), box(0.011, "a hair apart")),
         scene(center=(0, 0, 0.02)),
         scene(box(0, "one"), box(0.02, "two"), box(0.01, "between")),
+        Scene(Object([Box((1, 1, 1), Pose((0, 0, 0.5)))]), Cage(shapes=[Box((30, 30, 1), Pose((0, 0, -0.5)))]), [DOWN]),
     ):
         assert list(remarks(given)) == []
 

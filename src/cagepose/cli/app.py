@@ -13,12 +13,15 @@ import io
 import os
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from cagepose.files.progress import told_to
 
 if TYPE_CHECKING:
-    from cyclopts import CycloptsError
+    from pathlib import Path
+
+    from cyclopts import App, CycloptsError
 
 BAD_INPUT = 2
 BUG = 3
@@ -138,6 +141,7 @@ def _dispatch(tokens: list[str]) -> int:
         return 0
 
     from cyclopts import App, CycloptsError
+    from cyclopts.completion.install import create_install_completion_command
 
     from cagepose.errors import CageposeError
 
@@ -152,7 +156,9 @@ def _dispatch(tokens: list[str]) -> int:
     )
     for name, (home, summary) in COMMANDS.items():
         app.command(home, name=name, help=summary)
-    app.register_install_completion_command(add_to_startup=False)
+    app.command(
+        create_install_completion_command(partial(_install_completion, app), False), name="--install-completion"
+    )
     try:
         code = app(tokens, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
@@ -166,6 +172,15 @@ def _dispatch(tokens: list[str]) -> int:
         sys.stderr.write(f"{error}\n")
         return BAD_INPUT
     return int(code or 0)  # help returns None
+
+
+def _install_completion(app: App, **options: Any) -> Path:
+    """Write the script for a shell; cyclopts' own for bash breaks names at spaces, and stops after a folder's."""
+    path = app.install_completion(**options)
+    script = path.read_text(encoding="utf-8").replace("\ncomplete -F", "\ncomplete -o filenames -F")
+    script = script.replace("COMPREPLY=( $(compgen -f", r"local IFS=$'\n'; COMPREPLY=( $(compgen -f")
+    path.write_text(script, encoding="utf-8")
+    return path
 
 
 def _named_input(before: str, token: str) -> str:

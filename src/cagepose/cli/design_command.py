@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import Switch, refusal
+from cagepose.cli.options import FILE, FileName, Switch, refusal
 
 if TYPE_CHECKING:
     from cagepose.sampling.design_results import DesignResults
@@ -17,10 +17,12 @@ if TYPE_CHECKING:
 
 
 def design_command(
-    file: Annotated[str, Parameter(help="Design file (YAML or JSON).")],
+    file: Annotated[FileName, Parameter(help="Design file (YAML or JSON).")],
     /,
     *,
-    out: Annotated[str | None, Parameter(help="Folder for numbers, curve and scene; made if it is not there.")] = None,
+    out: Annotated[
+        FileName | None, FILE, Parameter(help="Folder for numbers, curve and scene; made if it is not there.")
+    ] = None,
     workers: Annotated[
         int | None, Parameter(help="Threads, or processes where scenes are built row by row; left out: all cores.")
     ] = None,

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import MethodOption, SetOption, refusal
+from cagepose.cli.options import FILE, FileName, MethodOption, SetOption, refusal
 from cagepose.cli.run_source import RunOrSceneArgument, read_run_or_scene, run_of
 
 
@@ -23,7 +23,7 @@ def export_command(
             " poses alone."
         ),
     ],
-    out: Annotated[str, Parameter(name=("--out", "-o"), help="File to write, such as rollers.xml.")],
+    out: Annotated[FileName, FILE, Parameter(name=("--out", "-o"), help="File to write, such as rollers.xml.")],
     method: MethodOption = None,
     set_values: SetOption = (),
 ) -> int:
@@ -33,6 +33,7 @@ def export_command(
     from cagepose.errors import SceneError, printable
     from cagepose.exchange.export import exported
     from cagepose.files.write import check_can_write, is_made_by_us, write_whole
+    from cagepose.model.wording import counted
 
     def check(path: Path) -> None:
         check_can_write(path, is_made_by_us, "an export of cagepose")
@@ -57,7 +58,7 @@ def export_command(
         sys.stderr.write(refusal(option, error) + "\n")
         return 2
     beside = len(found.files) - 1
-    files = f"{out} and {beside} files beside it" if beside else out
+    files = f"{out} and {counted((beside, 'file', 'files'))} beside it" if beside else out
     sys.stdout.write(printable(f"wrote {files}: {run.scene.name}, {run.verdict} ({run.method})") + "\n")
     sys.stdout.write("".join(printable(f"note: {note}") + "\n" for note in found.notes))
     return 0

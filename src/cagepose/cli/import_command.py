@@ -7,14 +7,14 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import refusal
+from cagepose.cli.options import FILE, FileName, refusal
 
 
 def import_command(
-    file: Annotated[str, Parameter(help="MJCF, URDF, STEP, STL, OBJ, PLY or GLB file.")],
+    file: Annotated[FileName, Parameter(help="MJCF, URDF, STEP, STL, OBJ, PLY or GLB file.")],
     /,
     *,
-    out: Annotated[str, Parameter(name=("--out", "-o"), help="Scene file to write, such as scene.yaml.")],
+    out: Annotated[FileName, FILE, Parameter(name=("--out", "-o"), help="Scene file to write, such as scene.yaml.")],
     object: Annotated[
         str | None,
         Parameter(

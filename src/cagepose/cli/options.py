@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
 from cagepose.errors import printable
 from cagepose.model.methods import METHODS
 
-SceneArgument = Annotated[str, Parameter(help="Scene file (YAML or JSON).")]
+if TYPE_CHECKING:
+    FileName = str
+    Method = str
+else:  # both stay the words that were given; a shell offers files for the one, and these words for the other
+    from pathlib import Path
+
+    FileName = str | Path
+    Method = Literal[METHODS] | str
+
+FILE, METHOD = Parameter(metavar="FILE"), Parameter(metavar="METHOD", show_choices=False)
+"""What help calls them."""
+SceneArgument = Annotated[FileName, Parameter(help="Scene file (YAML or JSON).")]
 SetOption = Annotated[
     tuple[str, ...],
     Parameter(
@@ -30,7 +41,9 @@ AtOption = Annotated[
     ),
 ]
 MethodOption = Annotated[
-    str | None, Parameter(help=f"How to run the scene: {' or '.join(METHODS)}; left out: as the scene says.")
+    Method | None,
+    METHOD,
+    Parameter(help=f"How to run the scene: {' or '.join(METHODS)}; left out: as the scene says."),
 ]
 Switch = Parameter(negative="", show_default=False)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import AtOption, MethodOption, SetOption, refusal
+from cagepose.cli.options import FILE, AtOption, FileName, MethodOption, SetOption, refusal
 from cagepose.cli.run_source import RunOrSceneArgument, read_run_or_scene, run_of
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ def plot_command(
     run_or_scene: RunOrSceneArgument,
     /,
     *,
-    out: Annotated[str, Parameter(help="Picture file to write: .png, .svg or .pdf.")],
+    out: Annotated[FileName, FILE, Parameter(help="Picture file to write: .png, .svg or .pdf.")],
     kind: Annotated[
         Literal["pose", "events", "play", "extremes"],
         Parameter(

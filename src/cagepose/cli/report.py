@@ -18,7 +18,7 @@ from cagepose.errors import printable
 from cagepose.files.units import LengthUnit
 from cagepose.files.words import LengthWords
 from cagepose.model.wording import components, short
-from cagepose.runs.run import AT_REST, FAILURES, PhaseRun, Run
+from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, PhaseRun, Run
 from cagepose.studies.margin import Margin
 
 POSES = {
@@ -87,8 +87,8 @@ class _Writer:
         solve_ms = self.run.solve_s * 1000.0
         title = Text(f"{self.run.scene.name}: ")
         title.append(self.run.verdict, style=verdict_style(self.run.verdict))
-        if _is_contradicted(self.run):
-            title.append(" by the paper's rules; by the mechanics it moves on from there")
+        if self.run.is_contradicted:
+            title.append(f" {CONTRADICTED}")
         return title.append(f"  ({self.run.method}, {solve_ms:.3g} ms)")
 
     def summary(self) -> Table:
@@ -100,7 +100,7 @@ class _Writer:
             *self._end(run.phases[-1]),
             ("verdict", _verdicts(run)),
             *((f"proof of {phase.name}", _proof(phase)) for phase in run.phases[:-1] if self.is_verbose),
-            ("mechanics" if _is_contradicted(run) else "proof", _proof(run.phases[-1])),
+            ("mechanics" if run.is_contradicted else "proof", _proof(run.phases[-1])),
             ("onset", self._onset()),
             ("critical friction", _critical(run)),
             *self.margin,
@@ -151,11 +151,6 @@ def _contact_texts(phase: PhaseRun, *, is_verbose: bool) -> list[str]:
         if contact.point not in names:  # a point on an edge touches two faces
             names.append(contact.point)
     return [f"{listed(names, is_verbose=is_verbose)} on {box}" for box, names in points.items()]
-
-
-def _is_contradicted(run: Run) -> bool:
-    """Whether the paper's rules end at rest where no forces balance the load."""
-    return run.verdict == "stable" and run.phases[-1].proof.verdict == "moves"
 
 
 def _verdicts(run: Run) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import refusal
+from cagepose.cli.options import FILE, FileName, refusal
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
 
 def reproduce_command(
-    *, out: Annotated[str, Parameter(help="Folder for the report; made if it is not there.")] = "reproduction"
+    *,
+    out: Annotated[FileName, FILE, Parameter(help="Folder for the report; made if it is not there.")] = "reproduction",
 ) -> int:
     """Run the paper's cases, write a report with pictures, and print its numbers beside ours."""
     from cagepose.errors import printable

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from cagepose.cli.app import STANDARD_INPUT
-from cagepose.cli.options import MethodOption, SetOption, Switch, refusal, unknown_method
+from cagepose.cli.options import FILE, FileName, MethodOption, SetOption, Switch, refusal, unknown_method
 
 if TYPE_CHECKING:
     from cagepose.files.scene_file import SceneFile
 
 
 def run_command(
-    scene: Annotated[str, Parameter(help="Scene file (YAML or JSON), or - for standard input.")],
+    scene: Annotated[FileName, Parameter(help="Scene file (YAML or JSON), or - for standard input.")],
     /,
-    *more: Annotated[str, Parameter(help="More of them, run one after the other.")],
+    *more: Annotated[FileName, Parameter(help="More of them, run one after the other.")],
     method: MethodOption = None,
     set_values: SetOption = (),
     json: Annotated[
@@ -28,7 +28,7 @@ def run_command(
         Switch,
         Parameter(help="Print one JSON document instead of the table; of several scenes one on a line."),
     ] = False,
-    out: Annotated[str | None, Parameter(help="Save the run to this file, every number exactly.")] = None,
+    out: Annotated[FileName | None, FILE, Parameter(help="Save the run to this file, every number exactly.")] = None,
     critical_friction: Annotated[
         bool, Switch, Parameter(help="Find the least coefficient of friction that each rest needs.")
     ] = False,

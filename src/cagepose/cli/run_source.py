@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import refusal, unknown_method
+from cagepose.cli.options import FileName, refusal, unknown_method
 
 if TYPE_CHECKING:
     from cagepose.files.run_file import RunFile
     from cagepose.files.scene_file import SceneFile
 
-RunOrSceneArgument = Annotated[str, Parameter(help="Saved run (run --out), or scene file (YAML or JSON).")]
+RunOrSceneArgument = Annotated[FileName, Parameter(help="Saved run (run --out), or scene file (YAML or JSON).")]
 
 
 def read_run_or_scene(

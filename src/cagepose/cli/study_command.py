@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import Switch, refusal
+from cagepose.cli.options import FILE, FileName, Switch, refusal
 
 if TYPE_CHECKING:
     from cagepose.sampling.results import StudyResults
@@ -22,11 +22,13 @@ SECONDS_BETWEEN_LINES = 10.0
 
 
 def study_command(
-    file: Annotated[str, Parameter(help="Study file (YAML or JSON), or the word show.")],
-    folder: Annotated[str | None, Parameter(help="After show: the folder of a study.")] = None,
+    file: Annotated[FileName, Parameter(help="Study file (YAML or JSON), or the word show.")],
+    folder: Annotated[FileName | None, FILE, Parameter(help="After show: the folder of a study.")] = None,
     /,
     *,
-    out: Annotated[str | None, Parameter(help="Folder for rows and report; made if it is not there.")] = None,
+    out: Annotated[
+        FileName | None, FILE, Parameter(help="Folder for rows and report; made if it is not there.")
+    ] = None,
     resume: Annotated[bool, Switch, Parameter(help="Go on with a folder that holds this study already.")] = False,
     workers: Annotated[
         int | None, Parameter(help="Threads, or processes where scenes are built row by row; left out: all cores.")
@@ -37,7 +39,7 @@ def study_command(
     ] = None,
     json: Annotated[bool, Switch, Parameter(help="Print the report's numbers as JSON instead of tables.")] = False,
     csv: Annotated[
-        str | None, Parameter(help="After show: write all rows into this file, and print nothing else.")
+        FileName | None, FILE, Parameter(help="After show: write all rows into this file, and print nothing else.")
     ] = None,
 ) -> int:
     """Run a study into a folder with its report, or show what a folder says: cagepose study show FOLDER"""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from cagepose.cli.options import MethodOption, SetOption, refusal
+from cagepose.cli.options import FILE, FileName, MethodOption, SetOption, refusal
 from cagepose.cli.run_source import RunOrSceneArgument, read_run_or_scene, run_of
 
 if TYPE_CHECKING:
@@ -22,7 +22,8 @@ def view_command(
     /,
     *,
     export: Annotated[
-        str | None,
+        FileName | None,
+        FILE,
         Parameter(
             help="Write a file instead: .html, a page that plays in any browser with no network; .gif or .mp4, a film;"
             " .png, a picture of the end."

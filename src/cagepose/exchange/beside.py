@@ -10,6 +10,7 @@ from typing import Any
 
 from cagepose.files.scene_document import scene_document
 from cagepose.model.scene import Scene
+from cagepose.model.wording import few
 
 VERSION = 1
 KEPT = ("name", "loads", "method", "metric", "tolerances")
@@ -28,11 +29,22 @@ def beside_text(scene: Scene, *, with_friction: bool = False) -> str:
     return json.dumps(note)
 
 
+def not_kept(scene: Scene) -> list[str]:
+    """Return what stands neither in the bodies nor in the note, in sentences."""
+    names = few(entry.name for entry in scene.adjustable)
+    return [f"what is adjustable in the scene is not in the file: {names}"] if names else []
+
+
+def spoilt(where: object) -> str:
+    """Return what is said of a note of ours that cannot be read."""
+    return f"the note of cagepose in {where} is damaged or of another version: here, the bodies alone; export it again"
+
+
 def read_beside(text: str) -> dict[str, Any] | None:
     """Return what `beside_text` wrote; None: it is something else, or somebody spoilt it."""
     try:
         found = json.loads(text)
-    except ValueError:
+    except (ValueError, RecursionError):
         return None
     if not isinstance(found, dict) or found.get("version") != VERSION:
         return None

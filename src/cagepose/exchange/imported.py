@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cagepose.errors import FileProblem, SceneFileError
-from cagepose.exchange.beside import read_beside
+from cagepose.exchange.beside import read_beside, spoilt
 from cagepose.exchange.compile_model import compiled
 from cagepose.exchange.extra import mujoco
 from cagepose.exchange.model_bodies import WORLD, ModelBodies
@@ -32,7 +33,7 @@ Data = dict[str, Any]
 NOT_CONVEX = 1e-3
 """Of a hull's volume: a mesh that is less by more is not convex."""
 PLANE_OF_REACH = 20.0
-"""Width of the box that stands for a plane without edges, in distances of the object's farthest point."""
+"""Width of the box that stands for a plane, in distances of the object's farthest point: no plane of MuJoCo ends."""
 
 
 class Import(NamedTuple):
@@ -62,32 +63,42 @@ def imported(source: str, object_name: str | None = None, cage_names: Sequence[s
     MissingExtraError
         There is no MuJoCo, or what reads solids.
     """
-    if Path(source).suffix.lower() in SOLIDS:
-        document, notes = solids_document(source, object_name, cage_names)
-        return _import(source, document, notes)
-    mujoco()
-    text = read_model_text(source, SOLIDS)
-    reader = _Reader(source, ModelBodies(source, compiled(source)), _beside(text), is_urdf=text.is_urdf)
-    return _import(source, reader.document(object_name, cage_names), reader.notes)
-
-
-def _import(source: str, document: Data, notes: Sequence[str]) -> Import:
+    is_solids = Path(source).suffix.lower() in SOLIDS
+    if any("\udc80" <= letter <= "\udcff" for letter in os.path.abspath(source)):  # the bytes of no UTF-8
+        message = "has a name, or is in a folder, whose letters are no UTF-8; rename it"
+        raise SceneFileError([FileProblem((), message, source)])
+    try:
+        document, notes = (solids_document if is_solids else _model_document)(source, object_name, cage_names)
+    except OSError as error:
+        message = f"cannot be read ({error.strerror or error}); check the names of its files and their permissions"
+        raise SceneFileError([FileProblem((), message, source)]) from None
     scene = SceneText("", YamlSource(document, source), Path(source).parent).scene_file().scene
     return Import(scene, tuple(dict.fromkeys(notes)))
 
 
-def _beside(text: ModelText) -> Data:
+def _model_document(source: str, object_name: str | None, cage_names: Sequence[str]) -> tuple[Data, list[str]]:
+    """Return the data of a scene of bodies, and what is not in it as in the model."""
+    mujoco()
+    text = read_model_text(source, SOLIDS)
+    kept, notes = _beside(text), list[str]()
+    beside = read_beside(kept) if kept else {}
+    if beside is None:
+        notes.append(spoilt(Path(source).name))
+    reader = _Reader(source, ModelBodies(source, compiled(source)), beside or {}, notes, is_urdf=text.is_urdf)
+    return reader.document(object_name, cage_names), notes
+
+
+def _beside(text: ModelText) -> str:
     """Return what `cagepose export` kept beside the bodies; nothing, of other files."""
     if text.is_urdf:
-        return read_beside(text.root.findtext("cagepose") or "") or {}
+        return text.root.findtext("cagepose") or ""
     kept = text.root.find("custom/text[@name='cagepose']")
-    return {} if kept is None else read_beside(kept.get("data") or "") or {}
+    return "" if kept is None else kept.get("data") or ""
 
 
 class _Reader:
-    def __init__(self, source: str, bodies: ModelBodies, beside: Data, *, is_urdf: bool) -> None:
-        self.source, self.bodies, self.beside, self.is_urdf = source, bodies, beside, is_urdf
-        self.notes: list[str] = []
+    def __init__(self, source: str, bodies: ModelBodies, beside: Data, notes: list[str], *, is_urdf: bool) -> None:
+        self.source, self.bodies, self.beside, self.notes, self.is_urdf = source, bodies, beside, notes, is_urdf
 
     def document(self, object_name: str | None, cage_names: Sequence[str]) -> Data:
         """Return the scene file's data."""
@@ -105,14 +116,14 @@ class _Reader:
         name_them([*parts, *walls])
         with_geoms = {geom["body"] for geom in walls}
         frame = with_geoms.pop() if len(with_geoms) == 1 else WORLD
-        shapes = [self.shape(geom, held, 0.0) for geom in parts]
+        shapes = [self.shape(geom, held, held, 0.0) for geom in parts]
         reach_m = max((_reach_m(shape) for shape in shapes if shape), default=0.0)
         points = {
             geom["label"]: self.place(geom, frame).position_m.tolist()
             for geom in walls
             if geom["kind"] == "sphere" and geom["label"] in beside.get("points", ())
         }
-        others = [self.shape(geom, frame, reach_m) for geom in walls if geom["label"] not in points]
+        others = [self.shape(geom, frame, held, reach_m) for geom in walls if geom["label"] not in points]
         found: Data = {"name": beside.get("name") or Path(self.source).stem, "units": {"length": "m"}}
         found["object"] = {"shapes": [shape for shape in shapes if shape], **self.inertial(of_object, held)}
         found["object"]["pose"] = METRES.pose(bodies.pose(held))
@@ -137,7 +148,7 @@ class _Reader:
     def place(self, geom: Data, frame: int) -> Pose:
         return self.bodies.in_frame(geom["body"], Pose(geom["position"], geom["quaternion"]), frame)
 
-    def shape(self, geom: Data, frame: int, reach_m: float) -> Data | None:
+    def shape(self, geom: Data, frame: int, held: int, reach_m: float) -> Data | None:
         """Return a geom as a shape of a scene file in the frame of a body; None: it is left out."""
         label, place, size = geom["label"], self.place(geom, frame), geom["size"]
         if geom["kind"] == "box":
@@ -148,9 +159,9 @@ class _Reader:
             numbers = {geom["kind"]: {"radius": size[0], "length": 2.0 * size[1]}}
         elif geom["kind"] == "plane":
             width_m = PLANE_OF_REACH * reach_m
-            sides = [2.0 * half or width_m for half in size[:2]]
-            self.notes.append(f"{label!r} is a plane; here, a box, {sides[0]:.3g} m by {sides[1]:.3g} m, its top there")
-            numbers, place = {"box": {"size": [*sides, width_m]}}, place @ Pose((0.0, 0.0, -width_m / 2.0))
+            self.notes.append(f"{label!r} is a plane; here, a box {width_m:.3g} m wide under the object, its top there")
+            x, y, _ = place.inverse_transform(self.bodies.in_frame(held, Pose(), frame).position_m).tolist()
+            numbers, place = {"box": {"size": [width_m, width_m, reach_m]}}, place @ Pose((x, y, -reach_m / 2.0))
         elif "vertices" in geom:
             numbers = self.hull(geom, label)
         else:

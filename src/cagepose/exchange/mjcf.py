@@ -12,7 +12,7 @@ from xml.etree.ElementTree import Comment, Element, SubElement, indent, tostring
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cagepose.exchange.beside import beside_text
+from cagepose.exchange.beside import beside_text, not_kept
 from cagepose.exchange.solids import Assembly, Primitive, Solid
 from cagepose.files.write import MADE_BY
 from cagepose.model.box import Box
@@ -70,8 +70,8 @@ def mass_kg(held: Object) -> float:
 
 
 def notes_of_loads(scene: Scene) -> list[str]:
-    """Return what is said of mass and loads, which no format of bodies holds."""
-    found = []
+    """Return what is said of mass, loads and what is adjustable, which no format of bodies holds."""
+    found = not_kept(scene)
     if scene.object.mass_kg is None:
         found.append("the scene gives no mass; here it is 1 kg")
     others = [load.name for load in scene.loads if not load.is_weight_alone]

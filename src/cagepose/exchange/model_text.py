@@ -76,7 +76,11 @@ def _inside(folder: Path, name: str, source: str) -> Path:
         It lies outside of the model's folder, through a link or not.
     """
     plain = SCHEMES.sub("", name)
-    path = (folder / plain).resolve() if "\0" not in plain else Path("/")
+    try:
+        path = (folder / plain).resolve() if "\0" not in plain else Path("/")
+    except (OSError, RuntimeError):
+        message = f"names {name[:80]!r}, a link that leads to itself; copy the file there"
+        raise SceneFileError([FileProblem((), message, source)]) from None
     if not path.is_relative_to(Path(source).parent.resolve()):
         message = f"names {name[:80]!r}, which lies outside of the model's folder; copy it there"
         raise SceneFileError([FileProblem((), message, source)])

@@ -14,7 +14,7 @@ from cagepose.exchange.solids_note import SHOWN, read_solids_note
 from cagepose.exchange.step_solids import read_step
 from cagepose.exchange.stl import MM
 from cagepose.files.meshes import mesh_file
-from cagepose.files.meshes.decomposed import kept_beside
+from cagepose.files.meshes.decomposed import farthest_from, kept_beside
 from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
 from cagepose.files.progress import tell
@@ -24,7 +24,7 @@ from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose, turn_from_z
 from cagepose.model.shape_moments import shape_moments
 from cagepose.model.shapes import Capsule, Convex, Shape, Sphere
-from cagepose.model.wording import few
+from cagepose.model.wording import counted, few
 
 Data = dict[str, Any]
 
@@ -35,6 +35,8 @@ METRES = SceneWriter("m")
 ALONE = "has no solid but the object; give that as a `mesh` in a scene file with its cage"
 SAME_VOLUME = 1e-7
 """Of itself: shapes that have it are the solid, and its triangles alone are off."""
+MOST_OFF = 0.05
+"""Of the size: hollow roundings whose loss is more are kept, as many flat faces."""
 SAME_MOUTH = 1e-6
 """Of a hole's radius: ends that are this near are one."""
 
@@ -50,7 +52,8 @@ def solids_document(source: str, object_name: str | None, cage_names: Sequence[s
         What reads it is not installed.
     """
     path, notes = Path(source), list[str]()
-    note = read_solids_note(path)
+    note = read_solids_note(path, notes)
+    damaged = [*notes]
     try:
         solids = _of_step(path, notes) if path.suffix.lower() in STEP else _of_mesh(path, bool(note), notes)
         held, walls = _chosen(list(solids), object_name, cage_names)
@@ -67,7 +70,8 @@ def solids_document(source: str, object_name: str | None, cage_names: Sequence[s
             of_solid = _shapes(path, _short(name, names), solids[name], frame, notes)
             shapes[body] += [METRES.shape(_named(shape, note.get("holes", {}))) for shape in of_solid]
     except SceneError as error:
-        raise SceneFileError([FileProblem((), problem.message, source) for problem in error.problems]) from None
+        messages = [*(problem.message for problem in error.problems), *damaged]
+        raise SceneFileError([FileProblem((), message, source) for message in messages]) from None
     finally:
         tell("")
     found: Data = {"name": note.get("name") or path.stem, "units": {"length": "m"}}
@@ -168,12 +172,38 @@ def _shapes(path: Path, name: str, solid: Data, frame: Pose, notes: list[str]) -
     if "core" in solid:
         shapes: Sequence[Shape] = [_rounded(np.array(solid["core"]), solid["radius"], name)]
     else:
-        mesh = mesh_file.checked(Triangles(np.array(solid["vertices"]), np.array(solid["faces"])), f"{name!r} ")
+        mesh = _surface(solid, name)
+        if "sharp" in solid:
+            solid, mesh = _sharp(solid, mesh, name, notes)
         found = mesh_shapes(mesh, name, "mm", partial(kept_beside, path))
-        notes += [] if _is_exact(found, solid) else found.notes
+        if not _is_exact(found, solid):
+            notes += found.notes
+            if solid.get("off", 0.0) > found.error:
+                notes.append(f"{name!r} has flat sides where it is round there, up to {solid['off']:.2g} mm off")
         shapes = found.shapes
     metres = [mesh_file.scaled(shape, 1.0 / MM) for shape in shapes]
     return [shape.moved(frame @ shape.pose_body_shape) for shape in metres]
+
+
+def _surface(solid: Data, name: str) -> Triangles:
+    return mesh_file.checked(Triangles(np.array(solid["vertices"]), np.array(solid["faces"])), f"{name!r} ")
+
+
+def _sharp(solid: Data, mesh: Triangles, name: str, notes: list[str]) -> tuple[Data, Triangles]:
+    """Return a solid without its hollow roundings, and its surface; with them, where they are a great part of it."""
+    try:
+        sharp = _surface(solid["sharp"], name)
+    except SceneError:  # Open CASCADE left it open or crossing itself
+        return solid, mesh
+    off = max(farthest_from(mesh, sharp), farthest_from(sharp, mesh))
+    if off > MOST_OFF * mesh.size:
+        return solid, mesh
+    roundings = counted((solid["n_fillets"], "hollow rounding", "hollow roundings"))
+    notes.append(
+        f"{name!r} has {roundings}, of {solid['radius']:.3g} mm at most: here, sharp corners, up to {off:.2g} mm off;"
+        " where something rests in one, make it a chamfer"
+    )
+    return solid["sharp"], sharp
 
 
 def _named(shape: Shape, mouths: Data) -> Shape:

@@ -10,7 +10,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-from cagepose.exchange.beside import beside_text, read_beside
+from cagepose.exchange.beside import beside_text, read_beside, spoilt
 from cagepose.files.scene_document import scene_document
 from cagepose.files.write import MADE_BY
 from cagepose.model.pose import Pose
@@ -50,14 +50,16 @@ def file_beside(path: Path) -> Path:
     return path.with_name(f"{path.name}.json")
 
 
-def read_solids_note(path: Path) -> dict[str, Any]:
-    """Return the note of a file; nothing, of those of other programs."""
+def read_solids_note(path: Path, notes: list[str]) -> dict[str, Any]:
+    """Return the note of a file; nothing, where there is none, or a spoilt one, which ``notes`` is told."""
     kept = path if path.suffix.lower() in (".step", ".stp") else file_beside(path)
     if not kept.is_file():
         return {}
     with kept.open("rb") as stream:
         text = stream.read(MOST_BYTES).decode(errors="replace")
     if kept == path:
+        if "/* cagepose {" not in text:
+            return {}
         found = IN_STEP.search(text)
         text = found.group(1) if found else ""
     note = read_beside(text) or {}
@@ -69,6 +71,8 @@ def read_solids_note(path: Path) -> dict[str, Any]:
         and all(_lengths([mouth]) == [3] for mouth in mouths.values())
         and all(_lengths(note.get(key)) == [3, 4] for key in SHOWN.values())
     )
+    if not is_whole:
+        notes.append(spoilt(kept.name))
     return note if is_whole else {}
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from cagepose.errors import Problem, SceneError
+from cagepose.exchange.beside import not_kept
 from cagepose.exchange.solids import POINT_OF_SIZE
 from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
@@ -48,7 +49,7 @@ def world_parts(scene: Scene, pose_world_object: Pose) -> tuple[list[WorldPart],
         WorldPart(f"cage/{name}", Sphere(radius_m, Pose(point), name), [], cage.pose_world_cage, is_point=True)
         for point, name in points
     ]
-    notes = [f"cage points are balls of radius {radius_m:.3g} m"] if parts else []
+    notes = [*([f"cage points are balls of radius {radius_m:.3g} m"] if parts else []), *not_kept(scene)]
     problems = []
     for body, pose, shapes, holes in (
         ("cage", cage.pose_world_cage, cage.shapes, cage.holes),

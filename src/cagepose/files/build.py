@@ -22,6 +22,7 @@ from cagepose.model.load import Force, Load, Moment, Spring
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Adjustable, Scene
+from cagepose.model.scope import unknown_shapes
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Disc, Shape, Sphere
 from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT, Tolerances
 
@@ -72,6 +73,8 @@ def build_scene(model: SceneModel, table: PointsTable | None, folder: Path = CUR
             for name, entry in (model.adjustable or {}).items()
         ],
     )
+    if unknown := unknown_shapes(scene):
+        raise SceneError(unknown)  # here, where each has its line in the file
     return Built(scene, tuple(dict.fromkeys(builder.notes)))
 
 

@@ -69,6 +69,20 @@ def shifted(shapes: Shapes, by: FloatArray) -> Shapes:
     return Shapes(*moved)
 
 
+def placed_shapes(shapes: Shapes, pose: Pose) -> Shapes:
+    """Return shapes as they are in the world with their body at a pose.
+
+    The kernel `place_shapes` does so part by part: as plain Python 10 ms for a drawer, forty times as long.
+    """
+    placed: Any = copied(shapes)
+    turn = pose.rotation.T
+    for rows, name in ((placed.features, "direction"), (placed.features, "toward"), (placed.fences, "direction")):
+        rows[name] = rows[name] @ turn
+    for rows, name in ((placed.features, "point"), (placed.parts, "middle")):
+        rows[name] = rows[name] @ turn + pose.position_m
+    return Shapes(*placed)
+
+
 class _Shapes:
     """Rows of records, as parts are added."""
 

@@ -9,10 +9,10 @@ from functools import lru_cache
 import numpy as np
 
 from cagepose.kernels.collision.geometry import Geometry
-from cagepose.kernels.shapes.features import NO_SHAPES, Shapes, copied, place_shapes
+from cagepose.kernels.shapes.features import NO_SHAPES, Shapes
 from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
-from cagepose.model.features import shapes_of
+from cagepose.model.features import placed_shapes, shapes_of
 from cagepose.model.hole import Hole
 from cagepose.model.parts import Object
 from cagepose.model.seams import PlacedBox, Seams, close_seams
@@ -39,11 +39,6 @@ def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox], touch_m: 
     """Return the boxes in the object's frame, its own first and then the bridges, and the cage points in the world;
     with shapes, all parts of both as features.
     """
-    in_cage = cage_shapes(held, cage)
-    in_world = in_cage
-    if len(in_cage.parts) > 0:
-        in_world = copied(in_cage)
-        place_shapes(in_cage, *cage.pose_world_cage.as_tuples(), in_world)
     placed = _placed(held) + bridges
     return Geometry(
         half_sizes=np.array([box.half_size for box in placed]).reshape(-1, 3),
@@ -52,7 +47,7 @@ def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox], touch_m: 
         n_own_boxes=len(held.boxes),
         points_world=np.ascontiguousarray(cage.points_world()),
         held=_features((*held.parts, *held.holes)) if _has_shapes(held, cage) else NO_SHAPES,
-        cage=in_world,
+        cage=placed_shapes(cage_shapes(held, cage), cage.pose_world_cage),
         touch_m=touch_m,
     )
 

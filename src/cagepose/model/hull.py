@@ -9,6 +9,7 @@ it is no corner.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -64,8 +65,16 @@ class Hull:
 
 
 def hull_of(vertices_m: FloatArray) -> Hull:
-    """Return the convex hull of points (n, 3) in metres, n at least one; points that are no corners are left out."""
-    points = np.ascontiguousarray(vertices_m, dtype=np.float64)
+    """Return the convex hull of points (n, 3) in metres, n at least one; points that are no corners are left out.
+
+    Those of the last few points are remembered: what changes from scene to scene is rarely a shape.
+    """
+    return _hull_of(np.ascontiguousarray(vertices_m, dtype=np.float64).tobytes())
+
+
+@lru_cache(maxsize=64)
+def _hull_of(numbers: bytes) -> Hull:
+    points = np.frombuffer(numbers).reshape(-1, 3)
     extent = float(np.ptp(points, axis=0).max())
     kept = _distinct(points, FLAT * extent)
     points = points[kept]

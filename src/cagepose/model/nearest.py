@@ -47,6 +47,11 @@ class Core(NamedTuple):
         """Return how far apart two parts are at least, metres, by the balls around them."""
         return float(np.linalg.norm(self.middle - other.middle)) - self.reach_m - other.reach_m
 
+    def gap_along(self, way: FloatArray, other: Core) -> float:
+        """Return how far apart two parts are along a unit vector, which is how far they are at least."""
+        between = other.farthest(-way) - self.farthest(way)
+        return float(between @ way) - self.radius_m - other.radius_m
+
 
 def core_of(part: Box | Shape | FloatArray, pose_world_body: Pose) -> Core:
     """Return a part of a body at a pose as `nearest_points` takes it; a single point (3,) of the world is one, too."""
@@ -62,12 +67,15 @@ def core_of(part: Box | Shape | FloatArray, pose_world_body: Pose) -> Core:
 
 
 def _farthest_of_turned(part: Turned, pose: Pose) -> Callable[[FloatArray], FloatArray]:
+    rotation = pose.rotation
+
     def farthest(way: FloatArray) -> FloatArray:
-        x, y, z = (way @ pose.rotation).tolist()
+        x, y, z = (way @ rotation).tolist()
         across = float(np.hypot(x, y))
         height, radius = max(part.rims, key=lambda rim: z * rim[0] + across * rim[1])
         outward = radius / across if across > 0.0 else 0.0
-        return pose.transform(np.array([outward * x, outward * y, height]))
+        found: FloatArray = rotation @ (outward * x, outward * y, height) + pose.position_m
+        return found
 
     return farthest
 
@@ -111,6 +119,11 @@ def _nearest_subset(pairs: list[_Pair]) -> tuple[list[_Pair], FloatArray]:
     """
     points = [as_vector(place - foot) for place, foot in pairs]
     last, best = len(pairs) - 1, (math.inf, [len(pairs) - 1], [1.0])
+    if last < 4:
+        shares = _shares([minus(point, points[last]) for point in points[:last]], points[last])
+        all_shares = [*shares, 1.0 - sum(shares)]
+        if min(all_shares) > 0.0:  # within the simplex: all points bear it
+            return pairs, np.array(all_shares)
     for size in range(min(len(pairs), 4)):
         for others in combinations(range(last), size):
             shares = _shares([minus(points[index], points[last]) for index in others], points[last])

@@ -18,6 +18,8 @@ OUTSIDE = 1.0
 """In sizes of the object: a centre of gravity that is farther from it is hardly meant."""
 SMALLEST_M, LARGEST_M = 1e-4, 10.0
 """Scenes beyond these sizes are mostly given in another unit than was meant."""
+SMALL_ENOUGH_M = 3.0
+"""An object of this size may stand on a floor of any, as those of robots do."""
 
 
 def remarks(scene: Scene) -> Iterator[str]:
@@ -25,7 +27,8 @@ def remarks(scene: Scene) -> Iterator[str]:
     yield from _friction(scene)
     yield from _pieces(scene)
     yield from _center(scene)
-    if not SMALLEST_M <= scene.size_m <= LARGEST_M:
+    is_large = scene.size_m > LARGEST_M and object_size(scene.object) > SMALL_ENOUGH_M
+    if is_large or scene.size_m < SMALLEST_M:
         yield (
             f"the scene is {millimetres(scene.size_m)} across; check the unit (units.length of a file, which is mm if"
             " left out; metres in Python)"

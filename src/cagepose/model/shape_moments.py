@@ -10,6 +10,7 @@ outline by k (k + 1).
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -110,6 +111,7 @@ def _capsule_moments(core: FloatArray, radius: float) -> VolumeMoments:
     return VolumeMoments(bar + ball, core.mean(axis=0), second / (bar + ball))
 
 
+@lru_cache(maxsize=64)
 def _rounded_moments(hull: Hull, radius: float) -> VolumeMoments:
     """A volume or a polygon, blown up."""
     origin = hull.vertices_m.mean(axis=0)

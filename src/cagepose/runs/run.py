@@ -30,6 +30,9 @@ FAILURES: frozenset[Verdict] = frozenset({"spins", "cycling", "stalled", "limit"
 AT_REST: frozenset[Verdict] = frozenset({"stable", "rests", "may rest"})
 """Verdicts after which the next phase starts."""
 
+CONTRADICTED = "by the paper's rules; by the mechanics it moves on from there"
+"""What is told behind the verdict of a run that is contradicted."""
+
 
 @dataclass(frozen=True, eq=False)
 class Motion:
@@ -272,6 +275,11 @@ class Run:
     def failed(self) -> bool:
         """Whether the run ended without an answer (spins, cycling, stalled, limit)."""
         return self.verdict in FAILURES
+
+    @property
+    def is_contradicted(self) -> bool:
+        """Whether the paper's rules end at rest where no forces balance the load."""
+        return self.verdict == "stable" and self.phases[-1].proof.verdict == "moves"
 
     @property
     def pose(self) -> Pose:

@@ -19,7 +19,7 @@ from cagepose.runs.run import AT_REST, Event, Motion, PhaseRun, Run, Verdict
 from cagepose.runs.solve import run
 
 SAME_POSE_OF_SIZE = 1e-6
-"""Two poses are one where no corner of a box is farther apart than this fraction of the scene's size."""
+"""Two poses are one where nothing of the object is farther apart than this fraction of the scene's size."""
 GROUNDS = {
     "free": "nothing holds it back",
     "escapes": "nothing is ahead",
@@ -157,8 +157,9 @@ def same_pose(scene: Scene, one: Event, two: Event) -> bool:
 
 
 def _distance(scene: Scene, one: Pose, two: Pose) -> float:
-    corners = np.concatenate([box.corners_object() for box in scene.object.boxes])
-    return float(np.linalg.norm(one.transform(corners) - two.transform(corners), axis=1).max())
+    held = scene.object
+    around = held.center_of_gravity_m + held.reach_m * np.concatenate([np.eye(3), -np.eye(3)])
+    return float(np.linalg.norm(one.transform(around) - two.transform(around), axis=1).max())
 
 
 def _motions(phase: PhaseRun) -> list[Event]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.collision.geometry import Placement, empty_placement, place_object
+from cagepose.kernels.native.slots import Slots
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -33,17 +34,23 @@ class PlacesOfContact(NamedTuple):
     places_world: FloatArray
     normals_world: FloatArray
 
+    def chosen(self, which: NDArray[np.bool_]) -> PlacesOfContact:
+        """Return those pairs of which ``which``, (n,), says so."""
+        places, normals = self.places_world[which], self.normals_world[which]
+        return PlacesOfContact(self.elements[which], self.parts[which], places, normals)
+
 
 class TouchFinder:
     """Finds contacts of one scene, at pose after pose, in the same memory."""
 
     def __init__(self, scene: Scene) -> None:
-        self._geometry = scene.geometry
+        self._geometry = Slots(scene.geometry)
         self._placement: Placement = empty_placement(scene.geometry)
+        self._written = Slots(self._placement)
 
     def at(self, pose_world_object: Pose) -> PlacesOfContact:
         """Return what touches, within the scene's touch tolerance, with the object at a pose."""
-        place_object(self._geometry, *pose_world_object.as_tuples(), self._placement)
+        place_object(self._geometry, *pose_world_object.as_tuples(), self._written)
         meetings = self._placement.meetings
         rows: Any = meetings.rows
         rows = rows[: max(int(meetings.used[0]), 0)]

@@ -32,8 +32,8 @@ def require_film() -> None:
     MissingExtraError
         As `require_pillow`.
     """
-    require_pillow()
-    require("av", "videos need PyAV", "view")
+    require("PIL", "videos need Pillow", "film")
+    require("av", "videos need PyAV", "film")
 
 
 def require_matplotlib() -> None:

@@ -15,6 +15,7 @@ import pytest
 from cagepose import load_scene, run
 from cagepose.files.scene_edit import edited_text
 from cagepose.files.scene_file import parse_scene, read_scene_text
+from cagepose.runs.run import CONTRADICTED
 from cagepose.views.viewer.server import ViewServer
 from cagepose.views.viewer.what_if import WhatIf
 from driving import opened, pretend_graphics_card, served, shown_angles, slide, state, wait_until
@@ -130,6 +131,17 @@ def test_two_windows_do_not_disturb_each_other(watched, server):
     assert shown_angles(one) == pytest.approx(expected_angles("cage.pose.euler_zyx_deg=[0,-0.2,0]"), abs=1e-5)
     assert shown_angles(other) == pytest.approx(expected_angles("cage.pose.euler_zyx_deg=[0.1,0.1,0]"), abs=1e-5)
     assert shown_angles(other) != pytest.approx(untouched, abs=1e-5)
+
+
+def test_a_rest_that_the_mechanics_contradicts_is_not_green(watched):
+    with served(SCENES / "sample.yaml") as server:
+        page = opened(watched, server)
+        assert page.locator("#contradicted").inner_text() == CONTRADICTED
+        assert page.locator("#verdict").get_attribute("class") == "elsewhere"
+        page.locator("#controls select").select_option("quasistatic")
+        wait_until(page, "cagepose.state().drawnAnswers === 1")
+        assert page.locator("#contradicted").is_hidden()
+        assert page.locator("#verdict").get_attribute("class") == "rest"
 
 
 def test_the_saved_scene_is_the_one_on_screen(watched, server, tmp_path):

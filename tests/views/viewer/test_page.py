@@ -47,7 +47,7 @@ def test_the_page_opens_at_the_end_with_the_verdict_and_the_forces(opened, rail)
     assert page.locator("#verdict").inner_text() == "rests"
     assert state(page)["time"] == len(rail.shots) - 1
     shown = {}
-    for line in page.locator("#forces tr:has(td)").all():
+    for line in page.locator("#forces tr:has(td + td)").all():
         name, force = line.locator("td").all_inner_texts()[:2]
         shown[name] = float(force)
     assert shown == {

@@ -161,8 +161,9 @@ def test_a_long_way_into_the_cage_is_shown_as_it_is_and_the_play_behind_it_exagg
     assert max(abs(one - other) for one, other in itertools.pairwise(factors)) < pushed.proposed / 2
 
 
-def test_a_run_without_progress_tells_after_which_event():
-    stalled = run(load_scene(SCENES / "sample.yaml"))
+@pytest.mark.parametrize("scene", ["sample", "chuck"])  # a box, and a part without boxes
+def test_a_run_without_progress_tells_after_which_event(scene):
+    stalled = run(load_scene(SCENES / f"{scene}.yaml"))
     records = stalled.solution.outcome.phases
     records.flags.writeable = True
     records["verdict"][-1] = STALLED  # before anything is read; no scene of ours stalls

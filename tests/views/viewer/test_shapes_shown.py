@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cagepose import Box, Cage, Cylinder, Force, Hole, Load, Object, Pose, Scene, run
+from cagepose import Box, Cage, Cylinder, Force, Hole, Load, Object, Pose, Scene, load_scene, run
 from cagepose.files.scene_file import read_scene_text
 from cagepose.model.shapes import Capsule, Sphere
 from cagepose.views.viewer.page import page
@@ -21,6 +21,7 @@ from cagepose.views.viewer.stage import EXAGGERATIONS, Look, Stage
 from cagepose.views.viewer.what_if import WhatIf
 from driving import set_range, state, wait_until
 from marks_left_out import is_marked, without_marks
+from our_scenes import SCENES as OUR_SCENES
 from shaped_scenes import WEIGHT, ball_on_points, ball_on_table, bar_between_bars, block_on_balls
 
 BLOCK = Box((0.05, 0.05, 0.03), Pose((0.0, 0.0, -0.015)), "block")
@@ -36,6 +37,18 @@ def test_everything_that_touches_is_in_the_picture_and_marked(scene: Callable[[]
     for place in maker.seen_at(maker.places(last)):
         assert ((place > 0.0) & (place < SIZE)).all()
         assert is_marked(pictures, place)
+
+
+def test_a_floor_is_in_the_picture_as_a_whole_but_no_table_is_that_hides_a_ball() -> None:
+    """The floor is twice as long as the plank on it, the table forty times as the ball."""
+    planks = Stage(playback(run(load_scene(next(path for path in OUR_SCENES if path.stem == "planks")))))
+    maker = PictureMaker(planks)
+    corners = maker.seen_at(planks.place(np.concatenate(planks.bodies_world)))
+    assert np.ptp(planks.bodies_world[1], axis=0) == pytest.approx([1.2, 1.2, 0.02])
+    assert ((corners > 0.0) & (corners < SIZE)).all()
+    table = Stage(playback(run(ball_on_table())))
+    (shape,) = table.shown.scene.cage.shapes
+    assert np.ptp(table.bodies_world[0], axis=0).max() < 0.5 * np.ptp(shape.nodes_body(), axis=0).max()
 
 
 def test_contacts_are_where_the_run_says_and_move_along_on_what_is_round() -> None:

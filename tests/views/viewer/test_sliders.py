@@ -163,7 +163,7 @@ def test_without_friction_in_the_file_the_slider_shows_what_the_method_takes(tmp
 
 @pytest.mark.parametrize("path", OUR_SCENES, ids=[path.stem for path in OUR_SCENES])
 def test_every_slider_can_be_used_over_its_whole_range(path):
-    """On every scene of ours; but a load whose direction is along one axis has none at zero."""
+    """On every scene of ours; but a load whose direction is along one axis has none at zero. Run are the ends alone."""
     what_if = WhatIf(read_scene_text(path))
     n_values, problems = 0, []
     for control in what_if.controls:
@@ -173,8 +173,9 @@ def test_every_slider_can_be_used_over_its_whole_range(path):
                 given = [other.value for other in what_if.controls if other.key == control.key]
                 given[control.index] = value
             n_values += 1
+            ask = what_if.answer if value in (control.low, control.high) else what_if.scene
             try:
-                what_if.scene({control.key: given})
+                ask({control.key: given})
             except CageposeError as error:
                 problems.append(str(error))
     print(f"{path.stem}: {len(problems)} of {n_values} values cannot be used")

@@ -13,9 +13,10 @@ import numpy as np
 
 from cagepose.files.meshes.box_corners import SINGLE_PRECISION, box_of_corners
 from cagepose.files.meshes.manifolds import Triangles, circle_through
+from cagepose.files.meshes.rounded_hulls import ball_through, rounded_hull
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose, turn_from_z
-from cagepose.model.shapes import Capsule, Cone, Cylinder, Shape, Sphere
+from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Shape, Sphere
 
 FEWEST_SIDES = 16
 """What has fewer sides is a prism that was meant so."""
@@ -33,14 +34,14 @@ class Recognised(NamedTuple):
 
 
 def convex_shape(hull: Triangles) -> Recognised | None:
-    """Return the box, cylinder, cone, ball or capsule that a body with its corners on its hull stands for; None: it is
-    none of these.
+    """Return the box, cylinder, cone, ball, capsule or rounded hull that a body with its corners on its hull stands
+    for; None: it is none of these.
     """
     box = box_of_corners(hull.vertices)
     if box is not None:
         return Recognised(box, 0.0)
     allowed = SINGLE_PRECISION * hull.size
-    return _turned(hull, allowed) or _ball(hull, allowed) or _capsule(hull, allowed)
+    return _turned(hull, allowed) or _ball(hull, allowed) or _capsule(hull, allowed) or _rounded(hull, allowed)
 
 
 def _turned(hull: Triangles, allowed: float) -> Recognised | None:
@@ -95,16 +96,11 @@ def _ball(hull: Triangles, allowed: float) -> Recognised | None:
     points = hull.vertices
     if len(points) < 2 * FEWEST_SIDES:
         return None
-    middle = points.mean(axis=0)
-    rows = np.column_stack([2.0 * (points - middle), np.ones(len(points))])
-    found = np.linalg.lstsq(rows, ((points - middle) ** 2).sum(axis=1), rcond=None)[0]
-    center = middle + found[:3]
-    away = np.linalg.norm(points - center, axis=1)
-    radius = float(away.mean())
-    error = radius - float(np.linalg.norm(hull.face_points() - center, axis=1).min())
-    if np.ptp(away) > allowed or error > DEEPEST * radius:
+    ball = ball_through(points)
+    error = ball.radius - float(np.linalg.norm(hull.face_points() - ball.center, axis=1).min())
+    if ball.off > allowed or error > DEEPEST * ball.radius:
         return None
-    return Recognised(Sphere(radius, Pose(center)), error)
+    return Recognised(Sphere(ball.radius, Pose(ball.center)), error)
 
 
 def _capsule(hull: Triangles, allowed: float) -> Recognised | None:
@@ -134,6 +130,13 @@ def _capsule(hull: Triangles, allowed: float) -> Recognised | None:
     if span[int(np.abs(span).argmax())] < 0.0:
         span = -span
     return Recognised(Capsule(radius, length, Pose(ends.mean(axis=0), turn_from_z(span))), error)
+
+
+def _rounded(hull: Triangles, allowed: float) -> Recognised | None:
+    found = rounded_hull(hull, allowed)
+    if found is None or found.error > DEEPEST * found.radius:
+        return None
+    return Recognised(Convex(found.core, found.radius), found.error)
 
 
 def _from_bar(points: FloatArray, ends: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -56,7 +56,7 @@ class Triangles:
         library = manifold3d()
         return library.Manifold(library.Mesh64(self.vertices, self.faces.astype(np.uint64)))
 
-    @property
+    @cached_property
     def size(self) -> float:
         """The longest side of the box around it."""
         return float(np.ptp(self.vertices, axis=0).max())

@@ -13,7 +13,7 @@ from cagepose.files.meshes.crossings import crosses_itself
 from cagepose.files.meshes.decomposed import kept_beside
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes, tidied
-from cagepose.files.meshes.run_trimesh import surfaces
+from cagepose.files.meshes.run_trimesh import is_text, surfaces
 from cagepose.files.progress import tell
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.shapes import Shape
@@ -29,6 +29,10 @@ STL_LAST_LINE = 1024
 """Of a text, bytes: it ends with a name."""
 FLAT = 1e-6
 """Of its size: what is thinner is flat."""
+LONGEST, SHORTEST = 1e9, 1e-9
+"""In the unit of the file."""
+MOST_AWAY = 1e6
+"""From the origin, in sizes: the corners of what is farther away have too few digits."""
 KEPT = 64
 """Meshes that are not read again for each scene of a study."""
 
@@ -52,6 +56,8 @@ def read_mesh(path: Path, given: LengthUnit | None, of_scene: LengthUnit, name: 
     MissingExtraError
         trimesh is not installed.
     """
+    if "\0" in os.fspath(path):
+        raise refused("is not a file name; remove the unprintable character")
     unit = given or (UNIT_OF_GLB if path.suffix.lower() == ".glb" else of_scene)
     try:
         found = path.stat()
@@ -108,7 +114,7 @@ def read_solids(path: Path, *, split: bool = True) -> dict[str, Triangles]:
 
 def _check_whole(stl: bytes) -> None:
     """Refuse a binary STL file that is shorter than it says."""
-    if stl.lstrip().startswith(b"solid") and b"facet" in stl:
+    if is_text(stl):
         if b"endsolid" not in stl[-STL_LAST_LINE:]:
             raise refused("is truncated: its last line is no endsolid; copy or export it again")
         return
@@ -124,11 +130,18 @@ def checked(mesh: Triangles, which: str) -> Triangles:
     Raises
     ------
     SceneError
-        It is empty, flat, open, inside out, or crosses itself.
+        It is empty, huge, tiny, far away, flat, open, inside out, or crosses itself.
     """
     if len(mesh.faces) == 0:
         raise refused(f"{which}holds no triangles with an area; export it again")
+    farthest = float(np.abs(mesh.vertices).max())
+    if farthest > LONGEST:
+        raise refused(f"{which}has a corner at {farthest:.2g}, more than {LONGEST:g}; check its unit and its place")
     size = mesh.size
+    if 0.0 < size < SHORTEST:
+        raise refused(f"{which}is {size:.2g} long, less than {SHORTEST:g}; check its unit")
+    if farthest > MOST_AWAY * size > 0.0:
+        raise refused(f"{which}is {farthest / size:.2g} times its size away from the origin; move both bodies there")
     centered = Triangles((mesh.vertices - mesh.vertices.mean(axis=0)) / (size or 1.0), mesh.faces)
     spread = np.linalg.svd(centered.vertices, compute_uv=False)
     if size == 0.0 or len(spread) < 3 or spread[2] <= FLAT * spread[0]:

@@ -16,7 +16,8 @@ import numpy as np
 from cagepose.files.meshes.convex_shapes import Recognised, convex_shape
 from cagepose.files.meshes.cuts import cut_above, cut_until, is_convex, separate
 from cagepose.files.meshes.decomposed import Decomposition, farthest_from
-from cagepose.files.meshes.manifolds import Triangles, without_rounding
+from cagepose.files.meshes.edges import is_hollow_and_round
+from cagepose.files.meshes.manifolds import ROUNDING, Triangles, without_rounding
 from cagepose.files.meshes.round_holes import RoundHole, filled
 from cagepose.files.progress import tell
 from cagepose.model.box import Box
@@ -24,6 +25,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Shape, Sphere
+from cagepose.model.surface import shape_mesh
 
 MOST_CORNERS = 300
 """Of a convex shape: the time of runs grows with the square of it."""
@@ -37,8 +39,10 @@ HOLLOW = 0.97
 """Of its hull's volume: what is round has more."""
 DIGITS = 11
 """Of the size that numbers are written with; what follows is the rounding of double precision."""
-SAMPLES = 4
-"""Heights at which a hole is looked for in a piece."""
+SEGMENTS = 64
+"""Chords of what is round, where it is asked whether a hole is in a piece."""
+LEAST_SHARED = 1e-6
+"""Of a hole's volume: what is less of a piece is rounding."""
 
 Decompose = Callable[[Triangles], Decomposition]
 
@@ -82,6 +86,7 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str, decompose: Decompose) -> 
     holes: list[RoundHole] = []
     notes: list[str] = []
     errors = [0.0]
+    is_filleted = False
     for part in separate(body):
         tell(f"{name!r}: {part.num_tri():,} triangles, its shape recognised")
         simple, tolerance = _simplified(part)
@@ -91,6 +96,7 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str, decompose: Decompose) -> 
             )
             errors.append(tolerance)
         whole, of_part = filled(simple)
+        is_filleted |= is_hollow_and_round(Triangles.of(whole), ROUNDING * Triangles.of(whole).size)
         pieces = cut_until(_cut_at_steps(whole, of_part), _recognised)
         if pieces is None:
             made = decompose(Triangles.of(whole))
@@ -109,6 +115,11 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str, decompose: Decompose) -> 
     error = scale * (of_shapes + max(errors))
     if of_shapes > 0.0 and not notes:
         notes.append(f"{name!r} has flat sides where it is round here, up to {_words(error, unit)} off")
+    if is_filleted and len(found) > 1:
+        notes.append(
+            f"{name!r} is hollow and round somewhere, as in a fillet, which makes many parts of it: here, {len(found)};"
+            " leave fillets that do not matter out in CAD"
+        )
     names = [name] if len(found) == 1 else [f"{name}/{index + 1}" for index in range(len(found))]
     pieces_named = [one.shape.renamed(each) for one, each in zip(found, names, strict=True)]
     cuts = [_in_pieces(one.hole, pieces_named, f"{name}/hole {k + 1}") for k, one in enumerate(holes)]
@@ -210,13 +221,15 @@ def _as_convex(shape: Shape) -> Shape:
 
 def _in_pieces(hole: Hole, pieces: Sequence[Shape], name: str) -> Hole:
     """Return a hole with its name and those of the pieces that it is cut out of."""
-    angles = 2.0 * math.pi * np.arange(64) / 64
-    ring = np.stack([np.cos(angles), np.sin(angles), np.zeros(64)], axis=1)
-    levels = -hole.depth_m * (np.arange(SAMPLES) + 0.5) / SAMPLES
-    points = np.concatenate([share * hole.radius_m * ring + (0.0, 0.0, z) for z in levels for share in (0.0, 0.999)])
-    points = hole.pose_body_shape.transform(points)
-    in_ = [str(piece.name) for piece in pieces if piece.holds(points).any()]
+    plug = _body(hole)
+    least = LEAST_SHARED * plug.volume()
+    in_ = [str(piece.name) for piece in pieces if (plug ^ _body(piece)).volume() > least]
     return hole.cut_out_of(in_).renamed(name)
+
+
+def _body(shape: Shape) -> Any:
+    mesh = shape_mesh(shape, SEGMENTS)
+    return Triangles(mesh.vertices_m, mesh.triangles).body()
 
 
 def _words(length: float, unit: str) -> str:

@@ -52,8 +52,6 @@ def _walls(mesh: Triangles) -> list[FloatArray]:
     """Return the corners of each wall: those of hollow edges that are parallel, equally long and in a ring."""
     allowed = ROUNDING * mesh.size
     edges = reflex_edges(mesh, allowed).corners
-    if len(edges) < FEWEST_SIDES:
-        return []
     links: dict[int, set[int]] = {}
     all_edges = edges_of(mesh)
     one_side, other_side = np.moveaxis(mesh.normals[all_edges.faces], 1, 0)
@@ -61,22 +59,30 @@ def _walls(mesh: Triangles) -> list[FloatArray]:
     for one, other in all_edges.corners[is_sharp].tolist():
         links.setdefault(one, set()).add(other)
         links.setdefault(other, set()).add(one)
+    edges = edges[np.isin(edges, all_edges.corners[is_sharp]).any(axis=1)]  # what is round all over has many others
+    if len(edges) < FEWEST_SIDES:
+        return []
     spans = mesh.vertices[edges[:, 1]] - mesh.vertices[edges[:, 0]]
     lengths = np.linalg.norm(spans, axis=1)
     left, walls = np.ones(len(edges), bool), []
-    for seed in np.argsort(-lengths).tolist():
+    slack = 3.0 * SINGLE_PRECISION * mesh.size
+    longest_first = np.argsort(-lengths)
+    falling = -lengths[longest_first]
+    for seed in longest_first.tolist():
         if not left[seed]:
             continue
+        ends = np.searchsorted(falling, -lengths[seed] + (-2.0 * slack, 2.0 * slack))  # a wavy body has many edges
+        rows = longest_first[slice(*ends)]
+        rows = rows[left[rows]]
+        if len(rows) < FEWEST_SIDES:
+            continue
         axis = spans[seed] / lengths[seed]
-        across = np.linalg.norm(np.cross(spans, axis), axis=1)
-        low, high = np.sort(mesh.vertices[edges] @ axis, axis=1).T
-        slack = 3.0 * SINGLE_PRECISION * mesh.size
-        is_level = (np.abs(low - low[seed]) < slack) & (np.abs(high - high[seed]) < slack)
-        alike = left & is_level & (across <= PARALLEL * lengths)
-        rows = np.flatnonzero(alike)
+        across = np.linalg.norm(np.cross(spans[rows], axis), axis=1)
+        off = np.sort(mesh.vertices[edges[rows]] @ axis, axis=1) - np.sort(mesh.vertices[edges[seed]] @ axis)
+        rows = rows[(np.abs(off) < slack).all(axis=1) & (across <= PARALLEL * lengths[rows])]
         bottoms = np.where((spans[rows] @ axis > 0.0)[:, None], edges[rows], edges[rows][:, ::-1])
         row_of = {int(bottom): int(row) for row, bottom in zip(rows, bottoms[:, 0], strict=True)}
-        start = next(bottom for bottom, row in row_of.items() if row == seed)
+        start = int(edges[seed, 0])
         ring, waiting = {start}, [start]
         while waiting:
             beside = (links.get(waiting.pop(), set()) & row_of.keys()) - ring

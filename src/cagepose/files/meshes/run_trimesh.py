@@ -6,6 +6,7 @@ A small file can ask its readers for much: a GLB of 2 kB for 8 GB, a text of 300
 from __future__ import annotations
 
 import io
+import re
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,8 @@ from cagepose.files.own_process import answer, ask
 CPU_SECONDS, WALL_SECONDS = 7, 60.0
 """Of the process; 32 MiB of text take four seconds."""
 MOST_SOLIDS = 1000
+SOLID_ENDS = re.compile(rb"endsolid[^\r\n]*\s*(solid[^\r\n]*)?", re.IGNORECASE)
+"""Of a text STL file: the end of a solid, and the head of the next one."""
 
 
 def surfaces(content: bytes, suffix: str, *, split: bool) -> dict[str, Triangles]:
@@ -47,6 +50,8 @@ def surfaces_here(content: bytes, suffix: str, *, split: bool) -> dict[str, Tria
     """
     import trimesh
 
+    if suffix == ".stl" and is_text(content):
+        content = _of_few_solids(content, split=split)
     # No resolver: a file may name others, such as textures, which are not opened.
     given: dict[str, Any] = {"file_type": suffix[1:], "skip_materials": True, "process": False}
     if split and suffix == ".obj":
@@ -61,8 +66,35 @@ def surfaces_here(content: bytes, suffix: str, *, split: bool) -> dict[str, Tria
     if not meshes:
         raise ValueError("holds no triangles; export it again")
     if len(meshes) > MOST_SOLIDS:
-        raise ValueError(f"holds {len(meshes):,} bodies, more than {MOST_SOLIDS:,}; export those that touch alone")
+        raise _too_many(len(meshes))
+    if any(mesh.faces.max() >= len(mesh.vertices) or mesh.faces.min() < 0 for mesh in meshes):
+        raise ValueError("has a triangle whose corner is not there; export it again")
     return {str(mesh.metadata["name"]) if split else "": _merged(mesh.vertices, mesh.faces) for mesh in meshes}
+
+
+def is_text(stl: bytes) -> bool:
+    """Whether an STL file is text."""
+    return stl.lstrip().startswith(b"solid") and b"facet" in stl
+
+
+def _of_few_solids(stl: bytes, *, split: bool) -> bytes:
+    """Return a text that trimesh reads in time, which it does not of 100,000 solids: as one, unless they are asked for.
+
+    Raises
+    ------
+    ValueError
+        They are, and are too many.
+    """
+    if not split:
+        return SOLID_ENDS.sub(b"", stl) + b"\nendsolid"
+    n_solids = stl.lower().count(b"endsolid")
+    if n_solids > MOST_SOLIDS:
+        raise _too_many(n_solids)
+    return stl
+
+
+def _too_many(n_bodies: int) -> ValueError:
+    return ValueError(f"holds {n_bodies:,} bodies, more than {MOST_SOLIDS:,}; export those that touch alone")
 
 
 def _merged(vertices: ArrayLike, faces: ArrayLike) -> Triangles:

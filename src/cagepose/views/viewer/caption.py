@@ -8,10 +8,10 @@ from typing import NamedTuple
 from PIL import Image, ImageDraw, ImageFont
 
 from cagepose.files.words import LengthWords
-from cagepose.runs.run import Run
+from cagepose.runs.run import CONTRADICTED, Run
 from cagepose.views.viewer.labels import Pair, laid_out
 from cagepose.views.viewer.look import PAPER
-from cagepose.views.viewer.page_data import verdict_kind
+from cagepose.views.viewer.page_data import run_kind
 from cagepose.views.viewer.playback import Film, Playback, Shot
 
 LOUD_INK, QUIET_INK = "#000000", "#777777"
@@ -63,7 +63,11 @@ class Caption:
     def _write_head(self, pen: ImageDraw.ImageDraw, run: Run, shot: Shot) -> None:
         pen.text((14.0, 10.0), run.scene.name, TITLE_INK, self.large)
         across = 24.0 + pen.textlength(run.scene.name, self.large)
-        pen.text((across, 10.0), run.verdict, VERDICT_INK[verdict_kind(run.verdict)], self.large)
+        ink = VERDICT_INK[run_kind(run)]
+        pen.text((across, 10.0), run.verdict, ink, self.large)
+        if run.is_contradicted:
+            across += 10.0 + pen.textlength(run.verdict, self.large)
+            pen.text((across, 13.0), CONTRADICTED, ink, self.small)
         pen.text((14.0, 34.0), self._happening(run, shot), SOFT_INK, self.small)
 
     def _write_names(self, pen: ImageDraw.ImageDraw, labels: list[Label]) -> None:

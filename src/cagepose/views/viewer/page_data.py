@@ -17,10 +17,10 @@ from cagepose.runs.cases import contact_friction
 from cagepose.runs.changes import Change, changes_of
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.methods import chosen_method
-from cagepose.runs.run import AT_REST, FAILURES
+from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, Run
 from cagepose.studies.acts import Act
 from cagepose.studies.comparison import ENDS, same_pose
-from cagepose.views.solids import WINDOW, Solid, solid_of
+from cagepose.views.solids import Solid, solid_of
 from cagepose.views.viewer import look
 from cagepose.views.viewer.playback import Playback, Row, Shot, Touches
 from cagepose.views.viewer.stage import EASE, EXAGGERATIONS, MOST_ADDED, Stage
@@ -57,7 +57,8 @@ class _Writer:
             "method": run.method,
             "solve": f"{run.solve_s * 1000.0:.3g} ms",
             "verdict": run.verdict,
-            "verdictKind": verdict_kind(run.verdict),
+            "verdictKind": run_kind(run),
+            "contradicted": CONTRADICTED if run.is_contradicted else "",
             "unit": self.shown.length_unit,
             "unitsPerDrawing": float(from_metres(stage.size_m, self.shown.length_unit)),
             "radius": stage.radius,
@@ -67,7 +68,7 @@ class _Writer:
             "exaggerations": list(EXAGGERATIONS),
             "ease": EASE * self.shown.shots_per_motion,
             "center": _numbers(held.center_of_gravity_m / stage.size_m),
-            "reach": held.reach_m * WINDOW / stage.size_m,
+            "reach": stage.reach_m / stage.size_m,
             "names": list(run.scene.cage.element_names),
             "points": [_numbers(point) for point in stage.place(self.shown.points_world)],
             "gaps": {
@@ -224,6 +225,11 @@ class _Writer:
     def _force_unit(self) -> str:
         loads = self.run.scene.loads[: len(self.run.phases)]
         return "N" if all(scaled_load(self.run.scene, load).in_newtons for load in loads) else "parts of the load"
+
+
+def run_kind(run: Run) -> str:
+    """Return `verdict_kind` of a run, which is "elsewhere" where the mechanics contradicts a rest."""
+    return "elsewhere" if run.is_contradicted else verdict_kind(run.verdict)
 
 
 def verdict_kind(verdict: str) -> str:

@@ -16,7 +16,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
 from cagepose.studies.acts import Act, acts_of
-from cagepose.studies.touching import TouchFinder
+from cagepose.studies.touching import PlacesOfContact, TouchFinder
 from cagepose.views.viewer.surface import nearest_on_object
 
 SHOTS_PER_MOTION = 24
@@ -179,20 +179,20 @@ class _TouchesAt:
     def of(self, pose: Pose, names: tuple[str, ...]) -> Touches:
         """Return what touches of what has these names."""
         elements, scene = self.indices(names), self.scene
-        part_names, n_solid = scene.object.element_names, len(scene.cage.names) + len(scene.cage.shapes)
-        found = None if self.finder is None else self.finder.at(pose)
-        is_asked = np.isin([] if found is None else found.elements, elements)
-        left = np.setdiff1d(elements, found.elements) if found is not None else elements
-        left = left[left < n_solid]  # a hole has no place but where it touches
-        nearest = nearest_on_object(scene.object, pose, scene.cage, left.tolist())
-        parts, places, normals = nearest.parts, nearest.places_world, nearest.normals_world
-        if found is not None:
-            left = np.concatenate([left, found.elements[is_asked]])
-            parts = np.concatenate([parts, found.parts[is_asked]])
-            places = np.concatenate([places, found.places_world[is_asked]])
-            normals = np.concatenate([normals, found.normals_world[is_asked]])
-        boxes = tuple(part_names[part] for part in parts.tolist())
-        return Touches(left, boxes, normals @ pose.rotation, None, places)
+        n_solid = len(scene.cage.names) + len(scene.cage.shapes)
+        found, left = [], elements
+        if self.finder is not None and names:
+            all_places = self.finder.at(pose)
+            is_asked = np.isin(all_places.elements, elements)
+            found.append(all_places.chosen(is_asked))
+            left = np.setdiff1d(elements, all_places.elements)
+            left = left[left < n_solid]  # a hole has no place but where it touches
+        if len(left) or not found:
+            near = nearest_on_object(scene.object, pose, scene.cage, left.tolist())
+            found.insert(0, PlacesOfContact(left, near.parts, near.places_world, near.normals_world))
+        each, parts, places, normals = (np.concatenate(columns) for columns in zip(*found, strict=True))
+        boxes = tuple(scene.object.element_names[part] for part in parts.tolist())
+        return Touches(each, boxes, normals @ pose.rotation, None, places)
 
     def indices(self, names: tuple[str, ...]) -> NDArray[np.int64]:
         return np.array([self.index[name] for name in names], dtype=np.int64)

@@ -27,7 +27,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Shape
-from cagepose.views.solids import cut_off, outer_points, vertices_of
+from cagepose.views.solids import WINDOW, cut_off, outer_points, vertices_of
 from cagepose.views.viewer.playback import Film, Touches
 from cagepose.views.viewer.surface import nearest_on_object
 
@@ -40,6 +40,8 @@ pass this at twice its size is a long one.
 MOST_ADDED = 0.5
 """A cage point is moved away from the object by at most this many sizes: one that is far off must stay in the picture.
 """
+WHOLE = 1.5
+"""A picture shows bodies of the cage as a whole if it need not be more than so many times as large for it."""
 STILL = 1e-7
 """Radians, and sizes of the scene: what moves less stands still but for rounding."""
 EASE = 0.25
@@ -87,6 +89,8 @@ class Stage:
         Their unit: the size of the scene, or of what is shown of it.
     bodies_world
         Points whose hull is that of each shape of the cage, as far as they are shown: tuples of (n, 3), metres.
+    reach_m
+        So far from the object and the points, along each axis, are they shown.
     middles_world
         Of each of these, and the mouth of each hole of the cage, (n, 3), metres.
     radius
@@ -103,7 +107,11 @@ class Stage:
         ends = (shown.shots[0].pose_world_object, shown.shots[-1].pose_world_object)
         everything = np.concatenate([shown.points_world, *(pose.transform(outer_points(held)) for pose in ends)])
         bodies = [scene.cage.pose_world_cage.transform(vertices_of([shape])) for shape in scene.cage.shapes]
-        self.bodies_world = tuple(cut_off(body, everything, held.reach_m) for body in bodies)
+        whole = _extent([everything, *bodies])
+        near = [cut_off(body, everything, held.reach_m) for body in bodies]
+        is_whole = whole <= WHOLE * _extent([everything, *near])
+        self.bodies_world = tuple(bodies if is_whole else near)
+        self.reach_m = whole if is_whole else WINDOW * held.reach_m
         everything = np.concatenate([everything, *self.bodies_world])
         mouths = [scene.cage.pose_world_cage.transform(hole.pose_body_shape.position_m) for hole in scene.cage.holes]
         self.middles_world = np.array([*(body.mean(axis=0) for body in self.bodies_world), *mouths]).reshape(-1, 3)
@@ -244,6 +252,11 @@ class Stage:
         if all(turn < STILL and way < STILL * self.size_m for turn, way in moves):
             return 1
         return max((k for k in EXAGGERATIONS if all(self._fits(move, k) for move in moves)), default=1)
+
+
+def _extent(points: Sequence[FloatArray]) -> float:
+    """Return the diagonal of the box around all of some points, (n, 3) each."""
+    return float(np.linalg.norm(np.ptp(np.concatenate(points), axis=0)))
 
 
 def _play(hole: Hole, pose_hole_other: Pose, shapes: Sequence[Shape]) -> float:

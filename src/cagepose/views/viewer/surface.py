@@ -66,9 +66,12 @@ def nearest_on_object(held: Object, pose: Pose, cage: Cage, elements: Sequence[i
 
 def _write_nearest_part(cores: list[Core], other: Core, first: int, row: int, gap: float, found: Nearest) -> None:
     """Write the nearest of the object's parts from the one with index ``first``, where it is nearer than ``gap``."""
+    way: FloatArray | None = None  # from the nearest part so far to the other
     for least_gap, part in sorted((core.least_gap(other), part) for part, core in enumerate(cores[first:], first)):
         if least_gap >= gap:
             break
+        if way is not None and cores[part].gap_along(way, other) >= gap:
+            continue
         foot, place = nearest_points(cores[part], other)
         between = place - foot
         outward = foot - cores[part].middle
@@ -77,8 +80,9 @@ def _write_nearest_part(cores: list[Core], other: Core, first: int, row: int, ga
         if distance < gap:
             gap = distance
             way = between if distance > 0.0 else -between if distance < 0.0 else outward
+            way = way / (np.linalg.norm(way) or 1.0)
             found.feet_world[row], found.places_world[row], found.parts[row] = foot, place, part
-            found.normals_world[row] = way / (np.linalg.norm(way) or 1.0)
+            found.normals_world[row] = way
 
 
 def _write_nearest_of_boxes(
