@@ -6,12 +6,11 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.first_meeting import NO_HIT
 from cagepose.kernels.collision.geometry import place_object
-from cagepose.kernels.contact.contact_set import ContactRow, ContactSet, find_contacts
 from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, ON_THE_WAY, equilibrium
-from cagepose.kernels.contact.loads import write_load
 from cagepose.kernels.contact.metric import frame_at
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.along_twist import Twist, stepped
+from cagepose.kernels.quasistatic.on_the_way import find_touched_before
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
@@ -26,48 +25,10 @@ def is_held_on_the_way(setting: Setting, position: Vector, quaternion: Quaternio
     What the step reaches does not count: it touches at the end only, and what it holds is asked there.
     """
     frame = frame_at(setting.body, quaternion)
-    if not find_contacts(
-        setting.geometry, work.placement, setting.friction, position, frame, setting.tolerances.touch_m, work.ahead
-    ):
+    if not find_touched_before(setting, position, quaternion, frame, work):
         return False
-    kept = 0
-    for i in range(work.ahead.used[0]):
-        if touched_before(work.contacts, work.ahead.rows[i]):
-            move_contact(work.ahead, i, kept)
-            kept += 1
-    work.ahead.used[0] = kept
     solver, greatest = work.scratch[0].solver, setting.friction.greatest
-    solver.load_terms = write_load(setting.load, position, quaternion, frame, solver.load)
     return equilibrium(work.ahead, frame, greatest, ON_THE_WAY, solver) <= HELD_BY_FRICTION
-
-
-@kernel
-def touched_before(contacts: ContactSet, one: ContactRow) -> bool:
-    """Whether the point and the box of a contact, or its features, touch at the pose of the contacts."""
-    for i in range(contacts.used[0]):
-        row = contacts.rows[i]
-        if (row.point, row.box, row.feature, row.cage_feature) == (one.point, one.box, one.feature, one.cage_feature):
-            return True
-    return False
-
-
-@kernel
-def move_contact(contacts: ContactSet, source: int, target: int) -> None:
-    """Move what the contact problem needs of one row to another; its whole group is moved as far."""
-    if source == target:
-        return
-    rows = contacts.rows
-    old, new = rows[source], rows[target]
-    new.point, new.box, new.feature, new.cage_feature = old.point, old.box, old.feature, old.cage_feature
-    new.group = -1 if old.group < 0 else old.group - source + target
-    for j in range(3):
-        new.arm[j] = old.arm[j]
-        for k in range(3):
-            new.directions[j, k] = old.directions[j, k]
-        for k in range(6):
-            new.columns[j, k] = old.columns[j, k]
-    if old.feature >= 0:
-        contacts.bends[target] = contacts.bends[source]  # type: ignore[index]
 
 
 @kernel

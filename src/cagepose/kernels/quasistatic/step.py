@@ -42,6 +42,7 @@ from cagepose.kernels.quasistatic.projection import GAP, ON_FACE, constrain_feat
 from cagepose.kernels.quasistatic.pushing_out import allow_depths, constrain_contacts, pushed_out
 from cagepose.kernels.quasistatic.rest_on_the_way import first_rest, is_held_on_the_way
 from cagepose.kernels.quasistatic.setting import Setting
+from cagepose.kernels.quasistatic.tipping import tips_on_the_way
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 from cagepose.kernels.stability.strong import OTHER_FOUND, other_onset
 
@@ -59,6 +60,8 @@ STILL = 1e-14
 """In sizes of the scene: a shorter step is no progress."""
 STILL_STEPS = 6
 """Steps without progress after which the run has stalled."""
+AS_IT_TIPS = 64.0
+"""By so much a step is shorter where the object begins to tip: its spin grows from nothing."""
 REFINEMENTS = 3
 """How often, in a phase, a rest is put on its faces and looked at again: what balanced before may not quite, then."""
 
@@ -342,6 +345,13 @@ def next_step(
     if amount == math.inf:
         write_escape(work, step, twist.velocity, position, quaternion)
         return ESCAPES, here, fits
+    turn_step = 0.25 * state.turn_step_rad
+    if as_planned:
+        turn_step = min(2.0 * state.turn_step_rad, setting.turn_step_rad)
+    if motion == TRAVEL and rule != FREE and amount > 0.0:
+        begins_to_tip, end, turned = tips_on_the_way(setting, position, quaternion, twist, amount, (end, turned), work)
+        if begins_to_tip:
+            turn_step = setting.turn_step_rad / AS_IT_TIPS
     could_rest = setting.friction.greatest > 0.0 and rule != FREE and amount > 0.0
     if could_rest and is_held_on_the_way(setting, end, turned, work):
         end, turned = first_rest(setting, position, quaternion, twist, amount, (end, turned), work)
@@ -349,9 +359,6 @@ def next_step(
     # Go there.
     moved = norm(minus(end, position)) + setting.body.reach_m * turned_by(quaternion, turned)
     n_still = 0 if moved > STILL * setting.size_m else state.n_still + 1
-    turn_step = 0.25 * state.turn_step_rad
-    if as_planned:
-        turn_step = min(2.0 * state.turn_step_rad, setting.turn_step_rad)
     fits = find_placed_contacts(setting, end, turned, work)
     write_step(work, step, rule, motion, end, turned)
     there = State(end, turned, turn_step, n_still, n_refined)

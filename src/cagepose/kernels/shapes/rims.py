@@ -245,8 +245,8 @@ def feet_on(rim: Feature, other: Feature) -> Feet:
             section += 1
             after = rise(seen, other, COSINES[section], SINES[section])
         since, at_since, until, at_until = low, before[0], high, after[0]
-        if may_cross_twice(before, after, high - low):
-            between = farthest_rise(seen, other, low, high, before, after)
+        if (at_since < 0.0) == (at_until < 0.0):
+            between = beyond_zero(seen, other, low, high, before, after)
             if at_since < 0.0:
                 until, at_until = between
             else:
@@ -285,15 +285,49 @@ def nearest_two(
 
 
 @kernel
+def beyond_zero(
+    seen: Seen, other: Feature, low: float, high: float, before: tuple[float, float], after: tuple[float, float]
+) -> tuple[float, float]:
+    """Return an angle of a section, at both ends of which `rise` has one sign, where it may have the other, and `rise`
+    there; its low end: there is none.
+    """
+    if may_cross_twice(before, after, high - low):
+        return farthest_rise(seen, other, low, high, before, after)
+    dip = way_to_dip(before, after, high - low)
+    if dip == math.inf:
+        return low, before[0]
+    return low + dip, rise(seen, other, math.cos(low + dip), math.sin(low + dip))[0]
+
+
+@kernel
 def may_cross_twice(before: tuple[float, float], after: tuple[float, float], width: float) -> bool:
     """Whether `rise`, of one sign at both ends of a section so wide, bends toward zero so much that its tangents cross
     there beyond zero.
     """
     sign = -1.0 if before[0] < 0.0 else 1.0
-    if (after[0] < 0.0) != (before[0] < 0.0) or sign * before[1] >= 0.0 or sign * after[1] <= 0.0:
+    if sign * before[1] >= 0.0 or sign * after[1] <= 0.0:
         return False
     way = (after[0] - before[0] - after[1] * width) / (before[1] - after[1])
     return sign * (before[0] + before[1] * way) <= 0.0
+
+
+@kernel
+def way_to_dip(before: tuple[float, float], after: tuple[float, float], width: float) -> float:
+    """Return where in a section `rise`, which has one sign and leads one way at both ends, dips beyond zero as a cubic
+    through them does; inf: nowhere. So it is beside two feet that are about to be one.
+    """
+    sign = -1.0 if before[0] < 0.0 else 1.0
+    first, last = sign * before[0], sign * after[0]
+    starts, ends = sign * before[1] * width, sign * after[1] * width
+    if not ((starts >= 0.0 and ends > last) or (ends <= 0.0 and -starts > first)):
+        return math.inf  # a tangent does not reach zero
+    cube, square = starts + ends - 2.0 * (last - first), 3.0 * (last - first) - 2.0 * starts - ends
+    root = square * square - 3.0 * cube * starts
+    if root <= 0.0 or cube == 0.0:
+        return math.inf
+    share = (math.sqrt(root) - square) / (3.0 * cube)
+    at = first + share * (starts + share * (square + share * cube))
+    return share * width if 0.0 < share < 1.0 and at <= 0.0 else math.inf
 
 
 @kernel

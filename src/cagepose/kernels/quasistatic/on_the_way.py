@@ -1,0 +1,63 @@
+"""The contact problem at a pose within a step: of what touched before it."""
+
+from __future__ import annotations
+
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.vector import Vector
+from cagepose.kernels.contact.contact_set import ContactRow, ContactSet, find_contacts
+from cagepose.kernels.contact.loads import write_load
+from cagepose.kernels.contact.metric import Frame
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.quasistatic.setting import Setting
+from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
+
+
+@kernel
+def find_touched_before(
+    setting: Setting, position: Vector, quaternion: Quaternion, frame: Frame, work: QuasistaticWorkspace
+) -> bool:
+    """Fill ``work.ahead`` and the load where the object is placed, without contacts that ``work.contacts`` do not have;
+    False: there are too many.
+    """
+    if not find_contacts(
+        setting.geometry, work.placement, setting.friction, position, frame, setting.tolerances.touch_m, work.ahead
+    ):
+        return False
+    kept = 0
+    for i in range(work.ahead.used[0]):
+        if place_before(work.contacts, work.ahead.rows[i]) >= 0:
+            move_contact(work.ahead, i, kept)
+            kept += 1
+    work.ahead.used[0] = kept
+    solver = work.scratch[0].solver
+    solver.load_terms = write_load(setting.load, position, quaternion, frame, solver.load)
+    return True
+
+
+@kernel
+def place_before(contacts: ContactSet, one: ContactRow) -> int:
+    """Return which of the contacts is of the same point and box, or features; -1: none."""
+    for i in range(contacts.used[0]):
+        row = contacts.rows[i]
+        if (row.point, row.box, row.feature, row.cage_feature) == (one.point, one.box, one.feature, one.cage_feature):
+            return i
+    return -1
+
+
+@kernel
+def move_contact(contacts: ContactSet, source: int, target: int) -> None:
+    """Move what the contact problem needs of one row to another; its whole group is moved as far."""
+    if source == target:
+        return
+    rows = contacts.rows
+    old, new = rows[source], rows[target]
+    new.point, new.box, new.feature, new.cage_feature = old.point, old.box, old.feature, old.cage_feature
+    new.group = -1 if old.group < 0 else old.group - source + target
+    for j in range(3):
+        new.arm[j] = old.arm[j]
+        for k in range(3):
+            new.directions[j, k] = old.directions[j, k]
+        for k in range(6):
+            new.columns[j, k] = old.columns[j, k]
+    if old.feature >= 0:
+        contacts.bends[target] = contacts.bends[source]  # type: ignore[index]

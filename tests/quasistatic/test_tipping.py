@@ -1,0 +1,62 @@
+"""What travels over the edge of its support begins to tip there, and does not fly across a gap to the next one."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, run
+from quasistatic.paths import path_of
+
+MM = 1e-3
+LENGTH, HEIGHT = 100.0, 10.0
+
+
+def over_a_gap(far_mm: float, kind: str, stop_mm: float = 500.0) -> Scene:
+    """A bar on a table that ends at x = 0, pushed along x at the height of its middle toward one that begins at
+    ``far_mm``, both at one height: of boxes, or with points at their edges.
+    """
+    held = Object([Box(np.array([LENGTH, 40, HEIGHT]) * MM)], mass_kg=0.1, pose=Pose((-30 * MM, 0, HEIGHT / 2 * MM)))
+    load = Load("push", gravity=(0, 0, -9.81), force=Force((1, 0, 0), (0, 0, 0), 0.5))
+    stop = Box(np.array([10, 60, 60]) * MM, Pose(np.array([stop_mm + 5, 0, 30]) * MM), "stop")
+    if kind == "points":
+        points = [(x, y, 0) for x in (-40, 0, far_mm, far_mm + 40) for y in (-15, 15)]
+        return Scene(held, Cage(np.array(points) * MM, shapes=[stop]), [load])
+    tables = [Box(np.array([200, 60, 40]) * MM, Pose(np.array([x, 0, -20]) * MM)) for x in (-100, far_mm + 100)]
+    return Scene(held, Cage(shapes=[*tables, stop]), [load])
+
+
+@pytest.mark.parametrize("kind", ["points", "boxes"])
+def test_a_bar_tips_where_its_load_leaves_its_support(kind):
+    """Without friction a push at its middle turns nothing: it travels to the edge, and then tips ever more."""
+    poses = path_of(run(over_a_gap(80.0, kind), "quasistatic").phases[0])
+    tilts = np.array([pose.euler_zyx[1] for pose in poses])
+    begins = int(np.argmax(tilts > 1e-9))
+    assert poses[begins - 1].position_m[0] == pytest.approx(0.0, abs=0.1 * MM)
+    assert (np.diff(tilts[begins:]) >= 0.0).all()
+    assert tilts[-1] > 0.5
+
+
+@pytest.mark.parametrize("kind", ["points", "boxes"])
+@pytest.mark.parametrize("far_mm", [55.0, 57.0, 70.0])
+def test_it_does_not_cross_a_gap_of_more_than_half_its_length(kind, far_mm):
+    ended = run(over_a_gap(far_mm, kind, 200.0), "quasistatic")
+    assert ended.verdict == "escapes" or abs(ended.pose.euler_zyx[1]) > math.radians(5)
+
+
+@pytest.mark.parametrize("kind", ["points", "boxes"])
+def test_it_crosses_a_gap_of_less(kind):
+    """The next table is under its end before its middle comes to the edge."""
+    ended = run(over_a_gap(45.0, kind, 100.0), "quasistatic")
+    assert ended.verdict == "rests"
+    assert ended.pose.position_m == pytest.approx(np.array([50.0, 0.0, 5.0]) * MM, abs=1e-9)
+
+
+def test_points_at_the_edges_of_tables_and_tables_give_one_rest():
+    ends = [run(over_a_gap(52.0, kind), "quasistatic") for kind in ("points", "boxes")]
+    assert [end.verdict for end in ends] == ["rests", "rests"]
+    assert ends[0].pose.position_m == pytest.approx(ends[1].pose.position_m, abs=1e-6 * MM)
+    assert ends[0].pose.euler_zyx[1] == pytest.approx(ends[1].pose.euler_zyx[1], abs=1e-8)
+    assert ends[0].pose.euler_zyx[1] > math.radians(5)
