@@ -28,10 +28,9 @@ PROVEN_WITHIN = 0.01
 SEARCH_S = 2.0
 """Seconds that the search for a way out may take, if the object is not proven to be caged."""
 
+# Least and greatest; points of the object, and a direction for each.
 Ends = tuple[PlayEnd, PlayEnd]
-"""Least and greatest."""
 Shifts = Sequence[tuple[FloatArray, FloatArray]]
-"""Points of the object, and a direction for each."""
 Progress = Callable[[float], None] | None
 
 
