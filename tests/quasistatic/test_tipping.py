@@ -7,18 +7,19 @@ import math
 import numpy as np
 import pytest
 
-from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, run
+from cagepose import Box, Cage, Cylinder, Force, Load, Object, Pose, Scene, run
 from quasistatic.paths import path_of
 
 MM = 1e-3
 LENGTH, HEIGHT = 100.0, 10.0
 
 
-def over_a_gap(far_mm: float, kind: str, stop_mm: float = 500.0) -> Scene:
+def over_a_gap(far_mm: float, kind: str, stop_mm: float = 500.0, start_mm: float = -30.0) -> Scene:
     """A bar on a table that ends at x = 0, pushed along x at the height of its middle toward one that begins at
     ``far_mm``, both at one height: of boxes, or with points at their edges.
     """
-    held = Object([Box(np.array([LENGTH, 40, HEIGHT]) * MM)], mass_kg=0.1, pose=Pose((-30 * MM, 0, HEIGHT / 2 * MM)))
+    start = Pose((start_mm * MM, 0, HEIGHT / 2 * MM))
+    held = Object([Box(np.array([LENGTH, 40, HEIGHT]) * MM)], mass_kg=0.1, pose=start)
     load = Load("push", gravity=(0, 0, -9.81), force=Force((1, 0, 0), (0, 0, 0), 0.5))
     stop = Box(np.array([10, 60, 60]) * MM, Pose(np.array([stop_mm + 5, 0, 30]) * MM), "stop")
     if kind == "points":
@@ -60,3 +61,38 @@ def test_points_at_the_edges_of_tables_and_tables_give_one_rest():
     assert ends[0].pose.position_m == pytest.approx(ends[1].pose.position_m, abs=1e-6 * MM)
     assert ends[0].pose.euler_zyx[1] == pytest.approx(ends[1].pose.euler_zyx[1], abs=1e-8)
     assert ends[0].pose.euler_zyx[1] > math.radians(5)
+
+
+@pytest.mark.parametrize("kind", ["points", "boxes"])
+@pytest.mark.parametrize("start_mm", [1e-6, 1e-4, 1e-2])
+def test_it_ends_alike_from_just_beyond_the_edge(kind, start_mm):
+    """There its spin begins with almost nothing, but grows."""
+    here, before = (run(over_a_gap(52.0, kind, 200.0, start), "quasistatic") for start in (start_mm, -30.0))
+    assert here.verdict == before.verdict == "rests"
+    assert here.pose.position_m == pytest.approx(before.pose.position_m, abs=1e-7 * MM)
+
+
+def test_friction_on_the_way_to_an_edge_holds_it():
+    """Smooth points behind, rough ones at the edge, a way c apart: the push F, h above them, is held as soon as these
+    carry it, N c = W (c + x) + F h with N = F. At the end of the travel, beyond the edge, the bar would tip.
+    """
+    held = Object([Box(np.array([300, 40, 10]) * MM)], mass_kg=0.1, pose=Pose((-80 * MM, 0, 5 * MM)))
+    points = [(x, y, 0) for x in (-100, 0) for y in (-15, 15)]
+    load = Load("push", gravity=(0, 0, -9.81), force=Force((1, 0, 0), (0, 0, 0), 0.3))
+    stop = Box(np.array([10, 100, 100]) * MM, Pose(np.array([305, 0, 50]) * MM), "stop")
+    cage = Cage(np.array(points) * MM, shapes=[stop])
+    ended = run(Scene(held, cage, [load], friction_of={"C3": 1.0, "C4": 1.0}), "quasistatic")
+    assert ended.verdict == "may rest"
+    assert ended.pose.position_m[0] / MM == pytest.approx(0.3 * (100.0 - 5.0) / (0.1 * 9.81) - 100.0, abs=1e-7)
+
+
+def test_it_tips_over_a_roller_behind_an_edge_on_a_slope():
+    """What carries at the start ends a little before the travel does."""
+    slope = math.radians(20.0)
+    held = Object([Box(np.array([100, 40, 10]) * MM)], mass_kg=0.1, pose=Pose((-20 * MM, 0, 5 * MM)))
+    table = Box(np.array([300, 60, 40]) * MM, Pose(np.array([-170, 0, -20]) * MM))
+    roller = Cylinder(6 * MM, 60 * MM, Pose((0, 0, -6 * MM), euler_zyx=(0, 0, math.pi / 2)))
+    load = Load("weight", gravity=(9.81 * math.sin(slope), 0, -9.81 * math.cos(slope)))
+    path = path_of(run(Scene(held, Cage(shapes=[table, roller]), [load]), "quasistatic").phases[0])
+    level = [pose.position_m[0] for pose in path if abs(pose.euler_zyx[1]) < 1e-9]
+    assert max(level) <= 0.1 * MM

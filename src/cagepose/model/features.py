@@ -96,7 +96,8 @@ class _Shapes:
         first_face = first + len(part.ends) + len(part.others)
         for numbers, fences in (*part.ends, *part.others, *part.faces):
             *numbers, arcs = numbers
-            arcs = [first + arc + (len(part.ends) if numbers[4] < 0.0 else 0) for arc in arcs] or [-1, -1]
+            of_others = len(part.ends) if numbers[4] < 0.0 or numbers[8] else 0
+            arcs = [first + arc + of_others for arc in arcs] or [-1, -1]
             self.features.append((*numbers, *arcs, len(self.fences), len(self.fences) + len(fences)))
             self.fences.extend(fences)
         ball = (part.middle, part.reach_m, part.least_length_m)
@@ -156,8 +157,11 @@ class _Features:
             self.add(VERTEX, pose, height * UP + radius * away, out, radius, toward=away, fences=fences)
             self.ends[-1][0][-1] = [arcs_from + arc for arc in arcs]
         for is_second in (False, True):
-            for away in outward[::2]:
+            ring = self.others if radius < 0.0 or is_second else self.ends
+            start = len(ring)
+            for index, away in enumerate(outward[::2]):
                 self.add(RIM, pose, height * UP, out, radius, 0.0, (taper, end_taper), is_second, away)
+                ring[-1][0][-1] = [start + (index + beside) % ARCS for beside in (-1, 1)]
 
     def add_side(self, pose: Pose, low: tuple[float, float], high: tuple[float, float]) -> None:
         """Add the side between two heights with their radii, those of a hole below zero; a slanted one in sectors."""

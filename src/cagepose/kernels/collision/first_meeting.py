@@ -269,7 +269,11 @@ def first_of_features(
     is_hollow_pair = is_hollow(held.features[i]) or is_hollow(cage.features[j])
     curls = is_hollow_pair and (held.features[i].kind != RIM or cage.features[j].kind != RIM)
     curls = curls and leaves and not is_kept(meetings, met, touch_m)
-    closing = dot(met.normal, velocity_at(motion, met.place)) if leaves else -math.inf
+    closing = dot(met.normal, velocity_at(motion, met.place)) if touches else -math.inf
+    if touches and not leaves:
+        if abs(closing) <= LEAVES * speed and is_kept(meetings, met, touch_m):  # that of features next to them
+            return math.inf, math.inf
+        closing = -math.inf
     if leaves and motion.rate == 0.0 and not is_hollow_pair:
         return math.inf, math.inf
     if closing >= (1.0 if curls else -1.0) * LEAVES * speed:  # a contact that carries, or it would not go into it

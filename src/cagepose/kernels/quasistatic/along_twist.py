@@ -49,6 +49,9 @@ ROUNDING = 1e-15
 """In lengths of the terms of a load: a slower motion may be no motion."""
 STRAIGHT_TRAVEL = 1e-14
 """Radians for each length of the object: a motion that turns by less is a travel."""
+ON_SMALL_WAYS, WIDEST = 0.04, 10.0
+"""In sizes of the scene: where normals of round shapes turn by a radian on a shorter way, as in a narrow clearance,
+they may turn more in a step, as it strays less; and how many times more."""
 
 
 class Twist(NamedTuple):
@@ -101,14 +104,16 @@ def longest_step(
     contacts: ContactSet, velocity: Vector, spin: Vector, slides: bool, turn_step_rad: float, size_m: float
 ) -> float:
     """Return how much of a twist keeps its direction: its turn, that of the normals of round shapes that slide, and how
-    far sliding contacts leave their faces, stay small (5.11).
+    far sliding contacts leave their faces, stay small (5.11, 5.36).
     """
-    turns, rate = turn_of_normals(contacts, velocity, spin), norm(spin)
-    amount = turn_step_rad / turns if turns > 0.0 else math.inf
+    turns, rate, speed = turn_of_normals(contacts, velocity, spin), norm(spin), norm(velocity)
+    amount = math.inf
+    if turns > 0.0:
+        way = (speed + rate * size_m) / turns
+        amount = turn_step_rad / turns * min(max(math.sqrt(ON_SMALL_WAYS * size_m / way), 1.0), WIDEST)
     if rate == 0.0:
         return amount
     amount = min(amount, turn_step_rad / rate)
-    speed = norm(velocity)
     if slides and speed > 0.0:
         amount = min(amount, turn_step_rad * math.sqrt(0.5 * size_m / (rate * speed)))
     return amount

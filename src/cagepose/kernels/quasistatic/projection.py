@@ -26,8 +26,9 @@ from cagepose.kernels.contact.metric import (
     write_scaled_wrench,
 )
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.features import Shapes, is_of_mouth, place_feature
-from cagepose.kernels.shapes.meeting import meeting
+from cagepose.kernels.shapes.features import RIM, Shapes, is_of_mouth, place_feature
+from cagepose.kernels.shapes.meeting import Meeting, apart, meeting
+from cagepose.kernels.shapes.rims import is_near_arc
 
 ROUNDS = 12
 ON_FACE = 4e-16
@@ -167,12 +168,37 @@ def lack(
         return Lack(dot(axis_object, from_box) - constraint.target, rotated(quaternion, axis_object), arm)
     place_feature(geometry.held, constraint.feature, position, matrix_from_quaternion(quaternion), moved)
     met = meeting(moved, constraint.feature, geometry.cage, constraint.cage_feature)
+    if not met.is_one:
+        met = meeting_beside(geometry, constraint, position, quaternion, moved)
     arm = minus(met.place, position)
     if not met.is_one:
         return Lack(math.inf, met.normal, arm)
     if constraint.which == GAP:
         return Lack(met.gap - constraint.target, met.normal, arm)
     return Lack(0.0, tangents_to(met.normal)[constraint.which - ALONG], arm)
+
+
+@kernel
+def meeting_beside(
+    geometry: Geometry, constraint: PositionConstraint, position: Vector, quaternion: Quaternion, moved: Shapes
+) -> Meeting:
+    """Return how an arc of a rim next to a constraint's one meets the other feature, in the half of it that is nearer:
+    the place of the constraint may have moved there.
+    """
+    i, j, cage = constraint.feature, constraint.cage_feature, geometry.cage
+    held = moved.features[i]
+    if held.kind == RIM:
+        for beside in (held.arc_before, held.arc_after):
+            place_feature(geometry.held, beside, position, matrix_from_quaternion(quaternion), moved)
+            met = meeting(moved, beside, cage, j)
+            if met.is_one and is_near_arc(held, met.place):
+                return met
+    if cage.features[j].kind == RIM:
+        for beside in (cage.features[j].arc_before, cage.features[j].arc_after):
+            met = meeting(moved, i, cage, beside)
+            if met.is_one and is_near_arc(cage.features[j], plus(met.place, scaled(met.normal, met.gap))):
+                return met
+    return apart()
 
 
 @kernel

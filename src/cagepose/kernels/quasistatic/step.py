@@ -42,7 +42,7 @@ from cagepose.kernels.quasistatic.projection import GAP, ON_FACE, constrain_feat
 from cagepose.kernels.quasistatic.pushing_out import allow_depths, constrain_contacts, pushed_out
 from cagepose.kernels.quasistatic.rest_on_the_way import first_rest, is_held_on_the_way
 from cagepose.kernels.quasistatic.setting import Setting
-from cagepose.kernels.quasistatic.tipping import tips_on_the_way
+from cagepose.kernels.quasistatic.tipping import may_tip, tips_on_the_way
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 from cagepose.kernels.stability.strong import OTHER_FOUND, other_onset
 
@@ -348,12 +348,14 @@ def next_step(
     turn_step = 0.25 * state.turn_step_rad
     if as_planned:
         turn_step = min(2.0 * state.turn_step_rad, setting.turn_step_rad)
-    if motion == TRAVEL and rule != FREE and amount > 0.0:
+    could_rest = setting.friction.greatest > 0.0 and rule != FREE and amount > 0.0
+    is_held = could_rest and is_held_on_the_way(setting, end, turned, work)
+    if rule != FREE and amount > 0.0 and not is_held and may_tip(setting, twist, amount):
         begins_to_tip, end, turned = tips_on_the_way(setting, position, quaternion, twist, amount, (end, turned), work)
         if begins_to_tip:
             turn_step = setting.turn_step_rad / AS_IT_TIPS
-    could_rest = setting.friction.greatest > 0.0 and rule != FREE and amount > 0.0
-    if could_rest and is_held_on_the_way(setting, end, turned, work):
+            is_held = could_rest and is_held_on_the_way(setting, end, turned, work)
+    if is_held:
         end, turned = first_rest(setting, position, quaternion, twist, amount, (end, turned), work)
 
     # Go there.

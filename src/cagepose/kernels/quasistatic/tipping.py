@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.vector import Vector, cross, norm, vector_from
+from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, scaled, vector_from
 from cagepose.kernels.collision.first_meeting import NO_HIT
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.contact_set import stays_on_face
-from cagepose.kernels.contact.equilibrium import MOVES
-from cagepose.kernels.contact.metric import frame_at, moved_along_twist, twist_of
+from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, HELD_WITHOUT_FRICTION, MOVES
+from cagepose.kernels.contact.metric import frame_at, twist_of
 from cagepose.kernels.contact.onset import onset
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.along_twist import Twist, stepped
@@ -24,22 +24,51 @@ BEFORE_END = 4.0
 """In touch tolerances: so far before its end a travel is asked, where what it reaches does not touch yet, and what it
 runs off does.
 """
+FARTHER, TIMES = 4.0, 8
+"""How many times as far before its end, and how often, where what carries has ended there."""
+LONG, STRAIGHT = 1e-3, 0.25
+"""In sizes of the scene, and in turns of a step: a longer way that turns less is asked, too, as its spin may grow."""
 
 
 @kernel
-def tips(setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace) -> bool:
-    """Whether the loads tilt, at a pose of a travel, a contact that carried at its start."""
-    place_object(setting.geometry, position, quaternion, work.placement)
-    frame, solver = frame_at(setting.body, quaternion), work.scratch[0].solver
-    if not find_touched_before(setting, position, quaternion, frame, work):
-        return False
-    if onset(work.ahead, frame, setting.friction.greatest, solver) != MOVES:
-        return False
-    velocity, spin = twist_of(solver.y, frame)
+def may_tip(setting: Setting, twist: Twist, amount: float) -> bool:
+    """Whether a step is a travel, or so long and straight that it is asked like one."""
+    turn = amount * norm(twist.spin)
+    is_long = amount * norm(twist.velocity) > LONG * setting.size_m
+    return turn == 0.0 or (is_long and turn <= STRAIGHT * setting.turn_step_rad)
+
+
+@kernel
+def find_carried_before(
+    setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace
+) -> tuple[bool, bool]:
+    """Return whether the contact problem can be asked where the object is placed, of what touched before the step, and
+    whether all that carried then touches there.
+    """
+    if not find_touched_before(setting, position, quaternion, frame_at(setting.body, quaternion), work):
+        return False, False
+    for i in range(work.contacts.used[0]):
+        if stays_on_face(work.contacts, i) and place_before(work.ahead, work.contacts.rows[i]) < 0:
+            return True, False
+    return True, True
+
+
+@kernel
+def tips(setting: Setting, quaternion: Quaternion, twist: Twist, work: QuasistaticWorkspace) -> bool:
+    """Whether, at a pose within a step, a contact that carried at its start tilts faster than twice as in the step; or
+    the object is held there.
+    """
+    frame = frame_at(setting.body, quaternion)
+    code = onset(work.ahead, frame, setting.friction.greatest, work.scratch[0].solver)
+    if code != MOVES:
+        return code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
+    velocity, spin = twist_of(work.scratch[0].solver.y, frame)
+    share = norm(velocity) / norm(twist.velocity)
+    more, as_planned = minus(spin, scaled(twist.spin, share)), share * norm(twist.spin) * setting.body.reach_m
     for i in range(work.ahead.used[0]):
-        tilt = norm(cross(vector_from(work.ahead.rows[i].directions[0]), spin)) * setting.body.reach_m
+        tilt = norm(cross(vector_from(work.ahead.rows[i].directions[0]), more)) * setting.body.reach_m
         before = place_before(work.contacts, work.ahead.rows[i])
-        if tilt > TIPS * norm(velocity) and before >= 0 and stays_on_face(work.contacts, before):
+        if tilt > max(TIPS * norm(velocity), as_planned) and before >= 0 and stays_on_face(work.contacts, before):
             return True
     return False
 
@@ -54,26 +83,43 @@ def tips_on_the_way(
     end: tuple[Vector, Quaternion],
     work: QuasistaticWorkspace,
 ) -> tuple[bool, Vector, Quaternion]:
-    """Return whether the object begins to tip on a travel, and where it ends then; else its end. The placement is that
-    of the pose.
+    """Return whether the object begins to tip on a travel, or is held there, and where it ends then; else its end. The
+    placement is that of the pose.
     """
-    velocity, spin = twist.velocity, twist.spin
-    low, high = 0.0, amount - BEFORE_END * setting.tolerances.touch_m / norm(velocity)
-    if high > 0.0:
-        last = moved_along_twist(position, quaternion, velocity, spin, high)
-        if tips(setting, last[0], last[1], work):
-            for _ in range(HALVINGS):
-                middle = 0.5 * (low + high)
-                there = moved_along_twist(position, quaternion, velocity, spin, middle)
-                if tips(setting, there[0], there[1], work):
-                    high = middle
-                else:
-                    low = middle
-            place_object(setting.geometry, position, quaternion, work.placement)
-            done, new_position, new_quaternion = stepped(
-                setting, work.placement, work.contacts, position, quaternion, twist, high, NO_HIT, work.path
-            )
-            if done:
-                return True, new_position, new_quaternion
-        place_object(setting.geometry, end[0], end[1], work.placement)
-    return False, end[0], end[1]
+    before_end = BEFORE_END * setting.tolerances.touch_m / norm(twist.velocity)
+    low, high, best, found = 0.0, 0.0, end, False
+    for _ in range(TIMES):
+        high = amount - before_end
+        if high <= 0.0:
+            break
+        done, there, turned = gone(setting, position, quaternion, twist, high, work)
+        can_ask, carries = find_carried_before(setting, there, turned, work)
+        if done and can_ask and carries:
+            found, best = tips(setting, turned, twist, work), (there, turned)
+            break
+        before_end *= FARTHER
+    for _ in range(HALVINGS if found else 0):
+        middle = 0.5 * (low + high)
+        done, there, turned = gone(setting, position, quaternion, twist, middle, work)
+        if done and find_carried_before(setting, there, turned, work)[0] and tips(setting, turned, twist, work):
+            high, best = middle, (there, turned)
+        else:
+            low = middle
+    if not found:
+        best = end
+    place_object(setting.geometry, best[0], best[1], work.placement)
+    return found, best[0], best[1]
+
+
+@kernel
+def gone(
+    setting: Setting,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    amount: float,
+    work: QuasistaticWorkspace,
+) -> tuple[bool, Vector, Quaternion]:
+    """Return whether a step can end after an amount, and its pose then, which is that of the placement."""
+    place_object(setting.geometry, position, quaternion, work.placement)
+    return stepped(setting, work.placement, work.contacts, position, quaternion, twist, amount, NO_HIT, work.path)

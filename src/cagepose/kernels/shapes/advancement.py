@@ -18,6 +18,7 @@ from cagepose.kernels.shapes.along_motion import (
     LEAST_STEP,
     distance_from,
     gone_on,
+    keeps_radius,
     place_moved,
     touches_after,
 )
@@ -57,20 +58,12 @@ class Approach(NamedTuple):
 
 
 @kernel
-def is_curved(feature: Feature) -> bool:
-    return feature.kind == RIM or (feature.kind == EDGE and (feature.taper != 0.0 or feature.radius < 0.0))
-
-
-@kernel
 def are_curved(a: Shapes, i: int, b: Shapes, j: int) -> bool:
-    """Whether first contact of two features is found here."""
-    return is_curved(a.features[i]) or is_curved(b.features[j])
-
-
-@kernel
-def keeps_radius(feature: Feature) -> bool:
-    """Whether a feature is its core and no more than its radius around it: not so a hole, or the side of a cone."""
-    return feature.radius >= 0.0 and (feature.kind != EDGE or feature.taper == 0.0)
+    """Whether first contact of two features is found here: of rims, and of edges with the sides of cones."""
+    one, other = a.features[i], b.features[j]
+    if one.kind == RIM or other.kind == RIM:
+        return True
+    return one.kind == EDGE and other.kind == EDGE and (one.taper != 0.0 or other.taper != 0.0)
 
 
 @kernel
@@ -135,7 +128,7 @@ def gap_of(one: Feature, other: Feature, met: Meeting, level: float) -> float:
     Where sharp ones are far apart their fences do not tell on which side of each other they are.
     """
     if not met.is_one:
-        return lines_apart(one, other)
+        return lines_apart(one, other) if met.gap == math.inf else met.gap
     is_sharp = one.radius == other.radius == 0.0 and one.kind != FACE and other.kind != FACE
     return abs(met.gap) if is_sharp and abs(met.gap) > level else met.gap
 

@@ -19,6 +19,7 @@ from cagepose.kernels.shapes.features import (
     FACE,
     RIM,
     VERTEX,
+    Feature,
     Shapes,
     beyond_fence,
     is_bar,
@@ -67,15 +68,11 @@ def plane_ahead(motion: Motion, normal: Vector, height: float, way: Vector, leve
 
 
 @kernel
-def distance_ahead(
-    motion: Motion, between: Vector, way: Vector, across: Vector, radius: float, level: float, span: float
-) -> Ahead:
-    """A point at ``between`` from another one or from a line, over a length of the motion; it moves with ``way``, and
-    across the line with ``across``.
-    """
+def distance_ahead(motion: Motion, between: Vector, way: Vector, radius: float, level: float, span: float) -> Ahead:
+    """A point at ``between`` from another one, over a length of the motion; it moves with ``way``."""
     speed, far, least = norm(way), norm(between), allowed_radius(radius, level)
     turning = motion.rate * norm(cross(motion.axis, way))
-    bend, slowest = 2.0 * (far + speed * span) * turning, max(0.0, norm(across) - turning * span)
+    bend, slowest = 2.0 * (far + speed * span) * turning, max(0.0, speed - turning * span)
     return Ahead(
         dot(between, between) - least * least,
         2.0 * dot(between, way),
@@ -86,14 +83,38 @@ def distance_ahead(
 
 
 @kernel
-def allowed_radius(radius: float, level: float) -> float:
-    """Return how near the cores of two features may come that may be ``level`` deep in each other."""
-    return max(radius - level, 0.5 * radius)
+def side_ahead(
+    motion: Motion, edge: Feature, along: Vector, between: Vector, way: Vector, radius: float, level: float, span: float
+) -> Ahead:
+    """A point at ``between`` from the end of an edge's axis ``along``, over a length of the motion; it moves with
+    ``way``, both as seen from the edge. The sum of radii shrinks along a cone and is below zero in a hole.
+    """
+    sense, taper = math.copysign(1.0, edge.radius), edge.taper
+    height, rising, speed = dot(between, along), dot(way, along), norm(way)
+    across, sliding = minus(between, scaled(along, height)), minus(way, scaled(along, rising))
+    turning = motion.rate * norm(cross(motion.axis, way))
+    wide = radius - taper * height
+    wanted = sense * (allowed_radius(wide, level) if sense > 0.0 and taper == 0.0 else wide - level)
+    share = 1.0 - taper * taper  # of the squares, on a cone
+    slowest, fastest = max(0.0, norm(sliding) - turning * span), min(speed, norm(sliding) + turning * span)
+    flattest, steepest = max(0.0, abs(rising) - turning * span), min(speed, abs(rising) + turning * span)
+    far, shrinking = norm(across) + fastest * span, abs(taper) * steepest
+    bend = 2.0 * turning * (share * far + abs(taper) * (abs(wanted) + shrinking * span))
+    value = share * dot(across, across) - wanted * abs(wanted)  # beyond its tip a cone is nowhere
+    slope = 2.0 * (share * dot(across, way) + sense * taper * abs(wanted) * rising)
+    widening = -((taper * flattest) ** 2) if wanted >= shrinking * span else shrinking * shrinking
+    low = 2.0 * (share * slowest * slowest - shrinking * shrinking) - bend
+    high = 2.0 * (share * fastest * fastest + widening) + bend
+    is_clear = sense * math.sqrt(share) * norm(across) > wide + level
+    if sense > 0.0:
+        return Ahead(value, slope, low, high, is_clear)
+    return Ahead(-value, -slope, -high, -low, is_clear)
 
 
 @kernel
-def across_line(between: Vector, along: Vector) -> Vector:
-    return minus(between, scaled(along, dot(between, along)))
+def allowed_radius(radius: float, level: float) -> float:
+    """Return how near the cores of two features may come that may be ``level`` deep in each other."""
+    return max(radius - level, 0.5 * radius)
 
 
 @kernel
@@ -146,21 +167,17 @@ def ahead(
         normal = vector_from(b.features[j].direction)
         return plane_ahead(motion, normal, dot(normal, minus(p, q)) - radius, velocity_at(motion, p), level)
     if one == VERTEX:
-        between = minus(p, q)
+        between, way = minus(p, q), velocity_at(motion, p)
         if other == EDGE:
             line = vector_from(b.features[j].direction)
-            way = velocity_at(motion, p)
-            return distance_ahead(motion, across_line(between, line), way, across_line(way, line), radius, level, span)
-        way = velocity_at(motion, p)
-        return distance_ahead(motion, between, way, way, radius, level, span)
+            return side_ahead(motion, b.features[j], line, between, way, radius, level, span)
+        return distance_ahead(motion, between, way, radius, level, span)
     along = turned(motion, vector_from(a.features[i].direction), so_far)
     way = scaled(velocity_at(motion, q), -1.0)
     if one == FACE:
         return plane_ahead(motion, along, dot(along, minus(q, p)) - radius, way, level)
     if other == VERTEX:
-        return distance_ahead(
-            motion, across_line(minus(q, p), along), way, across_line(way, along), radius, level, span
-        )
+        return side_ahead(motion, a.features[i], along, minus(q, p), way, radius, level, span)
     return edges_ahead(motion, p, along, q, vector_from(b.features[j].direction), radius, level, side, span)
 
 
@@ -254,9 +271,15 @@ def clear_step(a: Shapes, i: int, b: Shapes, j: int, motion: Motion, amount: flo
         point = vector_from(other.point)
         away, speed = distance_from(moved, i, point), norm(velocity_at(motion, point))
     away -= one.radius + other.radius
-    if away <= 0.0:
+    if away <= 0.0 or not (keeps_radius(one) and keeps_radius(other)):
         return 0.0
     return away / speed if speed > 0.0 else math.inf
+
+
+@kernel
+def keeps_radius(feature: Feature) -> bool:
+    """Whether a feature is its core and no more than its radius around it: not so a hole, or the side of a cone."""
+    return feature.radius >= 0.0 and (feature.kind != EDGE or feature.taper == 0.0)
 
 
 @kernel

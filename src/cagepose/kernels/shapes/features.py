@@ -55,7 +55,7 @@ class Feature:
         Of a rim: whether the last place on its arc where another feature is nearest counts, if there is more than one;
         else it is the first one.
     arc_before, arc_after
-        Of a vertex at the end of arcs: these features.
+        Of a vertex at the end of arcs: these features. Of an arc: those next to it.
     first_fence, last_fence
         Its fences, the last one not included.
     """

@@ -45,7 +45,7 @@ class Meeting(NamedTuple):
     is_one
         Whether features of these kinds can touch.
     gap
-        Between the rounded features; below zero: how deep, metres.
+        Between the rounded features; below zero: how deep, metres; inf: an arc has no place that is nearest.
     normal, place
         Outward unit normal of the object; the object's point of contact, in the world.
     """
@@ -60,6 +60,12 @@ class Meeting(NamedTuple):
 def apart() -> Meeting:
     """Return that two features do not meet."""
     return Meeting(False, math.inf, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
+@kernel
+def without_normal(gap: float) -> Meeting:
+    """Return that two features do not meet where they are nearest to each other, so far apart."""
+    return Meeting(False, gap, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 @kernel
@@ -243,11 +249,11 @@ def on_rim_of(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
     between, is_slanted = minus(nearest, foot.point), other.kind == EDGE and other.taper != 0.0
     is_sharp = abs(radius) < (TIP if is_slanted else SHARP) * abs(rim.length)
     if is_sharp and is_slanted:  # at a tip, which is a vertex of its own
-        return apart()
+        return without_normal(side * norm(between) - radius)
     if other.kind == VERTEX or not is_sharp:
         distance = side * norm(between)
         if distance == 0.0 or radius == 0.0:
-            return apart()
+            return without_normal(distance - radius)
         normal = scaled(between, 1.0 / distance)
         if is_sharp and is_turned(a, i, foot.point, b, j, nearest, normal, False):
             normal, distance = scaled(normal, -1.0), -distance

@@ -353,13 +353,15 @@ def farthest_rise(
 
 @kernel
 def distance_from_arc(rim: Feature, other: Feature) -> float:
-    """Return how far an edge or another rim is from an arc."""
+    """Return how far an edge or another rim is from an arc on which it has no place of its own: an end or, where it
+    would be the second one, the first place is nearest.
+    """
     ends = on_rim(rim, -SEARCHED, False).point, on_rim(rim, SEARCHED, False).point
-    least, feet = min(distance_at(other, ends[0]), distance_at(other, ends[1])), feet_on(rim, other)
-    if feet.n_feet > 0:
-        least = min(least, distance_at(other, on_rim(rim, feet.first, True).point))
-    if feet.n_feet > 1:
-        least = min(least, distance_at(other, on_rim(rim, feet.last, True).point))
+    least = min(distance_at(other, ends[0]), distance_at(other, ends[1]))
+    if rim.is_second:
+        feet = feet_on(rim, other)
+        if feet.n_feet > 0:
+            least = min(least, distance_at(other, on_rim(rim, feet.first, True).point))
     return least
 
 
@@ -386,6 +388,12 @@ def root_of_rise(seen: Seen, other: Feature, low: float, high: float, at_low: fl
 def is_on_arc(rim: Feature, point: Vector, slack_m: float) -> bool:
     """Whether a point of a rim is on its arc, to a length beyond its ends."""
     return dot(outward_at(rim, point), vector_from(rim.toward)) >= math.cos(HALF_ARC) - slack_m / abs(rim.length)
+
+
+@kernel
+def is_near_arc(rim: Feature, point: Vector) -> bool:
+    """Whether a point of a rim is on an arc or on the half that is nearer of one next to it."""
+    return dot(outward_at(rim, point), vector_from(rim.toward)) >= math.cos(2.0 * HALF_ARC)
 
 
 @kernel
