@@ -4,6 +4,7 @@
 import { BackSide, BufferAttribute, BufferGeometry, FrontSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
   Quaternion, Vector3, Vector4, Matrix3 } from "three";
 import { carried, composed, conjugate, dot, inverse, norm, rotated, sub } from "./geometry.js";
+import { faceMaterial } from "./materials.js";
 import { foldsOf, hit, placed, surfaceOf, wallOf, within } from "./surfaces.js";
 
 const FINEST = 0.02; // times half the height of a picture: what looks straight
@@ -15,63 +16,6 @@ const geometryOf = (places, normals = null) => {
   if (normals) made.setAttribute("normal", new BufferAttribute(new Float32Array(normals.flat()), 3));
   return made;
 };
-
-// A material that leaves out what lies in holes. Each hole is told about the target: the square of the distance from its
-// axis is a number there, a slope and a square, so that its wall is sharp at any zoom. Without a graphics card light is
-// worked out at corners alone, and shadows are none: for every pixel it would cost more than all else.
-export function faceMaterial(look, holes, isSoftware) {
-  const material = new MeshLambertMaterial({ polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, ...look });
-  if (!holes.count && !isSoftware) return material;
-  material.onBeforeCompile = (shader) => {
-    if (isSoftware) lightCorners(shader);
-    if (holes.count) cutHoles(shader, holes);
-  };
-  material.customProgramCacheKey = () => `holes ${holes.count}, software ${isSoftware}`;
-  return material;
-}
-
-// As look.py's `lit`, and the same lights.
-function lightCorners(shader) {
-  shader.vertexShader = shader.vertexShader.replace("#include <common>", `#include <common>
-    #include <lights_pars_begin>
-    uniform vec3 diffuse;
-    varying vec3 vLit;`)
-    .replace("#include <defaultnormal_vertex>", `#include <defaultnormal_vertex>
-    vec3 normal_ = normalize(transformedNormal);
-    vec3 light = mix(hemisphereLights[0].groundColor, hemisphereLights[0].skyColor, 0.5 + 0.5 * dot(normal_, hemisphereLights[0].direction));
-    for (int i = 0; i < NUM_DIR_LIGHTS; i++) light += directionalLights[i].color * max(0.0, dot(normal_, directionalLights[i].direction));
-    vec3 linear = min(diffuse * light * RECIPROCAL_PI, 1.0);
-    vLit = mix(12.92 * linear, 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, linear));`);
-  shader.fragmentShader = `#include <common>
-    #include <fog_pars_fragment>
-    uniform float opacity;
-    varying vec3 vLit;
-    void main() {
-      #include <clipping_planes_fragment>
-      gl_FragColor = vec4(vLit, opacity);
-      #include <fog_fragment>
-    }`;
-}
-
-function cutHoles(shader, holes) {
-  Object.assign(shader.uniforms, holes.uniforms);
-  shader.vertexShader = shader.vertexShader.replace("#include <common>", "#include <common>\nvarying vec3 vPlace;")
-    .replace("#include <begin_vertex>", "#include <begin_vertex>\nvPlace = (modelMatrix * vec4(position, 1.0)).xyz;");
-  shader.fragmentShader = shader.fragmentShader.replace("#include <common>", `#include <common>
-    varying vec3 vPlace;
-    uniform mat3 holeTurns[${holes.count}];
-    uniform vec4 holeAxes[${holes.count}];
-    uniform vec4 holeSizes[${holes.count}];`)
-    .replace("#include <clipping_planes_fragment>", `#include <clipping_planes_fragment>
-    for (int i = 0; i < ${holes.count}; i++) {
-      vec3 place = holeTurns[i] * vPlace;
-      float height = holeAxes[i].w + place.z;
-      if (height > holeSizes[i].y || height < holeSizes[i].x) continue;
-      float beyond = holeAxes[i].x + dot(holeAxes[i].yz, place.xy) + dot(place.xy, place.xy);
-      float widened = max(0.0, height + holeSizes[i].z) * holeSizes[i].w;
-      if (beyond < widened) discard;
-    }`);
-}
 
 // The holes of a body, as its faces are cut out.
 export class Holes {
