@@ -5,7 +5,7 @@ import { add, carried, composed, cross, dot, inverse, norm, rotated, sub, times,
 import { Camera } from "./camera.js";
 import { color, Marks } from "./marks.js";
 import { Overlay } from "./overlay.js";
-import { Body, Holes, Walls } from "./solids.js";
+import { Body, Holes, Shape, Walls } from "./solids.js";
 import { World } from "./world.js";
 
 const RING = 16; // pixels about a contact that is looked at closely
@@ -64,8 +64,9 @@ export class Drawing {
     this.world.scene.remove(...(this.things ?? []).map((thing) => thing.group));
     this.holes = new Holes(data.holes, data.forms);
     this.cageHoles = new Holes(data.cageHoles, data.forms);
-    this.object = new Body(data.parts, data.forms, this.holes, { face: paint.object, edge: paint.objectEdge }, isSoftware);
-    this.bodies = data.bodies.map(({ form }) => new Body([{ form, position: [0, 0, 0], quaternion: [1, 0, 0, 0] }], data.forms, this.cageHoles, { face: paint.cage, edge: paint.cageEdge }, isSoftware));
+    this.object = new Body(new Shape(data.parts, data.forms), this.holes, { face: paint.object, edge: paint.objectEdge }, isSoftware);
+    const shapes = new Map([...new Set(data.bodies.map(({ form }) => form))].map((form) => [form, new Shape([{ form, position: [0, 0, 0], quaternion: [1, 0, 0, 0] }], data.forms)]));
+    this.bodies = data.bodies.map(({ form }) => new Body(shapes.get(form), this.cageHoles, { face: paint.cage, edge: paint.cageEdge }, isSoftware));
     this.walls = new Walls(data.holes, data.forms, { face: paint.objectWall, edge: paint.objectEdge });
     this.cageWalls = new Walls(data.cageHoles, data.forms, { face: paint.cageWall, edge: paint.cageEdge });
     this.things = [this.object, ...this.bodies, this.walls, this.cageWalls];

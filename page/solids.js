@@ -5,9 +5,10 @@ import { BackSide, BufferAttribute, BufferGeometry, FrontSide, Group, LineBasicM
   Quaternion, Vector3, Vector4, Matrix3 } from "three";
 import { carried, composed, conjugate, dot, inverse, norm, rotated, sub } from "./geometry.js";
 import { faceMaterial } from "./materials.js";
-import { foldsOf, hit, placed, surfaceOf, wallOf, within } from "./surfaces.js";
+import { distinct, foldsOf, hit, placed, surfaceOf, wallOf, widestOf, within } from "./surfaces.js";
 
 const FINEST = 0.02; // times half the height of a picture: what looks straight
+const FINENESS = [12, 24, 48, 96], STRAIGHT = 0.25; // segments of a full circle; pixels that they may be off by
 const SLACK = 1e-4; // of a hole's depth, by which its mouth is cut beyond the face that it is in
 
 const geometryOf = (places, normals = null) => {
@@ -48,24 +49,55 @@ export class Holes {
   }
 }
 
-// Parts that move as one. `look` has the colours of faces and edges, and how much of the faces is seen through.
-export class Body {
-  constructor(parts, forms, holes, { face, edge }, isSoftware) {
+// The shape of parts that move as one: bodies that are alike share it.
+export class Shape {
+  constructor(parts, forms) {
     this.parts = parts.map(({ form, position, quaternion }) => {
       const surface = surfaceOf(forms[form]);
       return { form: forms[form], pose: { p: position, q: quaternion }, surface, reach: Math.max(...surface.corners.map(norm)) };
     });
-    this.whole = { corners: [], normals: [], lines: [] };
-    for (const part of this.parts) placed(part.surface, part.pose, carried, rotated, this.whole);
+    this.whole = this.parts.reduce((whole, { surface, pose }) => placed(surface, pose, carried, rotated, whole), { corners: [], normals: [], lines: [] });
     this.reach = Math.max(0, ...this.whole.corners.map(norm));
     this.outer = [...new Map(this.whole.corners.map((corner) => [corner.map((value) => value.toFixed(6)).join(), corner])).values()]; // each corner once
     const [low, high] = [Math.min, Math.max].map((pick) => [0, 1, 2].map((axis) => this.outer.map((corner) => corner[axis]).reduce((one, other) => pick(one, other))));
     this.ends = [low[0], high[0]].flatMap((x) => [low[1], high[1]].flatMap((y) => [low[2], high[2]].map((z) => [x, y, z]))); // of the box around it
+    this.widest = Math.max(...this.parts.map(({ form }) => widestOf(form)));
+    this.meshes = new Map(); // by segments of a full circle
+  }
+
+  // Faces and edges, as fine as it needs where a pixel is so long: small balls of thousands of triangles are slow in software.
+  mesh(pixel) {
+    const segments = FINENESS.find((segments) => this.widest * (1 - Math.cos(Math.PI / segments)) < STRAIGHT * pixel) ?? FINENESS.at(-1);
+    if (!this.meshes.has(segments)) this.meshes.set(segments, this.meshOf(segments));
+    return this.meshes.get(segments);
+  }
+
+  meshOf(segments) {
+    const made = { corners: [], normals: [], lines: [] }, numbers = [];
+    for (const { form, pose } of this.parts) {
+      const surface = surfaceOf(form, null, 0, segments);
+      const found = distinct(surface);
+      numbers.push(...found.numbers.map((number) => made.corners.length + number));
+      placed({ corners: found.chosen.map((which) => surface.corners[which]), normals: found.chosen.map((which) => surface.normals[which]), lines: surface.lines }, pose, carried, rotated, made);
+    }
+    return [geometryOf(made.corners, made.normals).setIndex(numbers), geometryOf(made.lines)];
+  }
+
+  // Edges where it may turn away from an eye.
+  get folds() {
+    this.found ??= foldsOf(this.whole);
+    return this.found;
+  }
+}
+
+// A body of a shape. `look` has the colours of faces and edges, and how much of the faces is seen through.
+export class Body {
+  constructor(shape, holes, { face, edge }, isSoftware) {
+    Object.assign(this, { shape, outer: shape.outer, ends: shape.ends, reach: shape.reach });
     this.group = new Group();
-    this.far = [geometryOf(this.whole.corners, this.whole.normals), geometryOf(this.whole.lines)];
-    this.front = new Mesh(this.far[0], faceMaterial({ color: face, side: FrontSide }, holes, isSoftware));
-    this.back = new Mesh(this.far[0], faceMaterial({ color: face, side: BackSide }, holes, isSoftware));
-    this.lines = new LineSegments(this.far[1], new LineBasicMaterial({ color: edge }));
+    this.front = new Mesh(undefined, faceMaterial({ color: face, side: FrontSide }, holes, isSoftware));
+    this.back = new Mesh(undefined, faceMaterial({ color: face, side: BackSide }, holes, isSoftware));
+    this.lines = new LineSegments(undefined, new LineBasicMaterial({ color: edge }));
     this.front.castShadow = this.front.receiveShadow = true;
     this.group.add(this.front, this.back, this.lines);
     for (const thing of [this.group, ...this.group.children]) thing.matrixAutoUpdate = thing.frustumCulled = false;
@@ -85,7 +117,7 @@ export class Body {
     this.close = camera.isClose() ? this.near(pose, camera) : null;
     this.closeGeometries?.forEach((geometry) => geometry.dispose());
     this.closeGeometries = this.close && [geometryOf(this.close.corners, this.close.normals), geometryOf(this.close.lines)];
-    const [faces, lines] = this.closeGeometries ?? this.far;
+    const [faces, lines] = this.closeGeometries ?? this.shape.mesh(camera.pixel(pose.p));
     this.front.geometry = this.back.geometry = faces;
     this.lines.geometry = lines;
     const [p, q] = this.close ? [[0, 0, 0], [1, 0, 0, 0]] : [sub(pose.p, camera.target), pose.q];
@@ -95,7 +127,7 @@ export class Body {
 
   near(pose, camera) {
     const found = { corners: [], normals: [], lines: [] };
-    for (const part of this.parts) {
+    for (const part of this.shape.parts) {
       const at = composed(pose, part.pose);
       const about = { p: sub(at.p, camera.target), q: at.q };
       const target = carried(inverse(about), [0, 0, 0]);
@@ -109,16 +141,16 @@ export class Body {
 
   // The lines that bound it for an eye at a place in its frame: its edges, and where it turns away.
   outline(eye) {
-    this.folds ??= foldsOf(this.whole);
+    const { whole, folds } = this.shape;
     const faces = (normal, place) => dot(normal, sub(eye, place)) > 0;
-    return [...this.whole.lines, ...this.folds.filter(([from, , one, other]) => faces(one, from) !== faces(other, from)).flatMap(([from, to]) => [from, to])];
+    return [...whole.lines, ...folds.filter(([from, , one, other]) => faces(one, from) !== faces(other, from)).flatMap(([from, to]) => [from, to])];
   }
 
   // How far along a ray from about the target it is met.
   hit(from, direction) {
     if (this.close) return hit(this.close, from, direction);
     const back = inverse({ p: sub(this.pose.p, this.target), q: this.pose.q });
-    return hit(this.whole, carried(back, from), rotated(back.q, direction));
+    return hit(this.shape.whole, carried(back, from), rotated(back.q, direction));
   }
 }
 

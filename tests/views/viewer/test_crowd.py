@@ -14,7 +14,7 @@ from cagepose import load_scene, run
 from cagepose.files.scene_file import read_scene_text
 from cagepose.views.viewer.server import ViewServer
 from cagepose.views.viewer.what_if import WhatIf
-from driving import opened, served, shown_angles, slide, state, wait_until
+from driving import count_drawing, drawn_for_a_picture, opened, served, shown_angles, slide, state
 
 N_ANSWERS = 6
 MOST_DRAWN, MOST_TRIANGLES = 10, 12_000
@@ -64,29 +64,8 @@ def test_a_picture_of_a_crowd_is_drawn_in_few_goes(watched, server):
     """Drawn in software each go costs much, and each copy of a shape is one: 623 goes with 19,000 triangles took 40 ms
     of processor time, 8 with 11,000 take 23.
     """
-    watched.page.add_init_script("""
-        window.goes = { drawn: 0, triangles: 0 };
-        const count = (name, cornersAt, copiesAt) => {
-            const draw = WebGL2RenderingContext.prototype[name];
-            WebGL2RenderingContext.prototype[name] = function (...told) {
-                const copies = copiesAt === null ? 1 : told[copiesAt];
-                goes.drawn += copies;
-                if (told[0] === this.TRIANGLES) goes.triangles += copies * told[cornersAt] / 3;
-                return draw.apply(this, told);
-            };
-        };
-        count("drawArrays", 2, null);
-        count("drawElements", 1, null);
-        count("drawArraysInstanced", 2, 3);
-        count("drawElementsInstanced", 1, 4);
-    """)
-    page = opened(watched, server)
-    goes, drawn = page.evaluate("[{ ...goes }, cagepose.state().drawn]")
-    page.locator("#scene").drag_to(page.locator("#scene"), target_position={"x": 300, "y": 300})
-    wait_until(page, f"cagepose.state().drawn > {drawn}")
-    after, n_pictures = page.evaluate("[{ ...goes }, cagepose.state().drawn]")
-    assert n_pictures > drawn
-    each = {key: (after[key] - goes[key]) / (n_pictures - drawn) for key in goes}
+    count_drawing(watched.page)
+    each = drawn_for_a_picture(opened(watched, server))
     print(f"each picture: {each}")
     assert 0 < each["drawn"] <= MOST_DRAWN
     assert 0 < each["triangles"] <= MOST_TRIANGLES
