@@ -56,13 +56,17 @@ export class Shape {
       const surface = surfaceOf(forms[form]);
       return { form: forms[form], pose: { p: position, q: quaternion }, surface, reach: Math.max(...surface.corners.map(norm)) };
     });
-    this.whole = this.parts.reduce((whole, { surface, pose }) => placed(surface, pose, carried, rotated, whole), { corners: [], normals: [], lines: [] });
+    this.whole = this.placed(({ surface }) => surface);
     this.reach = Math.max(0, ...this.whole.corners.map(norm));
-    this.outer = [...new Map(this.whole.corners.map((corner) => [corner.map((value) => value.toFixed(6)).join(), corner])).values()]; // each corner once
+    this.outer = [...new Map([...new Set(this.whole.corners)].map((corner) => [corner.map((value) => value.toFixed(6)).join(), corner])).values()]; // each corner once
     const [low, high] = [Math.min, Math.max].map((pick) => [0, 1, 2].map((axis) => this.outer.map((corner) => corner[axis]).reduce((one, other) => pick(one, other))));
     this.ends = [low[0], high[0]].flatMap((x) => [low[1], high[1]].flatMap((y) => [low[2], high[2]].map((z) => [x, y, z]))); // of the box around it
     this.widest = Math.max(...this.parts.map(({ form }) => widestOf(form)));
     this.meshes = new Map(); // by segments of a full circle
+  }
+
+  placed(surface) {
+    return this.parts.reduce((whole, part) => placed(surface(part), part.pose, carried, rotated, whole), { corners: [], normals: [], lines: [] });
   }
 
   // Faces and edges, as fine as it needs where a pixel is so long: small balls of thousands of triangles are slow in software.
@@ -73,14 +77,9 @@ export class Shape {
   }
 
   meshOf(segments) {
-    const made = { corners: [], normals: [], lines: [] }, numbers = [];
-    for (const { form, pose } of this.parts) {
-      const surface = surfaceOf(form, null, 0, segments);
-      const found = distinct(surface);
-      numbers.push(...found.numbers.map((number) => made.corners.length + number));
-      placed({ corners: found.chosen.map((which) => surface.corners[which]), normals: found.chosen.map((which) => surface.normals[which]), lines: surface.lines }, pose, carried, rotated, made);
-    }
-    return [geometryOf(made.corners, made.normals).setIndex(numbers), geometryOf(made.lines)];
+    const made = this.placed(({ form }) => surfaceOf(form, null, 0, segments));
+    const { chosen, numbers } = distinct(made);
+    return [geometryOf(...[made.corners, made.normals].map((list) => chosen.map((which) => list[which]))).setIndex(numbers), geometryOf(made.lines)];
   }
 
   // Edges where it may turn away from an eye.

@@ -25,10 +25,14 @@ export function wallOf(hole, { rims }, wider, near = null, finest = 0) {
   return revolved(profile, around({ rims }, near, finest, SEGMENTS));
 }
 
+// Corners that were one stay one.
 export function placed(surface, pose, carried, rotated, into = empty()) {
-  for (const corner of surface.corners) into.corners.push(carried(pose, corner));
-  for (const normal of surface.normals) into.normals.push(rotated(pose.q, normal));
-  for (const end of surface.lines) into.lines.push(carried(pose, end));
+  const [places, normals] = [new Map(), new Map()];
+  const once = (known, vector, moved) => known.get(vector) ?? known.set(vector, moved(vector)).get(vector);
+  const place = (corner) => once(places, corner, (vector) => carried(pose, vector));
+  for (const corner of surface.corners) into.corners.push(place(corner));
+  for (const normal of surface.normals) into.normals.push(once(normals, normal, (vector) => rotated(pose.q, vector)));
+  for (const end of surface.lines) into.lines.push(place(end));
   return into;
 }
 
@@ -146,17 +150,17 @@ function hullSurface({ vertices, triangles }) {
 
 // Edges between triangles, as both ends and both normals.
 export function foldsOf({ corners }) {
-  const key = (place) => place.map((value) => value.toFixed(7)).join();
+  const keys = new Map([...new Set(corners)].map((corner) => [corner, corner.map((value) => value.toFixed(7)).join()]));
   const sides = new Map(), folds = [];
   for (let i = 0; i < corners.length; i += 3) {
     const triangle = corners.slice(i, i + 3);
     const area = cross(sub(triangle[1], triangle[0]), sub(triangle[2], triangle[0]));
     if (norm(area) === 0) continue;
-    const normal = unit(area), keys = triangle.map(key);
-    triangle.forEach((from, k) => {
-      const beside = sides.get(`${keys[(k + 1) % 3]} ${keys[k]}`);
-      if (beside) folds.push([from, triangle[(k + 1) % 3], normal, beside]);
-      else sides.set(`${keys[k]} ${keys[(k + 1) % 3]}`, normal);
+    const normal = unit(area), [a, b, c] = triangle.map((corner) => keys.get(corner));
+    [[a, b], [b, c], [c, a]].forEach(([start, end], k) => {
+      const beside = sides.get(`${end} ${start}`);
+      if (beside) folds.push([triangle[k], triangle[(k + 1) % 3], normal, beside]);
+      else sides.set(`${start} ${end}`, normal);
     });
   }
   return folds;
