@@ -5,7 +5,7 @@ import { add, carried, composed, cross, dot, inverse, norm, rotated, sub, times,
 import { Camera } from "./camera.js";
 import { color, Marks } from "./marks.js";
 import { Overlay } from "./overlay.js";
-import { Body, Holes, Walls } from "./solids.js";
+import { Body, Holes, Shape, Walls } from "./solids.js";
 import { World } from "./world.js";
 
 const RING = 16; // pixels about a contact that is looked at closely
@@ -19,7 +19,7 @@ export class Drawing {
     this.sizes = stage.data.look; // sizes, in pixels unless look.py says otherwise
     this.paint = Object.fromEntries(Object.entries(this.sizes.paint).map(([name, hex]) => [name, color(hex)]));
     this.world = new World(canvas, stage.data);
-    this.marks = new Marks(this.sizes);
+    this.marks = new Marks(this.sizes, this.world.isSoftware);
     this.trace = new Line(new BufferGeometry(), new LineBasicMaterial({ color: this.paint.trace }));
     this.ghost = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: this.paint.ghost }));
     for (const line of [this.trace, this.ghost]) line.frustumCulled = false;
@@ -64,8 +64,9 @@ export class Drawing {
     this.world.scene.remove(...(this.things ?? []).map((thing) => thing.group));
     this.holes = new Holes(data.holes, data.forms);
     this.cageHoles = new Holes(data.cageHoles, data.forms);
-    this.object = new Body(data.parts, data.forms, this.holes, { face: paint.object, edge: paint.objectEdge }, isSoftware);
-    this.bodies = data.bodies.map(({ form }) => new Body([{ form, position: [0, 0, 0], quaternion: [1, 0, 0, 0] }], data.forms, this.cageHoles, { face: paint.cage, edge: paint.cageEdge }, isSoftware));
+    this.object = new Body(new Shape(data.parts, data.forms), this.holes, { face: paint.object, edge: paint.objectEdge }, isSoftware);
+    const shapes = new Map([...new Set(data.bodies.map(({ form }) => form))].map((form) => [form, new Shape([{ form, position: [0, 0, 0], quaternion: [1, 0, 0, 0] }], data.forms)]));
+    this.bodies = data.bodies.map(({ form }) => new Body(shapes.get(form), this.cageHoles, { face: paint.cage, edge: paint.cageEdge }, isSoftware));
     this.walls = new Walls(data.holes, data.forms, { face: paint.objectWall, edge: paint.objectEdge });
     this.cageWalls = new Walls(data.cageHoles, data.forms, { face: paint.cageWall, edge: paint.cageEdge });
     this.things = [this.object, ...this.bodies, this.walls, this.cageWalls];
@@ -112,7 +113,7 @@ export class Drawing {
     this.drawTouches(shot, look, pose);
     this.drawLoads(shot, pose);
     this.drawMotion(shot, pose);
-    this.drawTrace(time, look);
+    this.drawTrace(time);
     if (!camera.isClose()) this.marks.ball(carried(pose, stage.data.center), this.sizes.ball - 1, this.paint.trace);
     this.marks.end();
     const scale = window.devicePixelRatio;
@@ -282,18 +283,18 @@ export class Drawing {
   }
 
   // The way of the centre of gravity, and where the object started.
-  drawTrace(time, look) {
-    const { stage, camera } = this;
-    const way = stage.shots.slice(0, Math.floor(time) + 1).map((_, index) => this.shown(index).pose).concat([this.shown(time).pose]);
-    const places = way.map((pose) => sub(carried(pose, stage.data.center), camera.target));
+  drawTrace(time) {
+    const { stage, camera, trace, ghost } = this;
+    const center = (moment) => carried(this.shown(moment).pose, stage.data.center);
+    const told = [stage, ...this.exaggerations];
+    if (told.some((value, i) => value !== this.way?.told[i])) this.way = { told, places: stage.shots.map((_, index) => center(index)) };
+    fill(trace, [...this.way.places.slice(0, Math.floor(time) + 1), center(time)]);
+    trace.position.set(...sub([0, 0, 0], camera.target));
     const start = this.shown(0).pose;
-    const corners = this.object.outline(carried(inverse(start), camera.eye())).map((corner) => sub(carried(start, corner), camera.target));
-    for (const [line, list] of [[this.trace, places], [this.ghost, corners]]) {
-      line.visible = !camera.isClose();
-      line.geometry.dispose();
-      line.geometry = new BufferGeometry();
-      line.geometry.setAttribute("position", new BufferAttribute(new Float32Array(list.flat()), 3));
-    }
+    fill(ghost, this.object.outline(carried(inverse(start), camera.eye())));
+    ghost.position.set(...sub(start.p, camera.target));
+    ghost.quaternion.set(start.q[1], start.q[2], start.q[3], start.q[0]);
+    trace.visible = ghost.visible = !camera.isClose();
   }
 
   // What is clicked: the contact whose mark is nearest to a pixel, or null.
@@ -326,4 +327,16 @@ export class Drawing {
     const isPoint = touch.point < this.stage.data.points.length;
     this.camera.lookAt(place, unit(add(along, times(isPoint ? TILT : -TILT, normal))), CLOSE_UP);
   }
+}
+
+// Tells a line its places. It keeps its buffer while that is long enough.
+function fill({ geometry }, places) {
+  if (!(geometry.attributes.position?.count >= places.length)) {
+    geometry.dispose();
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array(6 * places.length), 3));
+  }
+  const { position } = geometry.attributes;
+  places.forEach(([x, y, z], index) => position.setXYZ(index, x, y, z));
+  position.needsUpdate = true;
+  geometry.setDrawRange(0, places.length);
 }

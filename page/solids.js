@@ -4,9 +4,11 @@
 import { BackSide, BufferAttribute, BufferGeometry, FrontSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
   Quaternion, Vector3, Vector4, Matrix3 } from "three";
 import { carried, composed, conjugate, dot, inverse, norm, rotated, sub } from "./geometry.js";
-import { foldsOf, hit, placed, surfaceOf, wallOf, within } from "./surfaces.js";
+import { faceMaterial } from "./materials.js";
+import { distinct, foldsOf, hit, placed, surfaceOf, wallOf, widestOf, within } from "./surfaces.js";
 
 const FINEST = 0.02; // times half the height of a picture: what looks straight
+const FINENESS = [12, 24, 48, 96], STRAIGHT = 0.25; // segments of a full circle; pixels that they may be off by
 const SLACK = 1e-4; // of a hole's depth, by which its mouth is cut beyond the face that it is in
 
 const geometryOf = (places, normals = null) => {
@@ -15,63 +17,6 @@ const geometryOf = (places, normals = null) => {
   if (normals) made.setAttribute("normal", new BufferAttribute(new Float32Array(normals.flat()), 3));
   return made;
 };
-
-// A material that leaves out what lies in holes. Each hole is told about the target: the square of the distance from its
-// axis is a number there, a slope and a square, so that its wall is sharp at any zoom. Without a graphics card light is
-// worked out at corners alone, and shadows are none: for every pixel it would cost more than all else.
-export function faceMaterial(look, holes, isSoftware) {
-  const material = new MeshLambertMaterial({ polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, ...look });
-  if (!holes.count && !isSoftware) return material;
-  material.onBeforeCompile = (shader) => {
-    if (isSoftware) lightCorners(shader);
-    if (holes.count) cutHoles(shader, holes);
-  };
-  material.customProgramCacheKey = () => `holes ${holes.count}, software ${isSoftware}`;
-  return material;
-}
-
-// As look.py's `lit`, and the same lights.
-function lightCorners(shader) {
-  shader.vertexShader = shader.vertexShader.replace("#include <common>", `#include <common>
-    #include <lights_pars_begin>
-    uniform vec3 diffuse;
-    varying vec3 vLit;`)
-    .replace("#include <defaultnormal_vertex>", `#include <defaultnormal_vertex>
-    vec3 normal_ = normalize(transformedNormal);
-    vec3 light = mix(hemisphereLights[0].groundColor, hemisphereLights[0].skyColor, 0.5 + 0.5 * dot(normal_, hemisphereLights[0].direction));
-    for (int i = 0; i < NUM_DIR_LIGHTS; i++) light += directionalLights[i].color * max(0.0, dot(normal_, directionalLights[i].direction));
-    vec3 linear = min(diffuse * light * RECIPROCAL_PI, 1.0);
-    vLit = mix(12.92 * linear, 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, linear));`);
-  shader.fragmentShader = `#include <common>
-    #include <fog_pars_fragment>
-    uniform float opacity;
-    varying vec3 vLit;
-    void main() {
-      #include <clipping_planes_fragment>
-      gl_FragColor = vec4(vLit, opacity);
-      #include <fog_fragment>
-    }`;
-}
-
-function cutHoles(shader, holes) {
-  Object.assign(shader.uniforms, holes.uniforms);
-  shader.vertexShader = shader.vertexShader.replace("#include <common>", "#include <common>\nvarying vec3 vPlace;")
-    .replace("#include <begin_vertex>", "#include <begin_vertex>\nvPlace = (modelMatrix * vec4(position, 1.0)).xyz;");
-  shader.fragmentShader = shader.fragmentShader.replace("#include <common>", `#include <common>
-    varying vec3 vPlace;
-    uniform mat3 holeTurns[${holes.count}];
-    uniform vec4 holeAxes[${holes.count}];
-    uniform vec4 holeSizes[${holes.count}];`)
-    .replace("#include <clipping_planes_fragment>", `#include <clipping_planes_fragment>
-    for (int i = 0; i < ${holes.count}; i++) {
-      vec3 place = holeTurns[i] * vPlace;
-      float height = holeAxes[i].w + place.z;
-      if (height > holeSizes[i].y || height < holeSizes[i].x) continue;
-      float beyond = holeAxes[i].x + dot(holeAxes[i].yz, place.xy) + dot(place.xy, place.xy);
-      float widened = max(0.0, height + holeSizes[i].z) * holeSizes[i].w;
-      if (beyond < widened) discard;
-    }`);
-}
 
 // The holes of a body, as its faces are cut out.
 export class Holes {
@@ -104,24 +49,54 @@ export class Holes {
   }
 }
 
-// Parts that move as one. `look` has the colours of faces and edges, and how much of the faces is seen through.
-export class Body {
-  constructor(parts, forms, holes, { face, edge }, isSoftware) {
+// The shape of parts that move as one: bodies that are alike share it.
+export class Shape {
+  constructor(parts, forms) {
     this.parts = parts.map(({ form, position, quaternion }) => {
       const surface = surfaceOf(forms[form]);
       return { form: forms[form], pose: { p: position, q: quaternion }, surface, reach: Math.max(...surface.corners.map(norm)) };
     });
-    this.whole = { corners: [], normals: [], lines: [] };
-    for (const part of this.parts) placed(part.surface, part.pose, carried, rotated, this.whole);
+    this.whole = this.placed(({ surface }) => surface);
     this.reach = Math.max(0, ...this.whole.corners.map(norm));
-    this.outer = [...new Map(this.whole.corners.map((corner) => [corner.map((value) => value.toFixed(6)).join(), corner])).values()]; // each corner once
+    this.outer = [...new Map([...new Set(this.whole.corners)].map((corner) => [corner.map((value) => value.toFixed(6)).join(), corner])).values()]; // each corner once
     const [low, high] = [Math.min, Math.max].map((pick) => [0, 1, 2].map((axis) => this.outer.map((corner) => corner[axis]).reduce((one, other) => pick(one, other))));
     this.ends = [low[0], high[0]].flatMap((x) => [low[1], high[1]].flatMap((y) => [low[2], high[2]].map((z) => [x, y, z]))); // of the box around it
+    this.widest = Math.max(...this.parts.map(({ form }) => widestOf(form)));
+    this.meshes = new Map(); // by segments of a full circle
+  }
+
+  placed(surface) {
+    return this.parts.reduce((whole, part) => placed(surface(part), part.pose, carried, rotated, whole), { corners: [], normals: [], lines: [] });
+  }
+
+  // Faces and edges, as fine as it needs where a pixel is so long: small balls of thousands of triangles are slow in software.
+  mesh(pixel) {
+    const segments = FINENESS.find((segments) => this.widest * (1 - Math.cos(Math.PI / segments)) < STRAIGHT * pixel) ?? FINENESS.at(-1);
+    if (!this.meshes.has(segments)) this.meshes.set(segments, this.meshOf(segments));
+    return this.meshes.get(segments);
+  }
+
+  meshOf(segments) {
+    const made = this.placed(({ form }) => surfaceOf(form, null, 0, segments));
+    const { chosen, numbers } = distinct(made);
+    return [geometryOf(...[made.corners, made.normals].map((list) => chosen.map((which) => list[which]))).setIndex(numbers), geometryOf(made.lines)];
+  }
+
+  // Edges where it may turn away from an eye.
+  get folds() {
+    this.found ??= foldsOf(this.whole);
+    return this.found;
+  }
+}
+
+// A body of a shape. `look` has the colours of faces and edges, and how much of the faces is seen through.
+export class Body {
+  constructor(shape, holes, { face, edge }, isSoftware) {
+    Object.assign(this, { shape, outer: shape.outer, ends: shape.ends, reach: shape.reach });
     this.group = new Group();
-    this.far = [geometryOf(this.whole.corners, this.whole.normals), geometryOf(this.whole.lines)];
-    this.front = new Mesh(this.far[0], faceMaterial({ color: face, side: FrontSide }, holes, isSoftware));
-    this.back = new Mesh(this.far[0], faceMaterial({ color: face, side: BackSide }, holes, isSoftware));
-    this.lines = new LineSegments(this.far[1], new LineBasicMaterial({ color: edge }));
+    this.front = new Mesh(undefined, faceMaterial({ color: face, side: FrontSide }, holes, isSoftware));
+    this.back = new Mesh(undefined, faceMaterial({ color: face, side: BackSide }, holes, isSoftware));
+    this.lines = new LineSegments(undefined, new LineBasicMaterial({ color: edge }));
     this.front.castShadow = this.front.receiveShadow = true;
     this.group.add(this.front, this.back, this.lines);
     for (const thing of [this.group, ...this.group.children]) thing.matrixAutoUpdate = thing.frustumCulled = false;
@@ -141,7 +116,7 @@ export class Body {
     this.close = camera.isClose() ? this.near(pose, camera) : null;
     this.closeGeometries?.forEach((geometry) => geometry.dispose());
     this.closeGeometries = this.close && [geometryOf(this.close.corners, this.close.normals), geometryOf(this.close.lines)];
-    const [faces, lines] = this.closeGeometries ?? this.far;
+    const [faces, lines] = this.closeGeometries ?? this.shape.mesh(camera.pixel(pose.p));
     this.front.geometry = this.back.geometry = faces;
     this.lines.geometry = lines;
     const [p, q] = this.close ? [[0, 0, 0], [1, 0, 0, 0]] : [sub(pose.p, camera.target), pose.q];
@@ -151,7 +126,7 @@ export class Body {
 
   near(pose, camera) {
     const found = { corners: [], normals: [], lines: [] };
-    for (const part of this.parts) {
+    for (const part of this.shape.parts) {
       const at = composed(pose, part.pose);
       const about = { p: sub(at.p, camera.target), q: at.q };
       const target = carried(inverse(about), [0, 0, 0]);
@@ -165,16 +140,16 @@ export class Body {
 
   // The lines that bound it for an eye at a place in its frame: its edges, and where it turns away.
   outline(eye) {
-    this.folds ??= foldsOf(this.whole);
+    const { whole, folds } = this.shape;
     const faces = (normal, place) => dot(normal, sub(eye, place)) > 0;
-    return [...this.whole.lines, ...this.folds.filter(([from, , one, other]) => faces(one, from) !== faces(other, from)).flatMap(([from, to]) => [from, to])];
+    return [...whole.lines, ...folds.filter(([from, , one, other]) => faces(one, from) !== faces(other, from)).flatMap(([from, to]) => [from, to])];
   }
 
   // How far along a ray from about the target it is met.
   hit(from, direction) {
     if (this.close) return hit(this.close, from, direction);
     const back = inverse({ p: sub(this.pose.p, this.target), q: this.pose.q });
-    return hit(this.whole, carried(back, from), rotated(back.q, direction));
+    return hit(this.shape.whole, carried(back, from), rotated(back.q, direction));
   }
 }
 

@@ -3,7 +3,7 @@
 
 import { add, cross, dot, norm, sub, times, unit } from "./geometry.js";
 
-const SEGMENTS = 48; // of a full circle
+const SEGMENTS = 48; // of a full circle, divisible by 4
 const GROWTH = 1.3; // from one division to the next, away from a place that is looked at closely
 const CREASE = Math.cos(25 * Math.PI / 180); // triangles with normals farther apart meet at a sharp edge
 
@@ -11,23 +11,46 @@ const CREASE = Math.cos(25 * Math.PI / 180); // triangles with normals farther a
 const empty = () => ({ corners: [], normals: [], lines: [] });
 
 // `near`, if given, is the place in the form's frame that is looked at, and `finest` the length that must look straight.
-export function surfaceOf(form, near = null, finest = 0) {
-  if (form.size) return hullSurface(boxMesh(form.size));
-  if (form.vertices) return hullSurface(form);
-  return revolved(form.rims ? turnedProfile(form.rims) : roundProfile(form, near, finest), around(form, near, finest));
+export function surfaceOf(form, near = null, finest = 0, segments = SEGMENTS) {
+  if (!widestOf(form)) return hullSurface(form.size ? boxMesh(form.size) : form);
+  return revolved(form.rims ? turnedProfile(form.rims) : roundProfile(form, near, finest, segments), around(form, near, finest, segments));
 }
+
+// The radius of the widest circle of what is turned about an axis; else 0.
+export const widestOf = ({ radius, rims }) => radius ?? Math.max(0, ...(rims ?? []).map((rim) => rim[1]));
 
 // The wall of a hole, wider by `wider` than it is, with a bottom unless it is open there.
 export function wallOf(hole, { rims }, wider, near = null, finest = 0) {
   const profile = turnedProfile(rims.map(([height, radius]) => [height, radius + wider])).slice(hole.open ? 1 : 0, -1);
-  return revolved(profile, around({ rims }, near, finest));
+  return revolved(profile, around({ rims }, near, finest, SEGMENTS));
 }
 
+// Corners that were one stay one.
 export function placed(surface, pose, carried, rotated, into = empty()) {
-  for (const corner of surface.corners) into.corners.push(carried(pose, corner));
-  for (const normal of surface.normals) into.normals.push(rotated(pose.q, normal));
-  for (const end of surface.lines) into.lines.push(carried(pose, end));
+  const [places, normals] = [new Map(), new Map()];
+  const once = (known, vector, moved) => known.get(vector) ?? known.set(vector, moved(vector)).get(vector);
+  const place = (corner) => once(places, corner, (vector) => carried(pose, vector));
+  for (const corner of surface.corners) into.corners.push(place(corner));
+  for (const normal of surface.normals) into.normals.push(once(normals, normal, (vector) => rotated(pose.q, vector)));
+  for (const end of surface.lines) into.lines.push(place(end));
   return into;
+}
+
+// Which corners of a surface differ in place or normal, and for each corner the number of that which is like it: those of
+// what is round are six triangles' each, and are worked out once then.
+export function distinct({ corners, normals }) {
+  const chosen = [], known = new Map();
+  const numbers = corners.map((corner, which) => {
+    const at = known.get(corner) ?? [];
+    known.set(corner, at);
+    let number = at.find((other) => normals[chosen[other]] === normals[which]);
+    if (number === undefined) {
+      number = chosen.push(which) - 1;
+      at.push(number);
+    }
+    return number;
+  });
+  return { chosen, numbers };
 }
 
 // Divisions of a range, finest about a middle.
@@ -37,12 +60,11 @@ function graded(middle, finest, coarsest) {
   return [...steps.slice(1).map((step) => middle - step).reverse(), ...steps.map((step) => middle + step)];
 }
 
-function around({ rims, radius }, near, finest) {
-  const coarsest = 2 * Math.PI / SEGMENTS;
-  if (!near) return Array.from({ length: SEGMENTS + 1 }, (_, k) => k * coarsest);
-  const widest = radius ?? Math.max(...rims.map((rim) => rim[1]));
+function around(form, near, finest, segments) {
+  const coarsest = 2 * Math.PI / segments;
+  if (!near) return Array.from({ length: segments + 1 }, (_, k) => k * coarsest);
   const middle = Math.atan2(near[1], near[0]);
-  const angles = graded(middle, finest / widest, coarsest).filter((angle) => Math.abs(angle - middle) < Math.PI);
+  const angles = graded(middle, finest / widestOf(form), coarsest).filter((angle) => Math.abs(angle - middle) < Math.PI);
   return [middle - Math.PI, ...angles, middle + Math.PI];
 }
 
@@ -61,9 +83,9 @@ function turnedProfile(rims) {
   return pieces;
 }
 
-function roundProfile({ radius, length }, near, finest) {
+function roundProfile({ radius, length }, near, finest, segments) {
   const half = length / 2, quarter = Math.PI / 2;
-  const uniform = Array.from({ length: SEGMENTS / 4 + 1 }, (_, k) => k * 4 * quarter / SEGMENTS);
+  const uniform = Array.from({ length: segments / 4 + 1 }, (_, k) => k * 4 * quarter / segments);
   const arc = (sign) => {
     if (!near) return uniform;
     const middle = Math.atan2(sign * near[2] - half, Math.hypot(near[0], near[1]));
@@ -78,13 +100,17 @@ function roundProfile({ radius, length }, near, finest) {
 function revolved(profile, angles) {
   const made = empty();
   const turns = angles.map((angle) => [Math.cos(angle), Math.sin(angle)]);
-  const at = ([height, radius], [c, s]) => [radius * c, radius * s, height];
-  for (const { from, to, normals: [first, last], sharp } of profile) {
-    for (let i = 1; i < turns.length; i++) {
-      const [one, other] = [turns[i - 1], turns[i]];
-      if (from[1] > 0) push(made, [at(from, one), at(from, other), at(to, other)], [at(first, one), at(first, other), at(last, other)]);
-      if (to[1] > 0) push(made, [at(from, one), at(to, other), at(to, one)], [at(first, one), at(last, other), at(last, one)]);
-      if (sharp) made.lines.push(at(from, one), at(from, other));
+  const rings = new Map(); // those that two pieces share are one
+  const ring = (at) => {
+    if (!rings.has(at)) rings.set(at, turns.map(([c, s]) => [at[1] * c, at[1] * s, at[0]]));
+    return rings.get(at);
+  };
+  for (const { from, to, normals, sharp } of profile) {
+    const [low, high, first, last] = [from, to, ...normals].map(ring);
+    for (let i = 1, k = 0; i < turns.length; k = i++) {
+      if (from[1] > 0) push(made, [low[k], low[i], high[i]], [first[k], first[i], last[i]]);
+      if (to[1] > 0) push(made, [low[k], high[i], high[k]], [first[k], last[i], last[k]]);
+      if (sharp) made.lines.push(low[k], low[i]);
     }
   }
   return made;
@@ -124,17 +150,17 @@ function hullSurface({ vertices, triangles }) {
 
 // Edges between triangles, as both ends and both normals.
 export function foldsOf({ corners }) {
-  const key = (place) => place.map((value) => value.toFixed(7)).join();
+  const keys = new Map([...new Set(corners)].map((corner) => [corner, corner.map((value) => value.toFixed(7)).join()]));
   const sides = new Map(), folds = [];
   for (let i = 0; i < corners.length; i += 3) {
     const triangle = corners.slice(i, i + 3);
     const area = cross(sub(triangle[1], triangle[0]), sub(triangle[2], triangle[0]));
     if (norm(area) === 0) continue;
-    const normal = unit(area), keys = triangle.map(key);
-    triangle.forEach((from, k) => {
-      const beside = sides.get(`${keys[(k + 1) % 3]} ${keys[k]}`);
-      if (beside) folds.push([from, triangle[(k + 1) % 3], normal, beside]);
-      else sides.set(`${keys[k]} ${keys[(k + 1) % 3]}`, normal);
+    const normal = unit(area), [a, b, c] = triangle.map((corner) => keys.get(corner));
+    [[a, b], [b, c], [c, a]].forEach(([start, end], k) => {
+      const beside = sides.get(`${end} ${start}`);
+      if (beside) folds.push([triangle[k], triangle[(k + 1) % 3], normal, beside]);
+      else sides.set(`${start} ${end}`, normal);
     });
   }
   return folds;

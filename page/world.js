@@ -75,8 +75,10 @@ export class World {
 
   draw(camera, overlayScale) {
     const [width, height] = camera.size();
-    this.renderer.setPixelRatio(overlayScale);
-    if (this.width !== width || this.height !== height || this.scale !== overlayScale) this.renderer.setSize(width, height, false);
+    if (this.width !== width || this.height !== height || this.scale !== overlayScale) { // each of both makes the picture's memory anew
+      this.renderer.setPixelRatio(overlayScale);
+      this.renderer.setSize(width, height, false);
+    }
     Object.assign(this, { width, height, scale: overlayScale });
     const origin = sub([0, 0, 0], camera.target);
     const isClose = camera.isClose();

@@ -94,3 +94,33 @@ def pretend_graphics_card(page: Page) -> None:
             return name === 0x9246 ? "some graphics card" : told.call(this, name);
         };
     """)
+
+
+def count_drawing(page: Page) -> None:
+    """The page counts its draws from now on, a copy of a shape as one, and their triangles."""
+    page.add_init_script("""
+        window.goes = { drawn: 0, triangles: 0 };
+        const count = (name, cornersAt, copiesAt) => {
+            const draw = WebGL2RenderingContext.prototype[name];
+            WebGL2RenderingContext.prototype[name] = function (...told) {
+                const copies = copiesAt === null ? 1 : told[copiesAt];
+                goes.drawn += copies;
+                if (told[0] === this.TRIANGLES) goes.triangles += copies * told[cornersAt] / 3;
+                return draw.apply(this, told);
+            };
+        };
+        count("drawArrays", 2, null);
+        count("drawElements", 1, null);
+        count("drawArraysInstanced", 2, 3);
+        count("drawElementsInstanced", 1, 4);
+    """)
+
+
+def drawn_for_a_picture(page: Page) -> dict[str, float]:
+    """Draws and triangles of each of the pictures while the view is turned; `count_drawing` came first."""
+    ask = "[{ ...goes }, cagepose.state().drawn]"
+    before, drawn = page.evaluate(ask)
+    page.locator("#scene").drag_to(page.locator("#scene"), target_position={"x": 300, "y": 300})
+    wait_until(page, f"cagepose.state().drawn > {drawn}")
+    after, drawn_then = page.evaluate(ask)
+    return {key: (after[key] - before[key]) / (drawn_then - drawn) for key in after}

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cagepose.kernels.algebra.vector import Vector, cross, dot, minus
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
@@ -84,20 +84,19 @@ def nearest_points(one: Core, other: Core) -> tuple[FloatArray, FloatArray]:
     """Return the points of two bodies, (3,) each, metres, that are nearest to each other; of bodies whose cores meet,
     twice about the same one.
     """
-    pairs = [(one.farthest(np.ones(3)), other.farthest(-np.ones(3)))]
-    shares = np.ones(1)
+    pairs, shares = [_farthest_pair(one, other, np.ones(3))], [1.0]
+    between = pairs[0].apart
     for _ in range(MOST_STEPS):
-        between = _mixed(pairs, shares)
-        square = float(between @ between)
-        pair = one.farthest(-between), other.farthest(between)
-        if square == 0.0 or square - float(between @ (pair[0] - pair[1])) <= CLOSE * square:
+        square = dot(between, between)
+        pair = _farthest_pair(one, other, -np.array(between))
+        if square == 0.0 or square - dot(between, pair.apart) <= CLOSE * square:
             break
-        chosen, found = _nearest_subset([*pairs, pair])
-        nearer = _mixed(chosen, found)
-        if float(nearer @ nearer) >= square:
+        chosen, found, nearer = _nearest_subset([*pairs, pair])
+        if dot(nearer, nearer) >= square:
             break
-        pairs, shares = chosen, found
-    place, foot = (np.asarray(shares @ np.array(points)) for points in zip(*pairs, strict=True))
+        pairs, shares, between = chosen, found, nearer
+    place = shares @ np.array([pair.place for pair in pairs])
+    foot = shares @ np.array([pair.foot for pair in pairs])
     apart = float(np.linalg.norm(place - foot))
     if apart == 0.0:
         return place, foot
@@ -105,25 +104,30 @@ def nearest_points(one: Core, other: Core) -> tuple[FloatArray, FloatArray]:
     return place + one.radius_m * way, foot - other.radius_m * way
 
 
-_Pair = tuple[FloatArray, FloatArray]
+class _Pair(NamedTuple):
+    """Farthest points of two bodies, (3,) each, and the way from the second to the first."""
+
+    place: FloatArray
+    foot: FloatArray
+    apart: Vector
 
 
-def _mixed(pairs: list[_Pair], shares: FloatArray) -> FloatArray:
-    mixed: FloatArray = shares @ np.array([place - foot for place, foot in pairs])
-    return mixed
+def _farthest_pair(one: Core, other: Core, way: FloatArray) -> _Pair:
+    place, foot = one.farthest(way), other.farthest(-way)
+    return _Pair(place, foot, as_vector(place - foot))
 
 
-def _nearest_subset(pairs: list[_Pair]) -> tuple[list[_Pair], FloatArray]:
-    """Return the points of a simplex, the last one among them, that bear its point nearest to the origin, and their
-    shares in it.
+def _nearest_subset(pairs: list[_Pair]) -> tuple[list[_Pair], list[float], Vector]:
+    """Return the points of a simplex, the last one among them, that bear its point nearest to the origin, their shares
+    in it, and that point.
     """
-    points = [as_vector(place - foot) for place, foot in pairs]
-    last, best = len(pairs) - 1, (math.inf, [len(pairs) - 1], [1.0])
+    points = [pair.apart for pair in pairs]
+    last, best = len(pairs) - 1, (math.inf, [len(pairs) - 1], [1.0], points[-1])
     if last < 4:
         shares = _shares([minus(point, points[last]) for point in points[:last]], points[last])
         all_shares = [*shares, 1.0 - sum(shares)]
         if min(all_shares) > 0.0:  # within the simplex: all points bear it
-            return pairs, np.array(all_shares)
+            return pairs, all_shares, _mixed(points, all_shares)
     for size in range(min(len(pairs), 4)):
         for others in combinations(range(last), size):
             shares = _shares([minus(points[index], points[last]) for index in others], points[last])
@@ -131,10 +135,16 @@ def _nearest_subset(pairs: list[_Pair]) -> tuple[list[_Pair], FloatArray]:
             if min(all_shares) < 0.0:
                 continue
             chosen = [*others, last]
-            weighted = list(zip(all_shares, [points[index] for index in chosen], strict=True))
-            nearest = [sum(share * point[axis] for share, point in weighted) for axis in range(3)]
-            best = min(best, (math.hypot(*nearest), chosen, all_shares), key=lambda found: found[0])
-    return [pairs[index] for index in best[1]], np.array(best[2])
+            nearest = _mixed([points[index] for index in chosen], all_shares)
+            best = min(best, (norm(nearest), chosen, all_shares, nearest), key=lambda found: found[0])
+    return [pairs[index] for index in best[1]], best[2], best[3]
+
+
+def _mixed(points: list[Vector], shares: list[float]) -> Vector:
+    mixed = (0.0, 0.0, 0.0)
+    for point, share in zip(points, shares, strict=True):
+        mixed = plus(mixed, scaled(point, share))
+    return mixed
 
 
 def _shares(ways: list[Vector], base: Vector) -> list[float]:

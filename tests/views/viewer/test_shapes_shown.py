@@ -19,7 +19,7 @@ from cagepose.views.viewer.picture import SIZE, PictureMaker
 from cagepose.views.viewer.playback import Playback, playback
 from cagepose.views.viewer.stage import EXAGGERATIONS, Look, Stage
 from cagepose.views.viewer.what_if import WhatIf
-from driving import set_range, state, wait_until
+from driving import count_drawing, drawn_for_a_picture, set_range, state, wait_until
 from marks_left_out import is_marked, without_marks
 from our_scenes import SCENES as OUR_SCENES
 from shaped_scenes import WEIGHT, ball_on_points, ball_on_table, bar_between_bars, block_on_balls
@@ -178,6 +178,19 @@ def test_the_page_shows_shapes_and_contacts_where_pictures_do(opened, scene: Cal
     assert {contact.point for contact in film.run.contacts} <= names
     lines = page.locator("#forces tr:has(td)").all_inner_texts()
     assert any(f"{contact.point} on {contact.box}" in line for line in lines for contact in film.run.contacts)
+
+
+def test_a_ball_is_as_fine_as_its_picture_needs_and_no_finer(watched, opened) -> None:
+    count_drawing(watched.page)
+    page = opened(playback(run(ball_on_table())))
+    place = state(page)["shownPose"]["p"]
+    triangles = []
+    for half in (8.0, 0.8):
+        page.evaluate("([place, half]) => cagepose.look(place, [0, -1, 0], half)", [place, half])
+        triangles.append(drawn_for_a_picture(page)["triangles"])
+    print(f"triangles: {triangles}")
+    assert triangles[0] < 600.0
+    assert triangles[1] > 1000.0
 
 
 @pytest.mark.parametrize(

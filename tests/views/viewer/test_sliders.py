@@ -182,6 +182,19 @@ def test_every_slider_can_be_used_over_its_whole_range(path):
     assert all("is all zeros, which points nowhere" in problem for problem in problems), problems
 
 
+@pytest.mark.parametrize("name", ["drawer", "phone-dock", "rollers"])
+def test_no_slider_of_the_cage_changes_the_unit_that_shapes_are_drawn_in(name):
+    """Else the page would build them all anew."""
+    what_if = WhatIf(read_scene_text(next(path for path in OUR_SCENES if path.stem == name)))
+    pitch = next(control for control in what_if.controls if (control.group, control.label) == ("cage", "pitch"))
+    angles = [control.value for control in what_if.controls if control.key == pitch.key]
+    units = set()
+    for value in np.linspace(pitch.low, pitch.high, 2 * N_SWEPT).tolist():
+        angles[pitch.index] = value
+        units.add(what_if.answer({pitch.key: angles})["unitsPerDrawing"])
+    assert len(units) == 1
+
+
 def test_the_sliders_of_the_rail_are_green_from_end_to_end_and_nothing_jumps(watched):
     with served(RAIL) as server:
         page = opened(watched, server)

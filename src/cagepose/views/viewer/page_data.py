@@ -45,6 +45,7 @@ class _Writer:
         self.shown = shown
         self.run = shown.run
         self.stage = Stage(shown)
+        self.usual_friction = chosen_method(self.run.scene, self.run.method).friction(self.run.scene)
         self.words = LengthWords(shown.length_unit, shown.run.scene.size_m)
         self.touches = list(dict.fromkeys(shot.touches for shot in shown.shots))
         self.which = {touches: index for index, touches in enumerate(self.touches)}
@@ -174,8 +175,7 @@ class _Writer:
 
     def _friction(self, element: str, part: str) -> float:
         """The coefficient of one contact."""
-        scene = self.run.scene
-        return contact_friction(scene, chosen_method(scene, self.run.method).friction(scene), element, part)
+        return contact_friction(self.run.scene, self.usual_friction, element, part)
 
     def _row(self, row: Row, change: Change) -> dict[str, Any]:
         motion = row.event.motion

@@ -178,10 +178,12 @@ class _TouchesAt:
 
     def of(self, pose: Pose, names: tuple[str, ...]) -> Touches:
         """Return what touches of what has these names."""
+        if not names:
+            return Touches(self.indices(()), (), np.zeros((0, 3)), None, np.zeros((0, 3)))
         elements, scene = self.indices(names), self.scene
         n_solid = len(scene.cage.names) + len(scene.cage.shapes)
         found, left = [], elements
-        if self.finder is not None and names:
+        if self.finder is not None:
             all_places = self.finder.at(pose)
             is_asked = np.isin(all_places.elements, elements)
             found.append(all_places.chosen(is_asked))

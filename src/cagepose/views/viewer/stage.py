@@ -42,6 +42,8 @@ MOST_ADDED = 0.5
 """
 WHOLE = 1.5
 """A picture shows bodies of the cage as a whole if it need not be more than so many times as large for it."""
+SIZE_STEP = 1.25
+"""The unit of drawing is the scene's size, less so many such steps as what is shown of it is smaller."""
 STILL = 1e-7
 """Radians, and sizes of the scene: what moves less stands still but for rounding."""
 EASE = 0.25
@@ -117,9 +119,10 @@ class Stage:
         self.middles_world = np.array([*(body.mean(axis=0) for body in self.bodies_world), *mouths]).reshape(-1, 3)
         self.middle_world: FloatArray = (everything.min(axis=0) + everything.max(axis=0)) / 2.0
         radius_m = float(np.linalg.norm(everything - self.middle_world, axis=1).max())
-        # Of a ball on a large table the scene's size is that of the table, of which little is shown. A round number: a
-        # page need not build its shapes anew for each slider.
-        self.size_m = min(scene.size_m, float(f"{2.0 * radius_m:.1e}")) if bodies else scene.size_m
+        # Of a ball on a large table the scene's size is that of the table, of which little is shown. In steps from what
+        # no slider changes: a page need not build its shapes anew for each answer.
+        steps = math.floor(math.log(scene.size_m / (2.0 * radius_m), SIZE_STEP)) if bodies else 0
+        self.size_m: float = scene.size_m / SIZE_STEP ** max(0, steps)
         self.radius = radius_m / self.size_m
 
     def place(self, point_world: FloatArray) -> FloatArray:

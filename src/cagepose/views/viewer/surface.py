@@ -49,7 +49,7 @@ def nearest_on_object(held: Object, pose: Pose, cage: Cage, elements: Sequence[i
     found = Nearest(feet, places, normals, np.zeros(len(chosen), dtype=np.int64))
     is_point = chosen < len(points)
     gaps = np.full(len(chosen), np.inf)
-    if held.boxes:
+    if held.boxes and is_point.any():
         gaps[is_point] = _write_nearest_of_boxes(held.boxes, pose, points[chosen[is_point]], is_point, found)
     rows = np.arange(len(chosen)) if held.shapes else np.nonzero(~is_point)[0]
     cores = [core_of(part, pose) for part in held.parts] if len(rows) else []
