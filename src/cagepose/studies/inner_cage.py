@@ -27,7 +27,7 @@ from cagepose.model.volume import BOX_SIGNS
 INWARDS = (0.98, 0.9, 0.7)
 """Of a face's half edges: points are taken over so much of it. The widest hold best, but may run off it."""
 SIDES = 16
-"""Of what is turned about an axis, one of them toward the face."""
+"""Of what is turned about an axis, an edge between two of them toward the face."""
 LEANING = 0.1
 """Of a way along the face: so much farther off may a point be for it, so that both ends of what leans are taken."""
 ONE_PLACE = 2.0
@@ -97,7 +97,7 @@ def points_over(box: Box, pose_cage_box: Pose, shape: Shape, touch_m: float) -> 
 
 
 def _core_toward(shape: Shape, direction: FloatArray) -> _Core:
-    """Return the core of a shape; of what is turned, a prism or a pyramid within it with a side toward a direction."""
+    """Return the core of a shape; of what is turned, a prism or a pyramid within it with an edge toward a direction."""
     pose = shape.pose_body_shape
     if isinstance(shape, Turned):
         x, y, _ = (pose.rotation.T @ direction).tolist()
