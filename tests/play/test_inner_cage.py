@@ -94,6 +94,43 @@ def test_a_wall_with_a_hole_holds_nothing():
     assert [name for name in scene.cage.names if name.startswith("floor")]
 
 
+def in_a_chamber(*more: Shape, but: str = "", points: dict[str, tuple[float, float, float]] | None = None) -> Scene:
+    """The cube of `box_under_a_lid` in its closed chamber, with more shapes and points and without one of its walls."""
+    walls = [shape for shape in box_under_a_lid(None).cage.shapes if shape.name != but]
+    places = points or {}
+    cage = Cage(list(places.values()), list(places), shapes=[*walls, *more])
+    return Scene(Object([Box((10 * MM,) * 3)]), cage, DOWN)
+
+
+def test_walls_that_overlap_and_names_of_points_that_are_taken_are_no_error():
+    """Points over one face that are made of two walls are one; a point may have the name of a made one."""
+    again = Box(np.array([40, 40, 20]) * MM, Pose((0, 0, -15.2 * MM)), "again")
+    corner = 0.98 * 5 * MM
+    for scene in (
+        in_a_chamber(again),
+        in_a_chamber(points={"floor 1": (30 * MM, 0, 30 * MM)}),
+        in_a_chamber(points={"pin": (corner, corner, -5.2 * MM)}),
+    ):
+        found = play(scene, search_s=0.0)
+        assert found.verdict == "caged"
+        assert found.freedoms["z"].low.reached == pytest.approx(-0.2 * MM, abs=1e-9)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("euler_zyx", [(0, 0, 0), (0.3, math.pi, 0.1)])
+def test_a_cone_with_a_tip_holds(euler_zyx):
+    radii = (0.0, 5 * MM) if euler_zyx[1] else (5 * MM, 0.0)
+    cone = Cone(*radii, 10 * MM, Pose((0, 0, -10.2 * MM), euler_zyx=euler_zyx))
+    assert play(in_a_chamber(cone, but="floor"), search_s=0.0).verdict == "caged"
+
+
+def test_a_wall_too_far_away_for_a_scene_of_points_proves_nothing():
+    cage = Cage(shapes=[Box((10, 40, 40), Pose((25, 0, 0)), "wall")])
+    scene = Scene(Object([Box((1 * MM,) * 3)]), cage, DOWN)
+    assert inner_scene(scene) is None
+    assert play(scene, search_s=0.0).verdict == "escapes"
+
+
 def test_a_box_of_the_object_with_a_hole_does_not_count():
     scene = bar_in_its_slide(stops=True)
     bore = Hole(3 * MM, 40 * MM, in_=["box1"], pose_body_shape=Pose((0, 0, 20 * MM)))

@@ -62,8 +62,8 @@ def test_parts_in_a_bore_end_where_its_wall_faces_the_push(cases, say):
 
 
 def test_a_part_goes_around_a_narrow_clearance_in_few_steps():
-    """A quarter turn of the wall's normal on a way of 0.08 mm: by steps of 0.02 rad, and shorter ones where the place of
-    contact passes from arc to arc of the rims, it took 1,013 poses.
+    """A quarter turn of the wall's normal on a way of 0.08 mm: by steps of 0.02 rad, and shorter ones where the place
+    of contact passes from arc to arc of the rims, it took 1,013 poses.
     """
     result = run(pushed(PARTS[0], 5e-5, [0.0, 1.5], 0.0, True))
     assert result.verdict == "rests"

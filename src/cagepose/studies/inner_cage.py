@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from itertools import product
+from itertools import count, product
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cagepose.errors import SceneError
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
@@ -26,7 +27,7 @@ from cagepose.model.volume import BOX_SIGNS
 INWARDS = (0.98, 0.9, 0.7)
 """Of a face's half edges: points are taken over so much of it. The widest hold best, but may run off it."""
 SIDES = 16
-"""Of what is turned about an axis, one of them toward the face."""
+"""Of what is turned about an axis, an edge between two of them toward the face."""
 LEANING = 0.1
 """Of a way along the face: so much farther off may a point be for it, so that both ends of what leans are taken."""
 ONE_PLACE = 2.0
@@ -45,30 +46,33 @@ def inner_scene(scene: Scene) -> Scene | None:
     """Return the boxes of a scene's object in a cage of its points and of points on its shapes.
 
     A pose that is free in the scene is free there too, so a proof that the object is caged there, with its bounds,
-    holds for the scene. None: the object has no box without holes, or no solid shape of the cage is over a face of one.
+    holds for the scene. None: the object has no box without holes, no solid shape of the cage is over a face of one, or
+    these boxes and points make no scene, as they are too far apart.
     """
     pierced = {name for hole in scene.object.holes for name in hole.in_}
     boxes = [box for box in scene.object.boxes if box.name not in pierced]
     opened = {name for hole in scene.cage.holes for name in hole.in_}
     shapes = [shape for shape in scene.cage.shapes if shape.name not in opened]
     pose_cage_object = scene.cage.pose_world_cage.inverse() @ scene.object.pose_world_object
-    apart_m = ONE_PLACE * scene.touch_m
-    points, names = list(scene.cage.points_cage), list(scene.cage.names)
+    points, names = scene.cage.points_cage, list(scene.cage.names)
     for shape in shapes:
-        n_before = len(points)
+        free_names = (name for n in count(1) if (name := f"{shape.name} {n}") not in scene.cage.names)
         for box in boxes:
             for point in points_over(box, pose_cage_object @ box.pose_object_box, shape, scene.touch_m):
-                if all(np.linalg.norm(point - other) > apart_m for other in points[n_before:]):
-                    points.append(point)
-                    names.append(f"{shape.name} {len(points) - n_before}")
-    if not boxes or not points:
+                if (np.linalg.norm(points - point, axis=1) > ONE_PLACE * scene.touch_m).all():
+                    points = np.vstack([points, point])
+                    names.append(next(free_names))
+    if not boxes or not names:
         return None
     held = Object(boxes, scene.object.center_of_gravity_m, pose=scene.object.pose_world_object)
-    cage = Cage(np.array(points), names, scene.cage.pose_world_cage)
+    cage = Cage(points, names, scene.cage.pose_world_cage)
     touch = scene.touch_m / scene_size(held, cage)
     if touch > TOUCH_GREATEST:
         return None
-    return Scene(held, cage, [Load("none", gravity=(0, 0, -1))], tolerances=Tolerances(touch))
+    try:
+        return Scene(held, cage, [Load("none", gravity=(0, 0, -1))], tolerances=Tolerances(touch))
+    except SceneError:
+        return None
 
 
 def points_over(box: Box, pose_cage_box: Pose, shape: Shape, touch_m: float) -> Iterator[FloatArray]:
@@ -93,7 +97,7 @@ def points_over(box: Box, pose_cage_box: Pose, shape: Shape, touch_m: float) -> 
 
 
 def _core_toward(shape: Shape, direction: FloatArray) -> _Core:
-    """Return the core of a shape; of what is turned, a prism or a pyramid within it with a side toward a direction."""
+    """Return the core of a shape; of what is turned, a prism or a pyramid within it with an edge toward a direction."""
     pose = shape.pose_body_shape
     if isinstance(shape, Turned):
         x, y, _ = (pose.rotation.T @ direction).tolist()
@@ -103,7 +107,8 @@ def _core_toward(shape: Shape, direction: FloatArray) -> _Core:
         segments = [np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings]
         if len(rings) == 2:
             segments.append(np.stack(rings, axis=1))
-        return _Core(np.concatenate(segments), rings, 0.0)
+        faces = [ring for ring, (_, radius) in zip(rings, shape.rims, strict=True) if radius > 0.0]
+        return _Core(np.concatenate(segments), faces, 0.0)
     if isinstance(shape, Rounded):
         hull, radius_m = shape.hull if isinstance(shape, Convex) else hull_of(shape.core()), shape.radius_m
     else:
