@@ -96,3 +96,18 @@ def test_it_tips_over_a_roller_behind_an_edge_on_a_slope():
     path = path_of(run(Scene(held, Cage(shapes=[table, roller]), [load]), "quasistatic").phases[0])
     level = [pose.position_m[0] for pose in path if abs(pose.euler_zyx[1]) < 1e-9]
     assert max(level) <= 0.1 * MM
+
+
+@pytest.mark.parametrize("beside_mm", [0.0, 3.0, 15.0])
+@pytest.mark.parametrize("radius_mm", [30.0, 150.0])
+def test_a_bar_tips_where_its_load_leaves_a_round_table(radius_mm, beside_mm):
+    """Its long edges cross the rim behind the place where it lies on the rim farthest out: over this it tips."""
+    held = Object(
+        [Box(np.array([LENGTH, 40, HEIGHT]) * MM)], mass_kg=0.1, pose=Pose((-20 * MM, beside_mm * MM, HEIGHT / 2 * MM))
+    )
+    table = Cylinder(radius_mm * MM, 40 * MM, Pose((-radius_mm * MM, 0, -20 * MM)))
+    load = Load("push", gravity=(0, 0, -9.81), force=Force((1, 0, 0), (0, 0, 0), 0.5))
+    ended = run(Scene(held, Cage(shapes=[table]), [load]), "quasistatic")
+    level = [pose.position_m[0] for pose in path_of(ended.phases[0]) if pose.rotation[2, 2] > 1.0 - 1e-12]
+    assert ended.verdict == "escapes"
+    assert max(level) / MM == pytest.approx(math.sqrt(radius_mm**2 - beside_mm**2) - radius_mm, abs=0.1)

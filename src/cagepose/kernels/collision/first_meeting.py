@@ -117,12 +117,12 @@ def is_hollow(feature: Feature) -> bool:
 
 
 @kernel
-def is_kept(meetings: Meetings, met: Meeting, touch_m: float) -> bool:
-    """Whether features meet where a contact carries."""
+def is_there(meetings: Meetings, met: Meeting, is_kept: bool, touch_m: float) -> bool:
+    """Whether features meet where there is a contact, or one that carries."""
     found = False
     for at in range(meetings.used[0]):
         row = meetings.rows[at]
-        if row.is_kept and dot(vector_from(row.normal), met.normal) > 0.0:
+        if (row.is_kept or not (is_kept or row.is_hidden)) and dot(vector_from(row.normal), met.normal) > 0.0:
             found = found or norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
     return found
 
@@ -268,10 +268,10 @@ def first_of_features(
     leaves = touches and both_reach(held, i, cage, j, met, search.slack, 2.0 * touch_m)
     is_hollow_pair = is_hollow(held.features[i]) or is_hollow(cage.features[j])
     curls = is_hollow_pair and (held.features[i].kind != RIM or cage.features[j].kind != RIM)
-    curls = curls and leaves and not is_kept(meetings, met, touch_m)
+    curls = curls and leaves and not is_there(meetings, met, True, touch_m)
     closing = dot(met.normal, velocity_at(motion, met.place)) if touches else -math.inf
     if touches and not leaves:
-        if abs(closing) <= LEAVES * speed and is_kept(meetings, met, touch_m):  # that of features next to them
+        if abs(closing) <= LEAVES * speed and is_there(meetings, met, False, touch_m):  # that of features next to them
             return math.inf, math.inf
         closing = -math.inf
     if leaves and motion.rate == 0.0 and not is_hollow_pair:

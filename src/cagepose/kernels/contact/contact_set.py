@@ -19,8 +19,9 @@ from cagepose.kernels.collision.geometry import Geometry, Placement, box_point
 from cagepose.kernels.contact.friction import Friction, friction_share
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.bend import Bend, curvatures, write_bend, write_on_rim, write_twin
+from cagepose.kernels.shapes.bend import Bend, curvatures, write_bend, write_twin
 from cagepose.kernels.shapes.features import FACE, HOLE
+from cagepose.kernels.shapes.flat_rims import write_on_rim
 from cagepose.kernels.shapes.meeting import Meeting
 from cagepose.kernels.shapes.meetings import is_at_place, most_meetings
 
@@ -358,7 +359,7 @@ def append_meeting(
     found = curvatures(held, met.feature, cage, met.cage_feature, meeting)
     write_bend(found, normal, arm, frame.axes, frame.radii, contacts.bends[place])
     on_rim = contacts.bends[place].on_rim
-    write_on_rim(held, met.feature, cage, met.cage_feature, center, geometry.touch_m, on_rim)
+    write_on_rim(held, met.feature, cage, met.cage_feature, meeting, center, geometry.touch_m, on_rim)
     if met.twin >= 0:
         found = curvatures(held, met.twin, cage, met.cage_twin, meeting)
         write_twin(found, normal, arm, frame.axes, frame.radii, contacts.bends[place])

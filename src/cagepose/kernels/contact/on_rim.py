@@ -1,4 +1,4 @@
-"""A rim that lies flat touches with all its points, of which its vertices are some: others are added where they count.
+"""A rim that lies flat touches with all its points, of which some are listed: others are added where they count.
 
 Of a cylinder that stands on a floor, or of a ball in a round hole, eight contacts are listed. If they do not hold the
 load, the motion that begins goes in deepest at some point of the rim, in closed form; this is added, and the question
@@ -16,7 +16,6 @@ from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plu
 from cagepose.kernels.contact.contact_set import ContactSet, choose, write_directions
 from cagepose.kernels.contact.metric import WRENCH, Frame, twist_of
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.rims import HALF_ARC
 
 MOST_ADDED = 40
 """Points of rims, for one question."""
@@ -28,7 +27,7 @@ ROUNDING = 3e-16
 
 @kernel
 def angle_of_deepest(contacts: ContactSet, i: int, velocity: Vector, spin: Vector) -> float:
-    """Return the angle along the rim, from a vertex of it that touches, to where a motion goes in fastest."""
+    """Return the angle along the rim, from a place of it that touches, to where a motion goes in fastest."""
     row, rim = contacts.rows[i], contacts.bends[i].on_rim
     axis, outward = vector_from(rim.axis), vector_from(rim.outward)
     normal = vector_from(row.directions[0])
@@ -43,7 +42,7 @@ def angle_of_deepest(contacts: ContactSet, i: int, velocity: Vector, spin: Vecto
 
 @kernel
 def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
-    """Append the contact at an angle along the rim from a vertex of it that touches."""
+    """Append the contact at an angle along the rim from a place of it that touches."""
     row, rim, place = contacts.rows[i], contacts.bends[i].on_rim, contacts.used[0]
     axis, outward = vector_from(rim.axis), vector_from(rim.outward)
     center = minus(vector_from(row.arm), scaled(outward, rim.length))
@@ -55,12 +54,11 @@ def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
         normal = scaled(away, side / norm(away))
     new, state = contacts.rows[place], contacts.states[place]
     new.point, new.box, new.axis, new.side, new.gap, new.group = row.point, row.box, 0, 1.0, row.gap, place
-    new.feature, new.cage_feature = row.feature, row.cage_feature
     arc = rim.arc_after if angle > 0.0 else rim.arc_before
     if rim.is_of_cage:
-        new.cage_feature = arc
+        new.feature, new.cage_feature = (row.feature if rim.face < 0 else rim.face), arc
     else:
-        new.feature = arc
+        new.feature, new.cage_feature = arc, (row.cage_feature if rim.face < 0 else rim.face)
     write_directions(new, normal, arm, norm(vector_from(row.directions[1])), frame)
     choose(contacts, place, True)
     state.is_locked = state.is_sticking = state.has_carried = state.kept_chosen = False
@@ -86,8 +84,7 @@ def add_on_rims(contacts: ContactSet, frame: Frame, y: FloatArray, terms: float)
         if contacts.rows[i].feature < 0 or rim.length == 0.0 or contacts.used[0] == len(contacts.rows):
             continue
         angle = angle_of_deepest(contacts, i, velocity, spin)
-        reaches = rim.after_reaches if angle > 0.0 else rim.before_reaches
-        if not reaches or abs(angle) > (1.0 + ENTERS) * HALF_ARC or angle == 0.0:
+        if angle == 0.0 or abs(angle) > (1.0 + ENTERS) * (rim.after if angle > 0.0 else rim.before):
             continue
         add_point(contacts, i, angle, frame)
         speed = inner(contacts.rows[n_listed].columns[0], y, WRENCH)

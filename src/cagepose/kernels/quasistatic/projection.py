@@ -28,7 +28,7 @@ from cagepose.kernels.contact.metric import (
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.features import RIM, Shapes, is_of_mouth, place_feature
 from cagepose.kernels.shapes.meeting import Meeting, apart, meeting
-from cagepose.kernels.shapes.rims import is_near_arc
+from cagepose.kernels.shapes.rims import is_near_arc, lie_flat
 
 ROUNDS = 12
 ON_FACE = 4e-16
@@ -202,14 +202,14 @@ def meeting_beside(
 
 
 @kernel
-def may_be_elsewhere(geometry: Geometry, constraint: PositionConstraint) -> bool:
-    """Whether a constraint is about the second place on an arc of a rim where another feature is nearest, or an arc of
-    a mouth, which may lie flat on what it touches: without such a place, the others count.
+def may_be_elsewhere(geometry: Geometry, constraint: PositionConstraint, moved: Shapes) -> bool:
+    """Whether a constraint is about the second place on an arc of a rim where another feature is nearest, or an arc
+    that lies flat on what it touches, as one of a mouth may: without such a place, the others count.
     """
-    held, cage = geometry.held.features[constraint.feature], geometry.cage.features[constraint.cage_feature]
-    if held.is_second or cage.is_second:
+    held, cage = moved.features[constraint.feature], geometry.cage.features[constraint.cage_feature]
+    if held.is_second or cage.is_second or is_of_mouth(held) or is_of_mouth(cage):
         return True
-    return is_of_mouth(held) or is_of_mouth(cage)
+    return lie_flat(held, cage, geometry.touch_m)
 
 
 @kernel
@@ -255,7 +255,7 @@ def projected(
         worst = 0.0
         for i in range(work.used):
             lacks = lack(geometry, rows[i], position, quaternion, moved)
-            if lacks.value == math.inf and may_be_elsewhere(geometry, rows[i]):
+            if lacks.value == math.inf and may_be_elsewhere(geometry, rows[i], moved):
                 continue
             if lacks.value == math.inf:
                 return False, position, quaternion

@@ -24,44 +24,16 @@ from typing import Annotated, NamedTuple
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, minus, norm, plus, scaled, times, vector_from
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.features import EDGE, FACE, RIM, VERTEX, Feature, Shapes, beyond_fence
+from cagepose.kernels.shapes.features import EDGE, FACE, RIM, Shapes
+from cagepose.kernels.shapes.flat_rims import OnRim
 from cagepose.kernels.shapes.meeting import Meeting
-from cagepose.kernels.shapes.rims import HALF_ARC, lie_flat, nearest_on_edge, outward_at
+from cagepose.kernels.shapes.rims import outward_at
 
 FLAT = 1e-9
 """Sine between a rim's axis and the normal: less, it is straight as an edge along its tangent."""
 RANK_ONE = 1e-13
 """Of the square of radii of curvature."""
 NOTHING: Matrix = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-
-
-class OnRim:
-    """The rim that a vertex which touches is of; a record.
-
-    Attributes
-    ----------
-    length, axis, outward
-        Its radius, zero: it is of none; its axis, and the direction from its centre to the vertex, or of a hole the
-        opposite one.
-    is_of_cage, arc_before, arc_after
-        Whose it is, and the features on both sides of the vertex.
-    before_reaches, after_reaches
-        Whether all of the half of either arc next to the vertex touches as the vertex does.
-    is_on_ball, ball
-        Whether the rim lies on a ball, and its centre as seen from the centre of gravity; else, on a face. The side of
-        a cone that all of it lies on is there like a ball about the place on its axis that the normals lead through.
-    """
-
-    length: float
-    axis: Annotated[FloatArray, 3]
-    outward: Annotated[FloatArray, 3]
-    is_of_cage: bool
-    arc_before: int
-    arc_after: int
-    before_reaches: bool
-    after_reaches: bool
-    is_on_ball: bool
-    ball: Annotated[FloatArray, 3]
 
 
 class Bend:
@@ -242,56 +214,6 @@ def write_bend(found: Curvatures, normal: Vector, arm: Vector, axes: Matrix, rad
     write_rows(found.relative, out.relative)
     write_rows(found.share, out.share)
     write_rows(found.parallel, out.parallel)
-
-
-@kernel
-def write_on_rim(a: Shapes, i: int, b: Shapes, j: int, center: Vector, touch_m: float, out: OnRim) -> None:
-    """Write of which rim feature i of the object or feature j of the cage is a vertex, if one of them is and the other
-    may lie on all of the rim.
-    """
-    out.is_of_cage = b.features[j].length != 0.0 and b.features[j].kind == VERTEX
-    vertex, other = (b.features[j], a.features[i]) if out.is_of_cage else (a.features[i], b.features[j])
-    out.length = 0.0
-    if vertex.kind != VERTEX or vertex.length == 0.0 or other.kind == RIM:
-        return
-    out.length, out.arc_before, out.arc_after = vertex.length, vertex.arc_before, vertex.arc_after
-    out.is_on_ball = other.kind != FACE
-    ball = vector_from(other.point)
-    if other.kind == EDGE:
-        ball = nearest_on_edge(other, vector_from(vertex.point)).place
-        arcs = b if out.is_of_cage else a
-        out.before_reaches = lie_flat(arcs.features[vertex.arc_before], other, touch_m)
-        out.after_reaches = lie_flat(arcs.features[vertex.arc_after], other, touch_m)
-    else:
-        bodies, which = (a, i) if out.is_of_cage else (b, j)
-        out.before_reaches = is_over_arc(bodies, which, vertex, -1.0)
-        out.after_reaches = is_over_arc(bodies, which, vertex, 1.0)
-    for k in range(3):
-        out.axis[k], out.outward[k], out.ball[k] = vertex.direction[k], vertex.toward[k], ball[k] - center[k]
-
-
-@kernel
-def is_over_arc(shapes: Shapes, i: int, vertex: Feature, side: float) -> bool:
-    """Whether a face holds all of the half arc on one side of a rim's vertex: whether none of its fences cuts it."""
-    face, outward = shapes.features[i], vector_from(vertex.toward)
-    if face.kind != FACE:
-        return True
-    along = scaled(cross(vector_from(vertex.direction), outward), side)
-    center = minus(vector_from(vertex.point), scaled(outward, vertex.length))
-    for f in range(face.first_fence, face.last_fence):
-        fence = shapes.fences[f]
-        way = vector_from(fence.direction)
-        if fence.circle != 0.0:
-            way = scaled(minus(minus(center, vector_from(face.point)), way), fence.circle)
-        way = scaled(way, vertex.length)
-        angle = min(max(math.atan2(dot(way, along), dot(way, outward)), 0.0), HALF_ARC)
-        if dot(way, along) < 0.0:  # the far end, or this one, is farthest out
-            angle = 0.0
-        there = plus(scaled(outward, math.cos(angle)), scaled(along, math.sin(angle)))
-        place = plus(center, scaled(there, vertex.length))
-        if beyond_fence(fence, minus(place, vector_from(face.point))) > 0.0:
-            return False
-    return True
 
 
 @kernel
