@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 
 from cagepose import Box, Cage, Capsule, Cylinder, Force, Hole, Load, Object, Pose, Scene, Sphere, run
 from cagepose.model.shapes import Shape
@@ -68,3 +69,12 @@ def test_a_part_goes_around_a_narrow_clearance_in_few_steps():
     result = run(pushed(PARTS[0], 5e-5, [0.0, 1.5], 0.0, True))
     assert result.verdict == "rests"
     assert len(path_of(result.phases[-1])) <= 40
+
+
+@pytest.mark.parametrize("part", PARTS)
+@pytest.mark.parametrize("play", WIDER)
+def test_a_part_crosses_the_bore_from_wall_to_wall(part, play: float) -> None:
+    """It begins on the one wall, at a distance of zero, and meets the other in the same search."""
+    result = run(pushed(part, play, [1.25 * math.pi, math.pi, 0.0], 0.0, True))
+    assert result.verdict == "rests"
+    assert result.pose.position_m[:2] == pytest.approx([play, 0.0], abs=1e-10)

@@ -190,8 +190,10 @@ def safe_step(now: Ahead) -> float:
     discriminant = slope * slope - 2.0 * bend * value
     if discriminant < -GRAZING * slope * slope:
         return math.inf
-    down = math.sqrt(max(discriminant, GRAZING * slope * slope)) - slope
-    return math.inf if down <= 0.0 else 2.0 * value / down
+    root = math.sqrt(max(discriminant, GRAZING * slope * slope))
+    if slope > 0.0:  # it grows first, and at zero begins there
+        return math.inf if bend >= 0.0 else (root + slope) / -bend
+    return math.inf if root == slope else 2.0 * value / (root - slope)
 
 
 @kernel
