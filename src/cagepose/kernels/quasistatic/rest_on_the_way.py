@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
-from cagepose.kernels.collision.first_meeting import NO_HIT
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, ON_THE_WAY, equilibrium
 from cagepose.kernels.contact.metric import frame_at
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.along_twist import Twist, stepped
-from cagepose.kernels.quasistatic.on_the_way import find_touched_before
+from cagepose.kernels.quasistatic.along_twist import Twist
+from cagepose.kernels.quasistatic.on_the_way import find_touched_before, stepped_from
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
@@ -48,18 +47,7 @@ def first_rest(
     best = end
     for _ in range(HALVES_TO_REST):
         middle = 0.5 * (low + high)
-        place_object(setting.geometry, position, quaternion, work.placement)
-        done, new_position, new_quaternion = stepped(
-            setting,
-            work.placement,
-            work.contacts,
-            position,
-            quaternion,
-            twist,
-            middle,
-            NO_HIT,
-            work.path,
-        )
+        done, new_position, new_quaternion = stepped_from(setting, position, quaternion, twist, middle, work)
         if done and is_held_on_the_way(setting, new_position, new_quaternion, work):
             high = middle
             best = (new_position, new_quaternion)

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, scaled, vector_from
-from cagepose.kernels.collision.first_meeting import NO_HIT
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.contact_set import stays_on_face
 from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, HELD_WITHOUT_FRICTION, MOVES
 from cagepose.kernels.contact.metric import frame_at, twist_of
 from cagepose.kernels.contact.onset import onset
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.along_twist import Twist, stepped
-from cagepose.kernels.quasistatic.on_the_way import find_touched_before, place_before
+from cagepose.kernels.quasistatic.along_twist import Twist
+from cagepose.kernels.quasistatic.on_the_way import find_touched_before, place_before, stepped_from
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
@@ -39,18 +38,16 @@ def may_tip(setting: Setting, twist: Twist, amount: float) -> bool:
 
 
 @kernel
-def find_carried_before(
-    setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace
-) -> tuple[bool, bool]:
-    """Return whether the contact problem can be asked where the object is placed, of what touched before the step, and
-    whether all that carried then touches there.
+def find_all_carried(setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace) -> bool:
+    """Find the contacts where the object is placed, of what touched before the step; return whether all that carried
+    then touches there.
     """
     if not find_touched_before(setting, position, quaternion, frame_at(setting.body, quaternion), work):
-        return False, False
+        return False
     for i in range(work.contacts.used[0]):
         if stays_on_face(work.contacts, i) and place_before(work.ahead, work.contacts.rows[i]) < 0:
-            return True, False
-    return True, True
+            return False
+    return True
 
 
 @kernel
@@ -92,16 +89,16 @@ def tips_on_the_way(
         high = amount - before_end
         if high <= 0.0:
             break
-        done, there, turned = gone(setting, position, quaternion, twist, high, work)
-        can_ask, carries = find_carried_before(setting, there, turned, work)
-        if done and can_ask and carries:
+        done, there, turned = stepped_from(setting, position, quaternion, twist, high, work)
+        if done and find_all_carried(setting, there, turned, work):
             found, best = tips(setting, turned, twist, work), (there, turned)
             break
         before_end *= FARTHER
     for _ in range(HALVINGS if found else 0):
         middle = 0.5 * (low + high)
-        done, there, turned = gone(setting, position, quaternion, twist, middle, work)
-        if done and find_carried_before(setting, there, turned, work)[0] and tips(setting, turned, twist, work):
+        done, there, turned = stepped_from(setting, position, quaternion, twist, middle, work)
+        can_ask = find_touched_before(setting, there, turned, frame_at(setting.body, turned), work)
+        if done and can_ask and tips(setting, turned, twist, work):
             high, best = middle, (there, turned)
         else:
             low = middle
@@ -109,17 +106,3 @@ def tips_on_the_way(
         best = end
     place_object(setting.geometry, best[0], best[1], work.placement)
     return found, best[0], best[1]
-
-
-@kernel
-def gone(
-    setting: Setting,
-    position: Vector,
-    quaternion: Quaternion,
-    twist: Twist,
-    amount: float,
-    work: QuasistaticWorkspace,
-) -> tuple[bool, Vector, Quaternion]:
-    """Return whether a step can end after an amount, and its pose then, which is that of the placement."""
-    place_object(setting.geometry, position, quaternion, work.placement)
-    return stepped(setting, work.placement, work.contacts, position, quaternion, twist, amount, NO_HIT, work.path)
