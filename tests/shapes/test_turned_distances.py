@@ -12,7 +12,7 @@ import pytest
 
 from cagepose import Box, Pose
 from cagepose.kernels.shapes.features import Shapes
-from cagepose.kernels.shapes.meetings import Meetings
+from cagepose.kernels.shapes.touching import Meetings
 from cagepose.model.features import shapes_of
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Disc, Shape, Sphere, Turned

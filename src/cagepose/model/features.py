@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -35,6 +35,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.shapes import Convex, Disc, Rounded, Shape, Turned
 
 NO_DIRECTION, UP = np.zeros(3), np.array((0.0, 0.0, 1.0))
+NO_ARC = (True, -1)
 AROUND = 50.0
 """A hole that stands alone is one in a square plate: so many times its own size to each side."""
 
@@ -93,12 +94,11 @@ class _Shapes:
 
     def add(self, part: _Features) -> None:
         first = len(self.features)
-        first_face = first + len(part.ends) + len(part.others)
-        for numbers, fences in (*part.ends, *part.others, *part.faces):
-            *numbers, arcs = numbers
-            of_others = len(part.ends) if numbers[4] < 0.0 or numbers[8] else 0
-            arcs = [first + arc + of_others for arc in arcs] or [-1, -1]
-            self.features.append((*numbers, *arcs, len(self.fences), len(self.fences) + len(fences)))
+        first_other = first + len(part.ends)
+        first_face = first_other + len(part.others)
+        for row, fences in (*part.ends, *part.others, *part.faces):
+            arcs = [(first if of_ends else first_other) + index if index >= 0 else -1 for of_ends, index in row.arcs]
+            self.features.append((*row[:-1], *arcs, len(self.fences), len(self.fences) + len(fences)))
             self.fences.extend(fences)
         ball = (part.middle, part.reach_m, part.least_length_m)
         self.parts.append((part.kind, first, first_face, len(self.features), *ball))
@@ -111,14 +111,29 @@ class _Shapes:
         )
 
 
+class _Row(NamedTuple):
+    """What a `Feature` begins with; and its arcs: before, after and second, whether among the ends, and which there."""
+
+    kind: int
+    point: FloatArray
+    direction: FloatArray
+    toward: FloatArray
+    length: float
+    radius: float
+    taper: float
+    end_taper: float
+    is_second: bool
+    arcs: tuple[tuple[bool, int], ...]
+
+
 class _Features:
     """Features of one part with their fences: what it ends in, faces that all of it is behind, and others."""
 
     def __init__(self, kind: int, middle: FloatArray, reach_m: float, least_length_m: float) -> None:
         self.kind, self.middle, self.reach_m, self.least_length_m = kind, middle, reach_m, least_length_m
-        self.ends: list[tuple[list[Any], list[tuple[FloatArray, float, float]]]] = []
-        self.others: list[tuple[list[Any], list[tuple[FloatArray, float, float]]]] = []
-        self.faces: list[tuple[list[Any], list[tuple[FloatArray, float, float]]]] = []
+        self.ends: list[tuple[_Row, list[tuple[FloatArray, float, float]]]] = []
+        self.others: list[tuple[_Row, list[tuple[FloatArray, float, float]]]] = []
+        self.faces: list[tuple[_Row, list[tuple[FloatArray, float, float]]]] = []
 
     def add(
         self,
@@ -132,13 +147,15 @@ class _Features:
         is_second: bool = False,
         toward: FloatArray = NO_DIRECTION,
         fences: Iterable[tuple[FloatArray, float, float]] = (),
+        arcs: tuple[tuple[bool, int], ...] = (NO_ARC, NO_ARC, NO_ARC),
     ) -> None:
         """Add a feature that is given in the frame of its shape."""
         turn = pose.rotation
-        numbers = [kind, pose.transform(point), turn @ direction, turn @ toward, length, radius, *tapers, is_second, []]
+        place, along, outward = pose.transform(point), turn @ direction, turn @ toward
+        row = _Row(kind, place, along, outward, length, radius, *tapers, is_second, arcs)
         of_end = kind == VERTEX or (kind == RIM and length > 0.0 and not is_second)
         of_kind = self.ends if of_end else self.faces if kind == FACE and self.kind != HOLE else self.others
-        of_kind.append((numbers, [(turn @ along, bound, circle) for along, bound, circle in fences]))
+        of_kind.append((row, [(turn @ across, bound, circle) for across, bound, circle in fences]))
 
     def add_rim(
         self, pose: Pose, height: float, radius: float, out: FloatArray, taper: float, end_taper: float = 1.0
@@ -146,22 +163,24 @@ class _Features:
         """Add a rim about the shape's z axis: the ends of its arcs, and the arcs. A hole's radius is below 0."""
         angles = math.pi / ARCS * np.arange(2 * ARCS)
         outward = np.stack([np.cos(angles), np.sin(angles), np.zeros(2 * ARCS)], axis=1)
-        arcs_from = len(self.others if radius < 0.0 else self.ends) + (0 if radius < 0.0 else ARCS)
+        of_ends = radius > 0.0
+        first = len(self.ends) + ARCS if of_ends else len(self.others)
+        second = len(self.others) + (0 if of_ends else ARCS)
         is_forward = out[2] > 0.0
         for index, away in enumerate(outward[1::2]):
             along = np.cross(out, away)
-            arcs = (index, (index + 1) % ARCS) if is_forward else ((index + 1) % ARCS, index)
+            beside = (index, (index + 1) % ARCS) if is_forward else ((index + 1) % ARCS, index)
             below = taper * away - math.sqrt(1.0 - taper * taper) * out
             above = math.sqrt(1.0 - end_taper * end_taper) * out - end_taper * away
             fences = [(direction, 0.0, 0.0) for direction in (along, -along, above, below)]
-            self.add(VERTEX, pose, height * UP + radius * away, out, radius, toward=away, fences=fences)
-            self.ends[-1][0][-1] = [arcs_from + arc for arc in arcs]
+            arcs = (*((of_ends, first + arc) for arc in beside), NO_ARC)
+            self.add(VERTEX, pose, height * UP + radius * away, out, radius, toward=away, fences=fences, arcs=arcs)
         for is_second in (False, True):
-            ring = self.others if radius < 0.0 or is_second else self.ends
-            start = len(ring)
+            ring, start = (False, second) if is_second else (of_ends, first)
             for index, away in enumerate(outward[::2]):
-                self.add(RIM, pose, height * UP, out, radius, 0.0, (taper, end_taper), is_second, away)
-                ring[-1][0][-1] = [start + (index + beside) % ARCS for beside in (-1, 1)]
+                before, after = ((ring, start + (index + step) % ARCS) for step in (-1, 1))
+                arcs = (before, after, NO_ARC if is_second else (False, second + index))
+                self.add(RIM, pose, height * UP, out, radius, 0.0, (taper, end_taper), is_second, away, arcs=arcs)
 
     def add_side(self, pose: Pose, low: tuple[float, float], high: tuple[float, float]) -> None:
         """Add the side between two heights with their radii, those of a hole below zero; a slanted one in sectors."""
@@ -185,12 +204,12 @@ class _Features:
     def pierce(self, hole: Hole) -> None:
         """Cut a hole out of the faces that it runs through."""
         self.kind = PIERCED
-        for (_, point, normal, _, _, radius, *_), fences in self.faces:
-            circle = hole.circle_in(point + radius * normal, normal)
+        for face, fences in self.faces:
+            circle = hole.circle_in(face.point + face.radius * face.direction, face.direction)
             if circle is not None:
                 center, wide = circle
-                from_point = center - point
-                fences.append((from_point - (from_point @ normal) * normal, wide, OUTSIDE))
+                from_point = center - face.point
+                fences.append((from_point - (from_point @ face.direction) * face.direction, wide, OUTSIDE))
 
 
 def _solid_features(part: Shape) -> _Features:

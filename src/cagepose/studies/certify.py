@@ -11,7 +11,6 @@ from itertools import islice, product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cagepose.kernels.contact import coulomb_newton, equilibrium
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
@@ -19,6 +18,7 @@ from cagepose.kernels.contact.friction import friction_of
 from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.stability import relaxation, strong
 from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
+from cagepose.kernels.stability.relaxation import ANY_WAY, AWAY, BEFORE, BEHIND, INTO, QUARTERS, VELOCITIES
 from cagepose.model.checks import FloatArray, expect
 from cagepose.model.scope import check_boxes_and_points
 from cagepose.runs.cases import cases_of
@@ -168,11 +168,11 @@ class _Search:
         sizes = np.linalg.norm(self.columns[places, 0], axis=1)
         pressures = np.zeros((len(leaves), len(places), 3))
         for number, leaf in enumerate(leaves):
-            contacts, ways = _not_allowed(found, leaf, self.problem.friction[places] == 0.0)
             for way, share in zip(tree.ways[leaf].tolist(), tree.shares[leaf].tolist(), strict=True):
                 if way >= 0:
-                    contact = contacts[way]
-                    pressures[number, contact] += share / sizes[contact] * self.lengths[places[contact]] * ways[way]
+                    contact, which = divmod(way, VELOCITIES)
+                    size = share / sizes[contact] * self.lengths[places[contact]]
+                    pressures[number, contact] += size * _not_allowed(found, leaf, contact, which)
         return replace(found, twists=tree.twists[leaves] @ self.problem.scale, pressures=pressures)
 
 
@@ -182,23 +182,15 @@ def _root_alone(forces: FloatArray) -> ModeTree:
     return ModeTree((-1,), (-1,), ("none",), nothing, nothing, np.zeros((1, WRENCH)), forces[None])
 
 
-def _not_allowed(tree: ModeTree, leaf: int, is_smooth: NDArray[np.bool_]) -> tuple[list[int], list[FloatArray]]:
-    """Return velocities that a leaf does not allow, normal and tangents, and of which contact each is, as
-    `write_velocities` has them.
-    """
-    contacts, ways = list[int](), list[tuple[float, float, float]]()
-    for contact, smooth in enumerate(is_smooth.tolist()):
-        here = [node for node in tree.above(leaf) if tree.contacts[node] == contact]
-        opening = next((node for node in here if tree.decisions[node] in ("opens", "closed")), None)
-        slip = next((node for node in here if tree.decisions[node] in ("sticks", "slips")), None)
-        new = [(1.0, 0.0, 0.0)]
-        if opening is not None and tree.decisions[opening] == "closed":
-            new += [(-1.0, 0.0, 0.0)]
-        if smooth or (slip is not None and tree.decisions[slip] == "sticks"):
-            new += [(0.0, -1.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
-        elif slip is not None:
-            first, last = tree.starts_rad[slip], tree.starts_rad[slip] + tree.widths_rad[slip]
-            new += [(0.0, np.sin(first), -np.cos(first)), (0.0, -np.sin(last), np.cos(last))]
-        contacts += [contact] * len(new)
-        ways += new
-    return contacts, [np.array(way) for way in ways]
+def _not_allowed(tree: ModeTree, leaf: int, contact: int, which: int) -> FloatArray:
+    """Return a velocity at a contact that a leaf does not allow, normal and tangents, by its number."""
+    if which in (INTO, AWAY):
+        return np.array((1.0 if which == INTO else -1.0, 0.0, 0.0))
+    if which in (BEFORE, BEHIND):
+        slips = (
+            node for node in tree.above(leaf) if tree.contacts[node] == contact and tree.decisions[node] == "slips"
+        )
+        slip = next(slips)
+        first, last = tree.starts_rad[slip], tree.starts_rad[slip] + tree.widths_rad[slip]
+        return np.array((0.0, *((np.sin(first), -np.cos(first)) if which == BEFORE else (-np.sin(last), np.cos(last)))))
+    return np.array((0.0, *QUARTERS[which - ANY_WAY : which - ANY_WAY + 2]))

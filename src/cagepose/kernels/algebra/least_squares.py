@@ -78,16 +78,20 @@ class PassiveSet:
 
 
 class System(NamedTuple):
-    """Workspace for one problem: columns (n, rows), right side (rows,), and which columns did not help (n,)."""
+    """Workspace for one problem: columns (n, rows), right side (rows,), the lengths of the columns (n,), and which did
+    not help (n,).
+    """
 
     columns: FloatArray
     right_side: FloatArray
+    lengths: FloatArray
     is_rejected: NDArray[np.bool_]
 
 
 def empty_system(n_columns: int) -> System:
     """Return a workspace for ``n_columns`` columns (plain Python)."""
-    return System(np.zeros((n_columns, MOST_ROWS)), np.zeros(MOST_ROWS), np.zeros(n_columns, np.bool_))
+    columns, lengths = np.zeros((n_columns, MOST_ROWS)), np.zeros(n_columns)
+    return System(columns, np.zeros(MOST_ROWS), lengths, np.zeros(n_columns, np.bool_))
 
 
 @kernel
@@ -324,12 +328,12 @@ def nonnegative_least_squares(system: System, n_columns: int, passive: PassiveSe
         the same ``columns`` and another ``b`` are a warm one.
     """
     heed_interrupt()
-    columns, b, rejected = system
+    columns, b, lengths, rejected = system
     for k in range(passive.used):  # a warm start is any set of columns; from zero, `settle` finds which may stay
         passive.x[k] = 0.0
     keep_above(passive, b, 0.0)
     for j in range(n_columns):
-        rejected[j] = False
+        lengths[j], rejected[j] = length(columns[j], passive.n_rows), False
     for _ in range(ROUNDS_PER_COLUMN * (n_columns + passive.n_rows)):
         least_price = PRICE * rounding_scale(passive)
         best, best_price = n_columns, 0.0
@@ -337,11 +341,8 @@ def nonnegative_least_squares(system: System, n_columns: int, passive: PassiveSe
             if rejected[j]:
                 continue
             along = inner(columns[j], passive.residual, passive.n_rows)
-            if along <= 0.0:
-                continue
-            price = along / length(columns[j], passive.n_rows)
-            if price > least_price and price > best_price and not label_is_passive(passive, j):
-                best, best_price = j, price
+            if along > lengths[j] * max(least_price, best_price) and not label_is_passive(passive, j):
+                best, best_price = j, along / lengths[j]
         if best == n_columns:
             break
         if append_column(passive, columns[best], best, 0.0):

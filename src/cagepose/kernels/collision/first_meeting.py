@@ -5,30 +5,29 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, vector_from
-from cagepose.kernels.collision.geometry import Geometry, Placement
-from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.advancement import (
-    approach,
-    are_curved,
-    first_curved_touch,
-    is_far_from_arc,
-    surely_clear,
+from cagepose.kernels.algebra.vector import Vector, minus, norm, vector_from
+from cagepose.kernels.collision.first_of_features import (
+    Reached,
+    Search,
+    first_of_features,
+    look_at,
+    look_closer,
+    may_touch,
 )
-from cagepose.kernels.shapes.along_motion import ahead, can_touch, clear_step, first_touch, safe_step
+from cagepose.kernels.collision.geometry import Geometry, Placement
+from cagepose.kernels.collision.waiting import Waiting, drop_first, keep_last, note_near, settle_first, write_waiting
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.advancement import approach, are_curved, second_pair, surely_clear
+from cagepose.kernels.shapes.along_motion import ahead, safe_step
 from cagepose.kernels.shapes.body import place_asked
-from cagepose.kernels.shapes.features import EDGE, HOLE, RIM, SOLID, Feature, Shapes, is_end, is_of_mouth
-from cagepose.kernels.shapes.meeting import SAME_PLACE, Meeting, both_reach, meeting
-from cagepose.kernels.shapes.meetings import Meetings, balls_apart, slack_of
+from cagepose.kernels.shapes.features import HOLE, SOLID, Shapes, is_end
+from cagepose.kernels.shapes.meetings import balls_apart, slack_of
 from cagepose.kernels.shapes.motion import Motion, velocity_at
-from cagepose.kernels.shapes.rims import lie_flat
+from cagepose.kernels.shapes.touching import Meetings
 
 SAFE = 1.0 + 1e-9
 THIN = 0.1
 """Of the reach of a part: nothing may go deeper into it, or it could come out on the other side."""
-LEAVES = 1e-6
-"""Of the fastest speed of a part: features that touch and move apart faster leave each other, and may meet again."""
 ALMOST_STRAIGHT, PAST = 0.25, 1.01
 """Radians; and how many times longer than its chord an arc that turns by no more is at most."""
 LEAST_SLACK = 1e-12
@@ -61,30 +60,6 @@ class Hit(NamedTuple):
 NO_HIT = Hit(math.inf, -1, -1, -1, -1, math.inf)
 
 
-class Search(NamedTuple):
-    """What the first meeting of two parts is asked with.
-
-    Attributes
-    ----------
-    near_m, near_depth_m
-        Features nearer than the one may go so deep as the other.
-    slack, exact
-        Sines: whether features touch now is asked with the one, as contacts are; where they meet first with the other,
-        that which a touch tolerance makes across both parts: slender parts would meet long before they do.
-    speed
-        That no point of the object's part exceeds.
-    touch_m
-        The touch tolerance.
-    """
-
-    near_m: float
-    near_depth_m: float
-    slack: float
-    exact: float
-    speed: float
-    touch_m: float
-
-
 @kernel
 def greatest_speed(motion: Motion, middle: Vector, reach: float) -> float:
     """Return a speed that no point of a ball around ``middle`` exceeds."""
@@ -111,23 +86,6 @@ def are_convex(held: Shapes, one: int, cage: Shapes, other: int) -> bool:
 
 
 @kernel
-def is_hollow(feature: Feature) -> bool:
-    """Whether a feature is the wall or the mouth of a hole: what leaves it straight ahead may meet it again."""
-    return feature.radius < 0.0 or is_of_mouth(feature)
-
-
-@kernel
-def is_there(meetings: Meetings, met: Meeting, is_kept: bool, touch_m: float) -> bool:
-    """Whether features meet where there is a contact, or one that carries."""
-    found = False
-    for at in range(meetings.used[0]):
-        row = meetings.rows[at]
-        if (row.is_kept or not (is_kept or row.is_hidden)) and dot(vector_from(row.normal), met.normal) > 0.0:
-            found = found or norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
-    return found
-
-
-@kernel
 def touch(meetings: Meetings, one: int, other: int) -> bool:
     """Whether two parts have a contact."""
     found = False
@@ -145,12 +103,43 @@ def first_meeting(
     Features nearer than ``near_m`` may go ``near_depth_m`` deep. On a travel, parts without holes that touch do not
     meet again.
     """
-    held, cage, touch_m, earliest = placement.body.world, geometry.cage, geometry.touch_m, placement.earliest
+    held, cage, touch_m, queue, hit = placement.body.world, geometry.cage, geometry.touch_m, placement.queue, NO_HIT
+    rows = queue.rows
+    let_parts_wait(geometry, placement, motion, end)
+    while queue.used[1] > 0:
+        at = rows[0].heap
+        row = rows[at]
+        if row.earliest >= min(end, hit.amount):
+            break
+        search = search_between(held, row.part, cage, row.cage_part, motion, near_m, near_depth_m, touch_m)
+        if row.feature < 0:
+            drop_first(queue)
+            hit = let_features_wait(geometry, placement, motion, search, row, hit)
+            continue
+        hit = sooner(geometry, placement, motion, search, row, hit)
+        if not row.is_near and row.earliest < min(row.until, hit.amount):
+            settle_first(queue)
+            continue
+        drop_first(queue)
+        if row.is_near:
+            note_near(queue, at)
+    for k in range(queue.used[2]):  # last, as they seldom reach anything
+        row = rows[rows[k].near]
+        if row.earliest < min(row.until, hit.amount):
+            search = search_between(held, row.part, cage, row.cage_part, motion, near_m, near_depth_m, touch_m)
+            hit = sooner(geometry, placement, motion, search, row, hit)
+    return hit
+
+
+@kernel
+def let_parts_wait(geometry: Geometry, placement: Placement, motion: Motion, end: float) -> None:
+    """Let all pairs of parts wait that may touch up to ``end``, and no others."""
+    held, cage, queue = placement.body.world, geometry.cage, placement.queue
     n_points = len(geometry.points_world)
+    queue.used[0] = queue.used[1] = queue.used[2] = 0
     for one in range(len(held.parts)):
         speed = greatest_speed(motion, vector_from(held.parts[one].middle), held.parts[one].reach)
         for other in range(len(cage.parts)):
-            earliest[one, other] = math.inf
             if speed == 0.0 or (one < geometry.n_own_boxes and other < n_points):
                 continue
             gap = max(placement.meetings.gaps[one, other], balls_apart(held, one, cage, other))
@@ -160,37 +149,80 @@ def first_meeting(
                 continue
             place_asked(geometry.held, one, placement.body)
             until = until_past(held, one, cage, other, motion, end)
-            first = earliest_touch(held, one, cage, other, motion, until)
-            if first < until:
-                earliest[one, other] = max(first, gap / speed)
-    hit = NO_HIT
-    one, other = next_pair(earliest, end)
-    while one >= 0:
-        until = until_past(held, one, cage, other, motion, min(end, hit.amount))
-        speed = greatest_speed(motion, vector_from(held.parts[one].middle), held.parts[one].reach)
-        depth = min(near_depth_m, THIN * min(held.parts[one].reach, max(cage.parts[other].reach, touch_m)))
-        exact = max(LEAST_SLACK, touch_m / (held.parts[one].reach + cage.parts[other].reach))
-        search = Search(near_m, depth, slack_of(held, one, cage, other, touch_m), exact, speed, touch_m)
-        for i in range(held.parts[one].first, held.parts[one].last):
-            for j in range(cage.parts[other].first, cage.parts[other].last):
-                found = first_of_features(held, i, cage, j, motion, until, search, placement.meetings, placement.moved)
-                if found[0] < until:
-                    until = found[0]
-                    hit = Hit(until, other, one, i, j, found[1])
-        earliest[one, other] = math.inf
-        one, other = next_pair(earliest, min(end, hit.amount))
+            earliest = earliest_touch(held, one, cage, other, motion, until)
+            if earliest < until:
+                earliest = max(earliest, gap / speed)
+                write_waiting(one, other, -1, -1, earliest, until, False, False, queue.rows[queue.used[0]])
+                keep_last(queue)
+
+
+@kernel
+def search_between(
+    held: Shapes,
+    one: int,
+    cage: Shapes,
+    other: int,
+    motion: Motion,
+    near_m: float,
+    near_depth_m: float,
+    touch_m: float,
+) -> Search:
+    """Return what the first meeting of two parts is asked with."""
+    reach, cage_reach = held.parts[one].reach, cage.parts[other].reach
+    speed = greatest_speed(motion, vector_from(held.parts[one].middle), reach)
+    depth = min(near_depth_m, THIN * min(reach, max(cage_reach, touch_m)))
+    exact = max(LEAST_SLACK, touch_m / (reach + cage_reach))
+    return Search(near_m, depth, slack_of(held, one, cage, other, touch_m), exact, speed, touch_m)
+
+
+@kernel
+def let_features_wait(
+    geometry: Geometry, placement: Placement, motion: Motion, search: Search, parts: Waiting, hit: Hit
+) -> Hit:
+    """Let the features of two parts wait that may touch; return what is reached by those that there is no room for, or
+    ``hit``, which is known.
+    """
+    held, cage, queue, one, other = placement.body.world, geometry.cage, placement.queue, parts.part, parts.cage_part
+    until = min(parts.until, hit.amount)
+    for i in range(held.parts[one].first, held.parts[one].last):
+        for j in range(cage.parts[other].first, cage.parts[other].last):
+            row = queue.rows[queue.used[0]]
+            if not may_touch(held, one, i, cage, other, j, motion, until, search, placement.moved, row):
+                continue
+            if queue.used[0] + 1 < len(queue.rows):
+                keep_last(queue)
+                continue
+            while row.earliest < min(until, hit.amount):
+                hit = sooner(geometry, placement, motion, search, row, hit)
     return hit
 
 
 @kernel
-def next_pair(earliest: FloatArray, end: float) -> tuple[int, int]:
-    """Return the pair of parts that can touch first, before ``end``; (-1, -1): there is none."""
-    found, least = (-1, -1), end
-    for one in range(earliest.shape[0]):
-        for other in range(earliest.shape[1]):
-            if earliest[one, other] < least:
-                found, least = (one, other), earliest[one, other]
-    return found
+def sooner(geometry: Geometry, placement: Placement, motion: Motion, search: Search, row: Waiting, hit: Hit) -> Hit:
+    """Return what a pair that waits reaches, as far as it is looked at now, or ``hit``, which is known."""
+    held, cage, until, i, j = placement.body.world, geometry.cage, row.until, row.feature, row.cage_feature
+    if not row.is_seen:
+        look_at(held, cage, motion, search, row)
+        return hit
+    if not row.is_near and are_curved(held, i, cage, j):
+        return reached(row, look_closer(held, cage, motion, min(until, hit.amount), search, row, placement.moved), hit)
+    row.earliest = math.inf
+    for _ in range(2):
+        end = min(until, hit.amount)
+        found = first_of_features(held, i, cage, j, motion, end, search, placement.meetings, placement.moved)
+        hit = reached(row, found, hit)
+        i, j = second_pair(held, i, cage, j)
+        if i < 0:
+            break
+    return hit
+
+
+@kernel
+def reached(row: Waiting, found: Reached, hit: Hit) -> Hit:
+    """Return what two parts reach if that is sooner than ``hit``, and else this."""
+    if found.amount < min(row.until, hit.amount):
+        return Hit(found.amount, row.cage_part, row.part, found.feature, found.cage_feature, found.gap)
+    return hit
 
 
 @kernel
@@ -220,72 +252,7 @@ def earliest_touch(held: Shapes, one: int, cage: Shapes, other: int, motion: Mot
 def until_plane(held: Shapes, i: int, cage: Shapes, j: int, motion: Motion, until: float) -> float:
     """Return an amount before which an end of one part does not reach the plane of a face of the other."""
     if are_curved(held, i, cage, j):
-        now = approach(held, i, cage, j, motion, 0.0)
+        now = approach(held, i, cage, j, motion, 0.0, False)
         return surely_clear(now, now.gap) if now.gap > 0.0 else 0.0
     at = ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)
     return safe_step(at) if at.value > 0.0 else 0.0
-
-
-@kernel
-def surely_apart(held: Shapes, i: int, cage: Shapes, j: int, motion: Motion, until: float, moved: Shapes) -> bool:
-    """Whether it is soon told that two features do not meet."""
-    if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
-        return True
-    return clear_step(held, i, cage, j, motion, 0.0, moved) >= until
-
-
-@kernel
-def first_of_features(
-    held: Shapes,
-    i: int,
-    cage: Shapes,
-    j: int,
-    motion: Motion,
-    until: float,
-    search: Search,
-    meetings: Meetings,
-    moved: Shapes,
-) -> tuple[float, float]:
-    """Return when two features that do not touch, or leave each other, reach each other, inf if they do not, and how
-    far apart they are now.
-    """
-    touch_m, speed = search.touch_m, search.speed
-    if not can_touch(held, i, cage, j):
-        return math.inf, math.inf
-    curved = are_curved(held, i, cage, j)
-    if curved:
-        if is_far_from_arc(held, i, cage, j, touch_m + speed * until):
-            return math.inf, math.inf
-        now = approach(held, i, cage, j, motion, 0.0)
-        if abs(now.gap) <= touch_m and lie_flat(held.features[i], cage.features[j], touch_m):  # its vertices touch
-            return math.inf, math.inf
-        if now.gap > 0.0 and surely_clear(now, now.gap) >= until:
-            return math.inf, math.inf
-    elif surely_apart(held, i, cage, j, motion, until, moved):
-        return math.inf, math.inf
-    met = meeting(held, i, cage, j)
-    touches = met.is_one and abs(met.gap) <= touch_m
-    leaves = touches and both_reach(held, i, cage, j, met, search.slack, 2.0 * touch_m)
-    is_hollow_pair = is_hollow(held.features[i]) or is_hollow(cage.features[j])
-    curls = is_hollow_pair and (held.features[i].kind != RIM or cage.features[j].kind != RIM)
-    curls = curls and leaves and not is_there(meetings, met, True, touch_m)
-    closing = dot(met.normal, velocity_at(motion, met.place)) if touches else -math.inf
-    if touches and not leaves:
-        if abs(closing) <= LEAVES * speed and is_there(meetings, met, False, touch_m):  # that of features next to them
-            return math.inf, math.inf
-        closing = -math.inf
-    if leaves and motion.rate == 0.0 and not is_hollow_pair:
-        return math.inf, math.inf
-    if closing >= (1.0 if curls else -1.0) * LEAVES * speed:  # a contact that carries, or it would not go into it
-        return math.inf, math.inf
-    level, side = 0.0, 0.0
-    if met.is_one and abs(met.gap) <= max(search.near_m, touch_m):
-        level = search.near_depth_m if leaves or abs(met.gap) <= search.near_m else 0.0
-        if not leaves or closing >= -LEAVES * speed:
-            level = max(level, 2.0 * touch_m)  # they do not reach there now, but might; or a wall bends into the way
-        if held.features[i].kind == EDGE and cage.features[j].kind == EDGE:
-            crossed = cross(vector_from(held.features[i].direction), vector_from(cage.features[j].direction))
-            side = -math.copysign(1.0, dot(met.normal, crossed))
-    if curved:
-        return first_curved_touch(held, i, cage, j, motion, until, level, search.exact, touch_m, moved), met.gap
-    return first_touch(held, i, cage, j, motion, until, level, side, search.exact, touch_m, moved), met.gap

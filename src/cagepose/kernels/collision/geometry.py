@@ -13,11 +13,13 @@ import numpy as np
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Matrix, Vector, matrix, minus, plus, row, times, transposed_times
+from cagepose.kernels.collision.waiting import Queue, empty_queue
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.shapes.body import PlacedBody, empty_body, place_body
 from cagepose.kernels.shapes.features import Shapes, copied
-from cagepose.kernels.shapes.meetings import Meetings, empty_meetings, find_meetings
+from cagepose.kernels.shapes.meetings import find_meetings
+from cagepose.kernels.shapes.touching import Meetings, empty_meetings
 
 
 class Geometry(NamedTuple):
@@ -77,8 +79,8 @@ class Placement(NamedTuple):
         Memory for them at a pose that is tried.
     meetings
         Where they touch the cage's.
-    earliest
-        Memory for the amount of a motion before which two parts do not touch, (n_parts, n_cage_parts).
+    queue
+        Memory for pairs of them that may touch on the way.
     """
 
     box_positions: FloatArray
@@ -91,7 +93,7 @@ class Placement(NamedTuple):
     body: PlacedBody
     moved: Shapes
     meetings: Meetings
-    earliest: FloatArray
+    queue: Queue
 
 
 def empty_placement(geometry: Geometry) -> Placement:
@@ -108,8 +110,8 @@ def empty_placement(geometry: Geometry) -> Placement:
         np.empty(n_points),
         empty_body(geometry.held),
         copied(geometry.held),
-        empty_meetings(len(geometry.held.parts), len(geometry.cage.parts)),
-        np.empty((len(geometry.held.parts), len(geometry.cage.parts))),
+        empty_meetings(geometry.held, geometry.cage),
+        empty_queue(len(geometry.held.parts) * len(geometry.cage.parts)),
     )
 
 

@@ -23,7 +23,7 @@ from cagepose.kernels.shapes.bend import Bend, curvatures, write_bend, write_twi
 from cagepose.kernels.shapes.features import FACE, HOLE
 from cagepose.kernels.shapes.flat_rims import write_on_rim
 from cagepose.kernels.shapes.meeting import Meeting
-from cagepose.kernels.shapes.meetings import is_at_place, most_meetings
+from cagepose.kernels.shapes.touching import is_at_place, most_meetings
 
 SAME_NORMAL = 1e-9
 """Radians. Flush faces of two boxes give one contact."""

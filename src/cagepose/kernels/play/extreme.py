@@ -90,6 +90,7 @@ def travels_without_end(work: PlayWorkspace) -> bool:
     """Whether some translation alone lets the value grow without end: no point is in its way, and that is exact."""
     objective, passive = work.program.objective, work.program.passive
     clear(passive, 3, length(objective, 3))
-    rest = nonnegative_least_squares(System(work.rows, objective, work.is_rejected), len(work.faces), passive)
+    system = System(work.rows, objective, work.lengths, work.is_rejected)
+    rest = nonnegative_least_squares(system, len(work.faces), passive)
     passive.used = 0
     return rest > PRICELESS

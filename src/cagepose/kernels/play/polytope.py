@@ -49,7 +49,7 @@ class PlayWorkspace(NamedTuple):
         Those of (7.1), then those of the trust region.
     least, greatest
         Extents of the polytope, (6,).
-    is_rejected
+    lengths, is_rejected
         For non-negative least squares over the rows, (n_pairs,).
     is_turned
         Whether a point has been let around an edge, (n_pairs,).
@@ -69,6 +69,7 @@ class PlayWorkspace(NamedTuple):
     bounds: FloatArray
     least: FloatArray
     greatest: FloatArray
+    lengths: FloatArray
     is_rejected: NDArray[np.bool_]
     is_turned: NDArray[np.bool_]
     program: Program
@@ -93,6 +94,7 @@ def empty_play_workspace(geometry: Geometry) -> PlayWorkspace:
         bounds=bounds,
         least=np.zeros(6),
         greatest=np.zeros(6),
+        lengths=np.zeros(n_pairs),
         is_rejected=np.zeros(n_pairs, np.bool_),
         is_turned=np.zeros(n_pairs, np.bool_),
         program=empty_record(Program),

@@ -27,8 +27,8 @@ from cagepose.kernels.quasistatic.projection import (
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.shapes.features import is_of_mouth
 from cagepose.kernels.shapes.meeting import meeting
-from cagepose.kernels.shapes.meetings import most_meetings
 from cagepose.kernels.shapes.rims import EQUALLY_FAR
+from cagepose.kernels.shapes.touching import most_meetings
 
 POINTS_PUSHED = 8
 """Points and shapes that may be pushed out of the object after a step."""

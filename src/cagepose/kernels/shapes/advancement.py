@@ -22,13 +22,22 @@ from cagepose.kernels.shapes.along_motion import (
     place_moved,
     touches_after,
 )
-from cagepose.kernels.shapes.features import EDGE, FACE, RIM, VERTEX, Feature, Shapes
+from cagepose.kernels.shapes.features import EDGE, FACE, RIM, Feature, Shapes
 from cagepose.kernels.shapes.meeting import Meeting, meeting
 from cagepose.kernels.shapes.motion import Motion, velocity_at
-from cagepose.kernels.shapes.rims import distance_at, distance_from_arc, foot_on, middle_of_arc, reach_of_arc
+from cagepose.kernels.shapes.rims import (
+    distance_at,
+    distance_from_arc,
+    foot_on,
+    middle_of_arc,
+    nearest_on_arc,
+    reach_of_arc,
+)
 
 ADVANCES = 6000
 """Steps for one pair of features; only where they graze each other more than some tens are taken."""
+VISIT = 4
+"""Of these, after which another pair may be the one that can touch first."""
 NEWTON = 12
 """Steps of Newton's method at most."""
 
@@ -38,8 +47,9 @@ class Approach(NamedTuple):
 
     Attributes
     ----------
-    has_foot
-        Whether there is a place on the arc, if one of them is one, that the other one is nearest to.
+    has_foot, is_second
+        Whether there is a place on the arc, if one of them is one, that the other one is nearest to; and whether it is
+        that of the arc's second feature.
     gap
         No more than how far apart they are, of planes and lines without end; below zero: about how deep in each other,
         metres.
@@ -50,6 +60,7 @@ class Approach(NamedTuple):
     """
 
     has_foot: bool
+    is_second: bool
     gap: float
     speed: float
     growth: float
@@ -67,26 +78,24 @@ def are_curved(a: Shapes, i: int, b: Shapes, j: int) -> bool:
 
 
 @kernel
-def is_far_from_arc(a: Shapes, i: int, b: Shapes, j: int, within_m: float) -> bool:
-    """Whether one of two features is an arc that the other one is surely farther from than ``within_m``: most are.
-
-    Of faces this is not asked: their normals tell how far apart parts are.
-    """
-    if a.features[i].kind == FACE or b.features[j].kind == FACE:
-        return False
-    if b.features[j].kind == RIM and is_arc_far(b.features[j], a, i, within_m):
-        return True
-    return a.features[i].kind == RIM and is_arc_far(a.features[i], b, j, within_m)
+def away_from_arc(a: Shapes, i: int, b: Shapes, j: int) -> float:
+    """Return a length that two features, one of which is an arc, are surely apart; below zero: none is known."""
+    away = -math.inf
+    if b.features[j].kind == RIM:
+        away = away_from_rim(b.features[j], a, i)
+    if a.features[i].kind == RIM:
+        away = max(away, away_from_rim(a.features[i], b, j))
+    return away
 
 
 @kernel
-def is_arc_far(rim: Feature, shapes: Shapes, i: int, within_m: float) -> bool:
+def away_from_rim(rim: Feature, shapes: Shapes, i: int) -> float:
     other, middle, away = shapes.features[i], middle_of_arc(rim), -math.inf
-    if other.kind != VERTEX:
+    if other.kind == EDGE or other.kind == RIM:
         away = distance_at(other, middle)
     if keeps_radius(other):
         away = max(away, distance_from(shapes, i, middle) - other.radius)
-    return away - reach_of_arc(rim) > within_m
+    return away - reach_of_arc(rim)
 
 
 @kernel
@@ -134,8 +143,23 @@ def gap_of(one: Feature, other: Feature, met: Meeting, level: float) -> float:
 
 
 @kernel
-def approach(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, level: float) -> Approach:
-    """Return how feature i of the object, placed, and feature j of the cage come nearer."""
+def second_pair(a: Shapes, i: int, b: Shapes, j: int) -> tuple[int, int]:
+    """Return the features that meet at the last place on an arc, where these meet at the first; (-1, -1): an edge or
+    another rim alone is nearest to an arc at two places.
+    """
+    one, other = a.features[i], b.features[j]
+    if one.kind == RIM and (other.kind == EDGE or other.kind == RIM):
+        return (one.second_arc, j) if one.second_arc >= 0 else (-1, -1)
+    if one.kind == EDGE and other.kind == RIM:
+        return (i, other.second_arc) if other.second_arc >= 0 else (-1, -1)
+    return -1, -1
+
+
+@kernel
+def approach(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, level: float, of_arc: bool) -> Approach:
+    """Return how feature i of the object, placed, and feature j of the cage come nearer; with ``of_arc``, these and
+    their `second_pair`.
+    """
     one, other = moved.features[i], b.features[j]
     first = is_smaller(one, other)
     small, wide = (one, other) if first else (other, one)
@@ -146,16 +170,20 @@ def approach(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, level: fl
     if keeps_radius(small) and keeps_radius(wide):
         apart = distance_from(b, j, middle) if first else distance_from(moved, i, middle)
         apart -= reach + small.radius + wide.radius
-    met = meeting(moved, i, b, j)
-    gap, has_foot = gap_of(one, other, met, level), met.is_one or (one.kind != RIM and other.kind != RIM)
+    if of_arc:
+        has_foot, is_second, gap = nearest_on_arc(one, other) if one.kind == RIM else nearest_on_arc(other, one)
+    else:
+        met = meeting(moved, i, b, j)
+        gap, has_foot = gap_of(one, other, met, level), met.is_one or (one.kind != RIM and other.kind != RIM)
+        is_second = False
     if wide.kind == FACE:
         spread *= norm(cross(motion.axis, along))
-        return Approach(has_foot, gap, abs(dot(way, along)) + spread, motion.rate * fastest, apart, fastest)
+        return Approach(has_foot, is_second, gap, abs(dot(way, along)) + spread, motion.rate * fastest, apart, fastest)
     if wide.kind != EDGE:
-        return Approach(has_foot, gap, fastest, 0.0, apart, fastest)
+        return Approach(has_foot, is_second, gap, fastest, 0.0, apart, fastest)
     rise = dot(way, along)
-    across = norm(minus(way, scaled(along, rise)))
-    return Approach(has_foot, gap, across + abs(wide.taper * rise) + spread, motion.rate * fastest, apart, fastest)
+    speed = norm(minus(way, scaled(along, rise))) + abs(wide.taper * rise) + spread
+    return Approach(has_foot, is_second, gap, speed, motion.rate * fastest, apart, fastest)
 
 
 @kernel
@@ -187,44 +215,78 @@ def root_of_gap(
     return amount
 
 
+class Advance(NamedTuple):
+    """Where two features touch first, and whether their `second_pair` does.
+
+    Attributes
+    ----------
+    amount
+        Inf: they do not, up to ``clear``.
+    is_second
+        See above.
+    clear
+        Inf: as far as was asked.
+    """
+
+    amount: float
+    is_second: bool
+    clear: float
+
+
+NOT_TOUCHING = Advance(math.inf, False, math.inf)
+
+
 @kernel
-def first_curved_touch(
+def advance(
     a: Shapes,
     i: int,
     b: Shapes,
     j: int,
     motion: Motion,
+    begin: float,
     end: float,
     level: float,
     slack: float,
     slack_m: float,
+    of_arc: bool,
+    steps: int,
+    is_last: bool,
     moved: Shapes,
-) -> float:
-    """Return the amount, up to ``end``, after which two features touch; inf: they do not. See `first_touch`."""
-    amount, behind = 0.0, BEHIND * end
-    for _ in range(ADVANCES):
+) -> Advance:
+    """Look for the first contact of two features, see `first_touch`, from an amount before which they do not touch on,
+    in so many steps. With ``of_arc`` their `second_pair` is asked, too, and the level is zero. If these steps are the
+    last ones, and graze, the features touch where they end.
+    """
+    amount, behind = begin, BEHIND * end
+    one, other = i, j
+    for _ in range(steps):
         place_moved(a, i, motion, amount, moved)
-        now = approach(moved, i, b, j, motion, level)
+        now = approach(moved, i, b, j, motion, level, of_arc)
+        one, other = second_pair(a, i, b, j) if now.is_second else (i, j)
         if level > 0.0 and now.gap > level:
             level = 0.0
-        value = now.gap + level
-        if level == 0.0 and not now.has_foot and value <= slack_m:  # what comes there has met the next arc before
-            return math.inf
+        value, has_foot = now.gap + level, now.has_foot
+        if of_arc and has_foot and value <= slack_m:
+            place_moved(a, one, motion, amount, moved)
+            has_foot = meeting(moved, one, b, other).is_one
+        if level == 0.0 and not has_foot and value <= slack_m:  # what comes there has met the next arc before
+            return NOT_TOUCHING
         is_past = value < 0.0
         if 0.0 <= value <= slack_m:
-            root = root_of_gap(a, i, b, j, motion, amount, level, moved)
+            root = root_of_gap(a, one, b, other, motion, amount, level, moved)
             if amount <= root <= end:
-                if touches_after(a, i, b, j, motion, root, level, slack, slack_m, moved):
-                    return root
+                if touches_after(a, one, b, other, motion, root, level, slack, slack_m, moved):
+                    return Advance(root, now.is_second, root)
                 is_past = True
         step = surely_clear(now, abs(value))
-        if step <= LEAST_STEP * end and touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
-            return amount
+        if step <= LEAST_STEP * end and touches_after(a, one, b, other, motion, amount, level, slack, slack_m, moved):
+            return Advance(amount, now.is_second, amount)
         if is_past and now.fastest > 0.0:  # a root that is no contact: on so short a way none is hidden that counts
             step = max(step, slack_m / now.fastest)
         if step >= end - amount:
-            return math.inf
+            return NOT_TOUCHING
         amount, behind = gone_on(amount, step, end, behind)
         if amount >= end:
-            return math.inf
-    return amount if touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved) else math.inf
+            return NOT_TOUCHING
+    grazes = is_last and touches_after(a, one, b, other, motion, amount, level, slack, slack_m, moved)
+    return Advance(amount if grazes else math.inf, (one, other) != (i, j), math.inf if is_last else amount)

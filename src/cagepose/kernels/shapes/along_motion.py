@@ -247,7 +247,7 @@ def distance_from(shapes: Shapes, i: int, point: Vector) -> float:
         in_plane = minus(seen, scaled(direction, height))
         for f in range(feature.first_fence, feature.last_fence):
             beyond = max(beyond, beyond_fence(shapes.fences[f], in_plane))
-        return math.hypot(height, beyond)
+        return math.sqrt(height * height + beyond * beyond)
     if feature.kind == RIM:
         return max(0.0, norm(minus(point, middle_of_arc(feature))) - reach_of_arc(feature))
     return norm(seen)

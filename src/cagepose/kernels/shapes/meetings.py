@@ -9,11 +9,7 @@ all: these may be within each other's hull, so that a feature on their far side 
 from __future__ import annotations
 
 import math
-from typing import Annotated, NamedTuple
 
-import numpy as np
-
-from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import (
     Vector,
     dot,
@@ -26,9 +22,8 @@ from cagepose.kernels.algebra.vector import (
     vector_from,
 )
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.advancement import is_far_from_arc
-from cagepose.kernels.shapes.along_motion import can_touch
-from cagepose.kernels.shapes.bend import bends_by, curvatures
+from cagepose.kernels.shapes.advancement import away_from_arc
+from cagepose.kernels.shapes.along_motion import can_touch, distance_from, keeps_radius
 from cagepose.kernels.shapes.body import PlacedBody, place_asked, rotation_of
 from cagepose.kernels.shapes.covered import covers, is_in_parts, place_around
 from cagepose.kernels.shapes.features import (
@@ -58,73 +53,18 @@ from cagepose.kernels.shapes.side_by_side import (
     has_flat_ends,
     lie_side_by_side,
 )
+from cagepose.kernels.shapes.touching import (
+    Meetings,
+    Touching,
+    append_if_one,
+    keep_nearest,
+    note_twin,
+    told_before,
+    write_touching,
+)
 
-ROOM_FOR_PAIR, MOST_ROOM = 128, 4096
-"""Meetings that there is memory for: of each pair of parts, and of all."""
-SAME_NORMAL = 1e-9
-"""Radians. Meetings at one place with normals nearer than this are one."""
 DEEPEST = 0.05
 """Of the shortest edge or least radius: features of parts with holes that are deeper in each other do not touch."""
-
-
-class Touching:
-    """Two features that touch; a record.
-
-    Attributes
-    ----------
-    part, cage_part, feature, cage_feature
-        Indices.
-    twin, cage_twin
-        Features that meet at the same place with the same normal and bend more; -1: none do.
-    gap, normal, place
-        As in `Meeting`.
-    is_hidden
-        Whether another part of one of the bodies covers the place.
-    is_kept
-        Whether a contact there carries, so that a motion keeps it.
-    """
-
-    part: int
-    cage_part: int
-    feature: int
-    cage_feature: int
-    twin: int
-    cage_twin: int
-    gap: float
-    normal: Annotated[FloatArray, 3]
-    place: Annotated[FloatArray, 3]
-    is_hidden: bool
-    is_kept: bool
-
-
-class Meetings(NamedTuple):
-    """What touches at one pose.
-
-    Attributes
-    ----------
-    used
-        How many rows count, (1,); -1: there are more than there is memory for.
-    rows
-        One for each meeting within the touch tolerance; those of a pair of parts follow each other.
-    gaps
-        Of each pair of parts, (n_parts, n_cage_parts), metres: how far apart they are at least; below zero, how deep
-        they are in each other.
-    """
-
-    used: IntArray
-    rows: Rows[Touching]
-    gaps: FloatArray
-
-
-def most_meetings(n_parts: int, n_cage_parts: int) -> int:
-    """Return how many meetings of so many parts there is memory for (plain Python)."""
-    return min(ROOM_FOR_PAIR * n_parts * n_cage_parts, MOST_ROOM)
-
-
-def empty_meetings(n_parts: int, n_cage_parts: int) -> Meetings:
-    """Return memory for the meetings of so many parts (plain Python)."""
-    rows = empty_rows(Touching, most_meetings(n_parts, n_cage_parts))
-    return Meetings(np.zeros(1, np.int64), rows, np.zeros((n_parts, n_cage_parts)))
 
 
 @kernel
@@ -174,6 +114,15 @@ def deepest_gap(a: Shapes, one: int, b: Shapes, other: int) -> float:
 
 
 @kernel
+def is_near(a: Shapes, i: int, b: Shapes, other: int, touch_m: float, deepest: float) -> bool:
+    """Whether a feature may be nearer to a part than it touches, or less deep in it than it may be."""
+    if deepest == -math.inf or not keeps_radius(a.features[i]):
+        return True
+    away = distance_from(a, i, vector_from(b.parts[other].middle)) - a.features[i].radius
+    return away <= b.parts[other].reach + max(touch_m, -deepest)
+
+
+@kernel
 def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, touch_m: float, found: Meetings) -> float:
     """Append the meetings of two parts; return how far apart they are at least, below zero how deep in each other (not
     of parts with holes: see `find_meetings`); NaN: there is no room.
@@ -183,24 +132,30 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
     slack, slack_m = slack_of(a, one, b, other, touch_m), 2.0 * touch_m
     first = found.used[0]
     separation, nearest, deepest = -math.inf, math.inf, deepest_gap(a, one, b, other)
+    are_solid = deepest == -math.inf
     is_flat = has_flat_ends(a, one, b, other)
+    for j in range(b.parts[other].first, b.parts[other].last):
+        found.are_near[j] = is_near(b, j, a, one, touch_m, deepest)
     for i in range(a.parts[one].first, a.parts[one].last):
+        if not is_near(a, i, b, other, touch_m, deepest):
+            continue
         for j in range(b.parts[other].first, b.parts[other].last):
-            if not can_touch(a, i, b, j):
+            if not found.are_near[j] or not can_touch(a, i, b, j):
                 continue
-            if is_far_from_arc(a, i, b, j, touch_m):
+            has_face = a.features[i].kind == FACE or b.features[j].kind == FACE  # of solids, it tells how far apart
+            if not (are_solid and has_face) and away_from_arc(a, i, b, j) > touch_m:
                 continue
             met = meeting(a, i, b, j)
-            if not met.is_one:
+            if not met.is_one or not (are_solid or deepest <= met.gap <= touch_m):
                 continue
-            if deepest == -math.inf and tells_apart(a, i, b, j, met, slack):
+            if are_solid and tells_apart(a, i, b, j, met, slack):
                 separation = max(separation, apart_along(a, one, b, other, met.normal))
             if not both_reach(a, i, b, j, met, slack, slack_m):
                 continue
             if met.gap > touch_m:
-                nearest = min(nearest, met.gap) if deepest == -math.inf else nearest
+                nearest = min(nearest, met.gap)
                 continue
-            least_gap = on_far_side(max(separation, at_least_m), touch_m) if deepest == -math.inf else deepest
+            least_gap = on_far_side(max(separation, at_least_m), touch_m) if are_solid else deepest
             if met.gap < least_gap or lie_flat(a.features[i], b.features[j], touch_m):
                 continue
             beside = lie_side_by_side(a.features[i], b.features[j], met)
@@ -216,7 +171,7 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
                 found.used[0] += 1
             else:
                 note_twin(a, b, found.rows[told], found.rows[found.used[0]])
-    if deepest > -math.inf:
+    if not are_solid:
         return max(at_least_m, 0.0)
     keep_nearest(found, first, on_far_side(max(separation, at_least_m), touch_m))
     for at in range(first, found.used[0]):
@@ -251,14 +206,6 @@ def add_flat_ends(
         for face in range(a.parts[one].first_face, a.parts[one].last):
             if face != i:
                 append_if_one(found, one, other, face, j, swapped(flush(b.features[j], there, a, face, slack, touch_m)))
-
-
-@kernel
-def append_if_one(found: Meetings, one: int, other: int, i: int, j: int, met: Meeting) -> None:
-    """Append a meeting of two features, if they meet and there is room."""
-    if met.is_one and found.used[0] < len(found.rows):
-        write_touching(one, other, i, j, met, found.rows[found.used[0]])
-        found.used[0] += 1
 
 
 @kernel
@@ -298,84 +245,6 @@ def tip_is_at_rim(a: Shapes, one: int, b: Shapes, other: int, within_m: float) -
 def on_far_side(separation: float, touch_m: float) -> float:
     """Return the gap below which features meet on the far sides of parts that are so far apart."""
     return 2.0 * min(separation, 0.0) - touch_m
-
-
-@kernel
-def write_touching(one: int, other: int, i: int, j: int, met: Meeting, out: Touching) -> None:
-    out.part, out.cage_part, out.feature, out.cage_feature = one, other, i, j
-    out.twin = out.cage_twin = -1
-    out.gap, out.is_hidden, out.is_kept = met.gap, False, False
-    for k in range(3):
-        out.normal[k], out.place[k] = met.normal[k], met.place[k]
-
-
-@kernel
-def told_before(found: Meetings, first: int, touch_m: float) -> int:
-    """Return which meeting from ``first`` on has the normal and the place of the next one; -1: none has."""
-    for before in range(first, found.used[0]):
-        if is_same(found, found.used[0], before, touch_m):
-            return before
-    return -1
-
-
-@kernel
-def bends_of(a: Shapes, b: Shapes, i: int, j: int, one: Touching) -> float:
-    met = Meeting(True, one.gap, vector_from(one.normal), vector_from(one.place))
-    return bends_by(curvatures(a, i, b, j, met))
-
-
-@kernel
-def note_twin(a: Shapes, b: Shapes, told: Touching, new: Touching) -> None:
-    """Keep, of features that meet at one place with one normal, those that bend least, and beside them those that bend
-    most.
-    """
-    least, bend = (
-        bends_of(a, b, told.feature, told.cage_feature, told),
-        bends_of(a, b, new.feature, new.cage_feature, new),
-    )
-    most = least if told.twin < 0 else bends_of(a, b, told.twin, told.cage_twin, told)
-    if bend > most:
-        told.twin, told.cage_twin = new.feature, new.cage_feature
-    elif bend < least:
-        if told.twin < 0:
-            told.twin, told.cage_twin = told.feature, told.cage_feature
-        told.feature, told.cage_feature = new.feature, new.cage_feature
-
-
-@kernel
-def keep_nearest(found: Meetings, first: int, least_gap: float) -> None:
-    """Keep, of the meetings of two parts, those that are not deeper than the parts are in each other: these are on
-    their far sides.
-    """
-    kept = first
-    for at in range(first, found.used[0]):
-        if found.rows[at].gap >= least_gap:
-            move_touching(found.rows[at], found.rows[kept])
-            kept += 1
-    found.used[0] = kept
-
-
-@kernel
-def is_at_place(found: Meetings, one: int, other: int, touch_m: float) -> bool:
-    """Whether two meetings are at one place."""
-    between = minus(vector_from(found.rows[one].place), vector_from(found.rows[other].place))
-    return norm(between) <= SAME_PLACE * touch_m
-
-
-@kernel
-def is_same(found: Meetings, one: int, other: int, touch_m: float) -> bool:
-    """Whether two meetings have the same normal at the same place."""
-    turn = minus(vector_from(found.rows[one].normal), vector_from(found.rows[other].normal))
-    return norm(turn) <= SAME_NORMAL and is_at_place(found, one, other, touch_m)
-
-
-@kernel
-def move_touching(one: Touching, to: Touching) -> None:
-    to.part, to.cage_part, to.feature, to.cage_feature = one.part, one.cage_part, one.feature, one.cage_feature
-    to.twin, to.cage_twin = one.twin, one.cage_twin
-    to.gap, to.is_hidden, to.is_kept = one.gap, one.is_hidden, one.is_kept
-    for k in range(3):
-        to.normal[k], to.place[k] = one.normal[k], one.place[k]
 
 
 @kernel

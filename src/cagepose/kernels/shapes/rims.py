@@ -91,8 +91,14 @@ def outward_at(rim: Feature, point: Vector) -> Vector:
 @kernel
 def on_rim(rim: Feature, angle: float, is_within: bool) -> Foot:
     """Return the point of a rim at an angle from its arc's middle."""
+    return towards(rim, math.cos(angle), math.sin(angle), is_within)
+
+
+@kernel
+def towards(rim: Feature, cosine: float, sine: float, is_within: bool) -> Foot:
+    """Return the point of a rim at an angle with this cosine and sine from its arc's middle."""
     toward, axis = vector_from(rim.toward), vector_from(rim.direction)
-    outward = plus(scaled(toward, math.cos(angle)), scaled(cross(axis, toward), math.sin(angle)))
+    outward = plus(scaled(toward, cosine), scaled(cross(axis, toward), sine))
     return Foot(is_within, plus(vector_from(rim.point), scaled(outward, rim.length)), cross(axis, outward))
 
 
@@ -101,11 +107,12 @@ def farthest_along(rim: Feature, way: Vector) -> Foot:
     """Return the point of an arc whose outward normal is nearest to a direction."""
     toward, axis = vector_from(rim.toward), vector_from(rim.direction)
     ahead, aside = dot(way, toward), dot(way, cross(axis, toward))
-    if math.hypot(ahead, aside) <= FLAT * norm(way):
+    size = math.sqrt(ahead * ahead + aside * aside)
+    if size <= FLAT * norm(way):
         return on_rim(rim, 0.0, False)
-    angle = math.atan2(aside, ahead)
-    held = min(max(angle, -SEARCHED), SEARCHED)
-    return on_rim(rim, held, held == angle)
+    if ahead < size * COSINES[0]:
+        return towards(rim, COSINES[0], math.copysign(SINES[SECTIONS], aside), False)
+    return towards(rim, ahead / size, aside / size, True)
 
 
 @kernel
@@ -264,7 +271,8 @@ def steepest_angle(seen: Seen) -> float:
     """Return the angle from an arc's middle, a quarter turn at most, at which the rim is farthest along the other one's
     direction, or the least far; inf: nowhere. Feet lie to both sides of it.
     """
-    if seen.tilt_ahead == 0.0 or math.hypot(seen.tilt_ahead, seen.tilt_aside) <= UPRIGHT:
+    square = seen.tilt_ahead * seen.tilt_ahead + seen.tilt_aside * seen.tilt_aside
+    if seen.tilt_ahead == 0.0 or square <= UPRIGHT * UPRIGHT:
         return math.inf
     return math.atan(seen.tilt_aside / seen.tilt_ahead)
 
@@ -351,13 +359,50 @@ def farthest_rise(
     return angle, at[0]
 
 
+class OnArc(NamedTuple):
+    """What of an arc an edge or another rim is nearest to.
+
+    Attributes
+    ----------
+    has_foot, is_last
+        Whether it is a place that is nearest among its neighbours; if there are two, whether the last one. Else it is
+        one of the arc's ends.
+    away
+        How far apart they are, metres; below zero: how deep.
+    """
+
+    has_foot: bool
+    is_last: bool
+    away: float
+
+
+@kernel
+def nearest_on_arc(rim: Feature, other: Feature) -> OnArc:
+    """Return what of an arc an edge or another rim, both in the world, is nearest to."""
+    feet = feet_on(rim, other)
+    if feet.n_feet == 0:
+        return OnArc(False, False, ends_away(rim, other))
+    first = distance_at(other, on_rim(rim, feet.first, True).point)
+    if feet.n_feet == 1:
+        return OnArc(True, False, first)
+    last = distance_at(other, on_rim(rim, feet.last, True).point)
+    is_last = abs(last) < abs(first)
+    return OnArc(True, is_last, last if is_last else first)
+
+
+@kernel
+def ends_away(rim: Feature, other: Feature) -> float:
+    """Return how far an edge or another rim is from the ends of an arc."""
+    before, after = on_rim(rim, -SEARCHED, False).point, on_rim(rim, SEARCHED, False).point
+    return min(distance_at(other, before), distance_at(other, after))
+
+
 @kernel
 def distance_from_arc(rim: Feature, other: Feature) -> float:
     """Return how far an edge or another rim is from an arc on which it has no place of its own: an end or, where it
     would be the second one, the first place is nearest.
     """
-    ends = on_rim(rim, -SEARCHED, False).point, on_rim(rim, SEARCHED, False).point
-    least = min(distance_at(other, ends[0]), distance_at(other, ends[1]))
+    least = ends_away(rim, other)
     if rim.is_second:
         feet = feet_on(rim, other)
         if feet.n_feet > 0:

@@ -38,7 +38,14 @@ UNDECIDED, CLOSED = -1, 4
 decided each by itself: feet on a floor slip one way, however many of them carry."""
 CUT_LIMIT = 96
 """Twists that no force drives, of one node and of those above it."""
-N_COLUMNS = 6 * CONTACT_LIMIT + CUT_LIMIT
+VELOCITY_LIMIT = 6 * CONTACT_LIMIT
+N_COLUMNS = VELOCITY_LIMIT + CUT_LIMIT
+VELOCITIES = 8
+"""Velocities at one contact that may not be allowed, each with a number of its own."""
+INTO, AWAY, ANY_WAY, BEFORE, BEHIND = 0, 1, 2, 6, 7
+"""Their numbers: into the other one, away from it, each of four ways along it, and before and behind a sector."""
+QUARTERS = (1.0, 0.0, -1.0, 0.0, 1.0)
+"""Cosines of no, one, two and more quarter turns; sines are those of one more."""
 ROUNDS = 12
 """Twists that are looked for at one node; then it is divided, which tells more."""
 MOST_GENERATORS = 80
@@ -85,8 +92,9 @@ class Relaxation:
         Place and tangential part of each generator of a force.
     generator, aimed
         One generator, and the motion turned round.
-    n_velocities, n_cuts, cuts
-        How many columns are velocities, and the columns behind them.
+    n_velocities, ways, n_cuts, cuts
+        How many columns are velocities, which they are, VELOCITIES times the place and a number, and the columns behind
+        them.
     twist
         z of the proof.
     normal_forces, tangential_forces
@@ -112,6 +120,7 @@ class Relaxation:
     generator: ScaledVector
     aimed: ScaledVector
     n_velocities: int
+    ways: Annotated[IntArray, VELOCITY_LIMIT]
     n_cuts: int
     cuts: Annotated[FloatArray, CUT_LIMIT, 6]
     twist: ScaledVector
@@ -185,9 +194,12 @@ def most_driven(friction: float, vector: FloatArray, work: Relaxation) -> float:
 
 
 @kernel
-def add_velocity(place: int, normal: float, one: float, two: float, n: int, work: Relaxation, system: System) -> int:
+def add_velocity(
+    place: int, which: int, normal: float, one: float, two: float, n: int, work: Relaxation, system: System
+) -> int:
     """Add a velocity at a contact that is not allowed; return the number of columns."""
     wrenches, column = work.wrenches[place], system.columns[n]
+    work.ways[n] = VELOCITIES * place + which
     for k in range(6):
         column[k] = normal * wrenches[0, k] + one * wrenches[1, k] + two * wrenches[2, k]
     return n + 1
@@ -198,17 +210,16 @@ def write_velocities(work: Relaxation, system: System) -> None:
     """Write the velocities that the modes do not allow."""
     n = 0
     for place in range(work.n_places):
-        n = add_velocity(place, 1.0, 0.0, 0.0, n, work, system)
+        n = add_velocity(place, INTO, 1.0, 0.0, 0.0, n, work, system)
         if work.openings[place] == CLOSED:
-            n = add_velocity(place, -1.0, 0.0, 0.0, n, work, system)
+            n = add_velocity(place, AWAY, -1.0, 0.0, 0.0, n, work, system)
         if work.slips[place] == STICKS:
-            for sign in range(-1, 2, 2):
-                n = add_velocity(place, 0.0, sign, 0.0, n, work, system)
-                n = add_velocity(place, 0.0, 0.0, sign, n, work, system)
+            for turn in range(4):
+                n = add_velocity(place, ANY_WAY + turn, 0.0, QUARTERS[turn], QUARTERS[turn + 1], n, work, system)
         elif work.slips[place] == SLIPS:
             first, last = work.edges[place, 0], work.edges[place, 1]
-            n = add_velocity(place, 0.0, first[1], -first[0], n, work, system)
-            n = add_velocity(place, 0.0, -last[1], last[0], n, work, system)
+            n = add_velocity(place, BEFORE, 0.0, first[1], -first[0], n, work, system)
+            n = add_velocity(place, BEHIND, 0.0, -last[1], last[0], n, work, system)
     work.n_velocities = n
 
 
@@ -318,11 +329,13 @@ def is_proven(friction: float, work: Relaxation) -> bool:
 
 @kernel
 def write_shares(work: Relaxation, ways: IntArray, shares: FloatArray) -> None:
-    """Write of what velocities b - z of the proof is made: places and shares, (6,) each; -1: no more."""
+    """Write of what velocities b - z of the proof, or of what is left of the load, is made: their places, as in
+    `Relaxation.ways`, and shares, (6,) each; -1: no more.
+    """
     n = 0
     for j in range(work.motion.used):
         if work.motion.labels[j] < work.n_velocities:
-            ways[n], shares[n] = work.motion.labels[j], work.motion.x[j]
+            ways[n], shares[n] = work.ways[work.motion.labels[j]], work.motion.x[j]
             n += 1
     for k in range(n, 6):
         ways[k] = -1
@@ -358,15 +371,29 @@ def read_forces(work: Relaxation) -> None:
 
 
 @kernel
+def begin(work: Relaxation, system: System) -> None:
+    """Write what the present modes do not allow."""
+    write_velocities(work, system)
+    write_cuts(work, system)
+    clear(work.motion, WRENCH, 1.0)
+
+
+@kernel
+def start_from(ways: IntArray, work: Relaxation, system: System) -> None:
+    """Let the solution begin with velocities that bounded the motion where less was decided."""
+    for way in ways:
+        for j in range(work.n_velocities if way >= 0 else 0):
+            if work.ways[j] == way:
+                append_column(work.motion, system.columns[j], j, 0.0)
+
+
+@kernel
 def is_impossible(friction: float, work: Relaxation, system: System) -> bool:
-    """Whether it is proven that no motion can begin with the present modes; ``twist`` is the proof then.
+    """Whether it is proven that no motion can begin with the modes that were begun with; ``twist`` is the proof then.
 
     Else ``motion.residual`` and the forces are a motion of the convex problem, as far as it was solved.
     """
     n_before = work.n_cuts
-    write_velocities(work, system)
-    write_cuts(work, system)
-    clear(work.motion, WRENCH, 1.0)
     clear(work.forces, WRENCH, 1.0)
     work.forces.dependent = DEPENDENT
     for k in range(6):

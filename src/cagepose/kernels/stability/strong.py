@@ -23,8 +23,10 @@ from cagepose.kernels.stability.relaxation import (
     CLOSED,
     UNDECIDED,
     Relaxation,
+    begin,
     is_impossible,
     slip_along,
+    start_from,
     take_contacts,
     write_edges,
     write_shares,
@@ -61,8 +63,8 @@ class ModeTree:
     is_closed, twists
         Whether no motion can begin there, and z, which proves it.
     ways, shares
-        Of what velocities that are not allowed b - z is made: their places in the order of `write_velocities`, -1: no
-        more, and how much of each.
+        Of what velocities that are not allowed b - z is made, as in `Relaxation.ways`, -1: no more, and how much of
+        each. Where no proof was found: the same of what is left of the load.
     waiting
         Nodes still to be looked at.
     relaxation
@@ -236,11 +238,15 @@ def other_onset(
         n_waiting -= 1
         node = tree.waiting[n_waiting]
         stand_at_node(node, tree)
-        if is_impossible(friction, work, system):
+        begin(work, system)
+        if node > 0:
+            start_from(tree.ways[tree.parents[node]], work, system)
+        is_closed = is_impossible(friction, work, system)
+        write_shares(work, tree.ways[node], tree.shares[node])
+        if is_closed:
             tree.is_closed[node] = 1
             for k in range(6):
                 tree.twists[node, k] = work.twist[k]
-            write_shares(work, tree.ways[node], tree.shares[node])
             continue
         if is_near(friction, work) and is_witnessed(contacts, friction, b, tree, newton):
             return OTHER_FOUND
