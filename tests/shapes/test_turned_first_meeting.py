@@ -9,11 +9,16 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from cagepose import Box, Pose
 from cagepose.kernels.collision.first_meeting import Hit, first_meeting
+from cagepose.kernels.shapes.advancement import root_of_gap
+from cagepose.kernels.shapes.along_motion import place_moved
+from cagepose.kernels.shapes.features import EDGE, RIM, copied
+from cagepose.kernels.shapes.meeting import meeting
 from cagepose.kernels.shapes.motion import Motion
-from cagepose.model.features import shapes_of
+from cagepose.model.features import placed_shapes, shapes_of
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.shapes import Capsule, Cone, Cylinder, Disc, Shape, Sphere, Turned
 from inner_kernels import as_machine_code
@@ -21,7 +26,7 @@ from shapes import pierced_plate
 from shapes.convex_bodies import random_turn
 from shapes.pierced_plate import plate_of
 from shapes.test_distances import TOUCH, geometry_of, placed, random_offset
-from shapes.test_first_meeting import TOLERANCE, after, leaves, motion_of, random_motion
+from shapes.test_first_meeting import TOLERANCE, after, leaves, motion_of, random_direction, random_motion
 from shapes.test_turned_distances import WIDE, random_peg, random_plate
 from shapes.turned_bodies import circles_of, gap, placed_at, random_turned
 
@@ -196,3 +201,34 @@ def test_a_tapered_pin_enters_a_hole_aside(first):
     pin = Cone(tip, tip + 2.0 * taper, 2.0)
     lands = first_amount(first, pin, [Hole(0.5, 1.0)], Pose((beside, 0, 2.0)), travel(0, 0, -1), 3.0)
     assert 1.0 - lands == pytest.approx(-(0.5 - beside - tip) / taper, abs=1e-8)
+
+
+def test_newtons_method_ends_at_a_root_but_for_rounding():
+    """From within the touch tolerance of where a rim crosses an edge, though the last step leaves no less than that
+    before it."""
+    rng, found = np.random.default_rng(5), 0
+    cage = shapes_of([Box((1.2, 3.0, 0.4), Pose((-0.9, 0, -0.8)))])
+    peg = shapes_of([Cylinder(0.25, 1.0)])
+    arcs = [at for at, row in enumerate(peg.features) if row["kind"] == RIM and not row["is_second"]]
+    edges = [at for at, row in enumerate(cage.features) if row["kind"] == EDGE]
+    while found < 30:
+        pose = Pose(rng.uniform(-1.0, 1.0, 3), random_turn(rng))
+        held, i, j = placed_shapes(peg, pose), rng.choice(arcs), rng.choice(edges)
+        met, moved = meeting(held, i, cage, j), copied(held)
+        if not met.is_one or not 0.01 < met.gap < 0.5:
+            continue
+        drift = np.array(met.normal) + 0.3 * rng.normal(size=3)
+        motion = motion_of(np.array(met.place), drift, 0.2, random_direction(rng))
+
+        def gap_after(amount: float, i=i, j=j, held=held, moved=moved, motion=motion) -> float:
+            place_moved(held, i, motion, amount, moved)
+            return meeting(moved, i, cage, j).gap
+
+        if not gap_after(2.0 * met.gap) < 0.0:
+            continue
+        crosses = brentq(gap_after, 0.0, 2.0 * met.gap, xtol=1e-15)
+        if not abs(gap_after(crosses)) < 1e-14:  # the foot jumps there
+            continue
+        root = root_of_gap(held, i, cage, j, motion, crosses - 5e-10, 0.0, 3e-9, moved)
+        assert root == pytest.approx(crosses, abs=1e-12)
+        found += 1

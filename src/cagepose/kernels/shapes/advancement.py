@@ -40,6 +40,8 @@ VISIT = 4
 """Of these, after which another pair may be the one that can touch first."""
 NEWTON = 12
 """Steps of Newton's method at most."""
+ROUNDING, CONVERGES = 1e-3, 0.5
+"""Of the touch tolerance: a gap that is less is a root; and of such a gap: a step that leaves more no longer helps."""
 
 
 class Approach(NamedTuple):
@@ -198,21 +200,23 @@ def surely_clear(now: Approach, gap: float) -> float:
 
 @kernel
 def root_of_gap(
-    a: Shapes, i: int, b: Shapes, j: int, motion: Motion, amount: float, level: float, moved: Shapes
+    a: Shapes, i: int, b: Shapes, j: int, motion: Motion, amount: float, level: float, slack_m: float, moved: Shapes
 ) -> float:
     """Return where Newton's method leads on the gap of two features that come nearer; inf: nowhere."""
-    before = math.inf
+    root, least = math.inf, ROUNDING * slack_m / CONVERGES
     for _ in range(NEWTON):
         place_moved(a, i, motion, amount, moved)
         met = meeting(moved, i, b, j)
         closing = dot(met.normal, velocity_at(motion, met.place))
-        if not met.is_one or closing <= 0.0 or abs(met.gap + level) > before:
+        if not met.is_one or closing <= 0.0:
             return math.inf
-        if abs(met.gap + level) == before or met.gap + level == 0.0:
-            break
-        before = abs(met.gap + level)
+        left = abs(met.gap + level)
+        if left <= ROUNDING * slack_m:
+            if left >= CONVERGES * least:
+                break
+            root, least = amount, left
         amount += (met.gap + level) / closing
-    return amount
+    return root
 
 
 class Advance(NamedTuple):
@@ -273,7 +277,7 @@ def advance(
             return NOT_TOUCHING
         is_past = value < 0.0
         if 0.0 <= value <= slack_m:
-            root = root_of_gap(a, one, b, other, motion, amount, level, moved)
+            root = root_of_gap(a, one, b, other, motion, amount, level, slack_m, moved)
             if amount <= root <= end:
                 if touches_after(a, one, b, other, motion, root, level, slack, slack_m, moved):
                     return Advance(root, now.is_second, root)

@@ -153,9 +153,13 @@ def take_contacts(contacts: ContactSet, b: FloatArray, work: Relaxation) -> bool
 
 
 @kernel
-def write_edges(place: int, work: Relaxation) -> None:
+def write_edges(place: int, start: float, width: float, work: Relaxation) -> None:
+    """Write from which angle on and over which a contact slips; most have their cosines from the node before."""
+    if work.starts[place] == start and work.widths[place] == width:
+        return
+    work.starts[place], work.widths[place] = start, width
     for side in range(2):
-        angle = work.starts[place] + side * work.widths[place]
+        angle = start + side * width
         work.edges[place, side, 0], work.edges[place, side, 1] = math.cos(angle), math.sin(angle)
 
 

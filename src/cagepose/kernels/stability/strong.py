@@ -103,9 +103,8 @@ def stand_at_node(node: int, tree: ModeTree) -> None:
             work.openings[place] = mode
         elif work.slips[place] == UNDECIDED:
             work.slips[place] = mode
-            work.starts[place], work.widths[place] = tree.starts[node], tree.widths[node]
             if mode == SLIPS:
-                write_edges(place, work)
+                write_edges(place, tree.starts[node], tree.widths[node], work)
         node = tree.parents[node]
 
 
