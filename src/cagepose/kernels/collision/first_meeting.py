@@ -18,7 +18,7 @@ from cagepose.kernels.collision.geometry import Geometry, Placement
 from cagepose.kernels.collision.waiting import Waiting, drop_first, keep_last, note_near, settle_first, write_waiting
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.advancement import approach, are_curved, second_pair, surely_clear
-from cagepose.kernels.shapes.along_motion import ahead, safe_step
+from cagepose.kernels.shapes.along_motion import ahead, is_near_part, safe_step
 from cagepose.kernels.shapes.body import place_asked
 from cagepose.kernels.shapes.features import HOLE, SOLID, Shapes, is_end
 from cagepose.kernels.shapes.meetings import balls_apart, slack_of
@@ -183,9 +183,16 @@ def let_features_wait(
     ``hit``, which is known.
     """
     held, cage, queue, one, other = placement.body.world, geometry.cage, placement.queue, parts.part, parts.cage_part
-    until = min(parts.until, hit.amount)
+    until, are_near = min(parts.until, hit.amount), placement.meetings.are_near
+    within_m = search.touch_m + search.speed * until
+    for j in range(cage.parts[other].first, cage.parts[other].last):
+        are_near[j] = is_near_part(cage, j, held, one, within_m)
     for i in range(held.parts[one].first, held.parts[one].last):
+        if not is_near_part(held, i, cage, other, within_m):
+            continue
         for j in range(cage.parts[other].first, cage.parts[other].last):
+            if not are_near[j]:
+                continue
             row = queue.rows[queue.used[0]]
             if not may_touch(held, one, i, cage, other, j, motion, until, search, placement.moved, row):
                 continue

@@ -93,7 +93,7 @@ def away_from_arc(a: Shapes, i: int, b: Shapes, j: int) -> float:
 @kernel
 def away_from_rim(rim: Feature, shapes: Shapes, i: int) -> float:
     other, middle, away = shapes.features[i], middle_of_arc(rim), -math.inf
-    if other.kind == EDGE or other.kind == RIM:
+    if other.kind == RIM or not keeps_radius(other):
         away = distance_at(other, middle)
     if keeps_radius(other):
         away = max(away, distance_from(shapes, i, middle) - other.radius)

@@ -285,6 +285,15 @@ def keeps_radius(feature: Feature) -> bool:
 
 
 @kernel
+def is_near_part(a: Shapes, i: int, b: Shapes, other: int, within_m: float) -> bool:
+    """Whether a feature may be so near to a part."""
+    if within_m == math.inf or not keeps_radius(a.features[i]):
+        return True
+    away = distance_from(a, i, vector_from(b.parts[other].middle)) - a.features[i].radius
+    return away <= b.parts[other].reach + within_m
+
+
+@kernel
 def stay_parallel(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, span: float) -> bool:
     """Whether two edges stay side by side over a length of the motion: then they meet at their ends alone."""
     one, other = moved.features[i], b.features[j]

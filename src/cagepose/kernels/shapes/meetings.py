@@ -23,7 +23,7 @@ from cagepose.kernels.algebra.vector import (
 )
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.advancement import away_from_arc
-from cagepose.kernels.shapes.along_motion import can_touch, distance_from, keeps_radius
+from cagepose.kernels.shapes.along_motion import can_touch, is_near_part
 from cagepose.kernels.shapes.body import PlacedBody, place_asked, rotation_of
 from cagepose.kernels.shapes.covered import covers, is_in_parts, place_around
 from cagepose.kernels.shapes.features import (
@@ -114,15 +114,6 @@ def deepest_gap(a: Shapes, one: int, b: Shapes, other: int) -> float:
 
 
 @kernel
-def is_near(a: Shapes, i: int, b: Shapes, other: int, touch_m: float, deepest: float) -> bool:
-    """Whether a feature may be nearer to a part than it touches, or less deep in it than it may be."""
-    if deepest == -math.inf or not keeps_radius(a.features[i]):
-        return True
-    away = distance_from(a, i, vector_from(b.parts[other].middle)) - a.features[i].radius
-    return away <= b.parts[other].reach + max(touch_m, -deepest)
-
-
-@kernel
 def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, touch_m: float, found: Meetings) -> float:
     """Append the meetings of two parts; return how far apart they are at least, below zero how deep in each other (not
     of parts with holes: see `find_meetings`); NaN: there is no room.
@@ -134,10 +125,11 @@ def meet_parts(a: Shapes, one: int, b: Shapes, other: int, at_least_m: float, to
     separation, nearest, deepest = -math.inf, math.inf, deepest_gap(a, one, b, other)
     are_solid = deepest == -math.inf
     is_flat = has_flat_ends(a, one, b, other)
+    within_m = max(touch_m, -deepest)
     for j in range(b.parts[other].first, b.parts[other].last):
-        found.are_near[j] = is_near(b, j, a, one, touch_m, deepest)
+        found.are_near[j] = is_near_part(b, j, a, one, within_m)
     for i in range(a.parts[one].first, a.parts[one].last):
-        if not is_near(a, i, b, other, touch_m, deepest):
+        if not is_near_part(a, i, b, other, within_m):
             continue
         for j in range(b.parts[other].first, b.parts[other].last):
             if not found.are_near[j] or not can_touch(a, i, b, j):
