@@ -134,12 +134,12 @@ def look_closer(
     held: Shapes, cage: Shapes, motion: Motion, until: float, search: Search, row: Waiting, moved: Shapes
 ) -> Reached:
     """Look some steps farther whether two features that wait, curved and apart, touch; note until when they do not."""
-    i, j, begin, of_arc = row.feature, row.cage_feature, row.earliest, row.of_arc
+    i, j, begin, behind, of_arc = row.feature, row.cage_feature, row.earliest, row.behind, row.of_arc
     is_last = row.n_advances + VISIT >= ADVANCES
     found = advance(
-        held, i, cage, j, motion, begin, until, 0.0, search.exact, search.touch_m, of_arc, VISIT, is_last, moved
+        held, i, cage, j, motion, begin, behind, until, 0.0, search.exact, search.touch_m, of_arc, VISIT, is_last, moved
     )
-    row.earliest = found.clear
+    row.earliest, row.behind = found.clear, found.behind
     row.n_advances += VISIT
     one, other = second_pair(held, i, cage, j) if found.is_second else (i, j)
     return Reached(found.amount, row.gap, one, other)
@@ -184,7 +184,7 @@ def first_of_features(
             side = -math.copysign(1.0, dot(met.normal, crossed))
     if are_curved(held, i, cage, j):
         found = advance(
-            held, i, cage, j, motion, 0.0, until, level, search.exact, touch_m, False, ADVANCES, True, moved
+            held, i, cage, j, motion, 0.0, 0.0, until, level, search.exact, touch_m, False, ADVANCES, True, moved
         )
         return Reached(found.amount, met.gap, i, j)
     amount = first_touch(held, i, cage, j, motion, until, level, side, search.exact, touch_m, moved)

@@ -29,8 +29,8 @@ class Waiting:
         Whether they are so near to each other now that they may touch, or leave each other.
     of_arc
         Whether their `second_pair` is asked, too.
-    n_advances
-        How many steps have been made.
+    n_advances, behind
+        How many steps have been made, and how far behind the next root the search goes on.
     heap, near
         In row k: index of entry k of the heap, and of those that are near.
     """
@@ -46,6 +46,7 @@ class Waiting:
     is_near: bool
     of_arc: bool
     n_advances: int
+    behind: float
     heap: int
     near: int
 
@@ -77,7 +78,7 @@ def write_waiting(
     """Write a pair that waits."""
     row.part, row.cage_part, row.feature, row.cage_feature = one, other, i, j
     row.earliest, row.until, row.is_seen, row.gap = earliest, until, is_seen, math.inf
-    row.is_near, row.of_arc, row.n_advances = is_near, False, 0
+    row.is_near, row.of_arc, row.n_advances, row.behind = is_near, False, 0, 0.0
 
 
 @kernel

@@ -230,14 +230,17 @@ class Advance(NamedTuple):
         See above.
     clear
         Inf: as far as was asked.
+    behind
+        How far behind the next root the search goes on, see `gone_on`.
     """
 
     amount: float
     is_second: bool
     clear: float
+    behind: float
 
 
-NOT_TOUCHING = Advance(math.inf, False, math.inf)
+NOT_TOUCHING = Advance(math.inf, False, math.inf, 0.0)
 
 
 @kernel
@@ -248,6 +251,7 @@ def advance(
     j: int,
     motion: Motion,
     begin: float,
+    behind: float,
     end: float,
     level: float,
     slack: float,
@@ -261,7 +265,7 @@ def advance(
     in so many steps. With ``of_arc`` their `second_pair` is asked, too, and the level is zero. If these steps are the
     last ones, and graze, the features touch where they end.
     """
-    amount, behind = begin, BEHIND * end
+    amount, behind = begin, max(behind, BEHIND * end)
     one, other = i, j
     for _ in range(steps):
         place_moved(a, i, motion, amount, moved)
@@ -280,11 +284,11 @@ def advance(
             root = root_of_gap(a, one, b, other, motion, amount, level, slack_m, moved)
             if amount <= root <= end:
                 if touches_after(a, one, b, other, motion, root, level, slack, slack_m, moved):
-                    return Advance(root, now.is_second, root)
+                    return Advance(root, now.is_second, root, behind)
                 is_past = True
         step = surely_clear(now, abs(value))
         if step <= LEAST_STEP * end and touches_after(a, one, b, other, motion, amount, level, slack, slack_m, moved):
-            return Advance(amount, now.is_second, amount)
+            return Advance(amount, now.is_second, amount, behind)
         if is_past and now.fastest > 0.0:  # a root that is no contact: on so short a way none is hidden that counts
             step = max(step, slack_m / now.fastest)
         if step >= end - amount:
@@ -293,4 +297,4 @@ def advance(
         if amount >= end:
             return NOT_TOUCHING
     grazes = is_last and touches_after(a, one, b, other, motion, amount, level, slack, slack_m, moved)
-    return Advance(amount if grazes else math.inf, (one, other) != (i, j), math.inf if is_last else amount)
+    return Advance(amount if grazes else math.inf, (one, other) != (i, j), math.inf if is_last else amount, behind)
