@@ -10,6 +10,7 @@ from cagepose.kernels.collision.first_of_features import (
     Reached,
     Search,
     first_of_features,
+    look_along_arc,
     look_at,
     look_closer,
     may_touch,
@@ -183,7 +184,7 @@ def let_features_wait(
     ``hit``, which is known.
     """
     held, cage, queue, one, other = placement.body.world, geometry.cage, placement.queue, parts.part, parts.cage_part
-    until, are_near = min(parts.until, hit.amount), placement.meetings.are_near
+    begin, until, are_near = parts.earliest, min(parts.until, hit.amount), placement.meetings.are_near
     within_m = search.touch_m + search.speed * until
     for j in range(cage.parts[other].first, cage.parts[other].last):
         are_near[j] = is_near_part(cage, j, held, one, within_m)
@@ -194,7 +195,7 @@ def let_features_wait(
             if not are_near[j]:
                 continue
             row = queue.rows[queue.used[0]]
-            if not may_touch(held, one, i, cage, other, j, motion, until, search, placement.moved, row):
+            if not may_touch(held, one, i, cage, other, j, motion, begin, until, search, placement.moved, row):
                 continue
             if queue.used[0] + 1 < len(queue.rows):
                 keep_last(queue)
@@ -207,17 +208,22 @@ def let_features_wait(
 @kernel
 def sooner(geometry: Geometry, placement: Placement, motion: Motion, search: Search, row: Waiting, hit: Hit) -> Hit:
     """Return what a pair that waits reaches, as far as it is looked at now, or ``hit``, which is known."""
-    held, cage, until, i, j = placement.body.world, geometry.cage, row.until, row.feature, row.cage_feature
+    held, cage, moved, i, j = placement.body.world, geometry.cage, placement.moved, row.feature, row.cage_feature
+    end = min(row.until, hit.amount)
     if not row.is_seen:
         look_at(held, cage, motion, search, row)
         return hit
+    if not row.is_near and row.of_arc:
+        if look_along_arc(held, cage, motion, end, search, row, moved):
+            hit = with_second_pair(geometry, placement, motion, search, row, hit)
+        return hit
     if not row.is_near and are_curved(held, i, cage, j):
-        return reached(row, look_closer(held, cage, motion, min(until, hit.amount), search, row, placement.moved), hit)
+        return reached(row, i, j, look_closer(held, cage, motion, end, search, row, moved), hit)
     row.earliest = math.inf
     for _ in range(2):
-        end = min(until, hit.amount)
-        found = first_of_features(held, i, cage, j, motion, end, search, placement.meetings, placement.moved)
-        hit = reached(row, found, hit)
+        end = min(row.until, hit.amount)
+        found = first_of_features(held, i, cage, j, motion, end, search, placement.meetings, moved)
+        hit = reached(row, i, j, found, hit)
         i, j = second_pair(held, i, cage, j)
         if i < 0:
             break
@@ -225,10 +231,28 @@ def sooner(geometry: Geometry, placement: Placement, motion: Motion, search: Sea
 
 
 @kernel
-def reached(row: Waiting, found: Reached, hit: Hit) -> Hit:
-    """Return what two parts reach if that is sooner than ``hit``, and else this."""
+def with_second_pair(
+    geometry: Geometry, placement: Placement, motion: Motion, search: Search, row: Waiting, hit: Hit
+) -> Hit:
+    """Let the second pair of a pair that waits wait, too; return what it reaches if there is no room, or ``hit``."""
+    held, cage, queue = placement.body.world, geometry.cage, placement.queue
+    i, j = second_pair(held, row.feature, cage, row.cage_feature)
+    second = queue.rows[queue.used[0]]
+    if queue.used[0] + 1 < len(queue.rows):
+        write_waiting(row.part, row.cage_part, i, j, row.earliest, row.until, True, False, second)
+        keep_last(queue)
+        return hit
+    found = first_of_features(
+        held, i, cage, j, motion, min(row.until, hit.amount), search, placement.meetings, placement.moved
+    )
+    return reached(row, i, j, found, hit)
+
+
+@kernel
+def reached(row: Waiting, i: int, j: int, found: Reached, hit: Hit) -> Hit:
+    """Return what features of two parts reach if that is sooner than ``hit``, and else this."""
     if found.amount < min(row.until, hit.amount):
-        return Hit(found.amount, row.cage_part, row.part, found.feature, found.cage_feature, found.gap)
+        return Hit(found.amount, row.cage_part, row.part, i, j, found.gap)
     return hit
 
 

@@ -15,6 +15,7 @@ from cagepose.kernels.shapes.advancement import (
     approach,
     are_curved,
     away_from_arc,
+    clear_of_arc,
     second_pair,
     surely_clear,
 )
@@ -27,6 +28,12 @@ from cagepose.kernels.shapes.touching import Meetings
 
 LEAVES = 1e-6
 """Of the fastest speed of a part: features that touch and move apart faster leave each other, and may meet again."""
+
+
+CLOSE = 4.0
+"""In touch tolerances: where an arc is nearer, its places are followed one by one."""
+TOGETHER = 40
+"""Steps after which they are, too."""
 
 
 class Search(NamedTuple):
@@ -54,15 +61,13 @@ class Search(NamedTuple):
 
 
 class Reached(NamedTuple):
-    """When two features touch first, inf: never; how far apart they are now, metres; and which they are."""
+    """When two features touch first, inf: never; and how far apart they are now, metres."""
 
     amount: float
     gap: float
-    feature: int
-    cage_feature: int
 
 
-NEVER = Reached(math.inf, math.inf, -1, -1)
+NEVER = Reached(math.inf, math.inf)
 
 
 @kernel
@@ -91,24 +96,29 @@ def may_touch(
     other: int,
     j: int,
     motion: Motion,
+    begin: float,
     until: float,
     search: Search,
     moved: Shapes,
     row: Waiting,
 ) -> bool:
-    """Whether two features may touch before ``until``; write them as a pair that waits then."""
+    """Whether two features may touch before ``until``; write them as a pair that waits then. Curved ones do not before
+    ``begin``.
+    """
     if not can_touch(held, i, cage, j):
         return False
     if are_curved(held, i, cage, j):
         if held.features[i].is_second or cage.features[j].is_second:  # asked with the first ones
             return False
-        earliest = max(away_from_arc(held, i, cage, j) - search.touch_m, 0.0) / search.speed
+        earliest = max(begin, (away_from_arc(held, i, cage, j) - search.touch_m) / search.speed)
         write_waiting(one, other, i, j, earliest, until, False, False, row)
         return earliest < until
     earliest = safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until))
-    if earliest < until:
-        earliest = max(earliest, clear_step(held, i, cage, j, motion, 0.0, moved))
-    is_near = earliest * search.speed <= SAME_PLACE * max(search.near_m, search.touch_m)
+    if earliest >= until:
+        return False
+    clear = clear_step(held, i, cage, j, motion, 0.0, moved)
+    is_near = clear * search.speed <= SAME_PLACE * max(search.near_m, search.touch_m)  # and may be deep already
+    earliest = 0.0 if is_near else max(earliest, clear)
     write_waiting(one, other, i, j, earliest, until, True, is_near, row)
     return earliest < until
 
@@ -117,12 +127,10 @@ def may_touch(
 def look_at(held: Shapes, cage: Shapes, motion: Motion, search: Search, row: Waiting) -> None:
     """Note how far apart two curved features are, and until when they surely do not touch."""
     i, j = row.feature, row.cage_feature
-    second, _ = second_pair(held, i, cage, j)
-    now = approach(held, i, cage, j, motion, 0.0, second >= 0)
-    row.is_seen, row.is_near = True, abs(now.gap) <= max(search.near_m, search.touch_m)
-    row.of_arc = second >= 0 and not row.is_near
-    if now.has_foot:
-        row.gap = now.gap
+    row.of_arc = second_pair(held, i, cage, j)[0] >= 0
+    now = approach(held, i, cage, j, motion, 0.0, row.of_arc)
+    row.is_seen = True
+    row.is_near = abs(now.gap) <= max(search.near_m, search.touch_m)
     if abs(now.gap) <= search.touch_m and lie_flat(held.features[i], cage.features[j], search.touch_m):
         row.earliest = math.inf  # their vertices touch
     elif now.gap > 0.0:
@@ -134,15 +142,31 @@ def look_closer(
     held: Shapes, cage: Shapes, motion: Motion, until: float, search: Search, row: Waiting, moved: Shapes
 ) -> Reached:
     """Look some steps farther whether two features that wait, curved and apart, touch; note until when they do not."""
-    i, j, begin, behind, of_arc = row.feature, row.cage_feature, row.earliest, row.behind, row.of_arc
+    i, j, begin, behind = row.feature, row.cage_feature, row.earliest, row.behind
     is_last = row.n_advances + VISIT >= ADVANCES
     found = advance(
-        held, i, cage, j, motion, begin, behind, until, 0.0, search.exact, search.touch_m, of_arc, VISIT, is_last, moved
+        held, i, cage, j, motion, begin, behind, until, 0.0, search.exact, search.touch_m, VISIT, is_last, moved
     )
     row.earliest, row.behind = found.clear, found.behind
     row.n_advances += VISIT
-    one, other = second_pair(held, i, cage, j) if found.is_second else (i, j)
-    return Reached(found.amount, row.gap, one, other)
+    gap = meeting(held, i, cage, j).gap if found.amount < math.inf else math.inf
+    return Reached(found.amount, gap)
+
+
+@kernel
+def look_along_arc(
+    held: Shapes, cage: Shapes, motion: Motion, until: float, search: Search, row: Waiting, moved: Shapes
+) -> bool:
+    """Look some steps farther along an arc and what it meets; return whether each of its places is to be followed by
+    itself: where they are close, or take many steps.
+    """
+    close_m = CLOSE * max(search.near_m, search.touch_m)
+    row.earliest, is_close = clear_of_arc(
+        held, row.feature, cage, row.cage_feature, motion, row.earliest, until, close_m, moved
+    )
+    row.n_advances += VISIT
+    row.of_arc = not is_close and row.n_advances < TOGETHER
+    return row.earliest < until and not row.of_arc
 
 
 @kernel
@@ -183,9 +207,7 @@ def first_of_features(
             crossed = cross(vector_from(held.features[i].direction), vector_from(cage.features[j].direction))
             side = -math.copysign(1.0, dot(met.normal, crossed))
     if are_curved(held, i, cage, j):
-        found = advance(
-            held, i, cage, j, motion, 0.0, 0.0, until, level, search.exact, touch_m, False, ADVANCES, True, moved
-        )
-        return Reached(found.amount, met.gap, i, j)
+        found = advance(held, i, cage, j, motion, 0.0, 0.0, until, level, search.exact, touch_m, ADVANCES, True, moved)
+        return Reached(found.amount, met.gap)
     amount = first_touch(held, i, cage, j, motion, until, level, side, search.exact, touch_m, moved)
-    return Reached(amount, met.gap, i, j)
+    return Reached(amount, met.gap)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -23,12 +22,12 @@ class Waiting:
         Indices; features -1: two parts.
     earliest, until
         The amounts of the motion before which they do not touch, and after which their parts are past each other.
-    is_seen, gap
-        Whether it is known how far apart they are now, and that, metres.
+    is_seen
+        Whether it is known how far apart they are now.
     is_near
         Whether they are so near to each other now that they may touch, or leave each other.
     of_arc
-        Whether their `second_pair` is asked, too.
+        Whether all of an arc is followed: they and their `second_pair`.
     n_advances, behind
         How many steps have been made, and how far behind the next root the search goes on.
     heap, near
@@ -42,7 +41,6 @@ class Waiting:
     earliest: float
     until: float
     is_seen: bool
-    gap: float
     is_near: bool
     of_arc: bool
     n_advances: int
@@ -77,7 +75,7 @@ def write_waiting(
 ) -> None:
     """Write a pair that waits."""
     row.part, row.cage_part, row.feature, row.cage_feature = one, other, i, j
-    row.earliest, row.until, row.is_seen, row.gap = earliest, until, is_seen, math.inf
+    row.earliest, row.until, row.is_seen = earliest, until, is_seen
     row.is_near, row.of_arc, row.n_advances, row.behind = is_near, False, 0, 0.0
 
 

@@ -26,11 +26,11 @@ from cagepose.kernels.shapes.features import EDGE, FACE, RIM, Feature, Shapes
 from cagepose.kernels.shapes.meeting import Meeting, meeting
 from cagepose.kernels.shapes.motion import Motion, velocity_at
 from cagepose.kernels.shapes.rims import (
+    clearance_of_arc,
     distance_at,
     distance_from_arc,
     foot_on,
     middle_of_arc,
-    nearest_on_arc,
     reach_of_arc,
 )
 
@@ -49,9 +49,8 @@ class Approach(NamedTuple):
 
     Attributes
     ----------
-    has_foot, is_second
-        Whether there is a place on the arc, if one of them is one, that the other one is nearest to; and whether it is
-        that of the arc's second feature.
+    has_foot
+        Whether there is a place on the arc, if one of them is one, that the other one is nearest to.
     gap
         No more than how far apart they are, of planes and lines without end; below zero: about how deep in each other,
         metres.
@@ -62,7 +61,6 @@ class Approach(NamedTuple):
     """
 
     has_foot: bool
-    is_second: bool
     gap: float
     speed: float
     growth: float
@@ -159,8 +157,8 @@ def second_pair(a: Shapes, i: int, b: Shapes, j: int) -> tuple[int, int]:
 
 @kernel
 def approach(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, level: float, of_arc: bool) -> Approach:
-    """Return how feature i of the object, placed, and feature j of the cage come nearer; with ``of_arc``, these and
-    their `second_pair`.
+    """Return how feature i of the object, placed, and feature j of the cage come nearer; with ``of_arc``, all of an arc
+    and what it meets: it has a foot then if that is nearer than its ends.
     """
     one, other = moved.features[i], b.features[j]
     first = is_smaller(one, other)
@@ -173,19 +171,19 @@ def approach(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, level: fl
         apart = distance_from(b, j, middle) if first else distance_from(moved, i, middle)
         apart -= reach + small.radius + wide.radius
     if of_arc:
-        has_foot, is_second, gap = nearest_on_arc(one, other) if one.kind == RIM else nearest_on_arc(other, one)
+        foot, ends = clearance_of_arc(one, other) if one.kind == RIM else clearance_of_arc(other, one)
+        gap, has_foot = min(foot, ends), foot <= ends
     else:
         met = meeting(moved, i, b, j)
         gap, has_foot = gap_of(one, other, met, level), met.is_one or (one.kind != RIM and other.kind != RIM)
-        is_second = False
     if wide.kind == FACE:
         spread *= norm(cross(motion.axis, along))
-        return Approach(has_foot, is_second, gap, abs(dot(way, along)) + spread, motion.rate * fastest, apart, fastest)
+        return Approach(has_foot, gap, abs(dot(way, along)) + spread, motion.rate * fastest, apart, fastest)
     if wide.kind != EDGE:
-        return Approach(has_foot, is_second, gap, fastest, 0.0, apart, fastest)
+        return Approach(has_foot, gap, fastest, 0.0, apart, fastest)
     rise = dot(way, along)
     speed = norm(minus(way, scaled(along, rise))) + abs(wide.taper * rise) + spread
-    return Approach(has_foot, is_second, gap, speed, motion.rate * fastest, apart, fastest)
+    return Approach(has_foot, gap, speed, motion.rate * fastest, apart, fastest)
 
 
 @kernel
@@ -209,7 +207,7 @@ def root_of_gap(
         met = meeting(moved, i, b, j)
         closing = dot(met.normal, velocity_at(motion, met.place))
         if not met.is_one or closing <= 0.0:
-            return math.inf
+            break
         left = abs(met.gap + level)
         if left <= ROUNDING * slack_m:
             if left >= CONVERGES * least:
@@ -220,14 +218,12 @@ def root_of_gap(
 
 
 class Advance(NamedTuple):
-    """Where two features touch first, and whether their `second_pair` does.
+    """Where two features touch first.
 
     Attributes
     ----------
     amount
         Inf: they do not, up to ``clear``.
-    is_second
-        See above.
     clear
         Inf: as far as was asked.
     behind
@@ -235,12 +231,11 @@ class Advance(NamedTuple):
     """
 
     amount: float
-    is_second: bool
     clear: float
     behind: float
 
 
-NOT_TOUCHING = Advance(math.inf, False, math.inf, 0.0)
+NOT_TOUCHING = Advance(math.inf, math.inf, 0.0)
 
 
 @kernel
@@ -256,39 +251,32 @@ def advance(
     level: float,
     slack: float,
     slack_m: float,
-    of_arc: bool,
     steps: int,
     is_last: bool,
     moved: Shapes,
 ) -> Advance:
     """Look for the first contact of two features, see `first_touch`, from an amount before which they do not touch on,
-    in so many steps. With ``of_arc`` their `second_pair` is asked, too, and the level is zero. If these steps are the
-    last ones, and graze, the features touch where they end.
+    in so many steps. If these are the last ones, and graze, the features touch where they end.
     """
     amount, behind = begin, max(behind, BEHIND * end)
-    one, other = i, j
     for _ in range(steps):
         place_moved(a, i, motion, amount, moved)
-        now = approach(moved, i, b, j, motion, level, of_arc)
-        one, other = second_pair(a, i, b, j) if now.is_second else (i, j)
+        now = approach(moved, i, b, j, motion, level, False)
         if level > 0.0 and now.gap > level:
             level = 0.0
-        value, has_foot = now.gap + level, now.has_foot
-        if of_arc and has_foot and value <= slack_m:
-            place_moved(a, one, motion, amount, moved)
-            has_foot = meeting(moved, one, b, other).is_one
-        if level == 0.0 and not has_foot and value <= slack_m:  # what comes there has met the next arc before
+        value = now.gap + level
+        if level == 0.0 and not now.has_foot and value <= slack_m:  # what comes there has met the next arc before
             return NOT_TOUCHING
         is_past = value < 0.0
-        if 0.0 <= value <= slack_m:
-            root = root_of_gap(a, one, b, other, motion, amount, level, slack_m, moved)
-            if amount <= root <= end:
-                if touches_after(a, one, b, other, motion, root, level, slack, slack_m, moved):
-                    return Advance(root, now.is_second, root, behind)
+        if -ROUNDING * slack_m <= value <= slack_m:
+            root = max(root_of_gap(a, i, b, j, motion, amount, level, slack_m, moved), amount)
+            if root <= end:
+                if touches_after(a, i, b, j, motion, root, level, slack, slack_m, moved):
+                    return Advance(root, root, behind)
                 is_past = True
         step = surely_clear(now, abs(value))
-        if step <= LEAST_STEP * end and touches_after(a, one, b, other, motion, amount, level, slack, slack_m, moved):
-            return Advance(amount, now.is_second, amount, behind)
+        if step <= LEAST_STEP * end and touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
+            return Advance(amount, amount, behind)
         if is_past and now.fastest > 0.0:  # a root that is no contact: on so short a way none is hidden that counts
             step = max(step, slack_m / now.fastest)
         if step >= end - amount:
@@ -296,5 +284,25 @@ def advance(
         amount, behind = gone_on(amount, step, end, behind)
         if amount >= end:
             return NOT_TOUCHING
-    grazes = is_last and touches_after(a, one, b, other, motion, amount, level, slack, slack_m, moved)
-    return Advance(amount if grazes else math.inf, (one, other) != (i, j), math.inf if is_last else amount, behind)
+    grazes = is_last and touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved)
+    return Advance(amount if grazes else math.inf, math.inf if is_last else amount, behind)
+
+
+@kernel
+def clear_of_arc(
+    a: Shapes, i: int, b: Shapes, j: int, motion: Motion, begin: float, end: float, close_m: float, moved: Shapes
+) -> tuple[float, bool]:
+    """Return until when an arc and what it meets, which do not touch before ``begin``, surely do not, in a few steps,
+    inf: up to the end; and whether they are nearer than ``close_m`` then.
+    """
+    amount = begin
+    for _ in range(VISIT):
+        place_moved(a, i, motion, amount, moved)
+        now = approach(moved, i, b, j, motion, 0.0, True)
+        if now.gap <= close_m:
+            return amount, True
+        step = surely_clear(now, now.gap)
+        if step >= end - amount:
+            return math.inf, False
+        amount += step
+    return amount, False

@@ -359,42 +359,24 @@ def farthest_rise(
     return angle, at[0]
 
 
-class OnArc(NamedTuple):
-    """What of an arc an edge or another rim is nearest to.
-
-    Attributes
-    ----------
-    has_foot, is_last
-        Whether it is a place that is nearest among its neighbours; if there are two, whether the last one. Else it is
-        one of the arc's ends.
-    away
-        How far apart they are, metres; below zero: how deep.
+@kernel
+def clearance_of_arc(rim: Feature, other: Feature) -> tuple[float, float]:
+    """Return how far an edge or another rim, both in the world, is from where it is nearest to an arc, inf: nowhere,
+    and from the arc's ends: above zero, though they may be deep in each other.
     """
-
-    has_foot: bool
-    is_last: bool
-    away: float
-
-
-@kernel
-def nearest_on_arc(rim: Feature, other: Feature) -> OnArc:
-    """Return what of an arc an edge or another rim, both in the world, is nearest to."""
-    feet = feet_on(rim, other)
-    if feet.n_feet == 0:
-        return OnArc(False, False, ends_away(rim, other))
-    first = distance_at(other, on_rim(rim, feet.first, True).point)
-    if feet.n_feet == 1:
-        return OnArc(True, False, first)
-    last = distance_at(other, on_rim(rim, feet.last, True).point)
-    is_last = abs(last) < abs(first)
-    return OnArc(True, is_last, last if is_last else first)
+    feet, foot = feet_on(rim, other), math.inf
+    if feet.n_feet > 0:
+        foot = abs(distance_at(other, on_rim(rim, feet.first, True).point))
+    if feet.n_feet > 1:
+        foot = min(foot, abs(distance_at(other, on_rim(rim, feet.last, True).point)))
+    before, after = end_of_search(rim, -1.0), end_of_search(rim, 1.0)
+    return foot, min(abs(distance_at(other, before)), abs(distance_at(other, after)))
 
 
 @kernel
-def ends_away(rim: Feature, other: Feature) -> float:
-    """Return how far an edge or another rim is from the ends of an arc."""
-    before, after = on_rim(rim, -SEARCHED, False).point, on_rim(rim, SEARCHED, False).point
-    return min(distance_at(other, before), distance_at(other, after))
+def end_of_search(rim: Feature, side: float) -> Vector:
+    """Return a little beyond the end of an arc before (side -1) or after its middle."""
+    return towards(rim, COSINES[0], side * SINES[SECTIONS], False).point
 
 
 @kernel
@@ -402,7 +384,8 @@ def distance_from_arc(rim: Feature, other: Feature) -> float:
     """Return how far an edge or another rim is from an arc on which it has no place of its own: an end or, where it
     would be the second one, the first place is nearest.
     """
-    least = ends_away(rim, other)
+    before, after = end_of_search(rim, -1.0), end_of_search(rim, 1.0)
+    least = min(distance_at(other, before), distance_at(other, after))
     if rim.is_second:
         feet = feet_on(rim, other)
         if feet.n_feet > 0:

@@ -45,7 +45,7 @@ VELOCITIES = 8
 INTO, AWAY, ANY_WAY, BEFORE, BEHIND = 0, 1, 2, 6, 7
 """Their numbers: into the other one, away from it, each of four ways along it, and before and behind a sector."""
 QUARTERS = (1.0, 0.0, -1.0, 0.0, 1.0)
-"""Cosines of no, one, two and more quarter turns; sines are those of one more."""
+"""Entry k and the next one: the tangents of each of four ways along a contact."""
 ROUNDS = 12
 """Twists that are looked for at one node; then it is divided, which tells more."""
 MOST_GENERATORS = 80
