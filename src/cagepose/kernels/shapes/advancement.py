@@ -158,7 +158,7 @@ def second_pair(a: Shapes, i: int, b: Shapes, j: int) -> tuple[int, int]:
 @kernel
 def approach(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, level: float, of_arc: bool) -> Approach:
     """Return how feature i of the object, placed, and feature j of the cage come nearer; with ``of_arc``, all of an arc
-    and what it meets: it has a foot then if that is nearer than its ends.
+    and what it meets, whether there is a foot or not.
     """
     one, other = moved.features[i], b.features[j]
     first = is_smaller(one, other)
@@ -171,8 +171,7 @@ def approach(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, level: fl
         apart = distance_from(b, j, middle) if first else distance_from(moved, i, middle)
         apart -= reach + small.radius + wide.radius
     if of_arc:
-        foot, ends = clearance_of_arc(one, other) if one.kind == RIM else clearance_of_arc(other, one)
-        gap, has_foot = min(foot, ends), foot <= ends
+        gap, has_foot = clearance_of_arc(one, other) if one.kind == RIM else clearance_of_arc(other, one), True
     else:
         met = meeting(moved, i, b, j)
         gap, has_foot = gap_of(one, other, met, level), met.is_one or (one.kind != RIM and other.kind != RIM)

@@ -360,17 +360,18 @@ def farthest_rise(
 
 
 @kernel
-def clearance_of_arc(rim: Feature, other: Feature) -> tuple[float, float]:
-    """Return how far an edge or another rim, both in the world, is from where it is nearest to an arc, inf: nowhere,
-    and from the arc's ends: above zero, though they may be deep in each other.
+def clearance_of_arc(rim: Feature, other: Feature) -> float:
+    """Return how far an edge or another rim, both in the world, is from what of an arc it is nearest to, a place or an
+    end: above zero, though they may be deep in each other.
     """
-    feet, foot = feet_on(rim, other), math.inf
-    if feet.n_feet > 0:
-        foot = abs(distance_at(other, on_rim(rim, feet.first, True).point))
-    if feet.n_feet > 1:
-        foot = min(foot, abs(distance_at(other, on_rim(rim, feet.last, True).point)))
+    feet = feet_on(rim, other)
     before, after = end_of_search(rim, -1.0), end_of_search(rim, 1.0)
-    return foot, min(abs(distance_at(other, before)), abs(distance_at(other, after)))
+    least = min(abs(distance_at(other, before)), abs(distance_at(other, after)))
+    if feet.n_feet > 0:
+        least = min(least, abs(distance_at(other, on_rim(rim, feet.first, True).point)))
+    if feet.n_feet > 1:
+        least = min(least, abs(distance_at(other, on_rim(rim, feet.last, True).point)))
+    return least
 
 
 @kernel
