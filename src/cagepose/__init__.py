@@ -76,12 +76,12 @@ if TYPE_CHECKING:
     from cagepose.studies.comparison import Parting as Parting
     from cagepose.studies.comparison import Variant as Variant
     from cagepose.studies.comparison import compare as compare
-    from cagepose.studies.contact_problem import ContactFace as ContactFace
     from cagepose.studies.margin import ContactMargin as ContactMargin
     from cagepose.studies.margin import Margin as Margin
     from cagepose.studies.margin import margin as margin
     from cagepose.studies.play import play as play
     from cagepose.studies.play_result import Play as Play
+    from cagepose.studies.touched_faces import ContactFace as ContactFace
 
     __version__: str
 
@@ -120,10 +120,10 @@ _HOMES = {
     "cagepose.studies.certificate_check": ("CertificateCheck", "check_certificate"),
     "cagepose.studies.certify": ("certificate",),
     "cagepose.studies.comparison": ("Comparison", "Parting", "Variant", "compare"),
-    "cagepose.studies.contact_problem": ("ContactFace",),
     "cagepose.studies.margin": ("ContactMargin", "Margin", "margin"),
     "cagepose.studies.play": ("play",),
     "cagepose.studies.play_result": ("Play",),
+    "cagepose.studies.touched_faces": ("ContactFace",),
     "cagepose.files.run_file": ("load_certificates", "load_run", "save_run"),
     "cagepose.files.saved_scene": ("save_scene",),
     "cagepose.files.scene_file": ("load_scene",),

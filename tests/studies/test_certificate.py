@@ -35,9 +35,10 @@ from cagepose import (
     save_run,
 )
 from cagepose.files.record import record_of
-from cagepose.model.methods import METHODS
+from cagepose.model.shapes import AnyShape
 from cagepose.studies.certificate_check import CertificateCheck
-from our_scenes import OF_BOXES_AND_POINTS
+from our_scenes import CASES
+from shapes.shape_scenes import random_problem, scene_of
 
 ROOT = Path(__file__).parents[2]
 
@@ -48,8 +49,7 @@ def certified(a_run: Run, phase: int = -1) -> tuple[Certificate, CertificateChec
     return found, check_certificate(found, a_run, phase)
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("path", OF_BOXES_AND_POINTS, ids=[path.stem for path in OF_BOXES_AND_POINTS])
+@pytest.mark.parametrize(("path", "method"), CASES, ids=[f"{path.stem}-{method}" for path, method in CASES])
 def test_each_rest_of_our_scenes_has_a_certificate_that_is_right(path: Path, method: str) -> None:
     a_run = run(load_scene(path), method)
     for number, phase in enumerate(a_run.phases):
@@ -82,6 +82,49 @@ def test_certificates_of_random_blocks_and_unions_agree_with_the_verdicts(cases,
     assert seen["strong"] > n // 2
     assert seen["weak"] > 0
     assert without <= n // 20
+
+
+def test_certificates_of_random_shapes_agree_with_the_verdicts(cases, say) -> None:
+    """And their contacts are where the parts touch: the planes through them have the parts on their two sides."""
+    random, n, seen = np.random.default_rng(41), cases(150, 3000), {"strong": 0, "weak": 0, "not shown": 0}
+    n_contacts, n_without, deepest = 0, 0, 0.0
+    for _ in range(n):
+        scene = scene_of(*random_problem(random))
+        a_run = run(scene)
+        if a_run.verdict not in ("rests", "may rest"):
+            continue
+        found = certificate(a_run)
+        if found is None:
+            n_without += 1
+            continue
+        assert found.uniqueness == check_certificate(found, a_run).uniqueness == a_run.phases[-1].proof.uniqueness
+        seen[found.uniqueness] += 1
+        n_contacts += len(found.contacts)
+        deepest = max(deepest, farthest_beyond(found, a_run) / scene.touch_m)
+    say(f"{n} scenes, {seen}, {n_without} without; {n_contacts} contacts, {deepest:.1e} tolerances past their planes")
+    assert seen["strong"] > n // 50
+    assert seen["weak"] > 0
+    assert n_without <= n // 50
+    assert deepest <= 1.0
+
+
+def farthest_beyond(found: Certificate, a_run: Run) -> float:
+    """How far the parts that touch reach over the planes of their contacts, metres, by their support functions."""
+    scene, pose = a_run.scene, a_run.pose
+    held = dict(zip(scene.object.element_names, scene.object.parts, strict=True))
+    cage = dict(zip(scene.cage.element_names, (*scene.cage.points_world(), *scene.cage.shapes), strict=True))
+    most = 0.0
+    for face, place, (normal, *_) in zip(found.contacts, found.places_world, found.directions_world, strict=True):
+        most = max(most, height(held[face.box], pose, normal) - float(normal @ place))
+        most = max(most, height(cage[face.point], scene.cage.pose_world_cage, -normal) + float(normal @ place))
+    return most
+
+
+def height(part: Box | AnyShape | np.ndarray, pose: Pose, normal_world: np.ndarray) -> float:
+    if isinstance(part, np.ndarray):
+        return float(part @ normal_world)
+    direction = pose.rotation.T @ normal_world
+    return float(part.heights_m(direction[None])[0] + pose.position_m @ normal_world)
 
 
 def slope(friction: float = 0.5, lean: float = 0.6) -> Scene:
@@ -203,6 +246,10 @@ def with_forces(given: Certificate, change: Callable[[np.ndarray], np.ndarray]) 
         (lambda given: replace(given, contacts=given.contacts[:-1]), "contacts leave out C4 on -z of box1"),
         (lambda given: replace(given, contacts=(replace(given.contacts[0], side="+z"), *given.contacts[1:])),
          "contacts name C1 on +z of box1, which does not touch"),
+        (lambda given: replace(given, places_world=given.places_world + 1e-7), "places_world of C1 on -z of box1"),
+        (lambda given: replace(given, places_world=given.places_world[1:]), "places_world has 3 entries for 4 contact"),
+        (lambda given: replace(given, directions_world=given.directions_world * math.nan), "directions_world of C1 on"),
+        (lambda given: replace(given, directions_world=given.directions_world[:, [0, 2, 1]]), "directions_world of C1"),
         (lambda given: replace(given, choices=()), "choices leave out the one with C1 on -z of box1, C2"),
         (lambda given: replace(given, choices=(replace(given.choices[0], contacts=(0, 1, 2, 9)),)), "name contact 9"),
         (lambda given: replace(given, choices=(replace(given.choices[0], tree=None),)), "has no tree"),
@@ -354,12 +401,13 @@ def test_a_phase_that_moves_has_none(tmp_path: Path) -> None:
         certificate(a_run, 7)
 
 
+@pytest.mark.parametrize("name", ["ladder", "phone-dock", "planks"])
 def test_the_thirty_lines_of_the_theory_check_a_saved_run(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     page = (ROOT / "docs" / "theory" / "certificate.md").read_text(encoding="utf-8")
     (by_hand,) = [text for text in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "import numpy" in text]
-    save_run(run(load_scene(ROOT / "scenes" / "ladder.yaml")), tmp_path / "run.json")
+    save_run(run(load_scene(ROOT / "scenes" / f"{name}.yaml")), tmp_path / "run.json")
     monkeypatch.chdir(tmp_path)
     exec(by_hand, {})
     assert "leaves: no motion begins" in capsys.readouterr().out

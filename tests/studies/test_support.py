@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 
 from caged_scenes import pushed_block
 from cagepose import Box, Cage, Load, Object, Pose, Scene, load_scene, run
+from cagepose.model.shapes import Capsule
 from cagepose.paper.cases import sample_scene
 from cagepose.runs.judge import judge_pose
 from cagepose.studies.support import convex_hull, load_view
@@ -81,6 +82,31 @@ def test_a_ladder_may_be_climbed_up_to_where_its_ends_slip():
     assert (x.max(), x.min()) == pytest.approx((0.5, 0.5 - away), rel=1e-5)
     assert (y.max(), y.min()) == pytest.approx((0.18, -0.18), rel=1e-5)
     assert found.margin_m == pytest.approx(view.load_point[0] - x.min(), rel=1e-4)
+
+
+def test_a_plate_with_holes_is_supported_within_its_three_rests():
+    """At (-30, 40), (-30, -40) and (50, 0) mm; the longer sides pass 2000 / sqrt(8000) mm from the middle."""
+    view, found = region_of(run(load_scene(Path(__file__).parents[2] / "scenes" / "plate-on-pins.yaml")))
+    assert sorted((found.corners * 1000).round(6).tolist()) == [[-30, -40], [-30, 40], [50, 0]]
+    assert found.margin_m * 1000 == pytest.approx(2000 / math.sqrt(8000), abs=1e-6)
+    assert_allclose(view.load_point, 0.0, atol=1e-12)
+
+
+def test_a_bar_that_sticks_out_between_two_rollers_is_supported_ahead_of_them():
+    """Rollers below at x = 100 mm and above at x = -100, as wide as the bar, 20 mm to each side. A weight at x presses
+    on them with (x + 100) / 200 and (x - 100) / 200, which bears it as far as 20 (F + G) = 0.2 x to the side.
+    """
+    rollers = [
+        Capsule(0.008, 0.06, Pose(place, euler_zyx=(0, 0, math.pi / 2)))
+        for place in ((0.1, 0, -0.013), (-0.1, 0, 0.013))
+    ]
+    bar = Object([Box((0.4, 0.04, 0.01))], (0.13, 0, 0))
+    scene = Scene(bar, Cage(shapes=rollers), [Load("weight", gravity=(0, 0, -1))])
+    _, found = region_of(run(scene))
+    assert found.margin_m == pytest.approx(0.2 * 0.13 / math.sqrt(1.04), rel=1e-6)
+    x, y = found.corners.T
+    assert_allclose(x.min(), 0.1, rtol=1e-6)
+    assert_allclose(np.sort(y[x < 0.1 + 1e-9]), (-0.02, 0.02), rtol=1e-6)
 
 
 def test_without_friction_a_slope_supports_nothing():

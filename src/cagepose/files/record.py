@@ -35,6 +35,7 @@ PARTS_OF_A_SCENE = (Object, Cage, Tolerances)
 KEYS = {
     "through_world": "through_m",
     "place_world": "place_m",
+    "places_world": "places_m",
     "names": "point_names",
     "points_cage": "points_m",
     "pose_world_cage": "cage_pose",

@@ -35,8 +35,7 @@ def save_run(
     """Write ``run`` to one file, whole or not at all; ``length_unit`` is for the part that people read, where
     ``margins``, one for each phase, stand too.
 
-    The file also holds the certificate of each phase's end, see `load_certificates`; none of scenes with other shapes
-    than boxes and points.
+    The file also holds the certificate of each phase's end, see `load_certificates`.
 
     Raises
     ------
@@ -49,8 +48,7 @@ def save_run(
     expect_choice(length_unit, LENGTH_UNITS, "length_unit")
     check_can_save(path)
     content = {**run_document(run, length_unit, margins), "exact": record_of(run)}
-    n_phases = len(run.phases)
-    certificates = [None if run.scene.has_other_shapes else certificate(run, phase) for phase in range(n_phases)]
+    certificates = (certificate(run, phase) for phase in range(len(run.phases)))
     records = [None if found is None else record_of(found) for found in certificates]
     write_whole(path, json_text(content, certificates=records).encode())
 

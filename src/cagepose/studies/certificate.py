@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 from cagepose.model.checks import FloatArray
 from cagepose.model.wording import counted
 from cagepose.runs.proof import Uniqueness
-from cagepose.studies.contact_problem import ContactFace
+from cagepose.studies.touched_faces import ContactFace
 
 Decision = Literal["none", "opens", "closed", "sticks", "slips"]
 
@@ -118,7 +118,10 @@ class Certificate:
         "strong": for each choice of faces there is a tree. "weak": there is another onset. "not shown": neither; the
         forces show that rest is one onset.
     contacts
-        Where they are.
+        Between what they are.
+    places_world, directions_world
+        Where each is, (n, 3), metres, and the outward normal of the object and two tangents there, unit vectors
+        (n, 3, 3): what forces and pressures go along.
     friction
         Coefficient of each, (n,).
     choices
@@ -129,6 +132,8 @@ class Certificate:
 
     uniqueness: Uniqueness
     contacts: tuple[ContactFace, ...]
+    places_world: Annotated[FloatArray, (-1, 3)]
+    directions_world: Annotated[FloatArray, (-1, 3, 3)]
     friction: Annotated[FloatArray, (-1,)]
     choices: tuple[ChosenFaces, ...]
     onset: OtherOnset | None

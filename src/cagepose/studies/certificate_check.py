@@ -1,7 +1,7 @@
 """Is a certificate of rest right? `check_certificate`, in NumPy, with nothing of the search that made it.
 
 Contacts, load and metric are those of the scene at the pose, found anew; the certificate is believed in nothing but
-where to look.
+where to look. Where shapes touch that are not boxes and points, the kernels say, as `contact_problem` tells.
 """
 
 from __future__ import annotations
@@ -22,6 +22,8 @@ from cagepose.studies.contact_problem import ContactProblem, contact_problem
 
 BALANCED, ROUNDING = 1e-8, 2.3e-16
 """Of the load: what forces may leave of it; and of the forces, which may be millions of loads, what rounding does."""
+SAME_PLACE = 1e-9
+"""Of the scene's size, and radians: contacts are where the certificate says."""
 OUTSIDE = 1e-12
 """Of load and forces: how far a force may be outside of its friction cone."""
 DRIVEN = 1e-11
@@ -89,6 +91,7 @@ def check_certificate(certificate: Certificate, run: Run, phase: int = -1) -> Ce
     number = range(len(run.phases))[phase]
     problem = contact_problem(run, number)
     places = _places(certificate, problem)
+    _check_geometry(certificate, problem, places, run.scene.size_m)
     _check_choices(certificate, places, problem)
     residual, n_leaves, speed = 0.0, 0, 0.0
     for number, choice in enumerate(certificate.choices):
@@ -126,6 +129,20 @@ def _places(certificate: Certificate, problem: ContactProblem) -> list[int]:
         if told != own:
             raise CertificateError(f"friction of {face} is {float(told)!r}, and the scene's is {float(own)!r}")
     return found
+
+
+def _check_geometry(certificate: Certificate, problem: ContactProblem, found: list[int], size_m: float) -> None:
+    """Contacts must be where the certificate says, with its normals and tangents, for whoever checks it by hand."""
+    for told, own, unit, what in (
+        (certificate.places_world, problem.places[found], size_m, "places_world"),
+        (certificate.directions_world, problem.directions[found], 1.0, "directions_world"),
+    ):
+        if told.shape != own.shape:
+            raise CertificateError(f"{what} has {len(told)} entries for {len(own)} contacts")
+        apart = np.abs(told - own).reshape(len(own), -1).max(axis=1, initial=0.0)
+        for number in np.nonzero(~(apart <= SAME_PLACE * unit))[0][:1]:
+            face = certificate.contacts[number]
+            raise CertificateError(f"{what} of {face} is {apart[number]:.1e} off from the scene's at this pose")
 
 
 def _taken(onset: OtherOnset, places: list[int]) -> list[int]:

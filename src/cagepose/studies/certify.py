@@ -20,7 +20,6 @@ from cagepose.kernels.stability import relaxation, strong
 from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
 from cagepose.kernels.stability.relaxation import ANY_WAY, AWAY, BEFORE, BEHIND, INTO, QUARTERS, VELOCITIES
 from cagepose.model.checks import FloatArray, expect
-from cagepose.model.scope import check_boxes_and_points
 from cagepose.runs.cases import cases_of
 from cagepose.runs.judge import judged_workspace
 from cagepose.runs.methods import chosen_method
@@ -44,8 +43,8 @@ def certificate(run: Run, phase: int = -1) -> Certificate | None:
     """Return the proof that the end of a phase is at rest, and that rest is the only onset or one of several.
 
     The search is made again. Returns None where the object moves; where nothing touches it; where contacts without play
-    carry the load to second order, which these proofs of first order do not show; and where points on edges have more
-    than 729 choices of faces.
+    carry the load to second order, which these proofs of first order do not show; and where edges have more than 729
+    choices of faces.
 
     Parameters
     ----------
@@ -58,11 +57,8 @@ def certificate(run: Run, phase: int = -1) -> Certificate | None:
     ------
     IndexError
         The run has no such phase.
-    SceneError
-        The scene has other shapes than boxes and points.
     """
     expect(run, Run, "run")
-    check_boxes_and_points(run.scene, "certificate")
     number = range(len(run.phases))[phase]
     ended = run.phases[number]
     if ended.proof.verdict == "moves":
@@ -87,7 +83,8 @@ def certificate(run: Run, phase: int = -1) -> Certificate | None:
             uniqueness, onset = answer, moving
     if uniqueness != "strong":
         found = [ChosenFaces(faces.contacts, faces.forces, None) for faces in found]
-    return Certificate(uniqueness, problem.faces, problem.friction, tuple(found), onset)
+    where = problem.faces, problem.places, problem.directions
+    return Certificate(uniqueness, *where, problem.friction, tuple(found), onset)
 
 
 class _Search:

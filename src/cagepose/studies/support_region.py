@@ -7,8 +7,10 @@ not: there forces that point elsewhere than up make it larger, smaller or empty.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import islice, product
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +28,8 @@ FIRST_RAYS, MOST_ROUNDS = 8, 40
 """Of each friction cone, evenly spread; and how often others come in."""
 CUT_FROM = 1e-9
 """In lengths of a twist: one that is violated by less is left as it is."""
+HALVINGS = 30
+"""Of the angle between a direction in which a region ends and one in which it does not."""
 MOST_CHOICES = 27
 """Of faces at edges: three points on corners."""
 
@@ -50,8 +54,7 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
     """Return where the contacts at the end of a phase under gravity alone could balance the object's weight.
 
     They can where the region holds the centre of gravity, with each choice of faces at edges. (That they can does not
-    say that they must, see `Proof`.) None: there are too many choices, a linear program had no sure answer, or the
-    scene has shapes, whose contacts are not found anew here.
+    say that they must, see `Proof`.) None: there are too many choices, or a linear program had no sure answer.
 
     Parameters
     ----------
@@ -60,43 +63,49 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
     reach_m
         Farther from the centre of gravity nothing is shown.
     """
-    if run.scene.has_other_shapes:
-        return None
     problem = contact_problem(run, phase_index)
     choices = list(islice(product(*problem.groups), MOST_CHOICES + 1))
     if len(choices) > MOST_CHOICES:
         return None
     normals = _directions(view.polygon)
-    heights, points = np.full(len(normals), math.inf), np.zeros((0, 2))
-    for choice in choices:
-        found = _farthest(problem, list(choice), view, normals)
-        if found is None:
-            return None
-        heights, points = np.minimum(heights, found[0]), found[1]
+    found = [_farthest(problem, list(choice), view, normals) for choice in choices]
+    if any(bounds is None for bounds in found):
+        return None
+    bounds = [one for one in found if one is not None]
+    normals, heights = (np.concatenate([getattr(one, name) for one in bounds]) for name in ("normals", "heights"))
     margin_m = float(heights.min())
     if margin_m == -math.inf:
         return SupportRegion(np.zeros((0, 2)), margin_m)
     if len(choices) == 1 and heights.max() < reach_m:  # between its farthest points there is next to nothing
-        shown = without_doubles(convex_hull(points), ROUNDING * reach_m)
+        shown = without_doubles(convex_hull(bounds[0].points), ROUNDING * reach_m)
     else:
         shown = polygon_within(normals, np.minimum(heights, reach_m))
     return SupportRegion(view.load_point + shown, margin_m)
 
 
 def _directions(polygon: FloatArray) -> FloatArray:
-    """Return unit vectors in the picture, (n, 2)."""
+    """Return unit vectors in the picture, (n, 2), counter-clockwise."""
     angles = 2.0 * np.pi * np.arange(N_DIRECTIONS) / N_DIRECTIONS
     sides = np.roll(polygon, -1, axis=0) - polygon
     sizes = np.linalg.norm(sides, axis=1)
     across = np.stack([sides[:, 1], -sides[:, 0]], axis=1)[sizes > 0.0] / sizes[sizes > 0.0, None]
-    return np.concatenate([np.stack([np.cos(angles), np.sin(angles)], axis=1), across, -across])
+    directions = np.concatenate([np.stack([np.cos(angles), np.sin(angles)], axis=1), across, -across])
+    return np.asarray(directions[np.argsort(np.arctan2(directions[:, 1], directions[:, 0]))])
 
 
-def _farthest(
-    problem: ContactProblem, places: list[int], view: LoadView, normals: FloatArray
-) -> tuple[FloatArray, FloatArray] | None:
-    """Return how far the region goes in each direction, metres from the centre of gravity, and these points;
-    inf: it has no end, -inf: it is empty.
+class _Bounds(NamedTuple):
+    """How far a region goes along unit vectors (n, 2), metres from the centre of gravity, and the points there; inf: it
+    has no end, -inf: it is empty.
+    """
+
+    normals: FloatArray
+    heights: FloatArray
+    points: FloatArray
+
+
+def _farthest(problem: ContactProblem, places: list[int], view: LoadView, normals: FloatArray) -> _Bounds | None:
+    """Return how far the region goes along some directions, and along those where it begins to have no end; None: a
+    program had no sure answer.
 
     With unit forces F_r of rays and their moments, the centre of gravity is M x d off for a weight of 1 along d, if the
     forces add up to -d and M has no part along d. The dual of what is greatest of it along a has four unknowns, and
@@ -104,18 +113,42 @@ def _farthest(
     """
     down, seen = np.cross(view.up_world, view.right_world), np.stack([view.right_world, view.up_world], axis=1)
     rays, program = _Rays(problem.wrenches[places], problem.friction[places], down), empty_record(Program)
-    heights, points = np.zeros(len(normals)), np.zeros((len(normals), 2))
-    for place, normal in enumerate(normals):
+
+    def reach(normal: FloatArray) -> tuple[float, FloatArray] | None:
         outcome = rays.solve(program, np.cross(down, seen @ normal))
         if outcome == OPTIMAL:
             used = program.passive.used
             moment = program.passive.x[:used] @ rays.moments[program.passive.labels[:used]]
-            heights[place], points[place] = -rays.length_m * float(down @ program.x[:3]), np.cross(moment, down) @ seen
-        elif outcome in (UNBOUNDED, INFEASIBLE):  # the dual of none, or of what has no end
-            heights[place] = -math.inf if outcome == UNBOUNDED else math.inf
-        else:
+            return -rays.length_m * float(down @ program.x[:3]), np.cross(moment, down) @ seen
+        if outcome in (UNBOUNDED, INFEASIBLE):  # the dual of none, or of what has no end
+            return -math.inf if outcome == UNBOUNDED else math.inf, np.zeros(2)
+        return None
+
+    found = [(normal, reach(normal)) for normal in normals]
+    last_ends = []
+    for (one, at_one), (other, at_other) in zip(found, [*found[1:], found[0]], strict=True):
+        if at_one is None or at_other is None:
             return None
-    return heights, points
+        if (at_one[0] == math.inf) != (at_other[0] == math.inf):
+            last_ends.append(_last_end(reach, *((one, other) if at_other[0] == math.inf else (other, one))))
+    known = [(normal, *end) for normal, end in (*found, *last_ends) if end is not None]
+    return _Bounds(*(np.array(column) for column in zip(*known, strict=True)))
+
+
+def _last_end(
+    reach: Callable[[FloatArray], tuple[float, FloatArray] | None], bounded: FloatArray, endless: FloatArray
+) -> tuple[FloatArray, tuple[float, FloatArray] | None]:
+    """Return the direction nearest to an endless one in which the region still ends, and where."""
+    last = bounded, reach(bounded)
+    for _ in range(HALVINGS):
+        between = bounded + endless
+        between /= np.linalg.norm(between)
+        end = reach(between)
+        if end is None or end[0] == math.inf:
+            endless = between
+        else:
+            last, bounded = (between, end), between
+    return last
 
 
 class _Rays:

@@ -237,7 +237,7 @@ def _draw_legend(figure: Figure, scene: Scene) -> None:
     point: Look = {"marker": "o", "linestyle": "none"}
     support = Patch(facecolor="none", edgecolor=GREEN, hatch="//", label="support region: a weight is balanced")
     bodies = Patch(facecolor=SAND, edgecolor=BROWN, alpha=0.5, label="shape of the cage")
-    patches = ([bodies] if scene.cage.shapes else []) + ([] if scene.has_other_shapes else [support])
+    patches = [*([bodies] if scene.cage.shapes else []), support]
     figure.legend(
         handles=[
             Line2D([], [], label="reached by this motion", **point, **POINT_LOOKS["reached"]),

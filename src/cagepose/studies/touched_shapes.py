@@ -1,0 +1,31 @@
+"""Where shapes touch at a pose: `touched_shapes`. The kernels find it, as in a run."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Any
+
+import numpy as np
+
+from cagepose.kernels.contact.contact_set import tangents_to
+from cagepose.model.checks import as_vector
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
+from cagepose.runs.judge import judged_workspace
+from cagepose.studies.touched_faces import ContactFace, Touch
+
+
+def touched_shapes(scene: Scene, pose: Pose, phase: int, friction: float) -> list[Touch]:
+    """Return the contacts at a pose but those of cage points with boxes."""
+    at, _ = judged_workspace(scene, pose, phase, friction)
+    contacts: Any = at.contacts
+    rows = contacts.rows[: contacts.used[0]]
+    center, counts, found = pose.transform(scene.object.center_of_gravity_m), Counter[tuple[str, str]](), list[Touch]()
+    for row in rows[(rows["feature"] >= 0) & (rows["group"] >= 0)]:
+        pair = scene.cage.element_names[row["point"]], scene.object.element_names[row["box"]]
+        counts[pair] += 1
+        normal = row["directions"][0]  # the kernel's tangents have no length where there is no friction
+        directions = np.array([normal, *tangents_to(as_vector(normal))])
+        face = ContactFace(*pair, str(counts[pair]))
+        found.append(Touch(face, directions, center + row["arm"], int(row["group"])))
+    return found
