@@ -78,3 +78,31 @@ def test_a_part_crosses_the_bore_from_wall_to_wall(part, play: float) -> None:
     result = run(pushed(part, play, [1.25 * math.pi, math.pi, 0.0], 0.0, True))
     assert result.verdict == "rests"
     assert result.pose.position_m[:2] == pytest.approx([play, 0.0], abs=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("radius", "depth", "push", "size", "friction"),
+    [
+        (0.49, 1.0, (0.6766, 0.2385, 0.6967), 0.2, 0.1),
+        (0.45, 0.5, (-0.9674, -0.1596, -0.1965), 0.6, 0.3),
+        (0.45, 1.0, (1.0, 0.0, 0.0), 0.3, 0.1),
+        (0.49, 0.5, (0.0, -1.0, 0.0), 0.2, 0.2),
+    ],
+)
+def test_a_peg_that_stands_in_a_bore_with_friction_is_pushed_to_its_wall_and_no_farther(
+    radius: float, depth: float, push: tuple[float, float, float], size: float, friction: float
+) -> None:
+    """It slides on its flat end, borne by points of the rim between those that are listed. What these have no place for
+    at the end of a step excuses nothing that is met before it; and the proof balances the load with them, too.
+    """
+    plate = Box((6.0, 6.0, depth + 1.0), Pose((0.0, 0.0, -0.5 * depth - 0.5)), name="plate")
+    weight = (0.0, 0.0, -1.0)
+    loads = [Load("weight", gravity=weight), Load("push", gravity=weight, force=Force(push, (0.1, 0.05, 0.3), size))]
+    start = Pose((0.004 * (radius > 0.46), 0.003, 1.0 - depth))
+    held = Object(shapes=[Cylinder(radius, 2.0)], center_of_gravity_m=(0, 0, 0), mass_kg=1.0, pose=start)
+    bore = Hole(0.5, depth, in_=["plate"])
+    result = run(Scene(held, Cage(shapes=[plate], holes=[bore]), loads, friction_coefficient=friction))
+    assert result.phases[0].verdict == "rests"
+    assert result.verdict in ("rests", "may rest")
+    x, y = result.phases[1].pose.transform((0.0, 0.0, -1.0))[:2]
+    assert math.hypot(x, y) <= 0.5 - radius + 1e-9

@@ -112,7 +112,7 @@ class _Shapes:
 
 
 class _Row(NamedTuple):
-    """What a `Feature` begins with; and its arcs: before, after and second, whether among the ends, and which there."""
+    """What a `Feature` begins with; and its arcs: before, after and twin, whether among the ends, and which there."""
 
     kind: int
     point: FloatArray
@@ -179,7 +179,8 @@ class _Features:
             ring, start = (False, second) if is_second else (of_ends, first)
             for index, away in enumerate(outward[::2]):
                 before, after = ((ring, start + (index + step) % ARCS) for step in (-1, 1))
-                arcs = (before, after, NO_ARC if is_second else (False, second + index))
+                twin = (of_ends, first + index) if is_second else (False, second + index)
+                arcs = (before, after, twin)
                 self.add(RIM, pose, height * UP, out, radius, 0.0, (taper, end_taper), is_second, away, arcs=arcs)
 
     def add_side(self, pose: Pose, low: tuple[float, float], high: tuple[float, float]) -> None:

@@ -48,6 +48,8 @@ class ContactRow:
     group
         The first row of the same point and box; -1: the row does not count, as flush faces of another box say all
         that it does.
+    is_added
+        Whether it is a point of a flat rim that was not listed at first, see `on_rim`.
     directions, arm
         Outward unit normal and two tangents, rows, and the place as seen from the centre of gravity, in the world. The
         tangents are as long as the contact's coefficient of friction is of the greatest one, so that one coefficient
@@ -65,6 +67,7 @@ class ContactRow:
     cage_feature: int
     gap: float
     group: int
+    is_added: bool
     directions: Annotated[FloatArray, 3, 3]
     arm: Annotated[FloatArray, 3]
     columns: Annotated[FloatArray, 3, 6]
@@ -85,6 +88,8 @@ class ContactState:
         Whether it carries and does not slip.
     is_locked
         Whether its gap stays as it is because contacts without play press against each other, see `self_stress`.
+    stays_flat
+        Whether it is a listed point of a rim that lies flat, and the motion leaves it so, be it that others carry.
     slip_speed, is_rejected
         Of the problem with round cones: De Saxce's correction (5.7), and whether its generator did not help.
     has_carried
@@ -98,6 +103,7 @@ class ContactState:
     forces: Annotated[FloatArray, 3]
     is_sticking: bool
     is_locked: bool
+    stays_flat: bool
     slip_speed: float
     is_rejected: bool
     has_carried: bool
@@ -188,6 +194,7 @@ def append_contact(
     share = friction_share(friction, point, box)
     contact.point, contact.box, contact.axis, contact.side = point, box, axis, side
     contact.feature = contact.cage_feature = -1
+    contact.is_added = False
     for k in range(3):
         contact.arm[k] = arm[k]
     for j in range(3):
@@ -350,7 +357,7 @@ def append_meeting(
     contact = contacts.rows[place]
     contact.point, contact.box, contact.axis, contact.side = met.cage_part, met.part, 0, 1.0
     contact.feature, contact.cage_feature = met.feature, met.cage_feature
-    contact.gap, contact.group = met.gap, first
+    contact.gap, contact.group, contact.is_added = met.gap, first, False
     choose(contacts, place, place == first)
     normal, arm = vector_from(met.normal), minus(vector_from(met.place), center)
     share = friction_share(friction, met.cage_part, met.part)

@@ -37,6 +37,8 @@ FIRST_ROUNDS, ROUNDS_BETWEEN = 3, 6
 OBEYS, LAST_RESORT = 1e-9, 1e-6
 """In lengths of the motion: the greatest violation of Coulomb's law. Where that is not reached, in lengths of the load:
 it bends the path by far less than a step does."""
+LONGEST = 1.0 + 1e-9
+"""In lengths of the load: no motion is longer."""
 ROUNDING = 1e-5
 """In lengths of the load: the violation of the law by a motion slower than this is measured as if it were as fast."""
 SLOW, SLOWEST = 1e-6, 1e-10
@@ -93,7 +95,12 @@ def allowed_error(terms: float, y: FloatArray) -> float:
 
 @kernel
 def obeys(contacts: ContactSet, friction: float, terms: float, y: FloatArray) -> bool:
-    """Whether forces and motion obey Coulomb's law, but for a small part of the motion (or rounding of the load)."""
+    """Whether forces and motion obey Coulomb's law, but for a small part of the motion (or rounding of the load).
+
+    The law takes power from the load, so that no motion is longer than that: one that is was made by Newton's method.
+    """
+    if length(y, WRENCH) > LONGEST * terms:
+        return False
     return coulomb_error(contacts, friction, y) <= allowed_error(terms, y)
 
 

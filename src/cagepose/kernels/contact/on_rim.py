@@ -3,7 +3,8 @@
 Of a cylinder that stands on a floor, or of a ball in a round hole, eight contacts are listed. If they do not hold the
 load, the motion that begins goes in deepest at some point of the rim, in closed form; this is added, and the question
 asked again, until no point goes in: the exchange method of semi-infinite programs. The points close in on the two
-between which the rim carries, halving the angle each time.
+between which the rim carries, halving the angle each time. Of a balance with friction it is the point whose force would
+take the most power from the twist that is left.
 """
 
 from __future__ import annotations
@@ -13,12 +14,15 @@ import math
 from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.contact.cone import ConeWorkspace, steepest_tangent
 from cagepose.kernels.contact.contact_set import ContactSet, choose, write_directions
 from cagepose.kernels.contact.metric import WRENCH, Frame, twist_of
 from cagepose.kernels.native.kernel import kernel
 
 MOST_ADDED = 40
 """Points of rims, for one question."""
+FOLLOWED, SAME_ANGLE = 30, 1e-9
+"""How often the slip is followed along a rim, and the change, in radians, that ends it."""
 ENTERS = 1e-10
 """Of the motion: a point of a rim that goes in more slowly does not count."""
 ROUNDING = 3e-16
@@ -26,24 +30,20 @@ ROUNDING = 3e-16
 
 
 @kernel
-def angle_of_deepest(contacts: ContactSet, i: int, velocity: Vector, spin: Vector) -> float:
-    """Return the angle along the rim, from a place of it that touches, to where a motion goes in fastest."""
-    row, rim = contacts.rows[i], contacts.bends[i].on_rim
-    axis, outward = vector_from(rim.axis), vector_from(rim.outward)
-    normal = vector_from(row.directions[0])
-    if rim.is_on_ball:  # n . v(p) = (p - c) . v(c) / r, or its opposite
-        away = minus(vector_from(row.arm), vector_from(rim.ball))
-        side = math.copysign(rim.length, rim.length * dot(away, normal))
-        way = scaled(plus(velocity, cross(spin, vector_from(rim.ball))), side)
-    else:  # n . (w x p) = p . (n x w)
-        way = scaled(cross(normal, spin), rim.length)
-    return math.atan2(dot(way, cross(axis, outward)), dot(way, outward))
+def is_under_rim(contacts: ContactSet, i: int, touch_m: float) -> bool:
+    """Whether a contact is of a rim that a face lies on, to the touch tolerance."""
+    if contacts.rows[i].feature < 0:
+        return False
+    rim, normal = contacts.bends[i].on_rim, vector_from(contacts.rows[i].directions[0])
+    if rim.length == 0.0 or rim.is_on_ball:
+        return False
+    return abs(rim.length) * norm(cross(vector_from(rim.axis), normal)) <= touch_m
 
 
 @kernel
-def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
-    """Append the contact at an angle along the rim from a place of it that touches."""
-    row, rim, place = contacts.rows[i], contacts.bends[i].on_rim, contacts.used[0]
+def on_rim(contacts: ContactSet, i: int, angle: float) -> tuple[Vector, Vector]:
+    """Return (arm, normal) of the contact at an angle along the rim from a place of it that touches."""
+    row, rim = contacts.rows[i], contacts.bends[i].on_rim
     axis, outward = vector_from(rim.axis), vector_from(rim.outward)
     center = minus(vector_from(row.arm), scaled(outward, rim.length))
     there = plus(scaled(outward, math.cos(angle)), scaled(cross(axis, outward), math.sin(angle)))
@@ -52,8 +52,48 @@ def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
         away = minus(arm, vector_from(rim.ball))
         side = math.copysign(1.0, dot(minus(vector_from(row.arm), vector_from(rim.ball)), normal))
         normal = scaled(away, side / norm(away))
+    return arm, normal
+
+
+@kernel
+def angle_of_deepest(
+    contacts: ContactSet, i: int, friction: float, velocity: Vector, spin: Vector, start: float
+) -> float:
+    """Return the angle along the rim, from a place of it that touches, to where a contact would resist a motion most:
+    a maximum of n . v + mu |v_t|, uphill from the slip at ``start``.
+
+    With the direction of the slip given, that is in closed form; the direction follows from where it is.
+    """
+    row, rim = contacts.rows[i], contacts.bends[i].on_rim
+    axis, outward = vector_from(rim.axis), vector_from(rim.outward)
+    share = friction * norm(vector_from(row.directions[1]))
+    angle = start
+    for _ in range(FOLLOWED if share > 0.0 else 1):
+        arm, normal = on_rim(contacts, i, angle)
+        way = plus(velocity, cross(spin, arm))
+        slip = minus(way, scaled(normal, dot(normal, way)))
+        rubs = scaled(slip, share / norm(slip)) if norm(slip) > 0.0 else (0.0, 0.0, 0.0)
+        if rim.is_on_ball:  # n . v(p) = (p - c) . v(c) / r, or its opposite
+            away, ball = minus(arm, vector_from(rim.ball)), vector_from(rim.ball)
+            side = math.copysign(1.0 / norm(away), dot(away, normal))
+            along = plus(scaled(plus(velocity, cross(spin, ball)), side), cross(rubs, spin))
+        else:  # g . (w x p) = p . (g x w)
+            along = cross(plus(normal, rubs), spin)
+        along, before = scaled(along, rim.length), angle
+        angle = math.atan2(dot(along, cross(axis, outward)), dot(along, outward))
+        if abs(angle - before) <= SAME_ANGLE:
+            break
+    return angle
+
+
+@kernel
+def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
+    """Append the contact at an angle along the rim from a place of it that touches."""
+    row, rim, place = contacts.rows[i], contacts.bends[i].on_rim, contacts.used[0]
+    arm, normal = on_rim(contacts, i, angle)
     new, state = contacts.rows[place], contacts.states[place]
     new.point, new.box, new.axis, new.side, new.gap, new.group = row.point, row.box, 0, 1.0, row.gap, place
+    new.is_added = True
     arc = rim.arc_after if angle > 0.0 else rim.arc_before
     if rim.is_of_cage:
         new.feature, new.cage_feature = (row.feature if rim.face < 0 else rim.face), arc
@@ -70,28 +110,54 @@ def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
 
 
 @kernel
-def add_on_rims(contacts: ContactSet, frame: Frame, y: FloatArray, terms: float) -> bool:
+def drop_idle(contacts: ContactSet, cone: ConeWorkspace) -> None:
+    """Drop the points that were added and carry nothing in the solution of ``cone``."""
+    for i in range(contacts.used[0] - 1, -1, -1):
+        if not contacts.rows[i].is_added or contacts.states[i].forces[0] > 0.0:
+            continue
+        last = contacts.used[0] - 1  # those behind one that was added were added, too
+        contacts.rows[i] = contacts.rows[last]  # type: ignore[index]
+        contacts.states[i] = contacts.states[last]  # type: ignore[index]
+        contacts.bends[i] = contacts.bends[last]  # type: ignore[index]
+        contacts.rows[i].group = i
+        contacts.used[0] = last
+        for k in range(cone.passive.used):
+            if cone.contacts[cone.passive.labels[k]] == last:
+                cone.contacts[cone.passive.labels[k]] = i
+
+
+@kernel
+def add_on_rims(contacts: ContactSet, frame: Frame, friction: float, y: FloatArray, terms: float) -> bool:
     """Append the point of a flat rim that a motion y goes in fastest at; False: none counts, or there is no room.
 
-    What y is the rest of has ``terms`` of this length: slower than their rounding, nothing goes in.
+    With friction y is a twist that forces are asked to resist, which they do up to mu |v_t| faster. What y is the rest
+    of has ``terms`` of this length: slower than their rounding, nothing goes in.
     """
     if len(contacts.bends) == 0:
         return False
     velocity, spin = twist_of(y, frame)
     n_listed, fastest, least = contacts.used[0], -1, max(ENTERS * length(y, WRENCH), ROUNDING * terms)
+    at_fastest = 0.0
     for i in range(n_listed):
         rim = contacts.bends[i].on_rim
         if contacts.rows[i].feature < 0 or rim.length == 0.0 or contacts.used[0] == len(contacts.rows):
             continue
-        angle = angle_of_deepest(contacts, i, velocity, spin)
-        if angle == 0.0 or abs(angle) > (1.0 + ENTERS) * (rim.after if angle > 0.0 else rim.before):
-            continue
-        add_point(contacts, i, angle, frame)
-        speed = inner(contacts.rows[n_listed].columns[0], y, WRENCH)
-        contacts.used[0] = n_listed
-        if speed > least:
-            fastest, least = i, speed
+        deepest = angle_of_deepest(contacts, i, 0.0, velocity, spin, 0.0)
+        for start in (deepest, 0.0):  # with friction, uphill from the deepest place and from the listed one
+            angle = deepest
+            if friction > 0.0:
+                angle = angle_of_deepest(contacts, i, friction, velocity, spin, start)
+            if angle == 0.0 or abs(angle) > (1.0 + ENTERS) * (rim.after if angle > 0.0 else rim.before):
+                continue
+            add_point(contacts, i, angle, frame)
+            new = contacts.rows[n_listed]
+            speed = inner(new.columns[0], y, WRENCH)
+            if friction > 0.0:
+                speed += friction * steepest_tangent(new, y)[0]
+            contacts.used[0] = n_listed
+            if speed > least:
+                fastest, at_fastest, least = i, angle, speed
     if fastest < 0:
         return False
-    add_point(contacts, fastest, angle_of_deepest(contacts, fastest, velocity, spin), frame)
+    add_point(contacts, fastest, at_fastest, frame)
     return True

@@ -21,7 +21,7 @@ from cagepose.kernels.contact.equilibrium import (
     return_to_choice,
 )
 from cagepose.kernels.contact.metric import Frame
-from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims
+from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims, is_under_rim
 from cagepose.kernels.contact.self_stress import carry_by_locked, forget_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
@@ -81,7 +81,7 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
     if code == MOVES:
         code = freest_motion(contacts, frame, friction, work)
         for _ in range(MOST_ADDED):
-            if code != MOVES or friction == 0.0 or not add_on_rims(contacts, frame, work.y, work.load_terms):
+            if code != MOVES or friction == 0.0 or not add_on_rims(contacts, frame, 0.0, work.y, work.load_terms):
                 break
             forget_locked(contacts, frame, work)
             code = equilibrium(contacts, frame, friction, AT_REST, work)
@@ -93,10 +93,13 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
 
 
 @kernel
-def find_sticking(contacts: ContactSet, friction: float, terms: float, y: FloatArray) -> None:
-    """Find which contacts carry and do not slip, to the digits that `coulomb_onset` asks of y."""
+def find_sticking(contacts: ContactSet, friction: float, touch_m: float, terms: float, y: FloatArray) -> None:
+    """Find which contacts carry and do not slip, and which rims stay flat, to the digits that `coulomb_onset` asks."""
     for i in range(contacts.used[0]):
         columns, state = contacts.rows[i].columns, contacts.states[i]
+        state.stays_flat = is_under_rim(contacts, i, touch_m)
+        if abs(inner(columns[0], y, 6)) > allowed_error(terms, y) * length(columns[0], 6):
+            state.stays_flat = False
         state.is_sticking = state.forces[0] > 0.0 and friction > 0.0 and not is_smooth(contacts.rows[i])
         for j in range(1, 3):
             if abs(inner(columns[j], y, 6)) > allowed_error(terms, y) * length(columns[j], 6):

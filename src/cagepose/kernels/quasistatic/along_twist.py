@@ -138,14 +138,24 @@ def first_contact(
     if end == math.inf:  # straight ahead
         other = first_meeting(setting.geometry, placement, motion, end, 0.0, 0.0)
         return other if other.amount < hit.amount else hit
-    astray = strayed(setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end, placement.moved)
+    astray = strayed(
+        setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end, 0.0, placement.moved
+    )
     near, other = 0.0, NO_HIT
     for _ in range(most_pairs(placement)):
         other = first_meeting(setting.geometry, placement, motion, end, near, STRAYED * astray)
         if other.point < 0 or other.gap <= near:
             break
         reach = STRAYED * strayed(
-            setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, other.amount, placement.moved
+            setting.geometry,
+            contacts,
+            position,
+            quaternion,
+            twist.velocity,
+            twist.spin,
+            other.amount,
+            0.0,
+            placement.moved,
         )
         if other.gap > reach:
             break
@@ -195,7 +205,7 @@ def first_point(
         amount = distance / speed
     else:
         astray = strayed(
-            setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end, placement.moved
+            setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end, 0.0, placement.moved
         )
         near, near_depth = 0.0, STRAYED * astray
         angle, point, box = math.inf, -1, -1
@@ -216,7 +226,7 @@ def first_point(
                 break
             met = angle / rate
             reach = STRAYED * strayed(
-                setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, met, placement.moved
+                setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, met, 0.0, placement.moved
             )
             if placement.gaps[box, point] > reach:
                 break

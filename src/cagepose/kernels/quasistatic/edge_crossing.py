@@ -86,7 +86,8 @@ def first_edge_crossing(
 ) -> float:
     """Return the amount of a twist, up to ``end``, after which a contact leaves the face that it stays on; inf: none.
 
-    Where it would only because contacts stray, by the square of the way, it is passed over: they are put back.
+    Where it would only because contacts stray, by the square of the way, it is passed over: they are put back. So it is
+    where one of them has no place there any more: it may have one when it is put back.
     """
     first = math.inf
     rate = norm(spin)
@@ -99,7 +100,7 @@ def first_edge_crossing(
             crossing = end_of_meeting(geometry, placement, contact, motion, min(end, first), touch_m)
             if crossing < first:
                 reach = STRAYED * strayed(
-                    geometry, contacts, center, quaternion, velocity, spin, crossing, placement.moved
+                    geometry, contacts, center, quaternion, velocity, spin, crossing, math.inf, placement.moved
                 )
                 if still_meet(geometry, placement, contact, motion, 0.0, touch_m, reach):
                     first = crossing
@@ -127,7 +128,7 @@ def first_edge_crossing(
                 crossing = next_below(wave, 0.0, end * rate) / rate
                 if crossing < first and crossing <= end:
                     reach = STRAYED * strayed(
-                        geometry, contacts, center, quaternion, velocity, spin, crossing, placement.moved
+                        geometry, contacts, center, quaternion, velocity, spin, crossing, math.inf, placement.moved
                     )
                     if wave[0] > reach:
                         first = crossing

@@ -27,7 +27,7 @@ from cagepose.kernels.contact.metric import (
 )
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.features import RIM, Shapes, is_of_mouth, place_feature
-from cagepose.kernels.shapes.meeting import Meeting, apart, meeting
+from cagepose.kernels.shapes.meeting import Meeting, apart, meeting, meeting_kept, twin_pair
 from cagepose.kernels.shapes.rims import is_near_arc, lie_flat
 
 ROUNDS = 12
@@ -40,8 +40,9 @@ DEPENDENT = 1e-5
 play can be tilted by the root of rounding, and to make up for that would take long ways."""
 
 
-GAP, ALONG = 0, 1
-"""Which number of two features a constraint is about: their gap, or (1 and 2) the way along each tangent."""
+GAP, ALONG, FLAT = 0, 1, 3
+"""Which number of two features a constraint is about: their gap; (1 and 2) the way along each tangent; the gap of a
+point of a rim that lies flat, if it is over the face at all."""
 
 
 class PositionConstraint:
@@ -156,24 +157,45 @@ class Lack(NamedTuple):
 
 
 @kernel
+def is_constrained(constraints: Constraints, feature: int, cage_feature: int) -> bool:
+    """Whether there is a constraint of two features."""
+    found = False
+    for i in range(constraints.scratch[0].used):
+        row = constraints.rows[i]
+        found = found or (row.feature == feature and row.cage_feature == cage_feature)
+    return found
+
+
+@kernel
 def lack(
-    geometry: Geometry, constraint: PositionConstraint, position: Vector, quaternion: Quaternion, moved: Shapes
+    geometry: Geometry,
+    constraints: Constraints,
+    constraint: PositionConstraint,
+    position: Vector,
+    quaternion: Quaternion,
+    moved: Shapes,
 ) -> Lack:
-    """Return what a constraint lacks at a pose; inf: it means nothing there."""
+    """Return what one of the constraints lacks at a pose; inf: it means nothing there."""
     if constraint.feature < 0:
         back = (quaternion[0], -quaternion[1], -quaternion[2], -quaternion[3])
         axis_object = scaled(box_axis(geometry, constraint.box, constraint.axis), constraint.side)
         arm = minus(row(geometry.points_world, constraint.point), position)
         from_box = minus(rotated(back, arm), row(geometry.box_positions, constraint.box))
         return Lack(dot(axis_object, from_box) - constraint.target, rotated(quaternion, axis_object), arm)
-    place_feature(geometry.held, constraint.feature, position, matrix_from_quaternion(quaternion), moved)
-    met = meeting(moved, constraint.feature, geometry.cage, constraint.cage_feature)
+    i, j, turned = constraint.feature, constraint.cage_feature, matrix_from_quaternion(quaternion)
+    place_feature(geometry.held, i, position, turned, moved)
+    one, other = twin_pair(moved, i, geometry.cage, j)
+    if one < 0 or is_constrained(constraints, one, other):
+        met = meeting(moved, i, geometry.cage, j)
+    else:
+        place_feature(geometry.held, one, position, turned, moved)
+        met = meeting_kept(moved, i, geometry.cage, j, constraint.target)
     if not met.is_one:
         met = meeting_beside(geometry, constraint, position, quaternion, moved)
     arm = minus(met.place, position)
     if not met.is_one:
         return Lack(math.inf, met.normal, arm)
-    if constraint.which == GAP:
+    if constraint.which in (GAP, FLAT):
         return Lack(met.gap - constraint.target, met.normal, arm)
     return Lack(0.0, tangents_to(met.normal)[constraint.which - ALONG], arm)
 
@@ -207,7 +229,7 @@ def may_be_elsewhere(geometry: Geometry, constraint: PositionConstraint, moved: 
     that lies flat on what it touches, as one of a mouth may: without such a place, the others count.
     """
     held, cage = moved.features[constraint.feature], geometry.cage.features[constraint.cage_feature]
-    if held.is_second or cage.is_second or is_of_mouth(held) or is_of_mouth(cage):
+    if constraint.which == FLAT or held.is_second or cage.is_second or is_of_mouth(held) or is_of_mouth(cage):
         return True
     return lie_flat(held, cage, geometry.touch_m)
 
@@ -254,7 +276,7 @@ def projected(
             append_column(work.basis, work.column, i, 0.0)
         worst = 0.0
         for i in range(work.used):
-            lacks = lack(geometry, rows[i], position, quaternion, moved)
+            lacks = lack(geometry, constraints, rows[i], position, quaternion, moved)
             if lacks.value == math.inf and may_be_elsewhere(geometry, rows[i], moved):
                 continue
             if lacks.value == math.inf:

@@ -13,7 +13,7 @@ import math
 from typing import NamedTuple
 
 from cagepose.kernels.algebra.pose import Quaternion, turned_by
-from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, scaled, vector_from
+from cagepose.kernels.algebra.vector import Vector, minus, norm, scaled, vector_from
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactSet, find_contacts, stays_on_face
 from cagepose.kernels.contact.curvature import write_curvature
@@ -27,6 +27,7 @@ from cagepose.kernels.contact.equilibrium import (
 from cagepose.kernels.contact.load_curvature import has_circulation, write_circulation
 from cagepose.kernels.contact.loads import longest_pull, write_load
 from cagepose.kernels.contact.metric import Frame, frame_at, twist_of
+from cagepose.kernels.contact.on_rim import is_under_rim
 from cagepose.kernels.contact.onset import find_sticking, onset
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import ESCAPES, LET_GO, NONE, PLAIN, RESTS, SCREW, STALLED, TRAVEL, StepRecord
@@ -132,7 +133,7 @@ def next_twist(
     """Return the twist to follow from a pose that moves; forces and sticking are then those of the step."""
     contacts, scratch, friction = work.contacts, work.scratch[0], setting.friction.greatest
     y = scratch.solver.y
-    find_sticking(contacts, friction, scratch.solver.load_terms, y)
+    find_sticking(contacts, friction, setting.tolerances.touch_m, scratch.solver.load_terms, y)
     carries = carried_by(contacts) != FREE
     velocity, spin = twist_of(y, frame)
     spin = straightened(velocity, spin, setting.body.reach_m, scratch.solver.load_terms)
@@ -180,17 +181,6 @@ def gap_left(contacts: ContactSet) -> float:
 
 
 @kernel
-def is_under_rim(contacts: ContactSet, i: int, touch_m: float) -> bool:
-    """Whether a contact is of a rim that a face lies on, to the touch tolerance."""
-    if contacts.rows[i].feature < 0:
-        return False
-    rim, normal = contacts.bends[i].on_rim, vector_from(contacts.rows[i].directions[0])
-    if rim.length == 0.0 or rim.is_on_ball:
-        return False
-    return abs(rim.length) * norm(cross(vector_from(rim.axis), normal)) <= touch_m
-
-
-@kernel
 def gap_under_rims(contacts: ContactSet, touch_m: float) -> float:
     """Return the greatest distance, to either side, of a rim that lies flat from what it lies on.
 
@@ -210,7 +200,7 @@ def refined(
     """Close the gaps, within the touch tolerance, of the contacts that carry (5.12); or, before a rest, under rims."""
     contacts, constraints = work.contacts, work.path.constraints
     for i in range(contacts.used[0]):
-        contacts.states[i].is_sticking = False
+        contacts.states[i].is_sticking = contacts.states[i].stays_flat = False
     allow_depths(setting.geometry, work.placement, setting.tolerances, work.path)
     if is_rest:
         constrain_contacts(setting.geometry, work.placement, contacts, math.inf, constraints)

@@ -10,7 +10,7 @@ from cagepose.kernels.contact.metric import moved_along_twist
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.projection import box_axis
 from cagepose.kernels.shapes.features import Shapes, place_feature
-from cagepose.kernels.shapes.meeting import meeting
+from cagepose.kernels.shapes.meeting import meeting_kept, twin_pair
 
 STRAYED = 2.0
 """Times the way that contacts stray: a point or an edge that was nearer than this is met because they do."""
@@ -25,18 +25,26 @@ def strayed(
     velocity: Vector,
     spin: Vector,
     amount: float,
+    where_over: float,
     moved: Shapes,
 ) -> float:
-    """Return how far the contacts that stay on their faces leave them on a screw, until they are put back, metres."""
+    """Return how far the contacts that stay on their faces leave them on a screw, until they are put back, metres.
+
+    A contact that has no place any more at the end counts for ``where_over``.
+    """
     end, turned = moved_along_twist(position, quaternion, velocity, spin, amount)
     back = (turned[0], -turned[1], -turned[2], -turned[3])
     farthest = 0.0
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
         if stays_on_face(contacts, i) and contact.feature >= 0:
-            place_feature(geometry.held, contact.feature, end, matrix_from_quaternion(turned), moved)
-            met = meeting(moved, contact.feature, geometry.cage, contact.cage_feature)
-            farthest = max(farthest, abs(met.gap - contact.gap))
+            matrix = matrix_from_quaternion(turned)
+            place_feature(geometry.held, contact.feature, end, matrix, moved)
+            twin, _ = twin_pair(moved, contact.feature, geometry.cage, contact.cage_feature)
+            if twin >= 0:
+                place_feature(geometry.held, twin, end, matrix, moved)
+            met = meeting_kept(moved, contact.feature, geometry.cage, contact.cage_feature, contact.gap)
+            farthest = max(farthest, abs(met.gap - contact.gap) if met.is_one else where_over)
         elif stays_on_face(contacts, i):
             from_center = rotated(back, minus(row(geometry.points_world, contact.point), end))
             from_box = minus(from_center, row(geometry.box_positions, contact.box))

@@ -45,7 +45,8 @@ def find_all_carried(setting: Setting, position: Vector, quaternion: Quaternion,
     if not find_touched_before(setting, position, quaternion, frame_at(setting.body, quaternion), work):
         return False
     for i in range(work.contacts.used[0]):
-        if stays_on_face(work.contacts, i) and place_before(work.ahead, work.contacts.rows[i]) < 0:
+        row = work.contacts.rows[i]  # a point that was added to a rim is not listed again
+        if stays_on_face(work.contacts, i) and not row.is_added and place_before(work.ahead, row) < 0:
             return False
     return True
 
@@ -65,7 +66,9 @@ def tips(setting: Setting, quaternion: Quaternion, twist: Twist, work: Quasistat
     for i in range(work.ahead.used[0]):
         tilt = norm(cross(vector_from(work.ahead.rows[i].directions[0]), more)) * setting.body.reach_m
         before = place_before(work.contacts, work.ahead.rows[i])
-        if tilt > max(TIPS * norm(velocity), as_planned) and before >= 0 and stays_on_face(work.contacts, before):
+        if before < 0 or not (stays_on_face(work.contacts, before) or work.contacts.states[before].stays_flat):
+            continue
+        if tilt > max(TIPS * norm(velocity), as_planned):
             return True
     return False
 

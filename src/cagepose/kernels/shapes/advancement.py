@@ -23,7 +23,7 @@ from cagepose.kernels.shapes.along_motion import (
     touches_after,
 )
 from cagepose.kernels.shapes.features import EDGE, FACE, RIM, Feature, Shapes
-from cagepose.kernels.shapes.meeting import Meeting, meeting
+from cagepose.kernels.shapes.meeting import Meeting, meeting, twin_pair
 from cagepose.kernels.shapes.motion import Motion, velocity_at
 from cagepose.kernels.shapes.rims import (
     clearance_of_arc,
@@ -147,12 +147,9 @@ def second_pair(a: Shapes, i: int, b: Shapes, j: int) -> tuple[int, int]:
     """Return the features that meet at the last place on an arc, where these meet at the first; (-1, -1): an edge or
     another rim alone is nearest to an arc at two places.
     """
-    one, other = a.features[i], b.features[j]
-    if one.kind == RIM and (other.kind == EDGE or other.kind == RIM):
-        return (one.second_arc, j) if one.second_arc >= 0 else (-1, -1)
-    if one.kind == EDGE and other.kind == RIM:
-        return (i, other.second_arc) if other.second_arc >= 0 else (-1, -1)
-    return -1, -1
+    if a.features[i].is_second or b.features[j].is_second:
+        return -1, -1
+    return twin_pair(a, i, b, j)
 
 
 @kernel

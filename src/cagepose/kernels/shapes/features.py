@@ -56,8 +56,9 @@ class Feature:
         else it is the first one.
     arc_before, arc_after
         Of a vertex at the end of arcs: these features. Of an arc: those next to it.
-    second_arc
-        Of an arc whose first place counts: the feature that it is, too, whose last one does. -1: none of these is.
+    twin_arc
+        Of an arc whose first place counts: the feature that it is, too, whose last one does; and of that: the first.
+        -1: none of these is.
     first_fence, last_fence
         Its fences, the last one not included.
     """
@@ -73,7 +74,7 @@ class Feature:
     is_second: bool
     arc_before: int
     arc_after: int
-    second_arc: int
+    twin_arc: int
     first_fence: int
     last_fence: int
 
@@ -190,7 +191,7 @@ def write_feature(feature: Feature, point: Vector, direction: Vector, toward: Ve
     """Write a feature with another place and other directions."""
     out.kind, out.length, out.radius, out.taper = feature.kind, feature.length, feature.radius, feature.taper
     out.end_taper, out.first_fence, out.last_fence = feature.end_taper, feature.first_fence, feature.last_fence
-    out.is_second, out.second_arc = feature.is_second, feature.second_arc
+    out.is_second, out.twin_arc = feature.is_second, feature.twin_arc
     out.arc_before, out.arc_after = feature.arc_before, feature.arc_after
     for k in range(3):
         out.point[k], out.direction[k], out.toward[k] = point[k], direction[k], toward[k]

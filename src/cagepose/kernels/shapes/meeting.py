@@ -327,6 +327,33 @@ def swapped(met: Meeting) -> Meeting:
 
 
 @kernel
+def twin_pair(a: Shapes, i: int, b: Shapes, j: int) -> tuple[int, int]:
+    """Return the features that meet at the other place on an arc to which an edge or another rim is nearest; (-1, -1):
+    there is one place.
+    """
+    one, other = a.features[i], b.features[j]
+    if one.kind == RIM and (other.kind == EDGE or other.kind == RIM):
+        return (one.twin_arc, j) if one.twin_arc >= 0 else (-1, -1)
+    if one.kind == EDGE and other.kind == RIM:
+        return (i, other.twin_arc) if other.twin_arc >= 0 else (-1, -1)
+    return -1, -1
+
+
+@kernel
+def meeting_kept(moved: Shapes, i: int, b: Shapes, j: int, gap: float) -> Meeting:
+    """Return how two features meet that had a gap before a motion: of two places on an arc, that with the gap nearer to
+    it. Which of them is the first may have changed, as another one came in over the arc's end.
+
+    Features of ``moved`` are placed: this one, and the other one that it is.
+    """
+    met, (one, other) = meeting(moved, i, b, j), twin_pair(moved, i, b, j)
+    if one < 0 or not met.is_one:
+        return met
+    at_twin = meeting(moved, one, b, other)
+    return at_twin if at_twin.is_one and abs(at_twin.gap - gap) < abs(met.gap - gap) else met
+
+
+@kernel
 def meeting(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
     """Return how feature i of the object and feature j of the cage meet, both placed in the world."""
     one, other = a.features[i].kind, b.features[j].kind

@@ -42,7 +42,7 @@ def left_of_load(contacts: ContactSet, n_listed: int, frame: Frame, friction: fl
     contacts.used[0] = n_listed
     left = least_residual(contacts, friction, work.load, work.load_terms, work)
     for _ in range(MOST_ADDED):
-        if left <= HELD or not add_on_rims(contacts, frame, work.cone.passive.residual, work.load_terms):
+        if left <= HELD or not add_on_rims(contacts, frame, friction, work.cone.passive.residual, work.load_terms):
             break
         left = least_residual(contacts, friction, work.load, work.load_terms, work)
     return left
