@@ -108,7 +108,7 @@ class OtherOnset:
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """The proof of a rest as data: `check_certificate` verifies it with NumPy alone.
+    """The proof of a rest as data, which `check_certificate` verifies.
 
     A load of length 1 in the scaled coordinates of (5.3) is the unit of all forces.
 

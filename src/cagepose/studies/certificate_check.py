@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import product
 from math import pi
-from typing import NamedTuple
+from typing import NamedTuple, get_args
 
 import numpy as np
 
@@ -24,6 +24,7 @@ BALANCED, ROUNDING = 1e-8, 2.3e-16
 """Of the load: what forces may leave of it; and of the forces, which may be millions of loads, what rounding does."""
 SAME_PLACE = 1e-9
 """Of the scene's size, and radians: contacts are where the certificate says."""
+OTHER_PHASE = "is it the certificate of another phase, or another scene?"
 OUTSIDE = 1e-12
 """Of load and forces: how far a force may be outside of its friction cone."""
 DRIVEN = 1e-11
@@ -63,7 +64,7 @@ class CertificateCheck:
     speed: float
 
 
-def check_certificate(certificate: Certificate, run: Run, phase: int = -1) -> CertificateCheck:
+def check_certificate(certificate: Certificate | None, run: Run, phase: int = -1) -> CertificateCheck:
     """Check a certificate against a run's scene and the pose at the end of a phase.
 
     Checked are: contacts, friction and choices of faces are those of the scene; forces inside their cones balance the
@@ -73,7 +74,7 @@ def check_certificate(certificate: Certificate, run: Run, phase: int = -1) -> Ce
     Parameters
     ----------
     certificate
-        From `certificate` or `load_certificates`.
+        From `certificate` or `load_certificates`; None proves nothing.
     run
         Of which the scene, the method's friction, and the phase's pose count.
     phase
@@ -86,8 +87,14 @@ def check_certificate(certificate: Certificate, run: Run, phase: int = -1) -> Ce
     IndexError
         The run has no such phase.
     """
+    if certificate is None:
+        raise CertificateError("there is none: cagepose.certificate says why, such as an object that moves")
     expect(certificate, Certificate, "certificate")
     expect(run, Run, "run")
+    if certificate.uniqueness not in get_args(Uniqueness):
+        raise CertificateError(
+            f"uniqueness is {certificate.uniqueness!r}; it is one of {', '.join(get_args(Uniqueness))}"
+        )
     number = range(len(run.phases))[phase]
     problem = contact_problem(run, number)
     places = _places(certificate, problem)
@@ -116,10 +123,10 @@ def _places(certificate: Certificate, problem: ContactProblem) -> list[int]:
     told = set(certificate.contacts)
     for face in certificate.contacts:
         if face not in places:
-            raise CertificateError(f"contacts name {face}, which does not touch at this pose")
+            raise CertificateError(f"contacts name {face}, which does not touch at this pose; {OTHER_PHASE}")
     for face in problem.faces:
         if face not in told:
-            raise CertificateError(f"contacts leave out {face}, which touches at this pose")
+            raise CertificateError(f"contacts leave out {face}, which touches at this pose; {OTHER_PHASE}")
     if len(certificate.contacts) != len(places):
         raise CertificateError("contacts name one of them twice")
     found = [places[face] for face in certificate.contacts]
@@ -133,16 +140,19 @@ def _places(certificate: Certificate, problem: ContactProblem) -> list[int]:
 
 def _check_geometry(certificate: Certificate, problem: ContactProblem, found: list[int], size_m: float) -> None:
     """Contacts must be where the certificate says, with its normals and tangents, for whoever checks it by hand."""
-    for told, own, unit, what in (
-        (certificate.places_world, problem.places[found], size_m, "places_world"),
-        (certificate.directions_world, problem.directions[found], 1.0, "directions_world"),
+    for told, own, unit, name, what in (
+        (certificate.places_world, problem.places[found], size_m, "m", "places_world"),
+        (certificate.directions_world, problem.directions[found], 1.0, "rad", "directions_world"),
     ):
         if told.shape != own.shape:
             raise CertificateError(f"{what} has {len(told)} entries for {len(own)} contacts")
         apart = np.abs(told - own).reshape(len(own), -1).max(axis=1, initial=0.0)
         for number in np.nonzero(~(apart <= SAME_PLACE * unit))[0][:1]:
             face = certificate.contacts[number]
-            raise CertificateError(f"{what} of {face} is {apart[number]:.1e} off from the scene's at this pose")
+            raise CertificateError(
+                f"{what} of {face} is {apart[number]:.1e} {name} off from the scene's at this pose, and at most"
+                f" {SAME_PLACE * unit:.1e} counts as the same; {OTHER_PHASE}"
+            )
 
 
 def _taken(onset: OtherOnset, places: list[int]) -> list[int]:

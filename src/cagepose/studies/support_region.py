@@ -130,16 +130,16 @@ def _farthest(problem: ContactProblem, places: list[int], view: LoadView, normal
         if at_one is None or at_other is None:
             return None
         if (at_one[0] == math.inf) != (at_other[0] == math.inf):
-            last_ends.append(_last_end(reach, *((one, other) if at_other[0] == math.inf else (other, one))))
+            last_ends += _last_ends(reach, *((one, other) if at_other[0] == math.inf else (other, one)))
     known = [(normal, *end) for normal, end in (*found, *last_ends) if end is not None]
     return _Bounds(*(np.array(column) for column in zip(*known, strict=True)))
 
 
-def _last_end(
+def _last_ends(
     reach: Callable[[FloatArray], tuple[float, FloatArray] | None], bounded: FloatArray, endless: FloatArray
-) -> tuple[FloatArray, tuple[float, FloatArray] | None]:
-    """Return the direction nearest to an endless one in which the region still ends, and where."""
-    last = bounded, reach(bounded)
+) -> list[tuple[FloatArray, tuple[float, FloatArray]]]:
+    """Return directions ever nearer to an endless one in which the region still ends, and where."""
+    found = []
     for _ in range(HALVINGS):
         between = bounded + endless
         between /= np.linalg.norm(between)
@@ -147,8 +147,9 @@ def _last_end(
         if end is None or end[0] == math.inf:
             endless = between
         else:
-            last, bounded = (between, end), between
-    return last
+            found.append((between, end))
+            bounded = between
+    return found
 
 
 class _Rays:
