@@ -68,16 +68,20 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
     if len(choices) > MOST_CHOICES:
         return None
     normals = _directions(view.polygon)
-    found = [_farthest(problem, list(choice), view, normals) for choice in choices]
-    if any(bounds is None for bounds in found):
-        return None
-    bounds = [one for one in found if one is not None]
-    normals, heights = (np.concatenate([getattr(one, name) for one in bounds]) for name in ("normals", "heights"))
+    heights, points = np.full(len(normals), math.inf), np.zeros((0, 2))
+    for choice in choices:
+        found = _farthest(problem, list(choice), view, normals)
+        if found is None:
+            return None
+        if len(choices) == 1:
+            normals, heights, points = found
+        else:
+            heights = np.minimum(heights, found.heights[: len(normals)])
     margin_m = float(heights.min())
     if margin_m == -math.inf:
         return SupportRegion(np.zeros((0, 2)), margin_m)
     if len(choices) == 1 and heights.max() < reach_m:  # between its farthest points there is next to nothing
-        shown = without_doubles(convex_hull(bounds[0].points), ROUNDING * reach_m)
+        shown = without_doubles(convex_hull(points), ROUNDING * reach_m)
     else:
         shown = polygon_within(normals, np.minimum(heights, reach_m))
     return SupportRegion(view.load_point + shown, margin_m)

@@ -21,7 +21,7 @@ from cagepose.kernels.contact.edges import (
     return_to_kept,
 )
 from cagepose.kernels.contact.metric import WRENCH, Frame
-from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims, drop_idle
+from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims
 from cagepose.kernels.contact.self_stress import (
     OPPOSED,
     begin_unlocked,
@@ -178,7 +178,6 @@ def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness:
             break
         forget_locked(contacts, frame, work)
         code = equilibrium_of_listed(contacts, frame, friction, strictness, work)
-    drop_idle(contacts, work.cone)
     return code
 
 

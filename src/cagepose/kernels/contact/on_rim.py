@@ -15,7 +15,8 @@ from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.contact.cone import ConeWorkspace, steepest_tangent
-from cagepose.kernels.contact.contact_set import ContactSet, choose, write_directions
+from cagepose.kernels.contact.contact_set import ContactSet, choose, stays_on_face, write_directions
+from cagepose.kernels.contact.edges import has_one_choice
 from cagepose.kernels.contact.metric import WRENCH, Frame, twist_of
 from cagepose.kernels.native.kernel import kernel
 
@@ -111,9 +112,12 @@ def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
 
 @kernel
 def drop_idle(contacts: ContactSet, cone: ConeWorkspace) -> None:
-    """Drop the points that were added and carry nothing in the solution of ``cone``."""
-    for i in range(contacts.used[0] - 1, -1, -1):
-        if not contacts.rows[i].is_added or contacts.states[i].forces[0] > 0.0:
+    """Drop the points that were added and carry nothing. Where edges leave a choice of faces another one may need them.
+
+    The labels of ``cone`` go with them.
+    """
+    for i in range(contacts.used[0] - 1 if has_one_choice(contacts) else -1, -1, -1):
+        if not contacts.rows[i].is_added or stays_on_face(contacts, i):
             continue
         last = contacts.used[0] - 1  # those behind one that was added were added, too
         contacts.rows[i] = contacts.rows[last]  # type: ignore[index]

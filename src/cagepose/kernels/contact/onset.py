@@ -21,7 +21,7 @@ from cagepose.kernels.contact.equilibrium import (
     return_to_choice,
 )
 from cagepose.kernels.contact.metric import Frame
-from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims, is_under_rim
+from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims, drop_idle, is_under_rim
 from cagepose.kernels.contact.self_stress import carry_by_locked, forget_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
@@ -89,6 +89,7 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
                 code = freest_motion(contacts, frame, friction, work)
         if work.locked.used > 0:
             carry_by_locked(contacts, frame, friction, work)
+    drop_idle(contacts, work.cone)
     return code
 
 

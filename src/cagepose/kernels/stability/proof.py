@@ -30,6 +30,7 @@ from cagepose.kernels.contact.equilibrium import (
 from cagepose.kernels.contact.friction import Friction
 from cagepose.kernels.contact.loads import PhaseLoad, write_load
 from cagepose.kernels.contact.metric import WRENCH, Body, Frame, ScaledVector, frame_at
+from cagepose.kernels.contact.on_rim import drop_idle
 from cagepose.kernels.contact.self_stress import forget_locked, write_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
@@ -163,6 +164,7 @@ def prove(
         for k in range(6):
             scratch.twist[k] = scratch.solver.cone.passive.residual[k]
         return PROVEN_MOVES, STABLE_REST, 0
+    drop_idle(contacts, scratch.solver.cone)
     left = scratch.solver.residual
     clear(scratch.rest.ways, WRENCH, 1.0)
     if code == UNSOLVED:

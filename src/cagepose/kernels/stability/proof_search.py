@@ -7,10 +7,10 @@ from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.contact.cone import HELD
-from cagepose.kernels.contact.edges import CHOICES_LIMIT, EVERY, first_choice, keep_choice
+from cagepose.kernels.contact.edges import CHOICES_LIMIT, EVERY, first_choice, has_one_choice, keep_choice
 from cagepose.kernels.contact.equilibrium import (
     AT_REST,
-    HELD_BY_FRICTION,
+    HELD_WITHOUT_FRICTION,
     MOVES,
     equilibrium_of_choice,
     equilibrium_with_faces,
@@ -72,9 +72,12 @@ def search_faces(friction: float, frame: Frame, at: ProofWorkspace) -> int:
     contacts, solver = at.contacts, at.scratch[0].solver
     forget_locked(contacts, frame, solver)
     first_choice(contacts)
+    one_choice = has_one_choice(contacts)
     for _ in range(CHOICES_LIMIT):
         code = equilibrium_of_choice(contacts, frame, friction, AT_REST, solver)
-        if code == HELD_BY_FRICTION:
+        if code == MOVES and not one_choice:
+            return UNIQUENESS_NOT_SHOWN
+        if code != HELD_WITHOUT_FRICTION:  # MOVES of the one choice, which was balanced before, is rounding
             answer = search_with_faces(friction, at)
             if answer != UNIQUE:
                 return OTHER_ONSET if answer == OTHER_FOUND else UNIQUENESS_NOT_SHOWN
