@@ -111,3 +111,80 @@ def test_a_bar_tips_where_its_load_leaves_a_round_table(radius_mm, beside_mm):
     level = [pose.position_m[0] for pose in path_of(ended.phases[0]) if pose.rotation[2, 2] > 1.0 - 1e-12]
     assert ended.verdict == "escapes"
     assert max(level) / MM == pytest.approx(math.sqrt(radius_mm**2 - beside_mm**2) - radius_mm, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("friction", "around"),
+    [(0.0, 0.0), (0.0, 0.3), (0.3, 0.0), (0.3, 0.4), (0.2, -0.5), (0.25, math.pi / 8), (0.1, 0.7)],
+)
+def test_a_can_that_is_pushed_over_the_edge_of_a_table_tips_there(friction, around):
+    """Its foot is a rim that lies flat. Pushed at its middle, friction below it moves its load by mu h/2 ahead: there
+    it tips, wherever on the rim that is, and however the rim comes out over the edge.
+    """
+    radius, height, edge = 60.0 * MM, 150.0 * MM, 400.0 * MM
+    table = Box((2 * edge, 2 * edge, 0.1), Pose((0.0, 0.0, -0.05)))
+    push = Force((math.cos(around), math.sin(around), 0.0), (0, 0, 0), friction + 0.2)
+    load = Load("push", gravity=(0, 0, -1), force=push)
+    can = Object(shapes=[Cylinder(radius, height)], mass_kg=1.0, pose=Pose((0, 0, height / 2)))
+    ended = run(Scene(can, Cage(shapes=[table]), [load], friction_coefficient=friction), "quasistatic")
+    assert ended.verdict == "escapes"
+    poses = path_of(ended.phases[0])
+    tilts = np.array([math.hypot(*pose.rotation[:2, 2]) for pose in poses])
+    begins = int(np.argmax(tilts > 1e-9))
+    load_ahead = friction * height / 2 * math.cos(around)
+    assert poses[begins - 1].position_m[0] + load_ahead == pytest.approx(edge, abs=0.1 * MM)
+    assert tilts.max() > 0.2
+
+
+@pytest.mark.parametrize("height_mm", [-40.0, -20.0, 0.0, 30.0])
+@pytest.mark.parametrize("around", [0.0, 0.2, 0.5])
+def test_no_can_stays_upright_beyond_the_edge(height_mm, around):
+    """A push below its middle holds it upright beyond where its weight alone would tip it, but not beyond its rim."""
+    radius, height, edge = 70.0 * MM, 90.0 * MM, 400.0 * MM
+    table = Box((2 * edge, 2 * edge, 0.1), Pose((0.0, 0.0, -0.05)))
+    push = Force((math.cos(around), math.sin(around), 0.0), (0, 0, height_mm * MM), 0.6)
+    load = Load("push", gravity=(0, 0, -1), force=push)
+    can = Object(shapes=[Cylinder(radius, height)], mass_kg=1.0, pose=Pose((0, 0, height / 2)))
+    ended = run(Scene(can, Cage(shapes=[table]), [load]), "quasistatic")
+    assert ended.verdict == "escapes"
+    upright = [pose.position_m[0] for pose in path_of(ended.phases[0]) if pose.rotation[2, 2] > 1.0 - 1e-9]
+    assert upright[-1] == pytest.approx(edge - 0.6 * height_mm * MM * math.cos(around), abs=2e-3 * radius)
+
+
+@pytest.mark.parametrize(
+    ("friction", "around", "aside_mm"),
+    [(0.0, 0.0, 0.0), (0.0, 0.4, 30.0), (0.0, math.pi / 8, 0.0), (0.3, 0.0, 0.0), (0.3, 0.5, -20.0), (0.1, 0.2, 50.0)],
+)
+def test_a_can_on_a_round_table_tips_where_its_load_comes_to_the_edge(friction, around, aside_mm):
+    """Two rims at one height cross at two places: between these each of them lies on the other part's face."""
+    radius, height, edge = 60.0 * MM, 150.0 * MM, 300.0 * MM
+    ahead = np.array([math.cos(around), math.sin(around)])
+    start = (-aside_mm * MM * ahead[1], aside_mm * MM * ahead[0], height / 2)
+    load = Load("push", gravity=(0, 0, -1), force=Force((*ahead, 0.0), (0, 0, 0), friction + 0.2))
+    can = Object(shapes=[Cylinder(radius, height)], mass_kg=1.0, pose=Pose(start))
+    table = Cylinder(edge, 0.1, Pose((0.0, 0.0, -0.05)))
+    ended = run(Scene(can, Cage(shapes=[table]), [load], friction_coefficient=friction), "quasistatic")
+    assert ended.verdict == "escapes"
+    poses = path_of(ended.phases[0])
+    begins = int(np.argmax([math.hypot(*pose.rotation[:2, 2]) > 1e-9 for pose in poses]))
+    loaded = poses[begins - 1].position_m[:2] + friction * height / 2 * ahead
+    assert np.linalg.norm(loaded) == pytest.approx(edge, abs=0.1 * MM)
+
+
+@pytest.mark.parametrize("gap_mm", [40.0, 50.0, 55.0, 57.0])
+@pytest.mark.parametrize("yaw", [0.0, 0.1, math.pi / 8])
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_a_can_crosses_a_gap_of_less_than_its_radius(gap_mm, yaw, friction):
+    """Its rim comes out from under the first edge at one point: there it lies flat on that no more, and goes on."""
+    radius, height = 60.0 * MM, 30.0 * MM
+    tables = [Box((0.4, 0.6, 0.04), Pose((x, 0, -0.02))) for x in (-0.2, gap_mm * MM + 0.2)]
+    stop = Box((0.01, 0.2, 0.06), Pose((0.165, 0, 0.03)), "stop")
+    push = Force((1.0, 0.0, 0.0), (0, 0, 0), friction + 0.2)
+    load = Load("push", gravity=(0, 0, -1), force=push)
+    can = Object(
+        shapes=[Cylinder(radius, height)], mass_kg=1.0, pose=Pose((-0.02, 0, height / 2), euler_zyx=(yaw, 0, 0))
+    )
+    ended = run(Scene(can, Cage(shapes=[*tables, stop]), [load], friction_coefficient=friction), "quasistatic")
+    assert ended.verdict in ("rests", "may rest")
+    assert ended.pose.position_m == pytest.approx(np.array([0.1, 0.0, height / 2]), abs=1e-9)
+    assert math.hypot(*ended.pose.rotation[:2, 2]) < 1e-9

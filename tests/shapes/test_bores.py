@@ -106,3 +106,40 @@ def test_a_peg_that_stands_in_a_bore_with_friction_is_pushed_to_its_wall_and_no_
     assert result.verdict in ("rests", "may rest")
     x, y = result.phases[1].pose.transform((0.0, 0.0, -1.0))[:2]
     assert math.hypot(x, y) <= 0.5 - radius + 1e-9
+
+
+def test_pegs_that_stand_in_a_bore_are_pushed_over_to_its_wall(cases, say) -> None:
+    """With friction a peg tips about one point of its flat end, between those that are listed."""
+    rng, verdicts = np.random.default_rng(3), {}
+    n_pegs = cases(30, 300)
+    for _ in range(n_pegs):
+        radius, friction, around = float(rng.uniform(0.005, 0.02)), float(rng.uniform(0.2, 0.9)), rng.uniform(0.0, 6.28)
+        length = radius * float(rng.uniform(1.0, 6.0))
+        depth, play = length * float(rng.uniform(0.2, 0.8)), radius * 10.0 ** float(rng.uniform(-2.5, -0.7))
+        way = (math.cos(around), math.sin(around), -float(rng.uniform(0.1, 2.0)))
+        push = Force(way, (*rng.uniform(-radius, radius, 2), length * float(rng.uniform(-0.5, 0.5))))
+        peg = Object(shapes=[Cylinder(radius, length)], pose=Pose((0, 0, length / 2 - depth)))
+        block = Box((8 * radius, 8 * radius, 2 * depth), Pose((0, 0, -depth)), "block")
+        bore = Cage(shapes=[block], holes=[Hole(radius + play, depth, in_=["block"])])
+        loads = [Load("weight", gravity=(0, 0, -1)), Load("push", forces=[push])]
+        verdict = run(Scene(peg, bore, loads, friction_coefficient=friction)).verdict
+        verdicts[verdict] = verdicts.get(verdict, 0) + 1
+    say(f"{n_pegs} pegs pushed over in bores: {verdicts}")
+    assert verdicts.get("limit", 0) + verdicts.get("stalled", 0) <= 1 + n_pegs // 50
+
+
+def test_a_can_on_the_floor_tips_about_the_point_of_its_rim_ahead_of_the_push() -> None:
+    """Friction holds its foot: it turns about the tangent of the rim where the push leads over it, to the 3e-5 rad that
+    a point of the rim may be beside the deepest one, which goes in with the square of that.
+    """
+    radius, height, around = 0.03, 0.12, 0.2
+    ahead = np.array([math.cos(around), math.sin(around), 0.0])
+    can = Object(shapes=[Cylinder(radius, height)], mass_kg=1.0, pose=Pose((0, 0, height / 2)))
+    load = Load("push", gravity=(0, 0, -1), force=Force(ahead, (0, 0, height / 2), 0.4))
+    floor = Box((2.0, 2.0, 0.1), Pose((0, 0, -0.05)))
+    motion = run(Scene(can, Cage(shapes=[floor]), [load], friction_coefficient=0.8)).phases[0].events[0]
+    first = motion.path[1]
+    moved = first.transform((0.0, 0.0, -height / 2) + radius * ahead)
+    assert moved == pytest.approx(radius * ahead, abs=1e-9)
+    tilt = first.rotation[:, 2]
+    assert math.atan2(tilt[1], tilt[0]) == pytest.approx(around, abs=3e-5)

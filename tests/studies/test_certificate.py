@@ -18,7 +18,9 @@ from cagepose import (
     Cage,
     Certificate,
     CertificateError,
+    Cylinder,
     Force,
+    Hole,
     Load,
     ModeTree,
     Object,
@@ -37,6 +39,7 @@ from cagepose import (
 from cagepose.files.record import record_of
 from cagepose.model.shapes import AnyShape
 from cagepose.studies.certificate_check import CertificateCheck
+from cagepose.studies.contact_problem import contact_problem
 from our_scenes import CASES
 from shapes.shape_scenes import random_problem, scene_of
 
@@ -304,6 +307,40 @@ def test_another_onset_is_checked_by_coulombs_law() -> None:
         check_certificate(replace(found, onset=rest_itself), a_run)
     with pytest.raises(CertificateError, match="has no tree"):
         check_certificate(replace(found, uniqueness="strong"), a_run)
+
+
+def test_no_other_onset_goes_into_a_rim_between_its_points(cases, say) -> None:
+    """Pegs that stand in bores, pushed: as another onset begins, no point of the flat end goes into the bottom."""
+    rng, n_weak, deepest = np.random.default_rng(5), 0, 0.0
+    for _ in range(cases(20, 200)):
+        radius, friction, around = float(rng.uniform(0.005, 0.02)), float(rng.uniform(0.2, 0.9)), rng.uniform(0.0, 6.28)
+        length = radius * float(rng.uniform(1.0, 6.0))
+        depth, play = length * float(rng.uniform(0.2, 0.8)), radius * 10.0 ** float(rng.uniform(-2.5, -0.7))
+        push = Force(
+            (math.cos(around), math.sin(around), -float(rng.uniform(0.1, 2.0))),
+            (*rng.uniform(-radius, radius, 2), length * float(rng.uniform(-0.5, 0.5))),
+        )
+        peg = Object(shapes=[Cylinder(radius, length)], pose=Pose((0, 0, length / 2 - depth)))
+        block = Box((8 * radius, 8 * radius, 2 * depth), Pose((0, 0, -depth)), "block")
+        bore = Cage(shapes=[block], holes=[Hole(radius + play, depth, in_=["block"])])
+        loads = [Load("weight", gravity=(0, 0, -1)), Load("push", forces=[push])]
+        a_run = run(Scene(peg, bore, loads, friction_coefficient=friction))
+        if a_run.phases[-1].proof.uniqueness != "weak" or (found := certificate(a_run)) is None:
+            continue
+        assert found.onset is not None
+        problem, pose = contact_problem(a_run, 1), a_run.pose
+        pushed = np.einsum("ij,ijk->k", found.onset.forces, problem.wrenches[list(found.onset.contacts)])
+        twist = problem.scale.T @ problem.scale @ (problem.load - pushed)
+        angles = np.linspace(0.0, 2.0 * math.pi, 3600)
+        rim = np.stack([radius * np.cos(angles), radius * np.sin(angles), 0.0 * angles - length / 2], axis=1)
+        speeds = twist[:3] + np.cross(twist[3:], rim @ pose.rotation.T)
+        is_on_bottom = abs(pose.position_m[2] - length / 2 + depth) + radius * np.hypot(*pose.rotation[:2, 2]) < 1e-9
+        if is_on_bottom:
+            n_weak += 1
+            deepest = max(deepest, -float(speeds[:, 2].min()) / float(np.abs(speeds).max()))
+    assert n_weak > 0
+    assert deepest < 1e-9
+    say(f"{n_weak} other onsets of pegs: rims go in with at most {deepest:.1e} of the motion")
 
 
 def test_points_on_edges_have_a_tree_for_each_choice_of_faces() -> None:

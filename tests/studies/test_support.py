@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 
 from caged_scenes import pushed_block
 from cagepose import Box, Cage, Load, Object, Pose, Scene, load_scene, run
-from cagepose.model.shapes import Capsule
+from cagepose.model.shapes import Capsule, Cylinder
 from cagepose.paper.cases import sample_scene
 from cagepose.runs.judge import judge_pose
 from cagepose.studies.support import convex_hull, load_view
@@ -151,3 +151,27 @@ def test_a_weight_is_balanced_just_inside_the_region_and_not_just_outside(cases)
                 assert (proof.verdict != "moves") == is_in
                 n_asked += 1
     assert n_asked > 50
+
+
+def test_a_can_is_supported_within_all_of_its_rim():
+    """On level ground without friction by its circle, of which a run lists eight places: 128 are 0.03 % within it."""
+    radius, off = 0.06, math.hypot(0.03, 0.01)
+    can = Object(shapes=[Cylinder(radius, 0.15)], center_of_gravity_m=(0.03, 0.01, 0.0), pose=Pose((0, 0, 0.075)))
+    table = Box((0.4, 0.4, 0.1), Pose((0, 0, -0.05)))
+    view, found = region_of(run(Scene(can, Cage(shapes=[table]), [Load("weight", gravity=(0, 0, -1))])))
+    assert found.margin_m == pytest.approx(radius - off, abs=4e-4 * radius)
+    assert view.margin_m == pytest.approx(found.margin_m, abs=1e-9)
+    assert_allclose(np.linalg.norm(found.corners, axis=1), radius, rtol=1e-9)
+
+
+@pytest.mark.parametrize("euler", [(0.3, 0.2, 0.0), (0.7, -0.4, 0.5), (-0.5, 0.1, -0.8), (1.0, 0.6, 0.3)])
+def test_points_that_pinch_a_smooth_plate_on_a_slope_support_it_nowhere(euler):
+    """Above and below it they make moments without end, but no force along the slope."""
+    turned = Pose(euler_zyx=euler)
+    pairs = ((-0.03, 0.02), (0.02, -0.01), (0.01, 0.03))
+    points = [place for x, y in pairs for place in ((x, y, -0.01), (x + 0.003, y, 0.01))]
+    held = Object([Box((0.1, 0.08, 0.02))], pose=turned)
+    loads = [Load("weight", gravity=(0, 0, -1))]
+    smooth, rough = (Scene(held, Cage(points, pose=turned), loads, friction_coefficient=mu) for mu in (0.0, 5.0))
+    slides = replace(run(rough), scene=smooth)
+    assert region_of(slides)[1].margin_m == -math.inf

@@ -104,7 +104,8 @@ class _Search:
         contacts: Any = self.at.contacts
         work: Any = self.at.scratch[0]
         self.states, self.tree = contacts.states, work.tree
-        self.used = np.nonzero(contacts.rows["group"][: contacts.used[0]] >= 0)[0]
+        contacts.used[0] = work.n_asked
+        self.used = np.nonzero(contacts.rows["group"][: work.n_asked] >= 0)[0]
         load = work.solver.load[:WRENCH]
         self.size = float(np.linalg.norm(load)) or 1.0
         self.is_of_first_order = self._take(contacts.rows, load)

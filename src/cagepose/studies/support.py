@@ -10,6 +10,7 @@ import numpy as np
 from cagepose.model.checks import FloatArray, unit_vector
 from cagepose.runs.actions import wrench_at
 from cagepose.runs.run import Run
+from cagepose.studies.whole_rims import more_places
 
 PARALLEL = 1e-6
 """Sine of the angle between two lines that do not cross."""
@@ -28,7 +29,7 @@ class LoadView:
     load_point
         Where the load's line passes, (2,).
     polygon
-        Corners of the convex hull of the contacts, counter-clockwise, (n, 2).
+        Corners of the convex hull of the contacts, counter-clockwise, (n, 2); of a rim that lies flat all around, 128.
     margin_m
         Distance of the load's line from the hull's outline: above zero inside, below zero outside. A hull without area
         has no inside.
@@ -64,7 +65,7 @@ def load_view(run: Run, phase_index: int) -> LoadView:
     touching = [index for index, name in enumerate(run.scene.cage.names) if name in names]
     on_shapes = [
         contact.place_world
-        for contact in phase.contacts
+        for contact in (*phase.contacts, *more_places(run.scene, phase))
         if contact.point not in run.scene.cage.names and contact.place_world is not None
     ]
     places = np.concatenate([run.scene.cage.points_world()[touching], np.reshape(on_shapes, (-1, 3))])

@@ -15,12 +15,24 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.algebra.linear_program import INFEASIBLE, N_UNKNOWNS, OPTIMAL, UNBOUNDED, Program, solve_program
+from cagepose.kernels.algebra.linear_program import (
+    FAILED,
+    INFEASIBLE,
+    N_UNKNOWNS,
+    OPTIMAL,
+    UNBOUNDED,
+    Program,
+    solve_program,
+)
 from cagepose.kernels.algebra.record import empty_record
-from cagepose.model.checks import FloatArray
+from cagepose.kernels.contact.contact_set import tangents_to
+from cagepose.model.checks import FloatArray, as_vector
+from cagepose.runs.cases import contact_friction
+from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import Run
 from cagepose.studies.contact_problem import ContactProblem, contact_problem
 from cagepose.studies.support import ROUNDING, LoadView, convex_hull, polygon_within, without_doubles
+from cagepose.studies.whole_rims import more_places
 
 N_DIRECTIONS = 120
 """3 deg apart; and across each side of the contacts' polygon, so that a polygon comes out exactly."""
@@ -30,6 +42,8 @@ CUT_FROM = 1e-9
 """In lengths of a twist: one that is violated by less is left as it is."""
 HALVINGS = 30
 """Of the angle between a direction in which a region ends and one in which it does not."""
+FAR = 1e3
+"""In distances of ends: what has no end is followed so far."""
 MOST_CHOICES = 27
 """Of faces at edges: three points on corners."""
 
@@ -67,10 +81,13 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
     choices = list(islice(product(*problem.groups), MOST_CHOICES + 1))
     if len(choices) > MOST_CHOICES:
         return None
+    wrenches, friction = _with_whole_rims(problem, run, phase_index)
+    on_rims = range(len(problem.faces), len(wrenches))
     normals = _directions(view.polygon)
     heights, points = np.full(len(normals), math.inf), np.zeros((0, 2))
     for choice in choices:
-        found = _farthest(problem, list(choice), view, normals)
+        counting = [*choice, *on_rims]
+        found = _farthest(wrenches[counting], friction[counting], view, normals)
         if found is None:
             return None
         if len(choices) == 1:
@@ -78,13 +95,35 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
         else:
             heights = np.minimum(heights, found.heights[: len(normals)])
     margin_m = float(heights.min())
-    if margin_m == -math.inf:
-        return SupportRegion(np.zeros((0, 2)), margin_m)
+    if margin_m == -math.inf or _is_empty(normals, heights + ROUNDING * reach_m):
+        return SupportRegion(np.zeros((0, 2)), -math.inf)
     if len(choices) == 1 and heights.max() < reach_m:  # between its farthest points there is next to nothing
         shown = without_doubles(convex_hull(points), ROUNDING * reach_m)
     else:
         shown = polygon_within(normals, np.minimum(heights, reach_m))
     return SupportRegion(view.load_point + shown, margin_m)
+
+
+def _with_whole_rims(problem: ContactProblem, run: Run, phase_index: int) -> tuple[FloatArray, FloatArray]:
+    """Return wrenches (n, 3, 6) and friction (n,) of the contacts of a problem, then of places on whole rims."""
+    scene, ended = run.scene, run.phases[phase_index]
+    center, on_rims = ended.pose.transform(scene.object.center_of_gravity_m), more_places(scene, ended)
+    of_scene = chosen_method(scene, run.method).friction(scene)
+    wrenches = np.zeros((len(on_rims), 3, 6))
+    for place, contact in enumerate(on_rims):
+        assert contact.place_world is not None
+        directions = np.array([contact.normal_world, *tangents_to(as_vector(contact.normal_world))])
+        wrenches[place] = np.hstack([directions, np.cross(contact.place_world - center, directions)])
+    friction = [contact_friction(scene, of_scene, contact.point, contact.box) for contact in on_rims]
+    return np.concatenate([problem.wrenches, wrenches]), np.concatenate([problem.friction, friction])
+
+
+def _is_empty(normals: FloatArray, heights: FloatArray) -> bool:
+    """Whether no point is within these distances of the origin along unit vectors: regions that do not overlap."""
+    if heights.min() >= 0.0:
+        return False
+    farthest = FAR * np.abs(heights[np.isfinite(heights)]).max()
+    return len(polygon_within(normals, np.minimum(heights, farthest))) == 0
 
 
 def _directions(polygon: FloatArray) -> FloatArray:
@@ -107,7 +146,7 @@ class _Bounds(NamedTuple):
     points: FloatArray
 
 
-def _farthest(problem: ContactProblem, places: list[int], view: LoadView, normals: FloatArray) -> _Bounds | None:
+def _farthest(wrenches: FloatArray, friction: FloatArray, view: LoadView, normals: FloatArray) -> _Bounds | None:
     """Return how far the region goes along some directions, and along those where it begins to have no end; None: a
     program had no sure answer.
 
@@ -116,7 +155,9 @@ def _farthest(problem: ContactProblem, places: list[int], view: LoadView, normal
     forces for its multipliers.
     """
     down, seen = np.cross(view.up_world, view.right_world), np.stack([view.right_world, view.up_world], axis=1)
-    rays, program = _Rays(problem.wrenches[places], problem.friction[places], down), empty_record(Program)
+    rays, program = _Rays(wrenches, friction, down), empty_record(Program)
+    if rays.solve(program, np.zeros(3)) == UNBOUNDED:  # it is empty, be it that moments have no end
+        return _Bounds(normals, np.full(len(normals), -math.inf), np.zeros((len(normals), 2)))
 
     def reach(normal: FloatArray) -> tuple[float, FloatArray] | None:
         outcome = rays.solve(program, np.cross(down, seen @ normal))
@@ -124,9 +165,7 @@ def _farthest(problem: ContactProblem, places: list[int], view: LoadView, normal
             used = program.passive.used
             moment = program.passive.x[:used] @ rays.moments[program.passive.labels[:used]]
             return -rays.length_m * float(down @ program.x[:3]), np.cross(moment, down) @ seen
-        if outcome in (UNBOUNDED, INFEASIBLE):  # the dual of none, or of what has no end
-            return -math.inf if outcome == UNBOUNDED else math.inf, np.zeros(2)
-        return None
+        return (math.inf, np.zeros(2)) if outcome == INFEASIBLE else None  # the dual of what has no end
 
     found = [(normal, reach(normal)) for normal in normals]
     last_ends = []
@@ -186,8 +225,8 @@ class _Rays:
             found = program.x if outcome == OPTIMAL else program.ray
             turn = found[3] * self.down - (across if outcome == OPTIMAL else 0.0)
             if not self._cut(np.append(found[:3], turn / self.length_m)):
-                break
-        return outcome
+                return outcome
+        return outcome if outcome == OPTIMAL else FAILED
 
     def _cut(self, twist: FloatArray) -> bool:
         """Add the ray of each contact that a twist violates most; False: it violates none."""

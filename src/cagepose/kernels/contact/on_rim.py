@@ -19,6 +19,7 @@ from cagepose.kernels.contact.contact_set import ContactSet, choose, stays_on_fa
 from cagepose.kernels.contact.edges import has_one_choice
 from cagepose.kernels.contact.metric import WRENCH, Frame, twist_of
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.flat_rims import SAME_WAY
 
 MOST_ADDED = 40
 """Points of rims, for one question."""
@@ -39,6 +40,30 @@ def is_under_rim(contacts: ContactSet, i: int, touch_m: float) -> bool:
     if rim.length == 0.0 or rim.is_on_ball:
         return False
     return abs(rim.length) * norm(cross(vector_from(rim.axis), normal)) <= touch_m
+
+
+@kernel
+def is_on_flat(contacts: ContactSet, i: int) -> bool:
+    """Whether a point that was added is of a rim that stays flat on the same face."""
+    row, found = contacts.rows[i], False
+    for j in range(contacts.used[0]):
+        other = contacts.rows[j]
+        is_same = other.box == row.box and other.point == row.point
+        if is_same and contacts.states[j].stays_flat:
+            turned = dot(vector_from(other.directions[0]), vector_from(row.directions[0]))
+            found = found or turned > SAME_WAY
+    return found
+
+
+@kernel
+def is_kept(contacts: ContactSet, i: int) -> bool:
+    """Whether a step puts a contact back on its face: it carries, is locked or is of a rim that stays flat.
+
+    Of such a rim the points that were listed stand for those that were added, which are nowhere in particular.
+    """
+    if contacts.states[i].stays_flat:
+        return True
+    return stays_on_face(contacts, i) and not (contacts.rows[i].is_added and is_on_flat(contacts, i))
 
 
 @kernel
@@ -147,10 +172,10 @@ def add_on_rims(contacts: ContactSet, frame: Frame, friction: float, y: FloatArr
         if contacts.rows[i].feature < 0 or rim.length == 0.0 or contacts.used[0] == len(contacts.rows):
             continue
         deepest = angle_of_deepest(contacts, i, 0.0, velocity, spin, 0.0)
-        for start in (deepest, 0.0):  # with friction, uphill from the deepest place and from the listed one
+        for k in range(2 if friction > 0.0 else 1):  # with it, uphill from the deepest place, and from the listed one
             angle = deepest
             if friction > 0.0:
-                angle = angle_of_deepest(contacts, i, friction, velocity, spin, start)
+                angle = angle_of_deepest(contacts, i, friction, velocity, spin, deepest if k == 0 else 0.0)
             if angle == 0.0 or abs(angle) > (1.0 + ENTERS) * (rim.after if angle > 0.0 else rim.before):
                 continue
             add_point(contacts, i, angle, frame)

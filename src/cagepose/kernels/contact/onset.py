@@ -23,6 +23,7 @@ from cagepose.kernels.contact.equilibrium import (
 from cagepose.kernels.contact.metric import Frame
 from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims, drop_idle, is_under_rim
 from cagepose.kernels.contact.self_stress import carry_by_locked, forget_locked
+from cagepose.kernels.contact.tip import tips_on_rim
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
@@ -87,6 +88,8 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
             code = equilibrium(contacts, frame, friction, AT_REST, work)
             if code == MOVES:
                 code = freest_motion(contacts, frame, friction, work)
+        if code == MOVES_SOMEHOW and friction > 0.0 and tips_on_rim(contacts, frame, friction, work):
+            code = MOVES
         if work.locked.used > 0:
             carry_by_locked(contacts, frame, friction, work)
     drop_idle(contacts, work.cone)

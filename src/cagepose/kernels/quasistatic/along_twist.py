@@ -26,6 +26,7 @@ from cagepose.kernels.contact.loads import (
     work_done,
 )
 from cagepose.kernels.contact.metric import moved_along_twist
+from cagepose.kernels.contact.on_rim import is_kept
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
 from cagepose.kernels.quasistatic.projection import (
@@ -171,7 +172,7 @@ def note_kept(placement: Placement, contacts: ContactSet) -> None:
         row.is_kept = False
         for i in range(contacts.used[0]):
             is_same = contacts.rows[i].feature == row.feature and contacts.rows[i].cage_feature == row.cage_feature
-            row.is_kept = row.is_kept or (is_same and stays_on_face(contacts, i))
+            row.is_kept = row.is_kept or (is_same and is_kept(contacts, i))
 
 
 @kernel

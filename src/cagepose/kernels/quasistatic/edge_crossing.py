@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled, vector_from
 from cagepose.kernels.collision.geometry import Geometry, Placement, box_point, point_in_box, vector_in_box
 from cagepose.kernels.collision.screw import next_below
-from cagepose.kernels.contact.contact_set import ContactRow, ContactSet, stays_on_face
+from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
+from cagepose.kernels.contact.on_rim import is_kept
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.straying import STRAYED, strayed
 from cagepose.kernels.shapes.along_motion import place_moved
-from cagepose.kernels.shapes.meeting import both_reach, meeting
+from cagepose.kernels.shapes.flat_rims import SAME_WAY
+from cagepose.kernels.shapes.meeting import both_reach, meeting, twin_pair
 from cagepose.kernels.shapes.meetings import slack_of
 from cagepose.kernels.shapes.motion import Motion, motion_of
 
@@ -34,25 +36,52 @@ def travel_to_edge(coordinate: float, rate: float, limit: float) -> float:
 def still_meet(
     geometry: Geometry,
     placement: Placement,
+    contacts: ContactSet,
     contact: ContactRow,
     motion: Motion,
     amount: float,
     touch_m: float,
     within_m: float,
 ) -> bool:
-    """Whether two features still reach where they meet, after an amount of a motion, by so much within their ends."""
+    """Whether two features still reach where they meet, after an amount of a motion, by so much within their ends.
+
+    Those that do with quite another normal have come apart: an edge and the rim that lay across it.
+    """
     held, cage, moved = placement.body.world, geometry.cage, placement.moved
-    place_moved(held, contact.feature, motion, amount, moved)
-    met = meeting(moved, contact.feature, cage, contact.cage_feature)
+    one, other = contact.feature, contact.cage_feature
+    place_moved(held, one, motion, amount, moved)
+    met, twins = meeting(moved, one, cage, other), twin_pair(moved, one, cage, other)
+    if not met.is_one and twins[0] >= 0 and not is_listed(contacts, twins[0], twins[1]):
+        one, other = twins  # where the first of two places on an arc has left it, the second one is the first
+        place_moved(held, one, motion, amount, moved)
+        met = meeting(moved, one, cage, other)
+    if dot(met.normal, vector_from(contact.directions[0])) < SAME_WAY:
+        return False
     least = min(held.parts[contact.box].least_length, cage.parts[contact.point].least_length)
     slack = CLEAR * slack_of(held, contact.box, cage, contact.point, touch_m) - within_m / least
     slack_m = 2.0 * CLEAR * touch_m - within_m
-    return both_reach(moved, contact.feature, cage, contact.cage_feature, met, slack, slack_m)
+    return both_reach(moved, one, cage, other, met, slack, slack_m)
+
+
+@kernel
+def is_listed(contacts: ContactSet, feature: int, cage_feature: int) -> bool:
+    """Whether there is a contact of two features."""
+    found = False
+    for i in range(contacts.used[0]):
+        row = contacts.rows[i]
+        found = found or (row.feature == feature and row.cage_feature == cage_feature)
+    return found
 
 
 @kernel
 def end_of_meeting(
-    geometry: Geometry, placement: Placement, contact: ContactRow, motion: Motion, end: float, touch_m: float
+    geometry: Geometry,
+    placement: Placement,
+    contacts: ContactSet,
+    contact: ContactRow,
+    motion: Motion,
+    end: float,
+    touch_m: float,
 ) -> float:
     """Return the amount of a motion, up to ``end``, after which a contact runs over the end of one of its features;
     inf: it does not.
@@ -60,12 +89,12 @@ def end_of_meeting(
     if end == math.inf:
         held, cage = placement.body.world.parts[contact.box], geometry.cage.parts[contact.point]
         end = 2.0 * (held.reach + cage.reach + touch_m) / norm(motion.velocity)
-    if still_meet(geometry, placement, contact, motion, end, touch_m, 0.0):
+    if still_meet(geometry, placement, contacts, contact, motion, end, touch_m, 0.0):
         return math.inf
     low, high = 0.0, end
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        if still_meet(geometry, placement, contact, motion, middle, touch_m, 0.0):
+        if still_meet(geometry, placement, contacts, contact, motion, middle, touch_m, 0.0):
             low = middle
         else:
             high = middle
@@ -93,16 +122,16 @@ def first_edge_crossing(
     rate = norm(spin)
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
-        if not stays_on_face(contacts, i):
+        if not is_kept(contacts, i):
             continue
         if contact.feature >= 0:
             motion = motion_of(center, velocity, spin)
-            crossing = end_of_meeting(geometry, placement, contact, motion, min(end, first), touch_m)
+            crossing = end_of_meeting(geometry, placement, contacts, contact, motion, min(end, first), touch_m)
             if crossing < first:
                 reach = STRAYED * strayed(
                     geometry, contacts, center, quaternion, velocity, spin, crossing, math.inf, placement.moved
                 )
-                if still_meet(geometry, placement, contact, motion, 0.0, touch_m, reach):
+                if still_meet(geometry, placement, contacts, contact, motion, 0.0, touch_m, reach):
                     first = crossing
             continue
         box = contact.box

@@ -24,6 +24,8 @@ from cagepose.kernels.native.kernel import kernel
 
 RAISES = 12
 """How often rho is raised, four times each, before the explicit step is taken after all."""
+LEVEL = 1e-9
+"""Of the step: a rim of which no point goes farther out or in stays flat."""
 LEAST_RHO = 1e-9
 """In curvatures: freedoms without curvature (a block that slides on a plane) keep the matrix regular by this."""
 
@@ -150,4 +152,8 @@ def implicit_step(
         for j in range(3):
             state.forces[j] = turned.states[i].forces[j]
         state.is_sticking = state.is_sticking and state.forces[0] > 0.0
+    for i in range(contacts.used[0]):
+        state, away = contacts.states[i], abs(inner(contacts.rows[i].columns[0], work.delta, 6))
+        is_level = away <= LEVEL * length(contacts.rows[i].columns[0], 6) * length(work.delta, 6)
+        state.stays_flat = state.stays_flat and is_level
     return True

@@ -12,7 +12,7 @@ from typing import Annotated, NamedTuple
 from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion, rotated
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
-from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, plus, row, scaled, transposed_times
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, plus, row, scaled, transposed_times, vector_from
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.contact.contact_set import tangents_to
 from cagepose.kernels.contact.metric import (
@@ -26,7 +26,8 @@ from cagepose.kernels.contact.metric import (
     write_scaled_wrench,
 )
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.features import RIM, Shapes, is_of_mouth, place_feature
+from cagepose.kernels.shapes.features import RIM, Feature, Shapes, is_of_mouth, place_feature
+from cagepose.kernels.shapes.flat_rims import SAME_WAY
 from cagepose.kernels.shapes.meeting import Meeting, apart, meeting, meeting_kept, twin_pair
 from cagepose.kernels.shapes.rims import is_near_arc, lie_flat
 
@@ -192,12 +193,27 @@ def lack(
         met = meeting_kept(moved, i, geometry.cage, j, constraint.target)
     if not met.is_one:
         met = meeting_beside(geometry, constraint, position, quaternion, moved)
+    if constraint.which == FLAT and not is_along_axis(moved.features[i], geometry.cage.features[j], met.normal):
+        met = apart()
     arm = minus(met.place, position)
     if not met.is_one:
         return Lack(math.inf, met.normal, arm)
     if constraint.which in (GAP, FLAT):
         return Lack(met.gap - constraint.target, met.normal, arm)
     return Lack(0.0, tangents_to(met.normal)[constraint.which - ALONG], arm)
+
+
+@kernel
+def is_along_axis(held: Feature, cage: Feature, normal: Vector) -> bool:
+    """Whether a normal leads along the axis of a rim, if one of two features is one: across it, a rim that lay flat has
+    come out from under an edge.
+    """
+    leads = True
+    if held.kind == RIM:
+        leads = abs(dot(normal, vector_from(held.direction))) > SAME_WAY
+    if cage.kind == RIM:
+        leads = leads and abs(dot(normal, vector_from(cage.direction))) > SAME_WAY
+    return leads
 
 
 @kernel

@@ -14,7 +14,8 @@ from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.first_contact import allowed_depth
 from cagepose.kernels.collision.first_meeting import are_convex
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
-from cagepose.kernels.contact.contact_set import ContactRow, ContactSet, stays_on_face
+from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
+from cagepose.kernels.contact.on_rim import is_kept
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.projection import (
     FLAT,
@@ -88,36 +89,25 @@ def kept_gap(geometry: Geometry, placement: Placement, contact: ContactRow, clos
 
 
 @kernel
-def is_on_flat(contacts: ContactSet, i: int) -> bool:
-    """Whether a point that was added is of a rim that stays flat."""
-    found = False
-    for j in range(contacts.used[0]):
-        is_same = contacts.rows[j].box == contacts.rows[i].box and contacts.rows[j].point == contacts.rows[i].point
-        found = found or (contacts.states[j].stays_flat and is_same)
-    return found
-
-
-@kernel
 def constrain_contacts(
     geometry: Geometry, placement: Placement, contacts: ContactSet, closed_m: float, constraints: Constraints
 ) -> None:
     """Constrain the contacts that stay on their faces, and where they stick also in the face.
 
-    Gaps above ``closed_m`` are kept: to close them could take work, or bring another point in. Of a rim that stays flat
-    the points that were listed stand for those that were added, which are nowhere in particular.
+    Gaps above ``closed_m`` are kept: to close them could take work, or bring another point in.
     """
     constraints.scratch[0].used = 0
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
+        if not is_kept(contacts, i):
+            continue
         if contacts.states[i].stays_flat:
             kept = kept_gap(geometry, placement, contact, closed_m)
             constrain_features(constraints, contact.feature, contact.cage_feature, FLAT, kept)
-        elif contact.is_added and is_on_flat(contacts, i):
-            continue
-        elif stays_on_face(contacts, i) and contact.feature >= 0:
+        elif contact.feature >= 0:
             kept = kept_gap(geometry, placement, contact, closed_m)
             constrain_features(constraints, contact.feature, contact.cage_feature, GAP, kept)
-        elif stays_on_face(contacts, i):
+        else:
             at = geometry.half_sizes[contact.box, contact.axis]
             if contact.gap > closed_m:
                 at += contact.gap

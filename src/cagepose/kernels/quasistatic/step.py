@@ -45,7 +45,7 @@ from cagepose.kernels.quasistatic.rest_on_the_way import first_rest, is_held_on_
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.tipping import may_tip, tips_on_the_way
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
-from cagepose.kernels.stability.strong import OTHER_FOUND, other_onset
+from cagepose.kernels.stability.strong import OTHER_FOUND, other_onset_on_rims
 
 RULE_NAMES = ("free", "slide", "pivot", "held", "stalled", "escapes")
 FREE, SLIDE, PIVOT, HELD, STUCK, AWAY = 0, 1, 2, 3, 4, 5
@@ -113,8 +113,9 @@ def impending_motion(setting: Setting, frame: Frame, work: QuasistaticWorkspace)
     code = onset(contacts, frame, friction, solver)
     if code != MOVES_SOMEHOW or friction == 0.0:
         return code
-    tree = proof.scratch[0].tree
-    if other_onset(contacts, friction, solver.load, tree, solver.newton, proof.system) != OTHER_FOUND:
+    tree, load, terms = proof.scratch[0].tree, solver.load, solver.load_terms
+    found = other_onset_on_rims(contacts, frame, friction, load, terms, tree, solver.newton, proof.system)
+    if found != OTHER_FOUND:
         return MOVES_SOMEHOW
     for k in range(6):
         solver.y[k] = tree.y[k]

@@ -23,16 +23,10 @@ from cagepose.kernels.shapes.along_motion import (
     touches_after,
 )
 from cagepose.kernels.shapes.features import EDGE, FACE, RIM, Feature, Shapes
+from cagepose.kernels.shapes.feet import clearance_of_arc, distance_from_arc, foot_on
 from cagepose.kernels.shapes.meeting import Meeting, meeting, twin_pair
 from cagepose.kernels.shapes.motion import Motion, velocity_at
-from cagepose.kernels.shapes.rims import (
-    clearance_of_arc,
-    distance_at,
-    distance_from_arc,
-    foot_on,
-    middle_of_arc,
-    reach_of_arc,
-)
+from cagepose.kernels.shapes.rims import distance_at, middle_of_arc, reach_of_arc
 
 ADVANCES = 6000
 """Steps for one pair of features; only where they graze each other more than some tens are taken."""

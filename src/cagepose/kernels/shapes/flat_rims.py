@@ -1,7 +1,7 @@
 """Rims that lie flat: of each contact of one, how far along the rim the other part touches as it does there.
 
-A face lies on a rim from vertex to vertex, or from where the rim comes out from under it at one sharp edge to where it
-does at another, with no vertex between. All points between are contacts, too.
+A face lies on a rim from vertex to vertex, or from where the rim comes out from under it, at a sharp edge or at a rim
+of its own, to where it does so again, with no vertex between. All points between are contacts, too.
 """
 
 from __future__ import annotations
@@ -62,7 +62,13 @@ def write_on_rim(
     """
     out.length, out.face = 0.0, -1
     one, other = a.features[i], b.features[j]
-    if one.kind == EDGE and other.kind == RIM:
+    if one.kind == FACE and other.kind == RIM and lie_flat(other, one, touch_m):
+        out.is_of_cage, out.arc_before, out.arc_after = True, j, j
+        write_along_face(other, plus(met.place, scaled(met.normal, met.gap)), a, i, touch_m, out)
+    elif one.kind == RIM and other.kind == FACE and lie_flat(one, other, touch_m):
+        out.is_of_cage, out.arc_before, out.arc_after = False, i, i
+        write_along_face(one, met.place, b, j, touch_m, out)
+    elif one.kind == EDGE and other.kind == RIM:
         out.is_of_cage, out.arc_before, out.arc_after = True, j, j
         write_under_face(other, plus(met.place, scaled(met.normal, met.gap)), a, i, met.normal, touch_m, out)
     elif one.kind == RIM and other.kind == EDGE:
@@ -104,11 +110,8 @@ def write_under_face(
     arc: Feature, place: Vector, shapes: Shapes, edge: int, normal: Vector, touch_m: float, out: OnRim
 ) -> None:
     """Write how far an arc goes on under a face with this outward normal from where it crosses a sharp edge of it."""
-    if arc.length < 0.0 or arc.is_second or shapes.features[edge].radius != 0.0:
+    if shapes.features[edge].radius != 0.0:
         return
-    outward, axis, toward = outward_at(arc, place), vector_from(arc.direction), vector_from(arc.toward)
-    along = cross(axis, outward)
-    angle = math.atan2(dot(cross(toward, outward), axis), dot(toward, outward))
     for which in range(len(shapes.parts)):
         part = shapes.parts[which]
         for face in range(part.first_face, part.last if part.first <= edge < part.last else part.first_face):
@@ -117,12 +120,24 @@ def write_under_face(
             is_flush = abs(height) <= touch_m and dot(vector_from(flat.direction), normal) > SAME_WAY
             if not is_flush or not lie_flat(arc, flat, touch_m):
                 continue
-            center, back, radius = vector_from(arc.point), scaled(along, -1.0), arc.length
-            out.length, out.face, out.is_on_ball = radius, face, False
-            out.after = covered_angle(shapes, face, center, outward, along, radius, HALF_ARC - angle, touch_m)
-            out.before = covered_angle(shapes, face, center, outward, back, radius, HALF_ARC + angle, touch_m)
-            for k in range(3):
-                out.axis[k], out.outward[k], out.ball[k] = axis[k], outward[k], 0.0
+            write_along_face(arc, place, shapes, face, touch_m, out)
+            out.face = face
+
+
+@kernel
+def write_along_face(arc: Feature, place: Vector, shapes: Shapes, face: int, touch_m: float, out: OnRim) -> None:
+    """Write how far an arc that lies flat on a face goes on there from a place of it."""
+    if arc.length < 0.0 or arc.is_second:
+        return
+    outward, axis, toward = outward_at(arc, place), vector_from(arc.direction), vector_from(arc.toward)
+    along = cross(axis, outward)
+    angle = math.atan2(dot(cross(toward, outward), axis), dot(toward, outward))
+    center, back, radius = vector_from(arc.point), scaled(along, -1.0), arc.length
+    out.length, out.is_on_ball = radius, False
+    out.after = covered_angle(shapes, face, center, outward, along, radius, HALF_ARC - angle, touch_m)
+    out.before = covered_angle(shapes, face, center, outward, back, radius, HALF_ARC + angle, touch_m)
+    for k in range(3):
+        out.axis[k], out.outward[k], out.ball[k] = axis[k], outward[k], 0.0
 
 
 @kernel

@@ -13,14 +13,8 @@ from typing import NamedTuple
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.features import EDGE, FACE, RIM, VERTEX, Feature, Shapes, beyond_fence
-from cagepose.kernels.shapes.rims import (
-    beyond_normals,
-    foot_on,
-    is_on_arc,
-    nearest_on_edge,
-    nearest_on_rim,
-    outward_at,
-)
+from cagepose.kernels.shapes.feet import foot_on
+from cagepose.kernels.shapes.rims import beyond_normals, is_on_arc, nearest_on_edge, nearest_on_rim, outward_at
 
 SAME_PLACE = 4.0
 """In touch tolerances: meetings nearer to each other are at one place."""
@@ -347,10 +341,11 @@ def meeting_kept(moved: Shapes, i: int, b: Shapes, j: int, gap: float) -> Meetin
     Features of ``moved`` are placed: this one, and the other one that it is.
     """
     met, (one, other) = meeting(moved, i, b, j), twin_pair(moved, i, b, j)
-    if one < 0 or not met.is_one:
+    if one < 0:
         return met
     at_twin = meeting(moved, one, b, other)
-    return at_twin if at_twin.is_one and abs(at_twin.gap - gap) < abs(met.gap - gap) else met
+    is_at_twin = not met.is_one or abs(at_twin.gap - gap) < abs(met.gap - gap)
+    return at_twin if at_twin.is_one and is_at_twin else met
 
 
 @kernel

@@ -62,8 +62,9 @@ class AnalysisWorkspace:
         ``solver.residual``: what is left of the load; ``solver.y``: motion that begins, see `first_motion`.
     twist, twist_residual
         Scaled twist along which the load works and that no contact force resists (5.6), and what is left then.
-    tree
-        The search for another onset. ``tree.y``: that of one that Coulomb's law allows.
+    tree, n_asked
+        The search for another onset. ``tree.y``: that of one that Coulomb's law allows. How many contacts were asked:
+        behind those of the rest are further points of rims.
     rest
         Undetermined freedoms.
     wedged
@@ -76,6 +77,7 @@ class AnalysisWorkspace:
     twist: ScaledVector
     twist_residual: float
     tree: ModeTree
+    n_asked: int
     rest: StabilityWorkspace
     wedged: bool
     is_clamped: bool

@@ -33,7 +33,7 @@ from cagepose.kernels.stability.proof import (
     prove,
 )
 from cagepose.kernels.stability.second_order import MARGINAL, STABLE_REST
-from cagepose.kernels.stability.strong import OTHER_FOUND, UNIQUE, other_onset
+from cagepose.kernels.stability.strong import OTHER_FOUND, UNIQUE, other_onset, other_onset_on_rims
 
 
 @entry
@@ -69,7 +69,7 @@ def search_with_faces(friction: float, at: ProofWorkspace) -> int:
 @kernel
 def search_faces(friction: float, frame: Frame, at: ProofWorkspace) -> int:
     """Return the code of the proof, that of the first combination of faces with which rest is not the only onset."""
-    contacts, solver = at.contacts, at.scratch[0].solver
+    contacts, work, solver = at.contacts, at.scratch[0], at.scratch[0].solver
     forget_locked(contacts, frame, solver)
     first_choice(contacts)
     one_choice = has_one_choice(contacts)
@@ -77,10 +77,20 @@ def search_faces(friction: float, frame: Frame, at: ProofWorkspace) -> int:
         code = equilibrium_of_choice(contacts, frame, friction, AT_REST, solver)
         if code == MOVES and not one_choice:
             return UNIQUENESS_NOT_SHOWN
+        n_asked = contacts.used[0]
         if code != HELD_WITHOUT_FRICTION:  # MOVES of the one choice, which was balanced before, is rounding
-            answer = search_with_faces(friction, at)
+            if solver.locked.used > 0:  # wrenches are without what that stops: no point is added
+                answer = search_with_faces(friction, at)
+            else:
+                answer = other_onset_on_rims(
+                    contacts, frame, friction, solver.load, solver.load_terms, work.tree, solver.newton, at.system
+                )
             if answer != UNIQUE:
                 return OTHER_ONSET if answer == OTHER_FOUND else UNIQUENESS_NOT_SHOWN
+        if contacts.used[0] > n_asked and not one_choice:  # the choices before are asked with these points, too
+            forget_locked(contacts, frame, solver)
+            first_choice(contacts)
+            continue
         if not next_choice_unlocked(contacts, frame, EVERY, solver):
             return PROVEN_UNIQUE
     return UNIQUENESS_NOT_SHOWN
@@ -95,7 +105,8 @@ def search_onsets(friction: float, frame: Frame, at: ProofWorkspace) -> int:
     friction, frame
         Coefficient of friction; the scaled coordinates at the pose.
     at
-        As left by the proof. Filled: the other onset, if one is found, and whether the contacts are wedged.
+        As left by the proof. Filled: the other onset, if one is found, and whether the contacts are wedged; and, behind
+        the contacts, further points of rims that were asked.
 
     Returns
     -------
@@ -103,9 +114,11 @@ def search_onsets(friction: float, frame: Frame, at: ProofWorkspace) -> int:
         PROVEN_UNIQUE, OTHER_ONSET or UNIQUENESS_NOT_SHOWN.
     """
     contacts, work = at.contacts, at.scratch[0]
-    left = work.solver.residual
+    left, n_listed = work.solver.residual, contacts.used[0]
     keep_choice(contacts)
     proof = search_faces(friction, frame, at)
+    forget_locked(contacts, frame, work.solver)
+    work.n_asked, contacts.used[0] = contacts.used[0], n_listed
     return_to_choice(contacts, frame, friction, AT_REST, work.solver)
     work.solver.residual = left
     work.wedged = proof != PROVEN_UNIQUE and self_stress(contacts, friction, work.solver.stress) <= HELD
@@ -163,6 +176,7 @@ def judge(
     """
     at.scratch[0].wedged = False
     code, steady, n_undetermined = prove(geometry, body, position, quaternion, load, friction, size_m, tolerances, at)
+    at.scratch[0].n_asked = at.contacts.used[0]
     if code == UNIQUENESS_NOT_SHOWN:
         frame = frame_at(body, quaternion)
         code = search_onsets(friction.greatest, frame, at)

@@ -17,7 +17,8 @@ from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.coulomb import coulomb_error, motion_left
 from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS, NewtonWorkspace, add_carrying, newton_on_modes
-from cagepose.kernels.contact.metric import WRENCH, ScaledVector
+from cagepose.kernels.contact.metric import WRENCH, Frame, ScaledVector
+from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.relaxation import (
     CLOSED,
@@ -254,3 +255,26 @@ def other_onset(
             return NOT_SHOWN
         n_waiting = divide(node, place, is_opening, n_waiting, tree)
     return UNIQUE
+
+
+@kernel
+def other_onset_on_rims(
+    contacts: ContactSet,
+    frame: Frame,
+    friction: float,
+    b: FloatArray,
+    terms: float,
+    tree: ModeTree,
+    newton: NewtonWorkspace,
+    system: System,
+) -> int:
+    """As `other_onset`, but no motion that goes into a rim that lies flat, between the points of it that are listed:
+    the point where it does is appended.
+    """
+    for _ in range(MOST_ADDED):
+        answer = other_onset(contacts, friction, b, tree, newton, system)
+        if answer != OTHER_FOUND or contacts.used[0] == len(contacts.rows):
+            return answer if answer != OTHER_FOUND else NOT_SHOWN
+        if not add_on_rims(contacts, frame, 0.0, tree.y, terms):
+            return OTHER_FOUND
+    return NOT_SHOWN
