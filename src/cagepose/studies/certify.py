@@ -108,11 +108,13 @@ class _Search:
         self.used = np.nonzero(contacts.rows["group"][: work.n_asked] >= 0)[0]
         load = work.solver.load[:WRENCH]
         self.size = float(np.linalg.norm(load)) or 1.0
-        self.is_of_first_order = self._take(contacts.rows, load)
+        self.is_of_first_order = self._take(contacts.rows, load, run.phases[phase].proof.uniqueness == "strong")
 
-    def _take(self, rows: Any, load: FloatArray) -> bool:
+    def _take(self, rows: Any, load: FloatArray, is_strong: bool) -> bool:
         """Let the search be of the very numbers that are checked; False: it was of others, as contacts without play
         lock some of what the load does (5.21).
+
+        Another onset is one to rounding, and where the run found it with its own numbers it is found again with them.
         """
         columns, whole = self.lengths[..., None] * self.columns, self.problem.scaled(self.problem.load)
         found = rows["columns"][self.used]
@@ -121,8 +123,9 @@ class _Search:
         apart = np.linalg.norm(found - columns, axis=2) / np.linalg.norm(self.columns, axis=2)
         if apart.max() > SAME or np.linalg.norm(load / self.size - whole) > SAME:
             return False
-        rows["columns"][self.used] = columns
-        load[:] = self.size * whole
+        if is_strong:
+            rows["columns"][self.used] = columns
+            load[:] = self.size * whole
         return True
 
     def ask(self, chosen: tuple[int, ...], with_tree: bool) -> tuple[Uniqueness, ChosenFaces, OtherOnset | None] | None:
