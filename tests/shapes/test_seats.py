@@ -1,4 +1,5 @@
-"""Cones seated in the mouth of a bore, pushed sideways without friction: against a wedge on two points.
+"""Cones seated in the mouth of a bore, pushed sideways without friction: against a wedge on two points. And balls in a
+chamfer.
 
 In the plane of the push the cone is a wedge that lies on both ends of the mouth's diameter; the circle there touches it
 nowhere else. Along its tilt the potential is a function of one number, whose first minimum from upright is the rest.
@@ -9,9 +10,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 from scipy.optimize import brentq
 
-from cagepose import Box, Cage, Cone, Force, Hole, Load, Object, Pose, Scene, run
+from cagepose import Box, Cage, Chamfer, Cone, Force, Hole, Load, Object, Pose, Scene, Sphere, run
 
 MM, WEIGHT_N = 1e-3, 0.981
 CONES = ((4.0, 8.0, 4.0), (5.0, 8.0, 6.0), (3.0, 8.0, 3.0), (4.5, 7.0, 10.0), (4.0, 9.0, 9.0))
@@ -111,3 +113,43 @@ def test_cones_in_a_mouth_tilt_as_wedges_do(cases, say):
     assert seen > len(chosen) // 3
     assert stalled <= len(CASES) // MANY_TO_ONE_STALLED
     assert not wrong, "\n".join(wrong[:5])
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+@pytest.mark.parametrize("push_deg", [0.0, 20.0, 45.0, 135.0, 199.0])
+@pytest.mark.parametrize("chamfer_deg", [30.0, 45.0])
+@pytest.mark.parametrize("is_ball_held", [True, False])
+def test_a_ball_touches_a_chamfer_all_around(
+    friction: float, push_deg: float, chamfer_deg: float, is_ball_held: bool
+) -> None:
+    """Of that circle a run lists four points. A push through the centre of a ball with weight 1 lifts it over the point
+    ahead if it is above the cotangent of the angle of wall and axis; with friction, too, as the ball rolls. So it is
+    where the block is pulled up against the ball and pushed.
+    """
+    radius, angle = 10.0 * MM, math.radians(chamfer_deg)
+    mouth = Hole(0.6 * radius, 2.0 * radius, Chamfer(0.38 * radius, angle), in_=["block"])
+    block = Box((8.0 * radius, 8.0 * radius, 4.0 * radius), Pose((0.0, 0.0, -2.0 * radius)), name="block")
+    center = (0.0, 0.0, (math.cos(angle) - 0.98) * radius / math.tan(angle) + math.sin(angle) * radius)
+    way = np.array([math.cos(math.radians(push_deg)), math.sin(math.radians(push_deg)), 0.0])
+    if is_ball_held:
+        held, at, down = (
+            Object(shapes=[Sphere(radius)], pose=Pose((0.0, 0.0, 3.0 * radius)), mass_kg=1.0),
+            (0, 0, 0),
+            -1.0,
+        )
+        cage = Cage(shapes=[block], holes=[mouth])
+    else:
+        start = Pose((0.0, 0.0, -3.0 * radius))
+        held, at, down = (
+            Object([block], holes=[mouth], center_of_gravity_m=center, pose=start, mass_kg=1.0),
+            center,
+            1.0,
+        )
+        cage = Cage(shapes=[Sphere(radius)])
+    for share, holds in ((0.98, True), (1.02, False)):
+        push = Force(way, at, share / math.tan(angle))
+        loads = [Load("seat", gravity=(0, 0, down)), Load("push", gravity=(0, 0, down), force=push)]
+        result = run(Scene(held, cage, loads, friction_coefficient=friction))
+        seated, ended = (phase.pose.position_m for phase in result.phases)
+        assert seated == pytest.approx(np.subtract((0.0, 0.0, 0.0), at) if down > 0.0 else center, abs=1e-11)
+        assert (np.linalg.norm(ended - seated) < 1e-11) == holds

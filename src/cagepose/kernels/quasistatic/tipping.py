@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, scaled, vector_from
 from cagepose.kernels.collision.geometry import place_object
@@ -52,9 +54,11 @@ def find_all_carried(setting: Setting, position: Vector, quaternion: Quaternion,
 
 
 @kernel
-def tips(setting: Setting, quaternion: Quaternion, twist: Twist, work: QuasistaticWorkspace) -> bool:
-    """Whether, at a pose within a step, a contact that carried at its start tilts faster than twice as in the step; or
-    the object is held there.
+def tips(
+    setting: Setting, quaternion: Quaternion, twist: Twist, spin_each_m: float, work: QuasistaticWorkspace
+) -> bool:
+    """Whether, at a pose within a step, a contact that carried at its start tilts faster than twice as in the step, and
+    than the object turned at its start; or the object is held there.
     """
     frame = frame_at(setting.body, quaternion)
     code = onset(work.ahead, frame, setting.friction.greatest, work.scratch[0].solver)
@@ -62,13 +66,14 @@ def tips(setting: Setting, quaternion: Quaternion, twist: Twist, work: Quasistat
         return code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
     velocity, spin = twist_of(work.scratch[0].solver.y, frame)
     share = norm(velocity) / norm(twist.velocity)
-    more, as_planned = minus(spin, scaled(twist.spin, share)), share * norm(twist.spin) * setting.body.reach_m
+    more, speed, reach_m = minus(spin, scaled(twist.spin, share)), norm(velocity), setting.body.reach_m
+    known = max(TIPS * speed, share * norm(twist.spin) * reach_m, spin_each_m * speed * reach_m)
     for i in range(work.ahead.used[0]):
-        tilt = norm(cross(vector_from(work.ahead.rows[i].directions[0]), more)) * setting.body.reach_m
+        tilt = norm(cross(vector_from(work.ahead.rows[i].directions[0]), more)) * reach_m
         before = place_before(work.contacts, work.ahead.rows[i])
         if before < 0 or not (stays_on_face(work.contacts, before) or work.contacts.states[before].stays_flat):
             continue
-        if tilt > max(TIPS * norm(velocity), as_planned):
+        if tilt > known:
             return True
     return False
 
@@ -84,8 +89,10 @@ def tips_on_the_way(
     work: QuasistaticWorkspace,
 ) -> tuple[bool, Vector, Quaternion]:
     """Return whether the object begins to tip on a travel, or is held there, and where it ends then; else its end. The
-    placement is that of the pose.
+    placement is that of the pose, and the motion from rest at the start is in the solver.
     """
+    begun = twist_of(work.scratch[0].solver.y, frame_at(setting.body, quaternion))
+    spin_each_m = norm(begun[1]) / norm(begun[0]) if norm(begun[0]) > 0.0 else math.inf
     before_end = BEFORE_END * setting.tolerances.touch_m / norm(twist.velocity)
     low, high, best, found = 0.0, 0.0, end, False
     for _ in range(TIMES):
@@ -94,14 +101,14 @@ def tips_on_the_way(
             break
         done, there, turned = stepped_from(setting, position, quaternion, twist, high, work)
         if done and find_all_carried(setting, there, turned, work):
-            found, best = tips(setting, turned, twist, work), (there, turned)
+            found, best = tips(setting, turned, twist, spin_each_m, work), (there, turned)
             break
         before_end *= FARTHER
     for _ in range(HALVINGS if found else 0):
         middle = 0.5 * (low + high)
         done, there, turned = stepped_from(setting, position, quaternion, twist, middle, work)
         can_ask = find_touched_before(setting, there, turned, frame_at(setting.body, turned), work)
-        if done and can_ask and tips(setting, turned, twist, work):
+        if done and can_ask and tips(setting, turned, twist, spin_each_m, work):
             high, best = middle, (there, turned)
         else:
             low = middle

@@ -166,14 +166,29 @@ def approach(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, level: fl
     else:
         met = meeting(moved, i, b, j)
         gap, has_foot = gap_of(one, other, met, level), met.is_one or (one.kind != RIM and other.kind != RIM)
+        if met.is_one and small.kind == RIM:  # a circle that turns about its own axis goes nowhere
+            way, spread = slower_of_circle(small, motion, way, spread)
+    growth = motion.rate * (norm(way) + spread)
     if wide.kind == FACE:
         spread *= norm(cross(motion.axis, along))
-        return Approach(has_foot, gap, abs(dot(way, along)) + spread, motion.rate * fastest, apart, fastest)
+        return Approach(has_foot, gap, abs(dot(way, along)) + spread, growth, apart, fastest)
     if wide.kind != EDGE:
         return Approach(has_foot, gap, fastest, 0.0, apart, fastest)
     rise = dot(way, along)
     speed = norm(minus(way, scaled(along, rise))) + abs(wide.taper * rise) + spread
-    return Approach(has_foot, gap, speed, motion.rate * fastest, apart, fastest)
+    return Approach(has_foot, gap, speed, growth, apart, fastest)
+
+
+@kernel
+def slower_of_circle(rim: Feature, motion: Motion, way: Vector, spread: float) -> tuple[Vector, float]:
+    """Return the velocity of a rim's centre, and how much faster than that the circle moves across itself; or those
+    given, of the ball around an arc of it, if they are less.
+    """
+    of_center = velocity_at(motion, vector_from(rim.point))
+    turning = motion.rate * abs(rim.length) * norm(cross(motion.axis, vector_from(rim.direction)))
+    if norm(of_center) + turning < norm(way) + spread:
+        return of_center, turning
+    return way, spread
 
 
 @kernel

@@ -26,7 +26,7 @@ from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, minus, n
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.features import EDGE, FACE, RIM, Shapes
 from cagepose.kernels.shapes.flat_rims import OnRim
-from cagepose.kernels.shapes.meeting import Meeting
+from cagepose.kernels.shapes.meeting import CENTRED, Meeting
 from cagepose.kernels.shapes.rims import outward_at
 
 FLAT = 1e-9
@@ -175,7 +175,9 @@ def of_finite(one: Side, other: Side, normal: Vector, gap: float) -> Curvatures:
     both = added(c_one, c_other)
     if one.is_edge or other.is_edge:
         free = cross(normal, one.line if one.is_edge else other.line)
-        relative = outer(free, free, 1.0 / dot(free, times(both, free)))
+        radius = dot(free, times(both, free))
+        is_around = abs(radius) <= CENTRED * max(abs(one.radius), abs(other.radius))  # a ball may touch anywhere there
+        relative = NOTHING if is_around else outer(free, free, 1.0 / radius)
     else:
         relative = inverse_across(both, normal)
     moved = c_other if one.is_edge else c_one

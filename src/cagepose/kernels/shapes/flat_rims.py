@@ -10,12 +10,14 @@ import math
 from typing import Annotated
 
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, plus, scaled, vector_from
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.features import EDGE, FACE, RIM, VERTEX, Feature, Shapes
-from cagepose.kernels.shapes.meeting import Meeting
+from cagepose.kernels.shapes.meeting import Meeting, is_centred
 from cagepose.kernels.shapes.rims import HALF_ARC, lie_flat, nearest_on_edge, outward_at
 
+HALF_SECTOR = math.pi / 4.0
+"""Radians, of a hole's slanted wall."""
 SAME_WAY = 0.5
 """Cosine: a face with such a part of a normal, at the same place and flat on the same rim, has this normal."""
 
@@ -37,7 +39,8 @@ class OnRim:
         arc, else up to the ends of the arc.
     is_on_ball, ball
         Whether the rim lies on a ball, and its centre as seen from the centre of gravity; else, on a face. The side of
-        a cone that all of it lies on is there like a ball about the place on its axis that the normals lead through.
+        a cone that all of it lies on is there like a ball about the place on its axis that the normals lead through;
+        and a ball in a hole's slanted wall touches it along a circle that is there like a rim.
     """
 
     length: float
@@ -80,6 +83,12 @@ def write_on_rim(
     elif one.kind == VERTEX and one.length != 0.0:
         out.is_of_cage, out.arc_before, out.arc_after = False, one.arc_before, one.arc_after
         write_at_vertex(one, a, b, j, center, touch_m, out)
+    elif one.kind == VERTEX and other.kind == EDGE and is_centred(one, other):
+        out.is_of_cage, out.arc_before, out.arc_after = True, j, j
+        write_around_ball(one, other, plus(met.place, scaled(met.normal, met.gap)), center, out)
+    elif one.kind == EDGE and other.kind == VERTEX and is_centred(other, one):
+        out.is_of_cage, out.arc_before, out.arc_after = False, i, i
+        write_around_ball(other, one, met.place, center, out)
 
 
 @kernel
@@ -103,6 +112,17 @@ def write_at_vertex(
         out.after = covered_angle(bodies, i, middle, outward, along, vertex.length, HALF_ARC, touch_m)
     for k in range(3):
         out.axis[k], out.outward[k], out.ball[k] = axis[k], outward[k], ball[k] - center[k]
+
+
+@kernel
+def write_around_ball(ball: Feature, wall: Feature, place: Vector, center: Vector, out: OnRim) -> None:
+    """Write the circle along which a ball touches a sector of a hole's slanted wall all around, from its middle."""
+    middle, axis = vector_from(ball.point), vector_from(wall.direction)
+    away = minus(place, middle)
+    outward = minus(away, scaled(axis, dot(axis, away)))
+    out.length, out.is_on_ball, out.before, out.after = norm(outward), True, HALF_SECTOR, HALF_SECTOR
+    for k in range(3):
+        out.axis[k], out.outward[k], out.ball[k] = axis[k], outward[k] / out.length, middle[k] - center[k]
 
 
 @kernel

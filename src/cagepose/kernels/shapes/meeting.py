@@ -214,6 +214,16 @@ def round_ones(a: Shapes, i: int, b: Shapes, j: int) -> Meeting:
 
 
 @kernel
+def is_centred(ball: Feature, wall: Feature) -> bool:
+    """Whether a ball, as a vertex with a radius, is on the axis of a hole's slanted wall: it touches all around."""
+    center = vector_from(ball.point)
+    on_axis = nearest_on_edge(wall, center)
+    if ball.length != 0.0 or ball.radius == 0.0 or wall.taper == 0.0 or wall.radius >= 0.0:
+        return False
+    return norm(minus(on_axis.place, center)) <= CENTRED * max(ball.radius, -on_axis.radius)
+
+
+@kernel
 def middle_of_wall(wall: Feature) -> Vector:
     """Return the outward normal in the middle of a sector of a hole's slanted wall."""
     toward = scaled(vector_from(wall.toward), math.sqrt(1.0 - wall.taper * wall.taper))
