@@ -136,6 +136,27 @@ def test_a_can_that_is_pushed_over_the_edge_of_a_table_tips_there(friction, arou
     assert tilts.max() > 0.2
 
 
+@pytest.mark.parametrize(
+    ("radius_mm", "height_mm", "friction", "push_n"),
+    [(15, 40, 0.5, 1.0), (10, 40, 0.3, 0.5), (12, 30, 0.4, 1.0), (15, 40, 0.3, 0.5), (15, 20, 0.3, 0.5)],
+)
+def test_a_can_that_friction_brakes_tips_before_the_edge(radius_mm, height_mm, friction, push_n):
+    """Friction at its foot, mu W, turns it forward about its middle, h above: from mu h before the edge on it tips
+    about that, where the rim comes out of the table at two places.
+    """
+    table = Box(np.array([60, 100, 10]) * MM, Pose(np.array([-30, 0, -5]) * MM))
+    start = Pose(np.array([-10, 0, height_mm / 2]) * MM)
+    can = Object(shapes=[Cylinder(radius_mm * MM, height_mm * MM)], mass_kg=1.0 / 9.81, pose=start)
+    load = Load("push", gravity=(0, 0, -9.81), force=Force((-1, 0, 0), (0, 0, 0), push_n))
+    ended = run(Scene(can, Cage(shapes=[table]), [load], friction_coefficient=friction))
+    poses = path_of(ended.phases[0])
+    tilts = np.array([abs(pose.euler_zyx[1]) for pose in poses])
+    begins = int(np.argmax(tilts > 1e-10))
+    assert ended.verdict == "escapes"
+    assert poses[begins - 1].position_m[0] == pytest.approx((-60 + friction * height_mm / 2) * MM, abs=0.01 * MM)
+    assert (np.diff(tilts[begins : begins + 10]) > 0.0).all()
+
+
 @pytest.mark.parametrize("height_mm", [-40.0, -20.0, 0.0, 30.0])
 @pytest.mark.parametrize("around", [0.0, 0.2, 0.5])
 def test_no_can_stays_upright_beyond_the_edge(height_mm, around):

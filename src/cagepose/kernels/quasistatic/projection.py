@@ -26,7 +26,7 @@ from cagepose.kernels.contact.metric import (
     write_scaled_wrench,
 )
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.features import RIM, Feature, Shapes, is_of_mouth, place_feature
+from cagepose.kernels.shapes.features import EDGE, RIM, Feature, Shapes, is_of_mouth, place_feature
 from cagepose.kernels.shapes.flat_rims import SAME_WAY
 from cagepose.kernels.shapes.meeting import Meeting, apart, meeting, meeting_kept, twin_pair
 from cagepose.kernels.shapes.rims import is_near_arc, lie_flat
@@ -241,10 +241,13 @@ def meeting_beside(
 
 @kernel
 def may_be_elsewhere(geometry: Geometry, constraint: PositionConstraint, moved: Shapes) -> bool:
-    """Whether a constraint is about the second place on an arc of a rim where another feature is nearest, or an arc
-    that lies flat on what it touches, as one of a mouth may: without such a place, the others count.
+    """Whether a constraint is about the second place on an arc of a rim where another feature is nearest, an arc that
+    lies flat on what it touches, as one of a mouth may, or edges that have become parallel: without such a place, the
+    others count.
     """
     held, cage = moved.features[constraint.feature], geometry.cage.features[constraint.cage_feature]
+    if held.kind == EDGE and cage.kind == EDGE:
+        return True
     if constraint.which == FLAT or held.is_second or cage.is_second or is_of_mouth(held) or is_of_mouth(cage):
         return True
     return lie_flat(held, cage, geometry.touch_m)
@@ -262,6 +265,12 @@ def keep_stopped(stopped: PassiveSet, position: Vector, frame: Frame, constraint
         moment = plus(moment, cross(position, force))
         for k in range(3):
             work.stopped_forces[place, k], work.stopped_moments[place, k] = force[k], moment[k]
+
+
+@kernel
+def is_slip(constraint: PositionConstraint) -> bool:
+    """Whether a constraint is that two features do not slip."""
+    return bool(constraint.feature >= 0 and constraint.which not in (GAP, FLAT))
 
 
 @kernel
@@ -291,7 +300,10 @@ def projected(
             values[work.basis.used] = 0.0
             append_column(work.basis, work.column, i, 0.0)
         worst = 0.0
-        for i in range(work.used):
+        for turn in range(2 * work.used):  # gaps first: slips of shapes only say which way is left to close them
+            i = turn % work.used
+            if is_slip(rows[i]) != (turn >= work.used):
+                continue
             lacks = lack(geometry, constraints, rows[i], position, quaternion, moved)
             if lacks.value == math.inf and may_be_elsewhere(geometry, rows[i], moved):
                 continue

@@ -134,7 +134,7 @@ def next_twist(
     """Return the twist to follow from a pose that moves; forces and sticking are then those of the step."""
     contacts, scratch, friction = work.contacts, work.scratch[0], setting.friction.greatest
     y = scratch.solver.y
-    find_sticking(contacts, friction, setting.tolerances.touch_m, scratch.solver.load_terms, y)
+    find_sticking(contacts, frame, friction, setting.tolerances.touch_m, scratch.solver.load_terms, y)
     carries = carried_by(contacts) != FREE
     velocity, spin = twist_of(y, frame)
     spin = straightened(velocity, spin, setting.body.reach_m, scratch.solver.load_terms)

@@ -22,7 +22,7 @@ from cagepose.kernels.shapes.along_motion import (
     place_moved,
     touches_after,
 )
-from cagepose.kernels.shapes.features import EDGE, FACE, RIM, Feature, Shapes
+from cagepose.kernels.shapes.features import EDGE, FACE, RIM, VERTEX, Feature, Shapes
 from cagepose.kernels.shapes.feet import clearance_of_arc, distance_from_arc, foot_on
 from cagepose.kernels.shapes.meeting import Meeting, meeting, twin_pair
 from cagepose.kernels.shapes.motion import Motion, velocity_at
@@ -172,11 +172,37 @@ def approach(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, level: fl
     if wide.kind == FACE:
         spread *= norm(cross(motion.axis, along))
         return Approach(has_foot, gap, abs(dot(way, along)) + spread, growth, apart, fastest)
-    if wide.kind != EDGE:
-        return Approach(has_foot, gap, fastest, 0.0, apart, fastest)
-    rise = dot(way, along)
-    speed = norm(minus(way, scaled(along, rise))) + abs(wide.taper * rise) + spread
+    speed, growth = (fastest, 0.0) if wide.kind != EDGE else (speed_toward_side(wide, way) + spread, growth)
+    if wide.kind != VERTEX:
+        slower, grows = speed_toward_round(wide, motion, middle, reach, fastest)
+        if slower < speed:
+            speed, growth = slower, grows
     return Approach(has_foot, gap, speed, growth, apart, fastest)
+
+
+@kernel
+def speed_toward_side(side: Feature, way: Vector) -> float:
+    """Return how much of a velocity leads across an edge's side, at most."""
+    along = vector_from(side.direction)
+    rise = dot(way, along)
+    return norm(minus(way, scaled(along, rise))) + abs(side.taper * rise)
+
+
+@kernel
+def speed_toward_round(
+    wide: Feature, motion: Motion, middle: Vector, reach: float, fastest: float
+) -> tuple[float, float]:
+    """Return how fast, at most, a ball comes nearer to a side or a rim, and how fast this may grow, equation (2.15): by
+    turning about its axis it comes no nearer.
+    """
+    along, start = vector_from(wide.direction), vector_from(wide.point)
+    on_axis = plus(start, scaled(along, dot(along, minus(middle, start))))
+    way, lean = velocity_at(motion, on_axis), motion.rate * norm(cross(motion.axis, along))
+    rise = dot(way, along)
+    slope = 1.0 if wide.kind == RIM else abs(wide.taper)
+    climbs = abs(rise) + lean * (norm(minus(middle, on_axis)) + reach)
+    speed = norm(minus(way, scaled(along, rise))) + lean * reach + slope * climbs
+    return speed, (1.0 + slope) * lean * fastest
 
 
 @kernel

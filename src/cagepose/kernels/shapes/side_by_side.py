@@ -7,11 +7,15 @@ from __future__ import annotations
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, scaled, vector_from
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.features import EDGE, FACE, RIM, Feature, Shapes
-from cagepose.kernels.shapes.meeting import SAME_PLACE, Meeting, apart, reaches
+from cagepose.kernels.shapes.meeting import Meeting, apart, reaches
 from cagepose.kernels.shapes.rims import beyond_normals, outward_at
 
 SIDE_BY_SIDE = 1e-6
 """Sine between tangents: a lesser one is none."""
+AT_END = 3.0
+"""In touch tolerances: farther from its end a side touches an edge by itself. Its rim reaches two beyond the edge of a
+face, and is let go four beyond it.
+"""
 DISC = -1.0
 """Taper below the rim of a disc: it has no side."""
 
@@ -43,7 +47,7 @@ def ends_at_edge(one: Feature, other: Feature, met: Meeting, touch_m: float) -> 
         return False
     along = vector_from(side.direction)
     height = dot(along, minus(met.place, vector_from(side.point)))
-    if min(abs(height), abs(height - side.length)) > SAME_PLACE * touch_m:
+    if min(abs(height), abs(height - side.length)) > AT_END * touch_m:
         return False
     return abs(dot(along, vector_from(edge.direction))) < SIDE_BY_SIDE and side.taper == 0.0
 
