@@ -261,3 +261,13 @@ def test_gaps_of_what_is_in_line_with_a_hole(cage, part, position, away):
     plate = plate_of(cage[-1], cage is LONE, WIDE)
     if not isinstance(part, Disc):
         assert pierced_plate.gap(part, Pose(position), plate)[0] == pytest.approx(away, abs=1e-12)
+
+
+@pytest.mark.parametrize("beyond", [-3.0, -1.0, 0.0, 1.0, 1.4, 1.6, 1.9, 2.1, 2.5, 3.0, 3.5, 4.0, 4.5])
+def test_the_end_of_a_bar_and_the_edge_under_it_leave_no_place_out(beyond):
+    """A bar lies on a box whose edge it ends at, so many touch tolerances beyond: it lies on two places."""
+    bar = Cylinder(0.5, 3.0, Pose(euler_zyx=(0, np.pi / 2, 0)))
+    box = Box((4.0, 4.0, 1.0), Pose((1.5 - beyond * TOUCH - 2.0, 0, -1.0)))
+    meetings = placed(geometry_of(shapes_of([bar]), shapes_of([box]), TOUCH), Pose()).meetings
+    ends = sorted(float(row["place"][0]) for row in meetings.rows[: meetings.used[0]])
+    assert (min(ends), max(ends)) == pytest.approx((-1.5, 1.5), abs=10 * TOUCH)

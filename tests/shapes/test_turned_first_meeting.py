@@ -147,6 +147,30 @@ def travel(*velocity: float) -> Motion:
 FLOOR = [Box((8.0, 8.0, 1.0), Pose((0, 0, -0.5)))]
 
 
+def test_a_can_that_turns_about_its_axis_meets_a_ball_beside_its_rim(first):
+    """Its rim turns about a place beside its middle, through the arcs of which it is made: in their plane the ball is a
+    circle. Only the whole of the rim comes no nearer by turning.
+    """
+    rng, radius, ball, above = np.random.default_rng(73), 0.5, 0.25, 0.15
+    can, meets = Cylinder(radius, 1.0), radius + math.sqrt(ball**2 - above**2)
+    for _ in range(30):
+        angle, away, beside = rng.uniform(0.0, 2.0 * np.pi), 10 ** rng.uniform(-3.0, -1.5), 10 ** rng.uniform(-2, -0.5)
+        toward = np.array([math.cos(angle), math.sin(angle), 0.0])
+        pivot, place = beside * np.array([-toward[1], toward[0], 0.0]), (meets + away) * toward
+
+        def apart(turn: float, pivot=pivot, place=place) -> float:
+            cosine, sine = math.cos(turn), math.sin(turn)
+            middle = pivot - (cosine * pivot[0] - sine * pivot[1], sine * pivot[0] + cosine * pivot[1], 0.0)
+            return float(np.linalg.norm(place - middle)) - meets
+
+        motion = motion_of(pivot, np.zeros(3), 1.0, np.array((0.0, 0.0, 1.0)))
+        turns = np.linspace(0.0, 1.0, 400)
+        inside = [turn for turn in turns if apart(turn) < 0.0]
+        expected = brentq(apart, inside[0] - turns[1], inside[0], xtol=1e-14) if inside else math.inf
+        there = Sphere(ball, Pose((*place[:2], 0.5 + above)))
+        assert first_amount(first, can, [there], Pose(), motion, 1.0) == pytest.approx(expected, abs=1e-7)
+
+
 @pytest.mark.parametrize("tilt", [0.0, 1e-9, 1e-3, 0.3, np.pi / 4, np.pi / 2 - 1e-3, np.pi / 2])
 def test_a_cylinder_and_a_disc_fall_on_a_floor(first, tilt):
     pose, radius, half = Pose((0.1, 0.2, 3.0), euler_zyx=(0.4, tilt, 0.0)), 0.5, 1.0

@@ -12,7 +12,18 @@ from typing import Annotated, NamedTuple
 from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion, rotated
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
-from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, plus, row, scaled, transposed_times, vector_from
+from cagepose.kernels.algebra.vector import (
+    Vector,
+    cross,
+    dot,
+    minus,
+    norm,
+    plus,
+    row,
+    scaled,
+    transposed_times,
+    vector_from,
+)
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.contact.contact_set import tangents_to
 from cagepose.kernels.contact.metric import (
@@ -28,7 +39,7 @@ from cagepose.kernels.contact.metric import (
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.features import EDGE, RIM, Feature, Shapes, is_of_mouth, place_feature
 from cagepose.kernels.shapes.flat_rims import SAME_WAY
-from cagepose.kernels.shapes.meeting import Meeting, apart, meeting, meeting_kept, twin_pair
+from cagepose.kernels.shapes.meeting import PARALLEL, Meeting, apart, meeting, meeting_kept, twin_pair
 from cagepose.kernels.shapes.rims import is_near_arc, lie_flat
 
 ROUNDS = 12
@@ -247,7 +258,7 @@ def may_be_elsewhere(geometry: Geometry, constraint: PositionConstraint, moved: 
     """
     held, cage = moved.features[constraint.feature], geometry.cage.features[constraint.cage_feature]
     if held.kind == EDGE and cage.kind == EDGE:
-        return True
+        return norm(cross(vector_from(held.direction), vector_from(cage.direction))) < PARALLEL
     if constraint.which == FLAT or held.is_second or cage.is_second or is_of_mouth(held) or is_of_mouth(cage):
         return True
     return lie_flat(held, cage, geometry.touch_m)
@@ -269,7 +280,7 @@ def keep_stopped(stopped: PassiveSet, position: Vector, frame: Frame, constraint
 
 @kernel
 def is_slip(constraint: PositionConstraint) -> bool:
-    """Whether a constraint is that two features do not slip."""
+    """Whether a constraint is that two features do not slip, which lacks nothing; of a box, it lacks the way back."""
     return bool(constraint.feature >= 0 and constraint.which not in (GAP, FLAT))
 
 
@@ -300,9 +311,9 @@ def projected(
             values[work.basis.used] = 0.0
             append_column(work.basis, work.column, i, 0.0)
         worst = 0.0
-        for turn in range(2 * work.used):  # gaps first: slips of shapes only say which way is left to close them
-            i = turn % work.used
-            if is_slip(rows[i]) != (turn >= work.used):
+        for at in range(2 * work.used):  # gaps first: what must not slip only says which way is left to close them
+            slips, i = at >= work.used, at % work.used
+            if is_slip(rows[i]) != slips:
                 continue
             lacks = lack(geometry, constraints, rows[i], position, quaternion, moved)
             if lacks.value == math.inf and may_be_elsewhere(geometry, rows[i], moved):

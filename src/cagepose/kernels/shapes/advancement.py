@@ -22,7 +22,7 @@ from cagepose.kernels.shapes.along_motion import (
     place_moved,
     touches_after,
 )
-from cagepose.kernels.shapes.features import EDGE, FACE, RIM, VERTEX, Feature, Shapes
+from cagepose.kernels.shapes.features import EDGE, FACE, RIM, Feature, Shapes
 from cagepose.kernels.shapes.feet import clearance_of_arc, distance_from_arc, foot_on
 from cagepose.kernels.shapes.meeting import Meeting, meeting, twin_pair
 from cagepose.kernels.shapes.motion import Motion, velocity_at
@@ -173,7 +173,7 @@ def approach(moved: Shapes, i: int, b: Shapes, j: int, motion: Motion, level: fl
         spread *= norm(cross(motion.axis, along))
         return Approach(has_foot, gap, abs(dot(way, along)) + spread, growth, apart, fastest)
     speed, growth = (fastest, 0.0) if wide.kind != EDGE else (speed_toward_side(wide, way) + spread, growth)
-    if wide.kind != VERTEX:
+    if wide.kind == EDGE or (wide.kind == RIM and small.kind == RIM and first):  # all of it, not an arc of it
         slower, grows = speed_toward_round(wide, motion, middle, reach, fastest)
         if slower < speed:
             speed, growth = slower, grows
@@ -192,8 +192,8 @@ def speed_toward_side(side: Feature, way: Vector) -> float:
 def speed_toward_round(
     wide: Feature, motion: Motion, middle: Vector, reach: float, fastest: float
 ) -> tuple[float, float]:
-    """Return how fast, at most, a ball comes nearer to a side or a rim, and how fast this may grow, equation (2.15): by
-    turning about its axis it comes no nearer.
+    """Return how fast, at most, a ball comes nearer to a side or a whole rim, and how fast this may grow, equation
+    (2.15): by turning about its axis it comes no nearer. The ends of an arc of it do.
     """
     along, start = vector_from(wide.direction), vector_from(wide.point)
     on_axis = plus(start, scaled(along, dot(along, minus(middle, start))))

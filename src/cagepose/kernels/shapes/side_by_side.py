@@ -12,9 +12,9 @@ from cagepose.kernels.shapes.rims import beyond_normals, outward_at
 
 SIDE_BY_SIDE = 1e-6
 """Sine between tangents: a lesser one is none."""
-AT_END = 3.0
-"""In touch tolerances: farther from its end a side touches an edge by itself. Its rim reaches two beyond the edge of a
-face, and is let go four beyond it.
+AT_END = 1.5
+"""In touch tolerances: farther from its end a side touches an edge by itself. The rim there reaches two beyond the end
+of a face, so that one of them always counts.
 """
 DISC = -1.0
 """Taper below the rim of a disc: it has no side."""
