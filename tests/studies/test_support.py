@@ -124,7 +124,7 @@ def test_without_friction_a_slope_supports_nothing():
 
 def test_a_weight_is_balanced_just_inside_the_region_and_not_just_outside(cases):
     """Blocks between points, centres of gravity across the region's edge, by the kernels' own equilibrium."""
-    random, n_asked, n_wrong = np.random.default_rng(8), 0, 0
+    random, n_asked = np.random.default_rng(8), 0
     for _ in range(cases(25, 400)):
         pushed = pushed_block(random, 0.3)
         held = pushed.object
@@ -148,10 +148,9 @@ def test_a_weight_is_balanced_just_inside_the_region_and_not_just_outside(cases)
                 center = held.center_of_gravity_m + a_run.pose.rotation.T @ shift
                 moved = Scene(Object(held.boxes, center), scene.cage, scene.loads, friction_coefficient=0.3)
                 proof, _ = judge_pose(moved, a_run.pose, 0, 0.3)
-                n_wrong += (proof.verdict != "moves") != is_in
+                assert (proof.verdict != "moves") == is_in
                 n_asked += 1
     assert n_asked > 50
-    assert n_wrong <= n_asked // 500  # known on some processors: a corner in the last percent of a slender region
 
 
 def test_a_can_is_supported_within_all_of_its_rim():
