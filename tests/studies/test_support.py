@@ -16,7 +16,7 @@ from cagepose.model.shapes import Capsule, Cylinder
 from cagepose.paper.cases import sample_scene
 from cagepose.runs.judge import judge_pose
 from cagepose.studies.support import convex_hull, load_view
-from cagepose.studies.support_region import support_region
+from cagepose.studies.support_region import TRUE, support_region
 
 
 def test_gravity_along_minus_z_is_seen_from_above():
@@ -107,6 +107,25 @@ def test_a_bar_that_sticks_out_between_two_rollers_is_supported_ahead_of_them():
     x, y = found.corners.T
     assert_allclose(x.min(), 0.1, rtol=1e-6)
     assert_allclose(np.sort(y[x < 0.1 + 1e-9]), (-0.02, 0.02), rtol=1e-6)
+
+
+def test_corners_of_a_region_without_end_are_as_near_to_it_as_is_told(monkeypatch):
+    """A plate pinched by three points on a slope of 40 deg; its round edge by six times as many directions."""
+    turned = Pose(euler_zyx=(0, math.radians(40), 0))
+    cage = Cage([(0.03, 0.02, -0.01), (0.03, -0.02, -0.01), (-0.03, 0.0, 0.01)], pose=turned)
+    plate, loads = Object([Box((0.2, 0.1, 0.02))], (0.05, 0, 0), pose=turned), [Load("weight", gravity=(0, 0, -1))]
+    slides = Scene(plate, cage, loads, friction_coefficient=0.3)
+    pinched = replace(run(Scene(plate, cage, loads, friction_coefficient=5.0)), scene=slides)
+    view, found = region_of(pinched)
+    monkeypatch.setattr("cagepose.studies.support_region.N_DIRECTIONS", 720)
+    finer = region_of(pinched)[1].corners - view.load_point
+    sides = np.roll(finer, -1, axis=0) - finer
+    outward = np.stack([sides[:, 1], -sides[:, 0]], axis=1) / np.linalg.norm(sides, axis=1)[:, None]
+    corners = found.corners - view.load_point
+    near = corners[np.linalg.norm(corners, axis=1) < 5.0]
+    outside = ((near[:, None] - finer) * outward).sum(axis=2).max(axis=1)
+    assert (outside < TRUE * np.maximum(np.linalg.norm(near, axis=1), 0.04)).all()
+    assert len(near) > 50
 
 
 def test_without_friction_a_slope_supports_nothing():

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import islice, product
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,7 @@ from cagepose.runs.cases import contact_friction
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import Run
 from cagepose.studies.contact_problem import ContactProblem, contact_problem
-from cagepose.studies.support import ROUNDING, LoadView, convex_hull, polygon_within, without_doubles
+from cagepose.studies.support import PARALLEL, ROUNDING, LoadView, convex_hull, polygon_within, without_doubles
 from cagepose.studies.whole_rims import more_places
 
 N_DIRECTIONS = 120
@@ -42,6 +42,8 @@ CUT_FROM = 1e-9
 """In lengths of a twist: one that is violated by less is left as it is."""
 HALVINGS = 30
 """Of the angle between a direction in which a region ends and one in which it does not."""
+TRUE = 1e-3
+"""Of its distance from the centre of gravity, or of the farthest contact's: a corner is no farther outside."""
 FAR = 1e3
 """In distances of ends: what has no end is followed so far."""
 MOST_CHOICES = 27
@@ -136,6 +138,10 @@ def _directions(polygon: FloatArray) -> FloatArray:
     return np.asarray(directions[np.argsort(np.arctan2(directions[:, 1], directions[:, 0]))])
 
 
+_Reach: TypeAlias = Callable[[FloatArray], tuple[float, FloatArray] | None]
+_End: TypeAlias = tuple[FloatArray, float, FloatArray]
+
+
 class _Bounds(NamedTuple):
     """How far a region goes along unit vectors (n, 2), metres from the centre of gravity, and the points there; inf: it
     has no end, -inf: it is empty.
@@ -175,11 +181,32 @@ def _farthest(wrenches: FloatArray, friction: FloatArray, view: LoadView, normal
         if (at_one[0] == math.inf) != (at_other[0] == math.inf):
             last_ends += _last_ends(reach, *((one, other) if at_other[0] == math.inf else (other, one)))
     known = [(normal, *end) for normal, end in (*found, *last_ends) if end is not None]
+    ended = sorted((one for one in known if one[1] < math.inf), key=lambda one: math.atan2(one[0][1], one[0][0]))
+    for one, other in zip(ended, [*ended[1:], *ended[:1]], strict=True):
+        known += _between(reach, one, other, rays.length_m)
     return _Bounds(*(np.array(column) for column in zip(*known, strict=True)))
 
 
+def _between(reach: _Reach, one: _End, other: _End, length_m: float) -> list[_End]:
+    """Return ends along directions between two, until the corners of all are as near to the region as is told."""
+    turned = float(one[0][0] * other[0][1] - one[0][1] * other[0][0])
+    if turned < PARALLEL or float(one[0] @ other[0]) < 0.0:
+        return []  # no corner, or one beyond what has no end
+    corner = np.linalg.solve(np.stack([one[0], other[0]]), [one[1], other[1]])
+    chord = other[2] - one[2]
+    outward, size = np.array([chord[1], -chord[0]]), float(np.linalg.norm(chord))
+    off = float(outward @ (corner - one[2])) / size if size > 0.0 else 0.0
+    if off <= TRUE * max(float(np.linalg.norm(corner)), length_m):
+        return []
+    end = reach(outward / size)
+    if end is None or end[0] == math.inf:
+        return []
+    middle = (outward / size, *end)
+    return [middle, *_between(reach, one, middle, length_m), *_between(reach, middle, other, length_m)]
+
+
 def _last_ends(
-    reach: Callable[[FloatArray], tuple[float, FloatArray] | None], bounded: FloatArray, endless: FloatArray
+    reach: _Reach, bounded: FloatArray, endless: FloatArray
 ) -> list[tuple[FloatArray, tuple[float, FloatArray]]]:
     """Return directions ever nearer to an endless one in which the region still ends, and where."""
     found = []
