@@ -19,7 +19,9 @@ UNDECIDED = 0.05
 
 
 def imbalance(scene: Scene, result: Run) -> float:
-    """What is left of the forces and moments at the end, of the load."""
+    """What is left of the forces and moments at the end, of the load, but for the rounding of the greatest of them: in
+    a jam, contacts press on each other with any multiple of it.
+    """
     phase, load = result.phases[-1], scene.loads[-1]
     weighed, about = scaled_load(scene, load), phase.pose.transform(scene.object.center_of_gravity_m)
     force, moment = np.array(weighed.gravity, dtype=float), np.zeros(3)
@@ -30,7 +32,9 @@ def imbalance(scene: Scene, result: Run) -> float:
     for contact in phase.contacts:
         carried = contact.force_tangential_n - contact.force_normal_n * contact.normal_world
         force, moment = force + carried, moment + np.cross(contact.place_world - about, carried)
-    return max(float(np.linalg.norm(force)), float(np.linalg.norm(moment)) / scene.size_m) / float(total)
+    left = max(float(np.linalg.norm(force)), float(np.linalg.norm(moment)) / scene.size_m)
+    rounding = np.finfo(float).eps * max((contact.force_normal_n for contact in phase.contacts), default=0.0)
+    return max(left - rounding, 0.0) / float(total)
 
 
 class Asked:
