@@ -483,3 +483,14 @@ def test_the_margin_stands_in_the_table_and_in_the_document(command: Command) ->
     assert "foot left 0.4652 (+ 0.1243 sideways; 0.1975 to 0.7543)" in " ".join(shown["equally stiff"].split())
     proof = json.loads(command("run", ladder, "--margin", "--json").out)["phases"][0]["proof"]
     assert proof["margin"]["force"]["certain"] == pytest.approx(0.0224, abs=1e-4)
+
+
+def test_critical_friction_of_parts_with_their_own_says_how_much_of_each_is_enough(command: Command) -> None:
+    """On a slope of 30 deg, whatever coefficient has a point that touches nothing."""
+    enough = math.tan(math.radians(30.0)) / 0.58
+    for other in (0.1, 0.9):
+        changes = ("--set=friction.coefficient=0.58", f"--set=friction.of.stop={other}")
+        found = summary(command("run", str(SCENES / "slope.yaml"), "--critical-friction", *changes).out)
+        share, words = found["critical friction"].removeprefix("weight: ").split(" ", 1)
+        assert words == "times each coefficient"
+        assert float(share) == pytest.approx(enough, rel=1e-6)

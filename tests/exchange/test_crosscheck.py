@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from cagepose import Box, Cage, Force, Load, Moment, Object, Pose, Scene, Spring, load_scene, run
+from cagepose import Box, Cage, CageposeError, Force, Load, Moment, Object, Pose, Scene, Spring, load_scene, run
 from cagepose.cli.app import main
 from cagepose.exchange import crosscheck as module
 from cagepose.exchange.crosscheck import crosscheck
@@ -101,3 +101,9 @@ def test_without_mujoco_the_command_says_what_to_install(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "mujoco", None)
     assert main(["crosscheck", str(FILES["rollers"])]) == 2
     assert "pip install 'cagepose[files]'" in capsys.readouterr().err
+
+
+def test_mujoco_without_room_for_its_contacts_is_an_error(monkeypatch):
+    monkeypatch.setattr("cagepose.exchange.mujoco_run.MEMORY_BYTES", 26_000)
+    with pytest.raises(CageposeError, match="MuJoCo has no room for all contacts of this scene"):
+        crosscheck(run(load_scene(FILES["drawer"])))

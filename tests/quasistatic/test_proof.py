@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from cagepose import Box, Cage, Force, Load, Object, Pose, Run, Scene, run, with_critical_friction
+from cagepose import Box, Cage, Convex, Force, Load, Object, Pose, Run, Scene, run, with_critical_friction
 from cagepose.runs.judge import critical_friction_at, judge_pose
 
 DOWN = Load("weight", gravity=(0, 0, -1))
@@ -233,6 +233,24 @@ def test_a_box_on_one_point_under_its_centre_rests_unstably():
     result = run(scene, method="quasistatic")
     assert (result.verdict, result.phases[0].proof.stability) == ("rests", "unstable")
     assert any("unstable" in warning for warning in result.warnings)
+
+
+@pytest.mark.parametrize(
+    ("cog_mm", "stability"), [(9.0, "marginal"), (12.0, "not shown"), (14.1, "not shown"), (14.2, "unstable")]
+)
+def test_unstable_is_what_no_balance_of_the_same_contacts_stops(cog_mm, stability):
+    """A bar with three flats, each 10 mm from its axis, on points below and on both sides. A turn t lifts it by
+    (10 sqrt 2 - cog) t^2 / 2 where the sides carry all of it, and by (10 - cog) t^2 / 2 where those below do. Along its
+    axis it is free.
+    """
+    near, side = 10.0 * (math.sqrt(2.0) - 1.0), math.sqrt(50.0)
+    corners = [
+        (x, y, z) for y in (-20.0, 20.0) for x, z in ((near, -10), (-near, -10), (30 + near, 20), (-30 - near, 20))
+    ]
+    points = [(x, y, z) for y in (-15.0, 15.0) for x, z in ((0, -10), (side, -side), (-side, -side))]
+    bar = Object(shapes=[Convex(np.array(corners) * 1e-3)], center_of_gravity_m=(0, 0, cog_mm * 1e-3))
+    proof, _ = judged(Scene(bar, Cage(np.array(points) * 1e-3), [DOWN]), 0.0)
+    assert (proof.verdict, proof.stability) == ("rests", stability)
 
 
 def test_an_object_that_hangs_from_a_sticking_point_is_stable():

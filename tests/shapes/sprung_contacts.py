@@ -17,7 +17,7 @@ GIVES, STAYS = 1e-6, 1e-4
 """Of the scene's size: what a spring gives under all of the load, and what moves less is held."""
 BALANCED = 1e-6
 """Of the load."""
-STEPS, SHARE_OF_RAMP = 20_000, 0.6
+RAMP, STEPS = 12_000, 200_000
 
 
 class Sprung(NamedTuple):
@@ -48,7 +48,7 @@ def on_springs(done: Run, phase_index: int, friction: float) -> Sprung:
     load = np.concatenate([wrench.force, wrench.moment])
     twist, before, held = np.zeros(6), np.zeros_like(places), np.zeros_like(places)
     for step in range(STEPS):
-        share = min(1.0, (step + 1) / (SHARE_OF_RAMP * STEPS))
+        share = min(1.0, (step + 1) / RAMP)
         way = jacobian @ twist
         pressed = np.maximum(0.0, -stiffness * (way * normals).sum(axis=1))
         held = held - stiffness * (way - before)
@@ -59,5 +59,11 @@ def on_springs(done: Run, phase_index: int, friction: float) -> Sprung:
         before = way
         left = share * load + np.einsum("ni,nij->j", pressed[:, None] * normals + held, jacobian)
         twist = twist + relaxation * left
-    unbalanced = max(np.linalg.norm(left[:3]), np.linalg.norm(left[3:]) / scene.size_m) / load_n
-    return Sprung(float(np.linalg.norm(jacobian @ twist, axis=1).max() / scene.size_m), float(unbalanced))
+        if step > RAMP and step % 1000 == 0:
+            ended = Sprung(
+                float(np.linalg.norm(jacobian @ twist, axis=1).max() / scene.size_m),
+                float(max(np.linalg.norm(left[:3]), np.linalg.norm(left[3:]) / scene.size_m) / load_n),
+            )
+            if ended.holds or ended.moved > 10.0 * STAYS:
+                break
+    return ended

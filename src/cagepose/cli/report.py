@@ -18,6 +18,7 @@ from cagepose.errors import printable
 from cagepose.files.units import LengthUnit
 from cagepose.files.words import LengthWords
 from cagepose.model.wording import components, short
+from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, PhaseRun, Run
 from cagepose.studies.margin import Margin
 
@@ -179,9 +180,14 @@ def _proof(phase: PhaseRun) -> str:
 
 
 def _critical(run: Run) -> str:
-    texts = []
+    own, texts = run.scene.friction_of, []
+    greatest = max(own.values(), default=0.0)
+    if own:
+        greatest = max(greatest, chosen_method(run.scene, run.method).friction(run.scene))
     for phase in run.phases:
         least = phase.proof.critical_friction
-        if least is not None:
-            texts.append(f"{phase.name}: {'none is enough' if math.isinf(least) else f'{least:.10g}'}")
+        if least is None:
+            continue
+        enough = f"{least / greatest:.7g} times each coefficient" if greatest > 0.0 else f"{least:.10g}"
+        texts.append(f"{phase.name}: {'none is enough' if math.isinf(least) else enough}")
     return ", ".join(texts)

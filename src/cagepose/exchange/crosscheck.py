@@ -89,7 +89,7 @@ def crosscheck(done: Run) -> Crosscheck:
     MissingExtraError
         There is no MuJoCo.
     CageposeError
-        MuJoCo's pose is no longer a number.
+        MuJoCo's pose is no longer a number, or it had no room for all contacts.
     """
     assembly = assembly_of(done.scene)
     points = surface_points(done.scene.object)

@@ -34,6 +34,8 @@ QUIET_OF_SIZE = 3e-7
 WINDOW_LIMIT = 600
 RAMP = 7
 """Windows in which the load grows, to double in each: contacts that first have to give would slip under all of it."""
+MEMORY_BYTES = 1 << 28
+"""For contacts: holes are hundreds of parts, and MuJoCo's own guess is too small for them."""
 FEW, MANY = 1e-14, 200
 """Tolerance (metres) and iterations of MuJoCo's distances between convex shapes; its own end at micrometres."""
 
@@ -74,13 +76,17 @@ class MujocoScene:
     def __init__(self, assembly: Assembly, points_object_m: FloatArray) -> None:
         library = mujoco()
         self._scene, self._points = assembly.scene, points_object_m
-        self._model = library.MjModel.from_xml_string(mjcf_text(assembly))
+        description = library.MjSpec.from_string(mjcf_text(assembly))
+        description.memory = MEMORY_BYTES
+        self._model = description.compile()
         SETTINGS.set_options(self._model.opt)
         self._model.opt.ccd_tolerance, self._model.opt.ccd_iterations = FEW, MANY
         self._model.geom_solref[:], self._model.geom_solimp[:] = SETTINGS.reference, SETTINGS.impedances
         self._body = self._model.body("object").id
         self._data = library.MjData(self._model)
         self._step = library.mj_step
+        self._failure = library.FatalError
+        self._no_room = (library.mjtWarning.mjWARN_CNSTRFULL, library.mjtWarning.mjWARN_CONTACTFULL)
 
     def settle(self, phase: int, start: Pose) -> MujocoRest:
         """Bring the object to rest under the load of a phase, from a pose at which it is let go.
@@ -88,7 +94,7 @@ class MujocoScene:
         Raises
         ------
         CageposeError
-            MuJoCo's pose is no longer a number.
+            MuJoCo's pose is no longer a number, or it has no room for all contacts.
         """
         data, scene = self._data, self._scene
         data.qpos[:3], data.qpos[3:7] = start.position_m, start.quaternion_wxyz
@@ -103,9 +109,14 @@ class MujocoScene:
                 self._step(self._model, data)
             return self._pose().transform(self._points)
 
-        for window in range(RAMP):
-            places = advance(whole * 0.5 ** (RAMP - window))
-        settled = windows_until_quiet(advance, places, QUIET_OF_SIZE * scene.size_m, WINDOW_LIMIT)
+        try:
+            for window in range(RAMP):
+                places = advance(whole * 0.5 ** (RAMP - window))
+            settled = windows_until_quiet(advance, places, QUIET_OF_SIZE * scene.size_m, WINDOW_LIMIT)
+        except self._failure as error:
+            raise CageposeError(f"MuJoCo gave up: {error}") from error
+        if any(data.warning[kind].number > 0 for kind in self._no_room):  # it goes on without some
+            raise CageposeError(f"MuJoCo has no room for all contacts of this scene in {MEMORY_BYTES} bytes")
         depth_m = max((-float(distance) for distance in data.contact.dist), default=0.0)
         return MujocoRest(self._pose(), max(depth_m, 0.0), int(data.ncon), settled)
 

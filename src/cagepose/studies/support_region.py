@@ -7,7 +7,7 @@ not: there forces that point elsewhere than up make it larger, smaller or empty.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import islice, product
 from typing import NamedTuple, TypeAlias
@@ -85,17 +85,10 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
         return None
     wrenches, friction = _with_whole_rims(problem, run, phase_index)
     on_rims = range(len(problem.faces), len(wrenches))
-    normals = _directions(view.polygon)
-    heights, points = np.full(len(normals), math.inf), np.zeros((0, 2))
-    for choice in choices:
-        counting = [*choice, *on_rims]
-        found = _farthest(wrenches[counting], friction[counting], view, normals)
-        if found is None:
-            return None
-        if len(choices) == 1:
-            normals, heights, points = found
-        else:
-            heights = np.minimum(heights, found.heights[: len(normals)])
+    found = _common([(wrenches[at], friction[at]) for at in ([*choice, *on_rims] for choice in choices)], view)
+    if found is None:
+        return None
+    normals, heights, points = found
     margin_m = float(heights.min())
     if margin_m == -math.inf or _is_empty(normals, heights + ROUNDING * reach_m):
         return SupportRegion(np.zeros((0, 2)), -math.inf)
@@ -135,7 +128,12 @@ def _directions(polygon: FloatArray) -> FloatArray:
     sizes = np.linalg.norm(sides, axis=1)
     across = np.stack([sides[:, 1], -sides[:, 0]], axis=1)[sizes > 0.0] / sizes[sizes > 0.0, None]
     directions = np.concatenate([np.stack([np.cos(angles), np.sin(angles)], axis=1), across, -across])
-    return np.asarray(directions[np.argsort(np.arctan2(directions[:, 1], directions[:, 0]))])
+    return _in_order(directions)
+
+
+def _in_order(normals: FloatArray) -> FloatArray:
+    """Return unit vectors, (n, 2), counter-clockwise."""
+    return np.asarray(normals[np.argsort(np.arctan2(normals[:, 1], normals[:, 0]))])
 
 
 _Reach: TypeAlias = Callable[[FloatArray], tuple[float, FloatArray] | None]
@@ -150,6 +148,25 @@ class _Bounds(NamedTuple):
     normals: FloatArray
     heights: FloatArray
     points: FloatArray
+
+
+def _common(choices: Sequence[tuple[FloatArray, FloatArray]], view: LoadView) -> _Bounds | None:
+    """Return how far goes what is common to the regions of all choices of contacts, (wrenches, friction); of several
+    without points.
+    """
+    normals = _directions(view.polygon)
+    for wrenches, friction in choices:  # each adds the directions that its own region needs
+        found = _farthest(wrenches, friction, view, normals)
+        if found is None or len(choices) == 1:
+            return found
+        normals = _in_order(found.normals)
+    heights = np.full(len(normals), math.inf)
+    for wrenches, friction in choices:
+        found = _farthest(wrenches, friction, view, normals)
+        if found is None:
+            return None
+        heights = np.minimum(heights, found.heights[: len(normals)])
+    return _Bounds(normals, heights, np.zeros((0, 2)))
 
 
 def _farthest(wrenches: FloatArray, friction: FloatArray, view: LoadView, normals: FloatArray) -> _Bounds | None:
@@ -183,12 +200,17 @@ def _farthest(wrenches: FloatArray, friction: FloatArray, view: LoadView, normal
     known = [(normal, *end) for normal, end in (*found, *last_ends) if end is not None]
     ended = sorted((one for one in known if one[1] < math.inf), key=lambda one: math.atan2(one[0][1], one[0][0]))
     for one, other in zip(ended, [*ended[1:], *ended[:1]], strict=True):
-        known += _between(reach, one, other, rays.length_m)
+        between = _between(reach, one, other, rays.length_m)
+        if between is None:
+            return None
+        known += between
     return _Bounds(*(np.array(column) for column in zip(*known, strict=True)))
 
 
-def _between(reach: _Reach, one: _End, other: _End, length_m: float) -> list[_End]:
-    """Return ends along directions between two, until the corners of all are as near to the region as is told."""
+def _between(reach: _Reach, one: _End, other: _End, length_m: float) -> list[_End] | None:
+    """Return ends along directions between two, until the corners of all are as near to the region as is told; None: a
+    program had no sure answer.
+    """
     turned = float(one[0][0] * other[0][1] - one[0][1] * other[0][0])
     if turned < PARALLEL or float(one[0] @ other[0]) < 0.0:
         return []  # no corner, or one beyond what has no end
@@ -199,10 +221,12 @@ def _between(reach: _Reach, one: _End, other: _End, length_m: float) -> list[_En
     if off <= TRUE * max(float(np.linalg.norm(corner)), length_m):
         return []
     end = reach(outward / size)
-    if end is None or end[0] == math.inf:
-        return []
+    if end is None:
+        return None
     middle = (outward / size, *end)
-    return [middle, *_between(reach, one, middle, length_m), *_between(reach, middle, other, length_m)]
+    before = _between(reach, one, middle, length_m)
+    after = _between(reach, middle, other, length_m) if before is not None else None
+    return [middle, *before, *after] if before is not None and after is not None else None
 
 
 def _last_ends(
@@ -227,7 +251,8 @@ class _Rays:
 
     def __init__(self, wrenches: FloatArray, friction: FloatArray, down: FloatArray) -> None:
         self.wrenches, self.friction, self.down = wrenches, friction, down
-        self.length_m = float(np.linalg.norm(wrenches[:, 0, 3:], axis=1).max(initial=0.0)) or 1.0
+        moments = np.linalg.norm(wrenches[:, :, 3:], axis=(1, 2))  # of three unit forces across each other
+        self.length_m = float(moments.max(initial=0.0)) / math.sqrt(2.0) or 1.0
         self.forces, self.moments = np.zeros((0, 3)), np.zeros((0, 3))
         every = np.arange(len(wrenches))
         for angle in 2.0 * np.pi * np.arange(FIRST_RAYS if friction.any() else 1) / FIRST_RAYS:

@@ -8,6 +8,7 @@ one: along the normal with what rolling adds, which moves the place of contact o
 
 from __future__ import annotations
 
+from cagepose.kernels.algebra.least_squares import inner
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.second_order import add_coupling, add_turned_arm
@@ -55,6 +56,28 @@ def add_rolling(force: Vector, normal: Vector, parallel: Matrix, frame: Frame, o
 
 
 @kernel
+def add_sticking_curvature(
+    contacts: ContactSet, i: int, force: Vector, frame: Frame, curved: bool, out: FloatArray
+) -> None:
+    """Add what a contact that sticks adds to S with a force: force . Hess u."""
+    contact = contacts.rows[i]
+    add_turned_arm(force, vector_from(contact.arm), 1.0, frame.axes, frame.radii, out)
+    if contact.feature >= 0:
+        bend = contacts.bends[i]
+        parallel = matrix_from(bend.twin_parallel if curved and bend.has_twin else bend.parallel)
+        add_rolling(force, vector_from(contact.directions[0]), parallel, frame, out)
+
+
+@kernel
+def curvature_along(curvature: FloatArray, y: FloatArray) -> float:
+    """Return y' S y / y' y."""
+    total = 0.0
+    for j in range(6):
+        total += y[j] * inner(curvature[j], y, 6)
+    return total / inner(y, y, 6)
+
+
+@kernel
 def add_matrix(matrix: FloatArray, factor: float, out: FloatArray) -> None:
     for j in range(6):
         for k in range(6):
@@ -84,8 +107,4 @@ def write_curvature(
             force = (0.0, 0.0, 0.0)
             for j in range(3):
                 force = plus(force, scaled(vector_from(contact.directions[j]), state.forces[j]))
-            add_turned_arm(force, vector_from(contact.arm), 1.0, frame.axes, frame.radii, out)
-            if contact.feature >= 0:
-                bend = contacts.bends[i]
-                parallel = matrix_from(bend.twin_parallel if curved and bend.has_twin else bend.parallel)
-                add_rolling(force, vector_from(contact.directions[0]), parallel, frame, out)
+            add_sticking_curvature(contacts, i, force, frame, curved, out)

@@ -57,15 +57,6 @@ class ImplicitStepWorkspace:
 
 
 @kernel
-def curvature_along(curvature: FloatArray, y: FloatArray) -> float:
-    """Return y' S y / y' y."""
-    total = 0.0
-    for j in range(6):
-        total += y[j] * inner(curvature[j], y, 6)
-    return total / inner(y, y, 6)
-
-
-@kernel
 def keep_along_faces(contacts: ContactSet, locked: PassiveSet, work: ImplicitStepWorkspace) -> float:
     """Replace what S has across the faces (and, where contacts stick, along them) by the greatest curvature along them.
 

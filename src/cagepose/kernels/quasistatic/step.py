@@ -16,7 +16,7 @@ from cagepose.kernels.algebra.pose import Quaternion, turned_by
 from cagepose.kernels.algebra.vector import Vector, minus, norm, scaled, vector_from
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactSet, find_contacts, stays_on_face
-from cagepose.kernels.contact.curvature import write_curvature
+from cagepose.kernels.contact.curvature import curvature_along, write_curvature
 from cagepose.kernels.contact.equilibrium import (
     HELD_BY_FRICTION,
     HELD_WITHOUT_FRICTION,
@@ -34,7 +34,6 @@ from cagepose.kernels.outcome.trace import ESCAPES, LET_GO, NONE, PLAIN, RESTS, 
 from cagepose.kernels.quasistatic.along_twist import Twist, furthest_step, longest_step, straightened, turn_of_normals
 from cagepose.kernels.quasistatic.flight import nothing_ahead
 from cagepose.kernels.quasistatic.implicit_step import (
-    curvature_along,
     implicit_step,
     keep_along_faces,
     rho_against_circulation,

@@ -44,7 +44,7 @@ GRAZING = 1e-14
 step then ends before them."""
 NARROWER = 4.0
 """Bounds over the rest of the motion are too wide where only a small part of it is stepped over: they are asked again
-over so many times that part."""
+over so many times that part, and over ever more while all of it is stepped over."""
 
 
 class Ahead(NamedTuple):
@@ -395,8 +395,11 @@ def first_touch(
         was_apart = now.value >= 0.0
         step = safe_step(now)
         if NARROWER * step < rest:
-            narrow = ahead(a, i, b, j, motion, amount, level, side, NARROWER * step)
-            step = max(step, min(safe_step(narrow), NARROWER * step))
+            span, is_over = NARROWER * step, True
+            while is_over and 0.0 < span < rest:
+                narrow = safe_step(ahead(a, i, b, j, motion, amount, level, side, span))
+                step, is_over = max(step, min(narrow, span)), narrow >= span
+                span *= NARROWER
             step = max(step, clear_step(a, i, b, j, motion, amount, moved))
             if stay_parallel(moved, i, b, j, motion, rest):
                 return math.inf

@@ -35,12 +35,12 @@ from cagepose.kernels.contact.self_stress import forget_locked, write_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.clamp import hangs_on_a_clamp
+from cagepose.kernels.stability.contact_status import ContactStatus
 from cagepose.kernels.stability.relaxation import N_COLUMNS
 from cagepose.kernels.stability.second_order import (
     MARGINAL,
     STABLE_REST,
     UNSTABLE,
-    ContactStatus,
     StabilityWorkspace,
     find_held,
     find_shared,

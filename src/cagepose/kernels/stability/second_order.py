@@ -26,6 +26,8 @@ from cagepose.kernels.contact.load_curvature import has_circulation, write_circu
 from cagepose.kernels.contact.loads import PhaseLoad
 from cagepose.kernels.contact.metric import WRENCH, Frame, ScaledVector
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.stability.contact_status import ContactStatus
+from cagepose.kernels.stability.other_balance import OtherBalance, may_be_stopped
 
 STABLE_REST, MARGINAL, UNSTABLE, STABILITY_NOT_SHOWN = 0, 1, 2, 3
 """Codes of stability: the index into `STABILITY_NAMES`."""
@@ -51,27 +53,6 @@ ONE_SIDED_LIMIT = 10
 """Contacts that may open, of which all sets are asked for; with more, a rest is called marginal at best."""
 
 
-class ContactStatus:
-    """What a contact does to second order; a record.
-
-    Attributes
-    ----------
-    is_equality
-        Whether it may carry in some balance, so that it can never open without work.
-    is_implied
-        Whether the others that may open keep it from closing.
-    is_shared
-        Whether its normal force could be another.
-    opens
-        Whether a free twist is known that opens it and closes no other.
-    """
-
-    is_equality: bool
-    is_implied: bool
-    is_shared: bool
-    opens: bool
-
-
 class StabilityWorkspace:
     """Workspace for one rest, and the answer; a record.
 
@@ -91,6 +72,8 @@ class StabilityWorkspace:
         Basis of the free twists without curvature.
     scratch
         Scratch.
+    other
+        Memory for the question whether another balance stops a motion.
     """
 
     held: PassiveSet
@@ -104,6 +87,7 @@ class StabilityWorkspace:
     vectors: Annotated[FloatArray, 6, 6]
     ways: PassiveSet
     scratch: PassiveSet
+    other: OtherBalance
 
 
 @kernel
@@ -377,7 +361,7 @@ def stability(
     and its eigenvector lies in that face. So all sets of contacts that may open are held in turn. Where the load turns
     round on what is held free, only positive curvature says something (5.29). Where a contact is at the seam of
     features that bend by different amounts, one way off it may be stable and another not: unless those that bend least
-    and those that bend most say the same, nothing is shown.
+    and those that bend most say the same, nothing is shown. Nor is it where another balance may stop a motion (5.38).
     """
     at_limit = find_held(contacts, statuses, friction, locked, work, system)
     n_held, n_ways = work.held.used, work.ways.used
@@ -391,7 +375,12 @@ def stability(
         for chosen in range(1 << max(n_one_sided, 0)):
             work.held.used = n_held
             if hold_some(contacts, n_one_sided, chosen, work):
-                code = max(code, least_curvature(contacts, n_one_sided, flat, work))
+                found = least_curvature(contacts, n_one_sided, flat, work)
+                if found == UNSTABLE and may_be_stopped(
+                    contacts, statuses, flat, frame, curved == 1, size_m, work.other
+                ):
+                    found = STABILITY_NOT_SHOWN
+                code = max(code, found)
         work.held.used = n_held
         if curved == 1 and code != told:
             work.ways.used = n_ways
@@ -418,7 +407,7 @@ def greatest_entry(matrix: FloatArray, n: int) -> float:
 
 @kernel
 def least_curvature(contacts: ContactSet, n_one_sided: int, flat: float, work: StabilityWorkspace) -> int:
-    """Return the code of stability over the twists that what is held leaves free."""
+    """Return the code of stability over the twists that what is held leaves free, and the twist that is unstable."""
     n_free = write_complement(work.held, work.free)
     write_reduced(work.curvature, work.free, n_free, work.reduced)
     symmetric_eigen(work.reduced, work.vectors, n_free)
@@ -434,6 +423,9 @@ def least_curvature(contacts: ContactSet, n_one_sided: int, flat: float, work: S
         if not forward and not is_feasible(contacts, n_one_sided, work.rest, -1.0, work):
             continue
         if work.reduced[e, e] < -flat:
+            work.other.least = work.reduced[e, e]
+            for k in range(6):
+                work.other.twist[k] = work.rest[k]
             return UNSTABLE
         code = MARGINAL
         append_column(work.ways, work.rest, e, 0.0)
