@@ -19,8 +19,8 @@ UNDECIDED = 0.05
 
 
 def imbalance(scene: Scene, result: Run) -> float:
-    """What is left of the forces and moments at the end, of the load, but for the rounding of the greatest of them: in
-    a jam, contacts press on each other with any multiple of it.
+    """What is left of the forces and moments at the end, of the load, but for the rounding of their sum: in a jam,
+    contacts press on each other with any multiple of it.
     """
     phase, load = result.phases[-1], scene.loads[-1]
     weighed, about = scaled_load(scene, load), phase.pose.transform(scene.object.center_of_gravity_m)
@@ -33,7 +33,7 @@ def imbalance(scene: Scene, result: Run) -> float:
         carried = contact.force_tangential_n - contact.force_normal_n * contact.normal_world
         force, moment = force + carried, moment + np.cross(contact.place_world - about, carried)
     left = max(float(np.linalg.norm(force)), float(np.linalg.norm(moment)) / scene.size_m)
-    rounding = np.finfo(float).eps * max((contact.force_normal_n for contact in phase.contacts), default=0.0)
+    rounding = np.finfo(float).eps * len(phase.contacts) * sum(contact.force_normal_n for contact in phase.contacts)
     return max(left - rounding, 0.0) / float(total)
 
 
