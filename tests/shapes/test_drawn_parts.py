@@ -17,7 +17,7 @@ from shapes.sprung_contacts import BALANCED, on_springs
 UNDECIDED = 0.01
 """Of runs, at most so many may end without an answer, by name."""
 KNOWN_WRONG = 0.005
-"""Share of many: one of 589, among the first 294, is lifted by three touch tolerances as it is put back on its faces."""
+"""Share of many: of 589, one is lifted by three touch tolerances as it is put back on its faces. Of few none is."""
 
 
 def test_ordinary_parts_have_an_answer(cases, say):
