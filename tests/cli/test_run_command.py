@@ -486,11 +486,15 @@ def test_the_margin_stands_in_the_table_and_in_the_document(command: Command) ->
 
 
 def test_critical_friction_of_parts_with_their_own_says_how_much_of_each_is_enough(command: Command) -> None:
-    """On a slope of 30 deg, whatever coefficient has a point that touches nothing."""
+    """On a slope of 30 deg, whatever coefficient has a point that touches nothing, or no contact at all."""
     enough = math.tan(math.radians(30.0)) / 0.58
-    for other in (0.1, 0.9):
-        changes = ("--set=friction.coefficient=0.58", f"--set=friction.of.stop={other}")
-        found = summary(command("run", str(SCENES / "slope.yaml"), "--critical-friction", *changes).out)
+    for changes in (
+        ("coefficient=0.58", "of.stop=0.1"),
+        ("coefficient=0.58", "of.stop=0.9"),
+        ("coefficient=0.9", "of.block=0.58"),
+    ):
+        asked = [f"--set=friction.{change}" for change in changes]
+        found = summary(command("run", str(SCENES / "slope.yaml"), "--critical-friction", *asked).out)
         share, words = found["critical friction"].removeprefix("weight: ").split(" ", 1)
         assert words == "times each coefficient"
         assert float(share) == pytest.approx(enough, rel=1e-6)

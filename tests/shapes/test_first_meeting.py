@@ -159,6 +159,19 @@ def test_edges_that_are_hardly_rounded_cross_after_the_way_between_them(first, r
     assert hit.amount == pytest.approx(drop - 2.0 * radius, abs=1e-9 * drop)
 
 
+@pytest.mark.parametrize("near", [1e-4, 1e-5, 1e-6])
+@pytest.mark.parametrize("axis", [(0, 1, 0), (1, 0, 0), (0.6, 0.8, 0)])
+def test_edges_that_are_hardly_rounded_and_turn_slowly_meet_where_they_touch(first, near, axis):
+    """Half of them met up to 3e4 touch tolerances early, or not at all, when the search had used up its steps."""
+    above = Convex(Pose(euler_zyx=(0, math.pi / 4, 0)).transform(CUBE), 1e-12)
+    below = Convex(Pose(euler_zyx=(math.pi / 2, math.pi / 4, 0)).transform(CUBE))
+    pose = Pose((0, 0, 2.0 * math.sqrt(2.0) + near))
+    for aside in np.geomspace(1e-4, 3e-2, 8):
+        for sign in (-1.0, 1.0):
+            center = np.array((sign * aside, 0.7 * sign * aside, -1.0))
+            check(first, above, below, pose, motion_of(center, np.zeros(3), 1.0, np.array(axis, dtype=float)), 1.0)
+
+
 def test_a_cube_that_tips_over_its_edge_lands_on_its_face(first):
     """Its lower edge touches, and turns where it is; the face lands after the angle that it was raised by."""
     angle = 0.3

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from cagepose import Box, Cage, Convex, Load, Object, Pose, Scene, SceneError, run
 from cagepose.model.hole import Chamfer, Hole
-from cagepose.model.shapes import Capsule, Cone, Cylinder, Shape, Sphere, Turned
+from cagepose.model.shapes import Capsule, Cone, Cylinder, Disc, Shape, Sphere, Turned
 from shapes import pierced_plate
 from shapes.asked_runs import Asked
 from shapes.convex_bodies import random_turn
-from shapes.overlap import depth
+from shapes.convex_depth import depth
 from shapes.pierced_plate import plate_of
 from shapes.turned_bodies import circles_of, gap, random_turned
 
@@ -108,3 +109,17 @@ def test_turned_parts_dropped_on_others(cases, say):
         number += 1
     say(f"{number} turned parts dropped on others: {asked}")
     asked.check()
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "way", "deep"),
+    [
+        (Sphere(1.0), Sphere(1.0), (0, 0, 1.9), 0.1),
+        (Box((1, 1, 1)), Box((1, 1, 1)), (0.99, 0, 0), 0.01),
+        (Cylinder(1.0, 2.0), Disc(1.0), (0, 0, 1.001), -0.001),
+        (Cylinder(1.0, 2.0), Capsule(0.5, 2.0), (1.4, 0, 0), 0.1),
+        (Cone(1.0, 0.0, 1.0), Box((4, 4, 1)), (0, 0, 0.99), 0.01),
+    ],
+)
+def test_the_convex_program_finds_how_deep_parts_are(one, other, way, deep):
+    assert depth(one, Pose(way), other) == pytest.approx(deep, abs=1e-9)

@@ -18,6 +18,7 @@ from cagepose.errors import printable
 from cagepose.files.units import LengthUnit
 from cagepose.files.words import LengthWords
 from cagepose.model.wording import components, short
+from cagepose.runs.cases import greatest_friction
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, PhaseRun, Run
 from cagepose.studies.margin import Margin
@@ -180,10 +181,9 @@ def _proof(phase: PhaseRun) -> str:
 
 
 def _critical(run: Run) -> str:
-    own, texts = run.scene.friction_of, []
-    greatest = max(own.values(), default=0.0)
-    if own:
-        greatest = max(greatest, chosen_method(run.scene, run.method).friction(run.scene))
+    scene, texts, greatest = run.scene, list[str](), 0.0
+    if scene.friction_of:
+        greatest = greatest_friction(scene, chosen_method(scene, run.method).friction(scene))
     for phase in run.phases:
         least = phase.proof.critical_friction
         if least is None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from cagepose.kernels.algebra.record import Rows, empty_record
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
+from cagepose.kernels.contact.friction import friction_of
 from cagepose.kernels.contact.loads import PhaseLoad
 from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.native.slots import Slots
@@ -81,6 +82,12 @@ def _own_frictions(scene: Scene, names: Sequence[str]) -> FloatArray:
 def contact_friction(scene: Scene, friction: float, point: str, box: str) -> float:
     """Return the coefficient of a contact, with ``friction`` where neither its point nor its box has one."""
     return scene.friction_of.get(point, scene.friction_of.get(box, friction))
+
+
+def greatest_friction(scene: Scene, friction: float) -> float:
+    """Return the greatest coefficient of all contacts that there can be, with ``friction`` as in `contact_friction`."""
+    of_points, of_boxes = (_own_frictions(scene, part.element_names) for part in (scene.cage, scene.object))
+    return friction_of(friction, of_points, of_boxes).greatest
 
 
 _PREPARED: WeakKeyDictionary[Scene, dict[float, tuple[Slots, Slots]]] = WeakKeyDictionary()

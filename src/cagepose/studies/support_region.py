@@ -7,7 +7,7 @@ not: there forces that point elsewhere than up make it larger, smaller or empty.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice, product
 from typing import NamedTuple, TypeAlias
@@ -85,7 +85,8 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
         return None
     wrenches, friction = _with_whole_rims(problem, run, phase_index)
     on_rims = range(len(problem.faces), len(wrenches))
-    found = _common([(wrenches[at], friction[at]) for at in ([*choice, *on_rims] for choice in choices)], view)
+    regions = [_Region(wrenches[at], friction[at], view) for at in ([*choice, *on_rims] for choice in choices)]
+    found = _common(regions, view)
     if found is None:
         return None
     normals, heights, points = found
@@ -136,7 +137,6 @@ def _in_order(normals: FloatArray) -> FloatArray:
     return np.asarray(normals[np.argsort(np.arctan2(normals[:, 1], normals[:, 0]))])
 
 
-_Reach: TypeAlias = Callable[[FloatArray], tuple[float, FloatArray] | None]
 _End: TypeAlias = tuple[FloatArray, float, FloatArray]
 
 
@@ -150,94 +150,103 @@ class _Bounds(NamedTuple):
     points: FloatArray
 
 
-def _common(choices: Sequence[tuple[FloatArray, FloatArray]], view: LoadView) -> _Bounds | None:
-    """Return how far goes what is common to the regions of all choices of contacts, (wrenches, friction); of several
-    without points.
-    """
+def _common(regions: Sequence[_Region], view: LoadView) -> _Bounds | None:
+    """Return how far goes what is common to some regions; of several without points."""
     normals = _directions(view.polygon)
-    for wrenches, friction in choices:  # each adds the directions that its own region needs
-        found = _farthest(wrenches, friction, view, normals)
-        if found is None or len(choices) == 1:
+    for region in regions:  # each adds the directions that it needs
+        found = _farthest(region, normals)
+        if found is None or len(regions) == 1:
             return found
         normals = _in_order(found.normals)
     heights = np.full(len(normals), math.inf)
-    for wrenches, friction in choices:
-        found = _farthest(wrenches, friction, view, normals)
-        if found is None:
-            return None
-        heights = np.minimum(heights, found.heights[: len(normals)])
+    for region in regions:
+        for place, normal in enumerate(normals):
+            end = region.reach(normal)
+            if end is None:
+                return None
+            heights[place] = min(heights[place], end[0])
     return _Bounds(normals, heights, np.zeros((0, 2)))
 
 
-def _farthest(wrenches: FloatArray, friction: FloatArray, view: LoadView, normals: FloatArray) -> _Bounds | None:
-    """Return how far the region goes along some directions, and along those where it begins to have no end; None: a
-    program had no sure answer.
+class _Region:
+    """Where some contacts, with wrenches (n, 3, 6) and friction (n,), balance the weight.
 
     With unit forces F_r of rays and their moments, the centre of gravity is M x d off for a weight of 1 along d, if the
     forces add up to -d and M has no part along d. The dual of what is greatest of it along a has four unknowns, and
     forces for its multipliers.
     """
-    down, seen = np.cross(view.up_world, view.right_world), np.stack([view.right_world, view.up_world], axis=1)
-    rays, program = _Rays(wrenches, friction, down), empty_record(Program)
-    if rays.solve(program, np.zeros(3)) == UNBOUNDED:  # it is empty, be it that moments have no end
-        return _Bounds(normals, np.full(len(normals), -math.inf), np.zeros((len(normals), 2)))
 
-    def reach(normal: FloatArray) -> tuple[float, FloatArray] | None:
-        outcome = rays.solve(program, np.cross(down, seen @ normal))
+    def __init__(self, wrenches: FloatArray, friction: FloatArray, view: LoadView) -> None:
+        self.down = np.cross(view.up_world, view.right_world)
+        self.seen = np.stack([view.right_world, view.up_world], axis=1)
+        self.rays, self.program = _Rays(wrenches, friction, self.down), empty_record(Program)
+        self.is_empty = self.rays.solve(self.program, np.zeros(3)) == UNBOUNDED  # be it that moments have no end
+
+    def reach(self, normal: FloatArray) -> tuple[float, FloatArray] | None:
+        """Return how far it goes along a unit vector, and the point there; None: the program had no sure answer."""
+        if self.is_empty:
+            return -math.inf, np.zeros(2)
+        program, rays = self.program, self.rays
+        outcome = rays.solve(program, np.cross(self.down, self.seen @ normal))
         if outcome == OPTIMAL:
             used = program.passive.used
             moment = program.passive.x[:used] @ rays.moments[program.passive.labels[:used]]
-            return -rays.length_m * float(down @ program.x[:3]), np.cross(moment, down) @ seen
+            return -rays.length_m * float(self.down @ program.x[:3]), np.cross(moment, self.down) @ self.seen
         return (math.inf, np.zeros(2)) if outcome == INFEASIBLE else None  # the dual of what has no end
 
-    found = [(normal, reach(normal)) for normal in normals]
+
+def _farthest(region: _Region, normals: FloatArray) -> _Bounds | None:
+    """Return how far a region goes along some directions, along those where it begins to have no end, and along those
+    that its corners need; None: a program had no sure answer.
+    """
+    if region.is_empty:
+        return _Bounds(normals, np.full(len(normals), -math.inf), np.zeros((len(normals), 2)))
+    found = [(normal, region.reach(normal)) for normal in normals]
     last_ends = []
     for (one, at_one), (other, at_other) in zip(found, [*found[1:], found[0]], strict=True):
         if at_one is None or at_other is None:
             return None
         if (at_one[0] == math.inf) != (at_other[0] == math.inf):
-            last_ends += _last_ends(reach, *((one, other) if at_other[0] == math.inf else (other, one)))
+            last_ends += _last_ends(region, *((one, other) if at_other[0] == math.inf else (other, one)))
     known = [(normal, *end) for normal, end in (*found, *last_ends) if end is not None]
     ended = sorted((one for one in known if one[1] < math.inf), key=lambda one: math.atan2(one[0][1], one[0][0]))
-    for one, other in zip(ended, [*ended[1:], *ended[:1]], strict=True):
-        between = _between(reach, one, other, rays.length_m)
-        if between is None:
-            return None
-        known += between
+    waiting = list(zip(ended, [*ended[1:], *ended[:1]], strict=True))
+    while waiting:
+        one, other = waiting.pop()
+        outward = _direction_between(one, other, region.rays.length_m)
+        if outward is not None:
+            end = region.reach(outward)
+            if end is None:
+                return None
+            middle = (outward, *end)
+            known.append(middle)
+            waiting += [(one, middle), (middle, other)]
     return _Bounds(*(np.array(column) for column in zip(*known, strict=True)))
 
 
-def _between(reach: _Reach, one: _End, other: _End, length_m: float) -> list[_End] | None:
-    """Return ends along directions between two, until the corners of all are as near to the region as is told; None: a
-    program had no sure answer.
-    """
+def _direction_between(one: _End, other: _End, length_m: float) -> FloatArray | None:
+    """Return the direction across the way between two ends; None: their corner is as near to the region as is told."""
     turned = float(one[0][0] * other[0][1] - one[0][1] * other[0][0])
     if turned < PARALLEL or float(one[0] @ other[0]) < 0.0:
-        return []  # no corner, or one beyond what has no end
+        return None  # no corner, or one beyond what has no end
     corner = np.linalg.solve(np.stack([one[0], other[0]]), [one[1], other[1]])
     chord = other[2] - one[2]
     outward, size = np.array([chord[1], -chord[0]]), float(np.linalg.norm(chord))
-    off = float(outward @ (corner - one[2])) / size if size > 0.0 else 0.0
-    if off <= TRUE * max(float(np.linalg.norm(corner)), length_m):
-        return []
-    end = reach(outward / size)
-    if end is None:
+    if size == 0.0:
         return None
-    middle = (outward / size, *end)
-    before = _between(reach, one, middle, length_m)
-    after = _between(reach, middle, other, length_m) if before is not None else None
-    return [middle, *before, *after] if before is not None and after is not None else None
+    off = float(outward @ (corner - one[2])) / size
+    return outward / size if off > TRUE * max(float(np.linalg.norm(corner)), length_m) else None
 
 
 def _last_ends(
-    reach: _Reach, bounded: FloatArray, endless: FloatArray
+    region: _Region, bounded: FloatArray, endless: FloatArray
 ) -> list[tuple[FloatArray, tuple[float, FloatArray]]]:
     """Return directions ever nearer to an endless one in which the region still ends, and where."""
     found = []
     for _ in range(HALVINGS):
         between = bounded + endless
         between /= np.linalg.norm(between)
-        end = reach(between)
+        end = region.reach(between)
         if end is None or end[0] == math.inf:
             endless = between
         else:

@@ -3,7 +3,7 @@
 Where contacts share the load in many ways, each way has a curvature of its own along a motion, and one that is positive
 stops it. So a rest is unstable along a motion if the greatest of them is negative,
 
-    max over f >= 0, A f = b of  sum f_i k_i   =   min over y with A^T y >= k of  b . y .
+    max over f >= 0, A f = b of  sum f_i k_i   =   min over z with A^T z >= k of  b . z .
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from cagepose.kernels.algebra.least_squares import inner
 from cagepose.kernels.algebra.linear_program import N_UNKNOWNS, OPTIMAL, Program, solve_program
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import vector_from
-from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.contact_set import ContactSet, is_smooth
 from cagepose.kernels.contact.curvature import (
     add_face_curvature,
     add_sticking_curvature,
@@ -44,7 +44,7 @@ class OtherBalance:
     twist, least
         The motion, of length one, and the curvature along it with the forces that the contacts have.
     program
-        The linear program in y.
+        The linear program in z.
     """
 
     rows: Annotated[FloatArray, MOST_FORCES, N_UNKNOWNS]
@@ -56,12 +56,29 @@ class OtherBalance:
 
 
 @kernel
+def n_forces(contacts: ContactSet, i: int, friction: float) -> int:
+    """Return how many forces a contact may have: one that slips at its limit only its normal one is asked for; one that
+    carries nothing now may stick where it does.
+    """
+    state = contacts.states[i]
+    sticks = state.is_sticking or (state.forces[0] == 0.0 and friction > 0.0 and not is_smooth(contacts.rows[i]))
+    return 3 if sticks else 1
+
+
+@kernel
 def curvature_of(
-    contacts: ContactSet, i: int, which: int, frame: Frame, curved: bool, size_m: float, work: OtherBalance
+    contacts: ContactSet,
+    i: int,
+    which: int,
+    friction: float,
+    frame: Frame,
+    curved: bool,
+    size_m: float,
+    work: OtherBalance,
 ) -> float:
     """Return k of the normal (``which`` 0) or of a tangential force of a contact, times the size."""
     clear_matrix(work.curvature)
-    if contacts.states[i].is_sticking:
+    if n_forces(contacts, i, friction) == 3:
         force = vector_from(contacts.rows[i].directions[which])
         add_sticking_curvature(contacts, i, force, frame, curved, work.curvature)
     else:
@@ -71,6 +88,7 @@ def curvature_of(
 
 @kernel
 def add_row(contacts: ContactSet, i: int, which: int, sign: float, k: float, n: int, work: OtherBalance) -> None:
+    """Write row n for one force, along its direction or (``sign`` -1) against it."""
     for axis in range(N_UNKNOWNS):
         work.rows[n, axis] = -sign * contacts.rows[i].columns[which, axis]
     work.bounds[n] = -sign * k
@@ -80,6 +98,7 @@ def add_row(contacts: ContactSet, i: int, which: int, sign: float, k: float, n: 
 def add_lacking(
     contacts: ContactSet,
     statuses: Rows[ContactStatus],
+    friction: float,
     frame: Frame,
     curved: bool,
     size_m: float,
@@ -91,15 +110,15 @@ def add_lacking(
     for i in range(contacts.used[0]):
         if not statuses[i].is_equality:
             continue
-        for which in range(3 if contacts.states[i].is_sticking else 1):
-            bend = curvature_of(contacts, i, which, frame, curved, size_m, work)
+        for which in range(n_forces(contacts, i, friction)):
+            bend = curvature_of(contacts, i, which, friction, frame, curved, size_m, work)
             lacks = bend - inner(contacts.rows[i].columns[which], work.program.x, N_UNKNOWNS)
             sign = -1.0 if which > 0 and lacks < 0.0 else 1.0
             if sign * lacks > worst * (1.0 + abs(bend)):
                 worst, contact, force, way = sign * lacks / (1.0 + abs(bend)), i, which, sign
     if contact < 0:
         return n
-    bend = curvature_of(contacts, contact, force, frame, curved, size_m, work)
+    bend = curvature_of(contacts, contact, force, friction, frame, curved, size_m, work)
     add_row(contacts, contact, force, way, bend, n, work)
     return n + 1
 
@@ -108,6 +127,7 @@ def add_lacking(
 def may_be_stopped(
     contacts: ContactSet,
     statuses: Rows[ContactStatus],
+    friction: float,
     flat: float,
     frame: Frame,
     curved: bool,
@@ -125,13 +145,13 @@ def may_be_stopped(
     for place in range(MOST_FORCES):
         work.bounds[place] = math.inf
     for i in range(contacts.used[0]):
-        forces, sticks = contacts.states[i].forces, contacts.states[i].is_sticking
+        forces = contacts.states[i].forces
         if not statuses[i].is_equality or forces[0] == 0.0:
             continue
         if n + 3 > MOST_FORCES:
             return True
-        for which in range(3 if sticks else 1):
-            bend = curvature_of(contacts, i, which, frame, curved, size_m, work)
+        for which in range(n_forces(contacts, i, friction)):
+            bend = curvature_of(contacts, i, which, friction, frame, curved, size_m, work)
             now += forces[which] * bend
             add_row(contacts, i, which, math.copysign(1.0, forces[which]), bend, n, work)
             n += 1
@@ -144,7 +164,7 @@ def may_be_stopped(
         greatest = -inner(work.program.objective, work.program.x, N_UNKNOWNS)
         if (greatest - now) / size_m + work.least >= -flat:
             return True  # more rows make it greater
-        more = add_lacking(contacts, statuses, frame, curved, size_m, n, work)
+        more = add_lacking(contacts, statuses, friction, frame, curved, size_m, n, work)
         if more == n:
             return False
         n = more

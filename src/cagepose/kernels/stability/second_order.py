@@ -377,7 +377,7 @@ def stability(
             if hold_some(contacts, n_one_sided, chosen, work):
                 found = least_curvature(contacts, n_one_sided, flat, work)
                 if found == UNSTABLE and may_be_stopped(
-                    contacts, statuses, flat, frame, curved == 1, size_m, work.other
+                    contacts, statuses, friction, flat, frame, curved == 1, size_m, work.other
                 ):
                     found = STABILITY_NOT_SHOWN
                 code = max(code, found)

@@ -48,7 +48,7 @@ def bounds_of(shape: Shape) -> list[Bound]:
 
 
 def depth(one: Shape, pose: Pose, other: Shape) -> float:
-    """How deep a part at a pose is in another one, metres; below zero, or zero: not."""
+    """How deep a part at a pose is in another one, metres, twice what the point midway is; below zero: so far apart."""
     frames = [(pose @ one.pose_body_shape, bounds_of(one)), (other.pose_body_shape, bounds_of(other))]
 
     def inside(x: np.ndarray) -> np.ndarray:
@@ -62,4 +62,4 @@ def depth(one: Shape, pose: Pose, other: Shape) -> float:
             lambda v: v[3], start, constraints=[limit], method="SLSQP", options={"maxiter": 500, "ftol": 1e-15}
         )
         least = min(least, float(inside(found.x[:3]).max()))
-    return -least
+    return -2.0 * least
