@@ -13,7 +13,8 @@ from cagepose import Box, Cage, Object, Pose
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.collision.contacts import deepest_boxes, is_near_edge
 from cagepose.kernels.collision.geometry import empty_placement, place_object
-from cagepose.kernels.contact.contact_set import empty_contact_set, find_contacts
+from cagepose.kernels.contact.contact_set import empty_contact_set
+from cagepose.kernels.contact.find_contacts import find_contacts
 from cagepose.kernels.contact.friction import Friction
 from cagepose.kernels.contact.metric import Body, frame_at
 from cagepose.model.geometry import object_seams, scene_geometry

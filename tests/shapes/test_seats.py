@@ -1,5 +1,5 @@
-"""Cones seated in the mouth of a bore, pushed sideways without friction: against a wedge on two points. And balls in a
-chamfer.
+"""Cones seated in the mouth of a bore, pushed sideways without friction: against a wedge on two points. Balls in a
+chamfer. And countersunk heads in narrower seats: against the least potential.
 
 In the plane of the push the cone is a wedge that lies on both ends of the mouth's diameter; the circle there touches it
 nowhere else. Along its tilt the potential is a function of one number, whose first minimum from upright is the rest.
@@ -11,9 +11,9 @@ import math
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize
 
-from cagepose import Box, Cage, Chamfer, Cone, Force, Hole, Load, Object, Pose, Scene, Sphere, run
+from cagepose import Box, Cage, Chamfer, Cone, Cylinder, Force, Hole, Load, Object, Pose, Scene, Sphere, run
 
 MM, WEIGHT_N = 1e-3, 0.981
 CONES = ((4.0, 8.0, 4.0), (5.0, 8.0, 6.0), (3.0, 8.0, 3.0), (4.5, 7.0, 10.0), (4.0, 9.0, 9.0))
@@ -153,3 +153,87 @@ def test_a_ball_touches_a_chamfer_all_around(
         seated, ended = (phase.pose.position_m for phase in result.phases)
         assert seated == pytest.approx(np.subtract((0.0, 0.0, 0.0), at) if down > 0.0 else center, abs=1e-11)
         assert (np.linalg.norm(ended - seated) < 1e-11) == holds
+
+
+HEADS = [
+    (head_deg, head_deg - narrower, start)
+    for head_deg in (45.0, 41.0, 30.0)
+    for narrower in (1.0, 3.0, 5.0)
+    for start in ((0.0, 0.0, 3.0), (0.1, 0.0, 2.0), (0.05, 0.0, 1.0), (0.05, 0.08, 1.5))
+]
+"""Half angles of head and seat, degrees, and where it starts, mm."""
+RIM, SHANK, BORE, LOW, CENTER, PUSH_N = 6.0, 3.0, 3.2, 20.0, -6.0, 0.3
+"""Of a screw whose head has its rim at the origin, mm: the radii of rim, shank and bore, the length of the shank, its
+centre of gravity; its weight is 1 N."""
+
+
+def screw(head_deg: float, seat_deg: float, start: tuple[float, float, float]) -> Scene:
+    """A countersunk screw over its seat: let down, then pushed sideways at its rim."""
+    length = (RIM - SHANK) / math.tan(math.radians(head_deg))
+    head = Cone(SHANK * MM, RIM * MM, length * MM, Pose((0.0, 0.0, -0.5 * length * MM)), "head")
+    shank = Cylinder(SHANK * MM, LOW * MM, Pose((0.0, 0.0, -(0.5 * LOW + 0.5 * length) * MM)), "shank")
+    block = Box((0.08, 0.08, 0.03), Pose((0.0, 0.0, -0.015)), "block")
+    seat = Hole(BORE * MM, 0.03, Chamfer(3.0 * MM, math.radians(seat_deg)), ["block"])
+    held = Object(
+        shapes=[head, shank],
+        mass_kg=1.0 / 9.81,
+        inertia_kg_m2=np.eye(3) * 1e-6,
+        center_of_gravity_m=(0.0, 0.0, CENTER * MM),
+        pose=Pose(tuple(MM * number for number in start)),
+    )
+    down = (0.0, 0.0, -9.81)
+    push = Force((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), PUSH_N)
+    return Scene(
+        held, Cage(shapes=[block], holes=[seat]), [Load("seat", gravity=down), Load("push", gravity=down, force=push)]
+    )
+
+
+class PushedScrew:
+    """The screw in the plane of its push, by its pose: x and z, mm, and tilt, rad."""
+
+    def __init__(self, head_deg: float, seat_deg: float) -> None:
+        self.half = math.radians(seat_deg)
+        self.apex = -(BORE + 3.0) / math.tan(self.half)
+        self.low = -(LOW + 0.5 * (RIM - SHANK) / math.tan(math.radians(head_deg)))
+        self.around = np.linspace(0.0, math.pi, 3601)
+
+    def circle(self, pose: np.ndarray, radius: float, height: float) -> tuple[np.ndarray, np.ndarray]:
+        """Distance from the axis of the hole, and height, of points of a circle about the screw's axis."""
+        x, z, tilt = pose
+        along, across = radius * np.cos(self.around), radius * np.sin(self.around)
+        beside = x + along * math.cos(tilt) + height * math.sin(tilt)
+        return np.hypot(beside, across), z - along * math.sin(tilt) + height * math.cos(tilt)
+
+    def gaps(self, pose: np.ndarray) -> np.ndarray:
+        """Of the rim in the seat, and of the lower end in the bore, mm."""
+        away, height = self.circle(pose, RIM, 0.0)
+        in_seat = (height - self.apex) * math.sin(self.half) - away * math.cos(self.half)
+        return np.concatenate([in_seat, BORE - self.circle(pose, SHANK, self.low)[0]])
+
+    def potential(self, pose: np.ndarray) -> float:
+        """N mm."""
+        return float(pose[1] + CENTER * math.cos(pose[2]) - PUSH_N * pose[0])
+
+    def lowest(self) -> np.ndarray:
+        start = np.array((0.0, self.apex + RIM / math.tan(self.half), 0.0))
+        bounds, options = {"type": "ineq", "fun": self.gaps}, {"ftol": 1e-15, "maxiter": 500}
+        return np.asarray(minimize(self.potential, start, constraints=bounds, method="SLSQP", options=options).x)
+
+
+def test_countersunk_heads_in_narrower_seats_come_to_the_middle_and_are_pushed_to_the_least_potential(cases, say):
+    random, worst = np.random.default_rng(5), 0.0
+    for number in random.permutation(len(HEADS))[: cases(12, len(HEADS))]:
+        head_deg, seat_deg, start = HEADS[number]
+        result = run(screw(head_deg, seat_deg, start))
+        assert [phase.verdict for phase in result.phases] == ["rests", "rests"], HEADS[number]
+        middle = (0.0, 0.0, (RIM - BORE - 3.0) / math.tan(math.radians(seat_deg)))
+        assert np.asarray(result.phases[0].pose.position_m) / MM == pytest.approx(middle, abs=1e-7)
+        position, rotation = np.asarray(result.pose.position_m) / MM, result.pose.rotation
+        found = np.array((position[0], position[2], math.atan2(rotation[0, 2], rotation[2, 2])))
+        pushed = PushedScrew(head_deg, seat_deg)
+        lowest = pushed.lowest()
+        worst = max(worst, float(np.abs(found - lowest).max()))
+        assert pushed.gaps(found).min() > -1e-9, HEADS[number]
+        assert pushed.potential(found) < pushed.potential(lowest) + 1e-9, HEADS[number]
+        assert found == pytest.approx(lowest, abs=1e-5), HEADS[number]
+    say(f"heads pushed in narrower seats: at most {worst:.1e} mm from where SciPy finds the least potential")

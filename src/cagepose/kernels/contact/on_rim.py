@@ -43,6 +43,38 @@ def is_under_rim(contacts: ContactSet, i: int, touch_m: float) -> bool:
 
 
 @kernel
+def is_along_side(contacts: ContactSet, i: int) -> bool:
+    """Whether a contact is of a rim that lies along a round side."""
+    if contacts.rows[i].feature < 0:
+        return False
+    rim = contacts.bends[i].on_rim
+    return rim.length != 0.0 and rim.is_on_ball and max(rim.before, rim.after) > 0.0
+
+
+@kernel
+def is_of_same_rim(contacts: ContactSet, i: int, other: int) -> bool:
+    """Whether another contact is of the same rim along the same side."""
+    row, one = contacts.rows[i], contacts.rows[other]
+    if one.point != row.point or one.box != row.box or row.feature < 0 or one.feature < 0:
+        return False
+    rim, around = contacts.bends[i].on_rim, contacts.bends[other].on_rim
+    return around.is_on_ball and around.is_of_cage == rim.is_of_cage and around.length == rim.length
+
+
+@kernel
+def keeps_on_rim(contacts: ContactSet, i: int, velocity: Vector, spin: Vector, touch_m: float, slowest: float) -> bool:
+    """Whether a contact is of a rim that a motion leaves all on what it lies on, to a speed and to first order."""
+    if contacts.rows[i].feature < 0 or contacts.bends[i].on_rim.length == 0.0:
+        return False
+    rim, normal = contacts.bends[i].on_rim, vector_from(contacts.rows[i].directions[0])
+    if is_along_side(contacts, i):  # all normals lead through one place
+        return norm(plus(velocity, cross(spin, vector_from(rim.ball)))) <= slowest
+    away = abs(dot(normal, plus(velocity, cross(spin, vector_from(contacts.rows[i].arm)))))
+    tilt = abs(rim.length) * norm(cross(normal, spin))  # about a point of it, a rim may tip
+    return is_under_rim(contacts, i, touch_m) and max(away, tilt) <= slowest
+
+
+@kernel
 def is_on_flat(contacts: ContactSet, i: int) -> bool:
     """Whether a point that was added is of a rim that stays flat on the same face."""
     row, found = contacts.rows[i], False

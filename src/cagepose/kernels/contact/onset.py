@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.algebra.vector import cross, norm, vector_from
 from cagepose.kernels.contact.contact_set import ContactSet, is_smooth
 from cagepose.kernels.contact.coulomb import allowed_error, coulomb_onset
 from cagepose.kernels.contact.edges import CHOICES_LIMIT, ONLY_CARRYING, has_one_choice, keep_choice
@@ -22,7 +21,7 @@ from cagepose.kernels.contact.equilibrium import (
     return_to_choice,
 )
 from cagepose.kernels.contact.metric import Frame, twist_of
-from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims, drop_idle, is_under_rim
+from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims, drop_idle, keeps_on_rim
 from cagepose.kernels.contact.self_stress import carry_by_locked, forget_locked
 from cagepose.kernels.contact.tip import tips_on_rim
 from cagepose.kernels.contact.workspace import ContactWorkspace
@@ -102,14 +101,11 @@ def find_sticking(
     contacts: ContactSet, frame: Frame, friction: float, touch_m: float, terms: float, y: FloatArray
 ) -> None:
     """Find which contacts carry and do not slip, and which rims stay flat, to the digits that `coulomb_onset` asks."""
-    spin = twist_of(y, frame)[1]
+    velocity, spin = twist_of(y, frame)
     for i in range(contacts.used[0]):
         columns, state = contacts.rows[i].columns, contacts.states[i]
-        state.stays_flat = is_under_rim(contacts, i, touch_m)
-        if state.stays_flat:  # all of it: about a point of it, a rim may tip
-            tilt = abs(contacts.bends[i].on_rim.length) * norm(cross(vector_from(contacts.rows[i].directions[0]), spin))
-            fastest = max(abs(inner(columns[0], y, 6)), tilt)
-            state.stays_flat = fastest <= allowed_error(terms, y) * length(columns[0], 6)
+        error = allowed_error(terms, y) * length(columns[0], 6)
+        state.stays_flat = keeps_on_rim(contacts, i, velocity, spin, touch_m, error)
         state.is_sticking = state.forces[0] > 0.0 and friction > 0.0 and not is_smooth(contacts.rows[i])
         for j in range(1, 3):
             if abs(inner(columns[j], y, 6)) > allowed_error(terms, y) * length(columns[j], 6):

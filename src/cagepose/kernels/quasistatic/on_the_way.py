@@ -6,7 +6,8 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.first_meeting import NO_HIT
 from cagepose.kernels.collision.geometry import place_object
-from cagepose.kernels.contact.contact_set import ContactRow, ContactSet, find_contacts
+from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
+from cagepose.kernels.contact.find_contacts import find_contacts
 from cagepose.kernels.contact.loads import write_load
 from cagepose.kernels.contact.metric import Frame
 from cagepose.kernels.native.kernel import kernel

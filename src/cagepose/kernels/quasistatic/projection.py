@@ -17,12 +17,10 @@ from cagepose.kernels.algebra.vector import (
     cross,
     dot,
     minus,
-    norm,
     plus,
     row,
     scaled,
     transposed_times,
-    vector_from,
 )
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.contact.contact_set import tangents_to
@@ -37,10 +35,15 @@ from cagepose.kernels.contact.metric import (
     write_scaled_wrench,
 )
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.features import EDGE, RIM, Feature, Shapes, is_of_mouth, place_feature
-from cagepose.kernels.shapes.flat_rims import SAME_WAY
-from cagepose.kernels.shapes.meeting import PARALLEL, Meeting, apart, meeting, meeting_kept, twin_pair
-from cagepose.kernels.shapes.rims import is_near_arc, lie_flat
+from cagepose.kernels.quasistatic.along_rims import (
+    is_along_axis,
+    is_rim_on_side,
+    may_be_elsewhere,
+    meeting_along_rim,
+    meeting_beside,
+)
+from cagepose.kernels.shapes.features import Shapes, place_feature
+from cagepose.kernels.shapes.meeting import apart, meeting, meeting_kept, twin_pair
 
 ROUNDS = 12
 ON_FACE = 4e-16
@@ -54,7 +57,7 @@ play can be tilted by the root of rounding, and to make up for that would take l
 
 GAP, ALONG, FLAT = 0, 1, 3
 """Which number of two features a constraint is about: their gap; (1 and 2) the way along each tangent; the gap of a
-point of a rim that lies flat, if it is over the face at all."""
+point of a rim that lies flat, if it is over the face at all, or of the arcs beside it, see `meeting_along_rim`."""
 
 
 class PositionConstraint:
@@ -197,13 +200,15 @@ def lack(
     i, j, turned = constraint.feature, constraint.cage_feature, matrix_from_quaternion(quaternion)
     place_feature(geometry.held, i, position, turned, moved)
     one, other = twin_pair(moved, i, geometry.cage, j)
-    if one < 0 or is_constrained(constraints, one, other):
+    if constraint.which == FLAT and is_rim_on_side(moved.features[i], geometry.cage.features[j]):
+        met = meeting_along_rim(geometry, i, j, position, turned, moved)
+    elif one < 0 or is_constrained(constraints, one, other):
         met = meeting(moved, i, geometry.cage, j)
     else:
         place_feature(geometry.held, one, position, turned, moved)
         met = meeting_kept(moved, i, geometry.cage, j, constraint.target)
     if not met.is_one:
-        met = meeting_beside(geometry, constraint, position, quaternion, moved)
+        met = meeting_beside(geometry, i, j, position, turned, moved)
     if constraint.which == FLAT and not is_along_axis(moved.features[i], geometry.cage.features[j], met.normal):
         met = apart()
     arm = minus(met.place, position)
@@ -215,53 +220,9 @@ def lack(
 
 
 @kernel
-def is_along_axis(held: Feature, cage: Feature, normal: Vector) -> bool:
-    """Whether a normal leads along the axis of a rim, if one of two features is one: across it, a rim that lay flat has
-    come out from under an edge.
-    """
-    leads = True
-    if held.kind == RIM:
-        leads = abs(dot(normal, vector_from(held.direction))) > SAME_WAY
-    if cage.kind == RIM:
-        leads = leads and abs(dot(normal, vector_from(cage.direction))) > SAME_WAY
-    return leads
-
-
-@kernel
-def meeting_beside(
-    geometry: Geometry, constraint: PositionConstraint, position: Vector, quaternion: Quaternion, moved: Shapes
-) -> Meeting:
-    """Return how an arc of a rim next to a constraint's one meets the other feature, in the half of it that is nearer:
-    the place of the constraint may have moved there.
-    """
-    i, j, cage = constraint.feature, constraint.cage_feature, geometry.cage
-    held = moved.features[i]
-    if held.kind == RIM:
-        for beside in (held.arc_before, held.arc_after):
-            place_feature(geometry.held, beside, position, matrix_from_quaternion(quaternion), moved)
-            met = meeting(moved, beside, cage, j)
-            if met.is_one and is_near_arc(held, met.place):
-                return met
-    if cage.features[j].kind == RIM:
-        for beside in (cage.features[j].arc_before, cage.features[j].arc_after):
-            met = meeting(moved, i, cage, beside)
-            if met.is_one and is_near_arc(cage.features[j], plus(met.place, scaled(met.normal, met.gap))):
-                return met
-    return apart()
-
-
-@kernel
-def may_be_elsewhere(geometry: Geometry, constraint: PositionConstraint, moved: Shapes) -> bool:
-    """Whether a constraint is about the second place on an arc of a rim where another feature is nearest, an arc that
-    lies flat on what it touches, as one of a mouth may, or edges that have become parallel: without such a place, the
-    others count.
-    """
-    held, cage = moved.features[constraint.feature], geometry.cage.features[constraint.cage_feature]
-    if held.kind == EDGE and cage.kind == EDGE:
-        return norm(cross(vector_from(held.direction), vector_from(cage.direction))) < PARALLEL
-    if constraint.which == FLAT or held.is_second or cage.is_second or is_of_mouth(held) or is_of_mouth(cage):
-        return True
-    return lie_flat(held, cage, geometry.touch_m)
+def may_lack_none(geometry: Geometry, constraint: PositionConstraint, moved: Shapes) -> bool:
+    """Whether a constraint that means nothing at a pose lets others count."""
+    return constraint.which == FLAT or may_be_elsewhere(geometry, constraint.feature, constraint.cage_feature, moved)
 
 
 @kernel
@@ -316,7 +277,7 @@ def projected(
             if is_slip(rows[i]) != slips:
                 continue
             lacks = lack(geometry, constraints, rows[i], position, quaternion, moved)
-            if lacks.value == math.inf and may_be_elsewhere(geometry, rows[i], moved):
+            if lacks.value == math.inf and may_lack_none(geometry, rows[i], moved):
                 continue
             if lacks.value == math.inf:
                 return False, position, quaternion

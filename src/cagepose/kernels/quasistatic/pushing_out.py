@@ -15,7 +15,7 @@ from cagepose.kernels.collision.first_contact import allowed_depth
 from cagepose.kernels.collision.first_meeting import are_convex
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
-from cagepose.kernels.contact.on_rim import is_kept
+from cagepose.kernels.contact.on_rim import is_along_side, is_kept, is_of_same_rim
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.projection import (
     FLAT,
@@ -89,6 +89,18 @@ def kept_gap(geometry: Geometry, placement: Placement, contact: ContactRow, clos
 
 
 @kernel
+def least_along_side(contacts: ContactSet, i: int, closed_m: float) -> float:
+    """Return the gap that a rim keeps from a round side that it lies along, see `constrain_contacts`: the least of its
+    contacts, where it is on the side as it would be anywhere else after a turn.
+    """
+    least = contacts.rows[i].gap
+    for other in range(contacts.used[0]):
+        if is_of_same_rim(contacts, i, other):
+            least = min(least, contacts.rows[other].gap)
+    return least if least > closed_m else 0.0
+
+
+@kernel
 def constrain_contacts(
     geometry: Geometry, placement: Placement, contacts: ContactSet, closed_m: float, constraints: Constraints
 ) -> None:
@@ -101,7 +113,10 @@ def constrain_contacts(
         contact = contacts.rows[i]
         if not is_kept(contacts, i):
             continue
-        if contacts.states[i].stays_flat:
+        if is_along_side(contacts, i):
+            kept = least_along_side(contacts, i, closed_m)
+            constrain_features(constraints, contact.feature, contact.cage_feature, FLAT, kept)
+        elif contacts.states[i].stays_flat:
             kept = kept_gap(geometry, placement, contact, closed_m)
             constrain_features(constraints, contact.feature, contact.cage_feature, FLAT, kept)
         elif contact.feature >= 0:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from cagepose.kernels.algebra.pose import Quaternion, turned_by
 from cagepose.kernels.algebra.vector import Vector, minus, norm, scaled, vector_from
 from cagepose.kernels.collision.geometry import place_object
-from cagepose.kernels.contact.contact_set import ContactSet, find_contacts, stays_on_face
+from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
 from cagepose.kernels.contact.curvature import curvature_along, write_curvature
 from cagepose.kernels.contact.equilibrium import (
     HELD_BY_FRICTION,
@@ -24,6 +24,7 @@ from cagepose.kernels.contact.equilibrium import (
     MOVES_SOMEHOW,
     UNSOLVED,
 )
+from cagepose.kernels.contact.find_contacts import find_contacts
 from cagepose.kernels.contact.load_curvature import has_circulation, write_circulation
 from cagepose.kernels.contact.loads import longest_pull, write_load
 from cagepose.kernels.contact.metric import Frame, frame_at, twist_of

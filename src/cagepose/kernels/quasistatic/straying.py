@@ -7,8 +7,9 @@ from cagepose.kernels.algebra.vector import Vector, dot, minus, row
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.metric import moved_along_twist
-from cagepose.kernels.contact.on_rim import is_kept
+from cagepose.kernels.contact.on_rim import is_along_side, is_kept
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.quasistatic.along_rims import is_rim_on_side, meeting_along_rim
 from cagepose.kernels.quasistatic.projection import box_axis
 from cagepose.kernels.shapes.features import Shapes, place_feature
 from cagepose.kernels.shapes.meeting import meeting_kept, twin_pair
@@ -46,10 +47,15 @@ def strayed(
             twin, _ = twin_pair(moved, contact.feature, geometry.cage, contact.cage_feature)
             if twin >= 0:
                 place_feature(geometry.held, twin, end, matrix, moved)
-            met = meeting_kept(moved, contact.feature, geometry.cage, contact.cage_feature, contact.gap)
+            held, cage = moved.features[contact.feature], geometry.cage.features[contact.cage_feature]
+            is_along = is_along_side(contacts, i)
+            if is_along and is_rim_on_side(held, cage):
+                met = meeting_along_rim(geometry, contact.feature, contact.cage_feature, end, matrix, moved)
+            else:
+                met = meeting_kept(moved, contact.feature, geometry.cage, contact.cage_feature, contact.gap)
             if met.is_one:
                 farthest = max(farthest, abs(met.gap - contact.gap))
-            elif not contacts.states[i].stays_flat:
+            elif not (contacts.states[i].stays_flat or is_along):
                 farthest = max(farthest, where_over)
         else:
             from_center = rotated(back, minus(row(geometry.points_world, contact.point), end))

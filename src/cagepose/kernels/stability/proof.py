@@ -10,7 +10,7 @@ from cagepose.kernels.algebra.record import Rows, empty_rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement, place_object
-from cagepose.kernels.contact.contact_set import ContactSet, contact_set_for, find_contacts, most_contacts
+from cagepose.kernels.contact.contact_set import ContactSet, contact_set_for, most_contacts
 from cagepose.kernels.contact.edges import (
     CHOICES_LIMIT,
     EVERY,
@@ -27,6 +27,7 @@ from cagepose.kernels.contact.equilibrium import (
     next_choice_unlocked,
     return_to_choice,
 )
+from cagepose.kernels.contact.find_contacts import find_contacts
 from cagepose.kernels.contact.friction import Friction
 from cagepose.kernels.contact.loads import PhaseLoad, write_load
 from cagepose.kernels.contact.metric import WRENCH, Body, Frame, ScaledVector, frame_at
