@@ -15,6 +15,7 @@ import pytest
 import cagepose.runs.solve
 from cagepose import Run, RunFileError, Scene, load_run, load_scene
 from cagepose.cli import report
+from cagepose.cli.styles import verdict_style
 from cagepose.model.methods import METHODS
 
 Command = Callable[..., Any]
@@ -106,6 +107,14 @@ def test_a_screen_gets_colours_and_wrapped_cells(
     assert "\x1b[1;32mrests\x1b[0m" in out
     plain = re.sub(r"\x1b\[[0-9;]*m", "", out)
     assert max(len(line) for line in plain.splitlines()) <= 100
+
+
+@pytest.mark.parametrize(
+    ("verdict", "style"),
+    [("rests", "bold green"), ("may rest", "bold yellow"), ("escapes", "bold yellow"), ("stalled", "bold red")],
+)
+def test_what_only_may_rest_is_not_as_green_as_what_rests(verdict: str, style: str) -> None:
+    assert verdict_style(verdict) == style
 
 
 def test_long_names_have_room_on_a_narrow_screen(

@@ -27,8 +27,8 @@ LEAST_HEIGHT_IN = 1.7
 VERDICT_COLOURS = {
     "stable": GREEN,
     "rests": GREEN,
-    "may rest": SKY,
-    "escapes": ORANGE,
+    "may rest": ORANGE,
+    "escapes": SKY,
     "moves": PURPLE,
     "refused": PALE,
 }

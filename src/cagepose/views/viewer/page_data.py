@@ -17,9 +17,10 @@ from cagepose.runs.cases import contact_friction
 from cagepose.runs.changes import Change, changes_of
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.methods import chosen_method
-from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, Run
+from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES
 from cagepose.studies.acts import Act
 from cagepose.studies.comparison import ENDS, same_pose
+from cagepose.studies.ending import run_kind, verdict_kind
 from cagepose.views.solids import Solid, solid_of
 from cagepose.views.viewer import look
 from cagepose.views.viewer.playback import Playback, Row, Shot, Touches
@@ -225,18 +226,6 @@ class _Writer:
     def _force_unit(self) -> str:
         loads = self.run.scene.loads[: len(self.run.phases)]
         return "N" if all(scaled_load(self.run.scene, load).in_newtons for load in loads) else "parts of the load"
-
-
-def run_kind(run: Run) -> str:
-    """Return `verdict_kind` of a run, which is "elsewhere" where the mechanics contradicts a rest."""
-    return "elsewhere" if run.is_contradicted else verdict_kind(run.verdict)
-
-
-def verdict_kind(verdict: str) -> str:
-    """Return "rest", "failure" or "elsewhere", which a page gives colours."""
-    if verdict in AT_REST:
-        return "rest"
-    return "failure" if verdict in FAILURES else "elsewhere"
 
 
 def notes(shown: Playback) -> list[str]:
