@@ -371,6 +371,15 @@ def test_what_no_longer_touches_is_told(command: Command) -> None:
     assert ["2", "weight", "slide", "turn", "(0, 1, 0)", "0.313084 deg", "C2 C4", "C1 C3"] in rows
 
 
+def test_a_slight_turn_about_an_axis_far_off_is_told_as_the_travel_that_it_looks_like(command: Command) -> None:
+    """The bar of the rollers slides sideways by 0.24 mm about an axis that is 434 mm away."""
+    scene = str(SCENES / "rollers.yaml")
+    row = next(line for line in command("run", scene).out.splitlines() if line.startswith("4  push"))
+    assert row.split()[3:12] == ["travel", "(-0.0002749,", "1,", "0)", "0.238479", "mm,", "0.0314973", "deg", "left"]
+    event = json.loads(command("run", scene, "--json").out)["phases"][1]["events"][0]
+    assert event["motion"] == "turn"
+
+
 def test_of_many_contacts_the_first_and_the_greatest_are_printed(command: Command, in_folder: Path) -> None:
     points = ", ".join(f"[{x}, {y}, 0]" for x in range(-4, 5) for y in range(-4, 5))
     (in_folder / "many.yaml").write_text(

@@ -85,7 +85,7 @@ class Caption:
             return "start"
         row = self.shown.rows[shot.row]
         words = LengthWords(self.shown.length_unit, self.shown.scene.size_m)
-        motion = row.event.motion
+        motion = row.seen
         what = None if motion is None else f"{motion.kind} {words.amount(motion)}"
         told = ", ".join(word for word in (row.event.rule, what, row.verdict) if word)
         return f"{run.phases[row.phase].name}, event {shot.row + 1}: {told}"

@@ -179,7 +179,7 @@ class _Writer:
         return contact_friction(self.run.scene, self.usual_friction, element, part)
 
     def _row(self, row: Row, change: Change) -> dict[str, Any]:
-        motion = row.event.motion
+        motion = row.seen
         return {
             "phase": row.phase,
             "rule": row.event.rule,
@@ -197,17 +197,14 @@ class _Writer:
         }
 
     def _line(self, row: Row) -> dict[str, Any] | None:
-        motion = row.event.motion
-        if motion is None:
+        if row.seen is None:
             return None
         before = self.shown.shots[row.first_shot - 1].pose_world_object
-        along = motion.direction_world if motion.axis_world is None else motion.axis_world
-        assert along is not None
-        through = before.position_m if motion.through_world is None else motion.through_world
+        through = before.position_m if row.seen.through_world is None else row.seen.through_world
         return {
-            "turns": motion.axis_world is not None,
+            "turns": row.seen.through_world is not None,
             "through": _numbers(before.inverse_transform(through) / self.stage.size_m),
-            "direction": _numbers(along @ before.rotation),
+            "direction": _numbers(row.seen.line_world @ before.rotation),
         }
 
     def _load(self, act: Act) -> dict[str, Any]:

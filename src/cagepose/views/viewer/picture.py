@@ -294,14 +294,12 @@ class PictureMaker:
 
     def _draw_motion(self, shot: Shot, pose: Pose) -> None:
         row = self.shown.rows[shot.row] if shot.row >= 0 else None
-        if row is None or row.event.motion is None:
+        if row is None or row.seen is None:
             return
-        motion = row.event.motion
+        motion = row.seen
         before = self.shown.shots[row.first_shot - 1]
         carried = self.stage.pose(before.pose_world_object, self._look(before))
-        along = motion.direction_world if motion.axis_world is None else motion.axis_world
-        assert along is not None
-        direction = self.stage.normal(along, before.pose_world_object, carried)
+        direction = self.stage.normal(motion.line_world, before.pose_world_object, carried)
         if motion.through_world is None:
             center = self.stage.place(pose.transform(self.stage.center_object_m))
             self.marks.arrow(center, center + look.TRAVEL * self.eye.pixel(center) * direction, look.ROD, PAINT["axis"])
