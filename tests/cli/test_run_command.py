@@ -359,7 +359,7 @@ def test_verbose_shows_what_touches_after_each_event_and_the_end_of_every_phase(
     out = command("run", str(SCENES / "rail-pitch.yaml"), "--verbose").out
     events = [line for line in out.splitlines() if re.match(r" ?\d+  ", line)]
     assert events[2].endswith("  C13                    C2 C4 C5 C7 C13")
-    assert ["C6", "right guide", "0"] in forces(out)
+    assert ["C6", "right guide", "(91.5016, -31.55, 0.840301)", "0"] in forces(out)
     below = summary(out)
     assert below["position after weight"] == "(0.99981, 0, -0.00720843) mm"
     assert below["proof of weight"].startswith("rests: the contacts balance the load without friction")
@@ -501,6 +501,20 @@ def test_the_margin_stands_in_the_table_and_in_the_document(command: Command) ->
     assert "foot left 0.4652 (+ 0.1243 sideways; 0.1975 to 0.7543)" in " ".join(shown["equally stiff"].split())
     proof = json.loads(command("run", ladder, "--margin", "--json").out)["phases"][0]["proof"]
     assert proof["margin"]["force"]["certain"] == pytest.approx(0.0224, abs=1e-4)
+
+
+def test_of_one_name_at_several_places_forces_and_margins_say_which(command: Command) -> None:
+    """A plank leans across both edges of another one, whose top is 45 mm above the floor."""
+    planks = str(SCENES / "planks.yaml")
+    out = command("run", planks, "--margin", "--verbose").out
+    shown = summary(out)["equally stiff"]
+    for edge, carried in (("(70, -94.1623, 45)", 0.1552), ("(70, 5.04278, 45)", 0.4927)):
+        assert f"lying plank at {edge} {carried} (" in shown
+        (row,) = (row for row in forces(out) if row[2] == edge)
+        assert float(row[3].split()[0]) == carried
+    assert ", floor 0.3487 (" in shown
+    margin = json.loads(command("run", planks, "--margin", "--json").out)["phases"][0]["proof"]["margin"]
+    assert margin["contacts"][0]["at"] == pytest.approx([70.0, -94.1623, 45.0], abs=1e-4)
 
 
 def test_critical_friction_of_parts_with_their_own_says_how_much_of_each_is_enough(command: Command) -> None:

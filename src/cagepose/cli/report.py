@@ -66,13 +66,13 @@ def _parts(
 ) -> list[RenderableType]:
     writer = _Writer(run, unit, is_verbose=is_verbose)
     if margins is not None:
-        writer.margin = margin_lines(margins[-1], unit)
+        writer.margin = margin_lines(margins[-1], writer.words)
     return [
         writer.title(),
         "",
         *event_table(run, writer.words, width, is_verbose=is_verbose),
         "",
-        *force_table(run, width, is_verbose=is_verbose),
+        *force_table(run, writer.words, width, is_verbose=is_verbose),
         writer.summary(),
         *(Text(f"warning: {printable(warning)}", style="yellow") for warning in run.warnings),
         *(Text(note) for note in notes),
