@@ -18,7 +18,7 @@ POINTS = [(0.004, 0.004, 0), (-0.004, 0.004, 0), (0, -0.004, 0)]
 def scene(*boxes: Box, scale: float = 1.0, **options: object) -> Scene:
     parts = boxes or (Box((0.01 * scale,) * 3, name="cube"),)
     center = options.pop("center", None)
-    held = Object(parts, center, pose=Pose((0, 0, 0.007 * scale)))
+    held = Object(parts, center, mass_kg=options.pop("mass", None), pose=Pose((0, 0, 0.007 * scale)))
     points = [[scale * value for value in point] for point in POINTS]
     return Scene(held, Cage(points), options.pop("loads", [DOWN]), **options)
 
@@ -51,6 +51,11 @@ REMARKED = {
         "the centre of gravity lies 995 mm outside the object; check center_of_gravity, which is given in the object's"
         " frame",
     ),
+    "gravity in millimetres": (
+        scene(mass=0.1, loads=[Load(name, gravity=(0, 0, -9810)) for name in ("fall", "settle")]),
+        "fall, settle: a gravity of 9810 m/s² is 1000 times the Earth's; it is given in m/s², whatever the unit of length"
+        " (9.81 on Earth)",
+    ),
     "millimetres in the place of metres": (
         scene(scale=1000.0),
         "the scene is 17320.5 mm across; check the unit (units.length of a file, which is mm if left out; metres in"
@@ -77,6 +82,8 @@ def test_what_is_unusual_and_right_is_not_remarked() -> None:
         scene(friction_coefficient=2.0),
         scene(box(0, "base"), box(0.011, "a hair apart")),
         scene(center=(0, 0, 0.02)),
+        scene(loads=[Load("down", gravity=(0, 0, -9810))]),  # without a mass its direction alone counts
+        scene(mass=0.1, loads=[Load("shock", gravity=(0, 0, -250))]),
         scene(box(0, "one"), box(0.02, "two"), box(0.01, "between")),
         Scene(Object([Box((1, 1, 1), Pose((0, 0, 0.5)))]), Cage(shapes=[Box((30, 30, 1), Pose((0, 0, -0.5)))]), [DOWN]),
     ):

@@ -20,6 +20,8 @@ SMALLEST_M, LARGEST_M = 1e-4, 10.0
 """Scenes beyond these sizes are mostly given in another unit than was meant."""
 SMALL_ENOUGH_M = 3.0
 """An object of this size may stand on a floor of any, as those of robots do."""
+GREATEST_GRAVITY, EARTH = 300.0, 9.81
+"""m/s². Beyond what machines shake parts with; 386 in/s² and 9810 mm/s² are."""
 
 
 def remarks(scene: Scene) -> Iterator[str]:
@@ -27,6 +29,7 @@ def remarks(scene: Scene) -> Iterator[str]:
     yield from _friction(scene)
     yield from _pieces(scene)
     yield from _center(scene)
+    yield from _gravity(scene)
     is_large = scene.size_m > LARGEST_M and object_size(scene.object) > SMALL_ENOUGH_M
     if is_large or scene.size_m < SMALLEST_M:
         yield (
@@ -77,4 +80,18 @@ def _center(scene: Scene) -> Iterator[str]:
         yield (
             f"the centre of gravity lies {millimetres(outside)} outside the object; check center_of_gravity, which is"
             " given in the object's frame"
+        )
+
+
+def _gravity(scene: Scene) -> Iterator[str]:
+    if scene.object.mass_kg is None:  # the direction alone counts
+        return
+    loads = dict[str, list[str]]()
+    for load in scene.loads:
+        strength = 0.0 if load.gravity_world is None else float(np.linalg.norm(load.gravity_world))
+        if strength > GREATEST_GRAVITY:
+            loads.setdefault(f"{strength:.6g} m/s² is {strength / EARTH:.0f} times the Earth's", []).append(load.name)
+    for found, names in loads.items():
+        yield (
+            f"{few(names)}: a gravity of {found}; it is given in m/s², whatever the unit of length ({EARTH} on Earth)"
         )
