@@ -484,6 +484,14 @@ def test_check_says_what_a_scene_holds(command: Command, sample: str) -> None:
     )
 
 
+@pytest.mark.parametrize(("depth", "told"), [(9, "9 mm deep"), (30, "through 30 mm"), (32, "through 30 mm")])
+def test_check_says_whether_a_hole_runs_through(command: Command, depth: int, told: str) -> None:
+    """The block of the peg's hole is 30 mm thick; a hole that is drawn deeper than that is one through it."""
+    out = command("check", str(SCENES / "peg-in-hole.yaml"), "--set", f"cage.shapes[1].hole.depth={depth}").out
+    assert f"\nholes: hole {told}\n" in out
+    assert "\ncage 60 x 60 x 30 mm: " in out
+
+
 def test_a_saved_run_is_not_mistaken_for_a_scene(command: Command, sample: str) -> None:
     command("run", sample, "--out", "run.json")
     answer = command("run", "run.json")
