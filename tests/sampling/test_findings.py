@@ -293,6 +293,18 @@ def test_a_report_of_one_number_and_one_quantity_has_room_for_its_pictures(
 
 
 @pytest.mark.usefixtures("small_designs")
+def test_axes_have_the_units_of_the_scene_file(run_study: RunStudy, peg: Path) -> None:
+    peg.write_text(PEG.replace("length: m", "length: in"), encoding="utf-8")
+    vary = {"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}, "friction.coefficient": {"uniform": [0, 0.1]}}
+    figures = draw(findings_of(run_study(vary, 20, scene=peg, watch={"top": {"point": [0, 0, 0.5]}})))
+    (of_map,) = figures["map"].axes
+    assert {of_map.get_xlabel(), of_map.get_ylabel()} == {"cage.pose.position[2] [in]", "friction.coefficient"}
+    assert figures["spread"].axes[0].get_xlabel() == "[in]"
+    assert figures["tornado"].axes[0].get_xlabel() == "change to either end [in]"
+    assert figures["ends"].axes[-1].get_xlabel() == "[in]"
+
+
+@pytest.mark.usefixtures("small_designs")
 def test_long_names_stay_within_their_pictures(run_study: RunStudy, peg: Path) -> None:
     peg.write_text(PEG.replace("0.02, 3]", "0.02, 3], euler_zyx_deg: [0, 0, 0]"), encoding="utf-8")
     watch = {"top_of_the_block_at_its_far_and_front_end": {"point": [0.3, 0, 0.5]}}
