@@ -19,6 +19,7 @@ from scipy.stats import qmc
 
 from cagepose import Study, StudyResults, load_scene, run
 from cagepose.cli.app import main
+from cagepose.files.progress import told_to
 from cagepose.model.checks import FloatArray
 from cagepose.sampling import contact_table, runner
 from cagepose.sampling.figures import draw
@@ -290,6 +291,15 @@ def test_a_report_of_one_number_and_one_quantity_has_room_for_its_pictures(
     run_study({"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}}, 20, scene=peg, watch=watch).report()
     for suffix in ("svg", "png"):
         assert {path.stem for path in tmp_path.glob(f"out/*.{suffix}")} == {"sobol", "tornado", "spread"}
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_what_the_report_is_at_is_told(run_study: RunStudy, peg: Path) -> None:
+    told = list[str]()
+    with told_to(told.append):
+        findings_of(run_study(HEIGHTS, 20, scene=peg))
+    assert [line for line in told if "capture map" in line]
+    assert told[-1] == ""
 
 
 @pytest.mark.usefixtures("small_designs")
