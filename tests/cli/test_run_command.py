@@ -15,7 +15,6 @@ import pytest
 import cagepose.runs.solve
 from cagepose import Run, RunFileError, Scene, load_run, load_scene
 from cagepose.cli import report
-from cagepose.cli.styles import verdict_style
 from cagepose.model.methods import METHODS
 
 Command = Callable[..., Any]
@@ -107,14 +106,6 @@ def test_a_screen_gets_colours_and_wrapped_cells(
     assert "\x1b[1;32mrests\x1b[0m" in out
     plain = re.sub(r"\x1b\[[0-9;]*m", "", out)
     assert max(len(line) for line in plain.splitlines()) <= 100
-
-
-@pytest.mark.parametrize(
-    ("verdict", "style"),
-    [("rests", "bold green"), ("may rest", "bold yellow"), ("escapes", "bold yellow"), ("stalled", "bold red")],
-)
-def test_what_only_may_rest_is_not_as_green_as_what_rests(verdict: str, style: str) -> None:
-    assert verdict_style(verdict) == style
 
 
 def test_long_names_have_room_on_a_narrow_screen(
@@ -455,41 +446,6 @@ def test_critical_friction_stands_in_the_document_and_is_null_where_not_asked_fo
     assert asked["critical_friction"] == 0.0
     plain = json.loads(command("run", sample, "--json").out)["phases"][0]["proof"]
     assert plain == {**asked, "critical_friction": None}
-
-
-def test_check_tolerance_says_that_nothing_changes(command: Command, sample: str) -> None:
-    out = command("run", sample, "--check-tolerance").out
-    assert out.endswith("same verdict with a ten times larger and a ten times smaller touch tolerance\n")
-
-
-def test_check_tolerance_warns_when_the_verdict_hangs_on_it(command: Command, sample: str) -> None:
-    """C2 starts 0.05 um inside: touching within 1e-5 of the size (0.17 um), an impossible scene within 1e-6."""
-    answer = command(
-        "run", sample, "--check-tolerance", "--json",
-        "--set", "tolerances.touch=1e-5", "--set", "object.pose.position=[2, 4, 4.99995]",
-    )  # fmt: skip
-    (warning,) = [text for text in json.loads(answer.out)["warnings"] if "touch tolerance of" in text]
-    assert warning.startswith("with a touch tolerance of 1e-06 instead of 1e-05 the scene cannot be run (cage.points.C")
-    assert answer.code == 0
-
-
-def test_check_says_what_a_scene_holds(command: Command, sample: str) -> None:
-    assert command("check", sample) == (
-        0,
-        "sample: 1 box, 4 cage points, 1 load (gravity), method quasistatic\n"
-        "object 10 x 10 x 10 mm: x -5 to 5, y -5 to 5, z -5 to 5\n"
-        "cage 8 x 8 x 0 mm: x -4 to 4, y -4 to 4, z 0 to 0\n"
-        "size 17.3205 mm, touch tolerance 1.73e-08 mm; no problems found\n",
-        "",
-    )
-
-
-@pytest.mark.parametrize(("depth", "told"), [(9, "9 mm deep"), (30, "through 30 mm"), (32, "through 30 mm")])
-def test_check_says_whether_a_hole_runs_through(command: Command, depth: int, told: str) -> None:
-    """The block of the peg's hole is 30 mm thick; a hole that is drawn deeper than that is one through it."""
-    out = command("check", str(SCENES / "peg-in-hole.yaml"), "--set", f"cage.shapes[1].hole.depth={depth}").out
-    assert f"\nholes: hole {told}\n" in out
-    assert "\ncage 60 x 60 x 30 mm: " in out
 
 
 def test_a_saved_run_is_not_mistaken_for_a_scene(command: Command, sample: str) -> None:
