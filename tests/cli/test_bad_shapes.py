@@ -250,6 +250,17 @@ def test_a_hole_that_no_method_runs_is_told_by_name(
         assert (re.match(r"scene\.yaml:\d+:\d+: cage\.shapes\[1\]: ", answer.err) is None) == (says is None)
 
 
+def test_a_bore_that_is_wider_than_its_shank_is_told_so(command: Callable[..., Any], in_folder: Path) -> None:
+    ball = "sphere: {radius: 5}, position: [0, 0, 30]"
+    parts = (
+        "name: shank, cylinder: {radius: 5, length: 10}, position: [0, 0, -5]}\n"
+        "    - {name: flange, cylinder: {radius: 9, length: 4}, position: [0, 0, 2]}\n"
+        "    - {name: bore, hole: {radius: 6, depth: 14, in: [shank, flange]}, position: [0, 0, 4]"
+    )
+    (in_folder / "scene.yaml").write_text(SCENE.format(ball, parts))
+    assert "(bore) that is wider than shank, flange somewhere below its mouth" in command("run", "scene.yaml").err
+
+
 def test_a_part_that_starts_in_a_plate_beside_its_hole_is_refused(command: Callable[..., Any], in_folder: Path) -> None:
     hole = "hole: {radius: 6, depth: 9, in: [plate]}, position: [0, 0, 5]"
     plate = "name: plate, box: {size: [90, 90, 10]}"

@@ -350,7 +350,7 @@ def test_verbose_shows_what_touches_after_each_event_and_the_end_of_every_phase(
     out = command("run", str(SCENES / "rail-pitch.yaml"), "--verbose").out
     events = [line for line in out.splitlines() if re.match(r" ?\d+  ", line)]
     assert events[2].endswith("  C13                    C2 C4 C5 C7 C13")
-    assert ["C6", "right guide", "0"] in forces(out)
+    assert ["C6", "right guide", "(91.5016, -31.55, 0.840301)", "0"] in forces(out)
     below = summary(out)
     assert below["position after weight"] == "(0.99981, 0, -0.00720843) mm"
     assert below["proof of weight"].startswith("rests: the contacts balance the load without friction")
@@ -360,6 +360,15 @@ def test_what_no_longer_touches_is_told(command: Command) -> None:
     events = command("run", str(SCENES / "rail-pitch.yaml")).out.split("\n\n")[1:3]
     rows = [re.split(r"\s{2,}", line.strip()) for line in "\n".join(events).splitlines()]
     assert ["2", "weight", "slide", "turn", "(0, 1, 0)", "0.313084 deg", "C2 C4", "C1 C3"] in rows
+
+
+def test_a_slight_turn_about_an_axis_far_off_is_told_as_the_travel_that_it_looks_like(command: Command) -> None:
+    """The bar of the rollers slides sideways by 0.24 mm about an axis that is 434 mm away."""
+    scene = str(SCENES / "rollers.yaml")
+    row = next(line for line in command("run", scene).out.splitlines() if line.startswith("4  push"))
+    assert row.split()[3:12] == ["travel", "(-0.0002749,", "1,", "0)", "0.238479", "mm,", "0.0314973", "deg", "left"]
+    event = json.loads(command("run", scene, "--json").out)["phases"][1]["events"][0]
+    assert event["motion"] == "turn"
 
 
 def test_of_many_contacts_the_first_and_the_greatest_are_printed(command: Command, in_folder: Path) -> None:
@@ -439,33 +448,6 @@ def test_critical_friction_stands_in_the_document_and_is_null_where_not_asked_fo
     assert plain == {**asked, "critical_friction": None}
 
 
-def test_check_tolerance_says_that_nothing_changes(command: Command, sample: str) -> None:
-    out = command("run", sample, "--check-tolerance").out
-    assert out.endswith("same verdict with a ten times larger and a ten times smaller touch tolerance\n")
-
-
-def test_check_tolerance_warns_when_the_verdict_hangs_on_it(command: Command, sample: str) -> None:
-    """C2 starts 0.05 um inside: touching within 1e-5 of the size (0.17 um), an impossible scene within 1e-6."""
-    answer = command(
-        "run", sample, "--check-tolerance", "--json",
-        "--set", "tolerances.touch=1e-5", "--set", "object.pose.position=[2, 4, 4.99995]",
-    )  # fmt: skip
-    (warning,) = [text for text in json.loads(answer.out)["warnings"] if "touch tolerance of" in text]
-    assert warning.startswith("with a touch tolerance of 1e-06 instead of 1e-05 the scene cannot be run (cage.points.C")
-    assert answer.code == 0
-
-
-def test_check_says_what_a_scene_holds(command: Command, sample: str) -> None:
-    assert command("check", sample) == (
-        0,
-        "sample: 1 box, 4 cage points, 1 load (gravity), method quasistatic\n"
-        "object 10 x 10 x 10 mm: x -5 to 5, y -5 to 5, z -5 to 5\n"
-        "cage 8 x 8 x 0 mm: x -4 to 4, y -4 to 4, z 0 to 0\n"
-        "size 17.3205 mm, touch tolerance 1.73e-08 mm; no problems found\n",
-        "",
-    )
-
-
 def test_a_saved_run_is_not_mistaken_for_a_scene(command: Command, sample: str) -> None:
     command("run", sample, "--out", "run.json")
     answer = command("run", "run.json")
@@ -483,6 +465,20 @@ def test_the_margin_stands_in_the_table_and_in_the_document(command: Command) ->
     assert "foot left 0.4652 (+ 0.1243 sideways; 0.1975 to 0.7543)" in " ".join(shown["equally stiff"].split())
     proof = json.loads(command("run", ladder, "--margin", "--json").out)["phases"][0]["proof"]
     assert proof["margin"]["force"]["certain"] == pytest.approx(0.0224, abs=1e-4)
+
+
+def test_of_one_name_at_several_places_forces_and_margins_say_which(command: Command) -> None:
+    """A plank leans across both edges of another one, whose top is 45 mm above the floor."""
+    planks = str(SCENES / "planks.yaml")
+    out = command("run", planks, "--margin", "--verbose").out
+    shown = summary(out)["equally stiff"]
+    for edge, carried in (("(70, -94.1623, 45)", 0.1552), ("(70, 5.04278, 45)", 0.4927)):
+        assert f"lying plank at {edge} {carried} (" in shown
+        (row,) = (row for row in forces(out) if row[2] == edge)
+        assert float(row[3].split()[0]) == carried
+    assert ", floor 0.3487 (" in shown
+    margin = json.loads(command("run", planks, "--margin", "--json").out)["phases"][0]["proof"]["margin"]
+    assert margin["contacts"][0]["at"] == pytest.approx([70.0, -94.1623, 45.0], abs=1e-4)
 
 
 def test_critical_friction_of_parts_with_their_own_says_how_much_of_each_is_enough(command: Command) -> None:

@@ -80,6 +80,17 @@ def test_the_reasons_say_what_the_proof_and_the_other_program_say():
     )
 
 
+def test_a_holes_own_friction_that_mujoco_has_not_is_named_as_a_reason_where_the_hole_is_touched():
+    """The peg, turned back, is wedged by 0.8 and not by 0.1, the friction of the block."""
+    own = "hole has a friction of its own, 0.8, and that of block in MuJoCo"
+    found = crosscheck(run(load_scene(FILES["peg-in-hole"], ["friction.of.hole=0.8"])))
+    assert [phase.agrees for phase in found.phases] == [True, True, False]
+    assert own in found.phases[2].reasons
+    assert "friction holds it, in a range of poses and not in one" in found.phases[2].reasons
+    reasons = crosscheck(run(load_scene(FILES["peg-in-hole"]))).phases[2].reasons
+    assert not [reason for reason in reasons if "of its own" in reason]
+
+
 def test_after_a_parting_the_next_phase_starts_at_our_pose():
     found = crosscheck(run(load_scene(FILES["drawer"])))
     assert [phase.agrees for phase in found.phases] == [False, True]

@@ -59,6 +59,13 @@ def test_every_option_of_the_starter_works_when_its_hash_is_removed() -> None:
     assert run(scene).verdict == "rests"
 
 
+def test_the_hole_that_the_starter_shows_goes_into_its_shapes() -> None:
+    text = re.sub(r"(?m)^(\s*)# (shapes: )", r"\1\2", starter_text("x"))
+    (hole,) = re.findall(r"a round hole: (\{.*\})", text)
+    scene = parse_scene(re.sub(r"(shapes: \[.*)\]( +#)", rf"\1, {hole}]\2", text))
+    assert [found.name for found in scene.cage.holes] == ["bore"]
+
+
 def test_the_change_that_the_starter_proposes_works() -> None:
     text = starter_text("x")
     (change,) = re.findall(r"--set (\S+)", text)

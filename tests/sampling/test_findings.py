@@ -19,6 +19,7 @@ from scipy.stats import qmc
 
 from cagepose import Study, StudyResults, load_scene, run
 from cagepose.cli.app import main
+from cagepose.files.progress import told_to
 from cagepose.model.checks import FloatArray
 from cagepose.sampling import contact_table, runner
 from cagepose.sampling.figures import draw
@@ -290,6 +291,27 @@ def test_a_report_of_one_number_and_one_quantity_has_room_for_its_pictures(
     run_study({"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}}, 20, scene=peg, watch=watch).report()
     for suffix in ("svg", "png"):
         assert {path.stem for path in tmp_path.glob(f"out/*.{suffix}")} == {"sobol", "tornado", "spread"}
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_what_the_report_is_at_is_told(run_study: RunStudy, peg: Path) -> None:
+    told = list[str]()
+    with told_to(told.append):
+        findings_of(run_study(HEIGHTS, 20, scene=peg))
+    assert [line for line in told if "capture map" in line]
+    assert told[-1] == ""
+
+
+@pytest.mark.usefixtures("small_designs")
+def test_axes_have_the_units_of_the_scene_file(run_study: RunStudy, peg: Path) -> None:
+    peg.write_text(PEG.replace("length: m", "length: in"), encoding="utf-8")
+    vary = {"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}, "friction.coefficient": {"uniform": [0, 0.1]}}
+    figures = draw(findings_of(run_study(vary, 20, scene=peg, watch={"top": {"point": [0, 0, 0.5]}})))
+    (of_map,) = figures["map"].axes
+    assert {of_map.get_xlabel(), of_map.get_ylabel()} == {"cage.pose.position[2] [in]", "friction.coefficient"}
+    assert figures["spread"].axes[0].get_xlabel() == "[in]"
+    assert figures["tornado"].axes[0].get_xlabel() == "change to either end [in]"
+    assert figures["ends"].axes[-1].get_xlabel() == "[in]"
 
 
 @pytest.mark.usefixtures("small_designs")

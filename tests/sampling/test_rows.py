@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from cagepose import Run, SceneFileError, StudyFolderError, StudyResults, run
+from cagepose import Run, SceneFileError, Study, StudyFolderError, StudyResults, run
 from cagepose.files.document import run_document
 from cagepose.files.scene_edit import setting
 from cagepose.files.scene_file import read_scene_text
@@ -175,6 +175,21 @@ def test_the_table_is_the_same_for_one_and_two_threads_or_processes(run_study: R
         two = run_study(vary, runs, workers=2, folder=f"{kind}-2")
         assert Runner(one.study).is_batch == (kind == "batch")
         assert rows_of(one) == rows_of(two)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_progress_is_told_within_a_part_and_never_goes_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, workers: int
+) -> None:
+    monkeypatch.setattr(runner, "ROWS_ONE_BY_ONE", 80)
+    told = list[tuple[int, int, bool]]()
+    study = Study(RAIL, BUILT["a size"], {"runs": 200, "method": "sobol", "seed": 1})
+    study.run(tmp_path / "out", workers=workers, progress=lambda *args: told.append(args))
+    done = [n_rows for n_rows, _, _ in told]
+    assert done == sorted(set(done))
+    assert done[0] <= 16
+    assert done[-1] == 200
+    assert {args[1:] for args in told} == {(200, True)}
 
 
 def test_a_study_goes_on_where_parts_are_missing(

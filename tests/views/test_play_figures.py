@@ -12,6 +12,7 @@ from cagepose import Box, Cage, Load, Object, Pose, Scene, load_scene, play
 from cagepose.studies.play_outline import point_outlines
 from cagepose.views.extreme_figure import PICTURE, extreme_figure
 from cagepose.views.play_figure import play_figure
+from cagepose.views.solids import outer_points
 from cagepose.views.viewer.caption import LOUD_INK
 from cagepose.views.viewer.picture import PictureMaker
 from cagepose.views.viewer.playback import single_motion
@@ -84,3 +85,18 @@ def test_the_pose_of_each_end_is_drawn_with_the_points_that_limit_it() -> None:
     assert np.array_equal(figure.axes[9].images[0].get_array(), drawn)
     assert {label.text for label in maker.labels if label.ink == LOUD_INK} == set(limits)
     assert maker.now.factor == 20.0
+    assert "exaggerated" in figure.get_supxlabel()
+
+
+def test_what_sticks_out_of_its_cage_is_not_cut() -> None:
+    """A bar of 100 mm in a ring of points 40 mm wide."""
+    bar = Object([Box((0.1, 0.01, 0.01))])
+    points = [(x, y, z) for x in (-0.02, 0.02) for y, z in ((0.006, 0), (-0.006, 0), (0, 0.006), (0, -0.006))]
+    scene = Scene(bar, Cage(points), [Load("weight", gravity=(0, 0, -1))])
+    end = play(scene).freedoms["y"].high
+    film = single_motion(scene, end.pose_world_object, (), "mm")
+    maker = PictureMaker(Stage(film), size=PICTURE, is_near=True)
+    maker.picture(film.shots[-1])
+    shown = maker.stage.pose(film.shots[-1].pose_world_object, maker.now)
+    pixels = maker.seen_at(maker.stage.place(shown.transform(outer_points(bar))))
+    assert ((pixels > 0.0) & (pixels < PICTURE)).all()

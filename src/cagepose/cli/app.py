@@ -75,7 +75,10 @@ COMMANDS = {
         "Run a scene in MuJoCo, too: do the two end at the same poses, and if not, why?",
     ),
     "schema": ("cagepose.cli.schema_command:schema_command", "Print the JSON Schema of scene files, for editors."),
-    "init": ("cagepose.cli.init_command:init_command", "Write a commented scene to start from."),
+    "init": (
+        "cagepose.cli.init_command:init_command",
+        "Write a commented scene to start from, pins and holes among its options.",
+    ),
 }
 
 

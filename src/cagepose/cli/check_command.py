@@ -10,6 +10,7 @@ from cagepose.cli.options import SceneArgument, SetOption
 if TYPE_CHECKING:
     from cagepose.files.units import LengthUnit
     from cagepose.model.checks import FloatArray
+    from cagepose.model.scene import Scene
 
 
 def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int:
@@ -27,6 +28,7 @@ def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int
     size = float(from_metres(found.size_m, unit))
     touch = float(from_metres(found.touch_m, unit))
     held, cage = found.object, found.cage
+    alone = [hole for hole in cage.holes if not hole.in_]
     counts = counted(
         (len(held.boxes), "box", "boxes"),
         (len(held.shapes), "shape", "shapes"),
@@ -40,7 +42,8 @@ def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int
         f"{found.name}: {counts} ({', '.join(load.name for load in found.loads)}),"
         f" method {chosen_method(found).name}\n"
         f"object {_extent(body_limits(held.parts), unit)}\n"
-        f"cage {_extent(body_limits((*cage.shapes, *cage.holes), cage.points_cage), unit)}\n"
+        f"cage {_extent(body_limits((*cage.shapes, *alone), cage.points_cage), unit)}\n"
+        f"{_depths(found, unit)}"
         f"size {size:.6g} {unit}, touch tolerance {touch:.3g} {unit}; no problems found\n"
     )
     sys.stdout.write("".join(printable(f"note: {note}") + "\n" for note in scene_file.notes))
@@ -62,3 +65,19 @@ def _extent(limits_m: FloatArray, unit: LengthUnit) -> str:
     ]
     edges = " x ".join(short(other - one, 6, noise) for one, other in zip(low, high, strict=True))
     return f"{edges} {unit}: {', '.join(sides)}"
+
+
+def _depths(scene: Scene, unit: LengthUnit) -> str:
+    """``holes: bore through 24 mm, pocket 5 mm deep``: one that is given deeper than its part is thick runs through."""
+    from cagepose.errors import printable
+    from cagepose.files.words import LengthWords
+    from cagepose.model.wording import few
+
+    words, told = LengthWords(unit, scene.size_m), list[str]()
+    for parts, holes in ((scene.object.parts, scene.object.holes), (scene.cage.shapes, scene.cage.holes)):
+        named = {part.name: part for part in parts}
+        for hole in holes:
+            depth_m, is_open = hole.run_through([named[name] for name in hole.in_])
+            depth = f"{words.lengths([depth_m])} {unit}"
+            told.append(f"{hole.name} through {depth}" if is_open else f"{hole.name} {depth} deep")
+    return printable(f"holes: {few(told)}") + "\n" if told else ""

@@ -9,10 +9,11 @@ from rich.table import Table
 from rich.text import Text
 
 from cagepose.cli.console import fits, print_all, screen_width
-from cagepose.cli.styles import plain_table, verdict_style
+from cagepose.cli.styles import STYLES, plain_table
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.wording import short
 from cagepose.studies.comparison import Comparison, Variant
+from cagepose.studies.ending import run_kind
 
 
 def print_comparison(comparison: Comparison, unit: LengthUnit) -> None:
@@ -66,7 +67,7 @@ def _row(variant: Variant, unit: LengthUnit) -> list[Text]:
     n_events = sum(len(phase.events) for phase in run.phases)
     return [
         Text(variant.label),
-        Text(run.verdict, style=verdict_style(run.verdict)),
+        Text(run.verdict, style=STYLES[run_kind(run)]),
         Text(held),
         Text(center),
         Text(angles),

@@ -36,7 +36,7 @@ def _table(run: Run, words: LengthWords, *, is_verbose: bool) -> Table:
     for row in rows:
         if row.phase is not last:
             table.add_section()
-        last, motion = row.phase, row.event.motion
+        last, motion = row.phase, row.seen
         line, amount = ("", "") if motion is None else (line_of(motion), words.amount(motion))
         names = (row.reached, row.left) if has_left else (row.reached,)
         cells = [Text(line), Text(amount), *(Text(listed(of_event, is_verbose=is_verbose)) for of_event in names)]
@@ -62,7 +62,7 @@ def _lists(run: Run, words: LengthWords, *, is_verbose: bool) -> list[Renderable
 
 
 def _told(row: Change, words: LengthWords, *, is_verbose: bool) -> Text:
-    told, motion = _what(row), row.event.motion
+    told, motion = _what(row), row.seen
     if motion is not None:
         told.append(f" {words.amount(motion)} {'along' if motion.kind == 'travel' else 'about'} {line_of(motion)}")
     for sign, names in (("+", row.reached), ("-", row.left)):
@@ -82,7 +82,7 @@ def listed(names: Sequence[str], *, is_verbose: bool) -> str:
 
 def _what(row: Change) -> Text:
     """The motion, or what the phase came to where nothing moved."""
-    if row.event.motion is not None:
-        return Text(row.event.motion.kind)
+    if row.seen is not None:
+        return Text(row.seen.kind)
     verdict = row.phase.verdict if row.event is row.phase.events[-1] else None
     return Text(verdict or "-", style=verdict_style(verdict) if verdict else "")

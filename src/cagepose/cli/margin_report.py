@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 
-from cagepose.files.units import LengthUnit, from_metres
+from cagepose.files.units import from_metres
+from cagepose.files.words import LengthWords
 from cagepose.model.checks import FloatArray
 from cagepose.model.wording import components
 from cagepose.studies.margin import ContactMargin, Margin
@@ -13,17 +15,19 @@ SHOWN = 1e-9
 """Of a normal force: less than that sideways is rounding."""
 
 
-def margin_lines(margin: Margin | None, unit: LengthUnit) -> list[tuple[str, str]]:
+def margin_lines(margin: Margin | None, words: LengthWords) -> list[tuple[str, str]]:
     """Return names and texts: the extra force, the extra moment, and what each contact may carry."""
     if margin is None:
         return [("margin", "none is known: no balance, or one by forces without bound")]
-    arm_unit = f"N {unit}" if margin.in_newtons else f"{unit} times the load"
-    moment = float(from_metres(margin.moment_nm, unit))
+    arm_unit = f"N {words.unit}" if margin.in_newtons else f"{words.unit} times the load"
+    moment = float(from_metres(margin.moment_nm, words.unit))
+    n_places = Counter(contact.point for contact in margin.contacts)
+    carries = [_carries(contact, words, is_one=n_places[contact.point] == 1) for contact in margin.contacts]
     force_unit = "N" if margin.in_newtons else "of the load"
     return [
         ("margin of force", _extra(margin.force_n, force_unit, "along", margin.force_direction_world)),
         ("margin of moment", _extra(moment, arm_unit, "about", margin.moment_direction_world)),
-        ("equally stiff", ", ".join(map(_carries, margin.contacts)) or "no contact"),
+        ("equally stiff", ", ".join(carries) or "no contact"),
     ]
 
 
@@ -34,9 +38,11 @@ def _extra(certain: float, unit: str, preposition: str, direction: FloatArray) -
     return f"{least}; the least that is not balanced is {preposition} ({components(direction)})"
 
 
-def _carries(contact: ContactMargin) -> str:
-    """``C1 0.25 (+ 0.05 sideways; 0 to 0.5 can be)``."""
+def _carries(contact: ContactMargin, words: LengthWords, *, is_one: bool) -> str:
+    """``C1 0.25 (+ 0.05 sideways; 0 to 0.5)``; of a name at several places ``floor at (1, 2, 0) 0.25 (0 to 0.5)``."""
+    place = contact.place_world
+    at = "" if is_one or place is None else f" at ({words.lengths(place)})"
     sideways = math.hypot(*contact.equally_stiff_tangential_n)
     beside = f"+ {sideways:.4g} sideways; " if sideways > SHOWN * contact.equally_stiff_n else ""
     greatest = "any" if math.isinf(contact.greatest_n) else f"{contact.greatest_n:.4g}"
-    return f"{contact.point} {contact.equally_stiff_n:.4g} ({beside}{contact.least_n:.4g} to {greatest})"
+    return f"{contact.point}{at} {contact.equally_stiff_n:.4g} ({beside}{contact.least_n:.4g} to {greatest})"

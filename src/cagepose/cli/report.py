@@ -13,7 +13,7 @@ from cagepose.cli.console import print_all, screen_width, text_of, text_width
 from cagepose.cli.event_table import event_table, listed
 from cagepose.cli.force_table import force_table
 from cagepose.cli.margin_report import margin_lines
-from cagepose.cli.styles import verdict_style
+from cagepose.cli.styles import STYLES
 from cagepose.errors import printable
 from cagepose.files.units import LengthUnit
 from cagepose.files.words import LengthWords
@@ -21,6 +21,7 @@ from cagepose.model.wording import components, short
 from cagepose.runs.cases import greatest_friction
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, PhaseRun, Run
+from cagepose.studies.ending import run_kind
 from cagepose.studies.margin import Margin
 
 POSES = {
@@ -65,13 +66,13 @@ def _parts(
 ) -> list[RenderableType]:
     writer = _Writer(run, unit, is_verbose=is_verbose)
     if margins is not None:
-        writer.margin = margin_lines(margins[-1], unit)
+        writer.margin = margin_lines(margins[-1], writer.words)
     return [
         writer.title(),
         "",
         *event_table(run, writer.words, width, is_verbose=is_verbose),
         "",
-        *force_table(run, width, is_verbose=is_verbose),
+        *force_table(run, writer.words, width, is_verbose=is_verbose),
         writer.summary(),
         *(Text(f"warning: {printable(warning)}", style="yellow") for warning in run.warnings),
         *(Text(note) for note in notes),
@@ -88,7 +89,7 @@ class _Writer:
     def title(self) -> Text:
         solve_ms = self.run.solve_s * 1000.0
         title = Text(f"{self.run.scene.name}: ")
-        title.append(self.run.verdict, style=verdict_style(self.run.verdict))
+        title.append(self.run.verdict, style=STYLES[run_kind(self.run)])
         if self.run.is_contradicted:
             title.append(f" {CONTRADICTED}")
         return title.append(f"  ({self.run.method}, {solve_ms:.3g} ms)")

@@ -36,7 +36,7 @@ def run_command(
         bool, Switch, Parameter(help="Find what each rest balances beside its load, and what each contact may carry.")
     ] = False,
     verbose: Annotated[
-        bool, Switch, Parameter(help="Print what touches after each event, and pose and proof of every phase.")
+        bool, Switch, Parameter(help="Print what touches after each event, and where; pose and proof of every phase.")
     ] = False,
     check_tolerance: Annotated[
         bool, Switch, Parameter(help="Run again with other touch tolerances and warn if the verdict changes.")

@@ -5,10 +5,16 @@ from __future__ import annotations
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
-from cagepose.runs.run import AT_REST, FAILURES
+from cagepose.studies.ending import Kind, verdict_kind
 
 NUMBERS = ("#", "amount")
 """Columns of numbers."""
+STYLES: dict[Kind, str] = {
+    "rest": "bold green",
+    "open": "bold yellow",
+    "failure": "bold red",
+    "elsewhere": "bold yellow",
+}
 
 
 def plain_table(*headings: str) -> Table:
@@ -22,6 +28,4 @@ def plain_table(*headings: str) -> Table:
 
 def verdict_style(verdict: str) -> str:
     """Return the colour of a verdict."""
-    if verdict in AT_REST:
-        return "bold green"
-    return "bold red" if verdict in FAILURES else "bold yellow"
+    return STYLES[verdict_kind(verdict)]

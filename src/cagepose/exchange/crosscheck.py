@@ -16,6 +16,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.model.surface import shape_mesh
 from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
+from cagepose.model.wording import few
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, PhaseRun, Run
 from cagepose.runs.solve import run
@@ -126,6 +127,7 @@ def _checked(
     reasons = (
         *_of_ends(phase, there, scene),
         *_of_starts(theirs_m, ours_m, allowed_m, scene.size_m),
+        *_of_export(phase, assembly),
         *_of_proof(done, phase),
     )
     return PhaseCheck(phase, there, distance_m, angle_rad, allowed_m, theirs_m, ours_m, reasons)
@@ -219,6 +221,17 @@ def _of_starts(theirs_m: float | None, ours_m: float | None, allowed_m: float, s
     return found
 
 
+def _of_export(phase: PhaseRun, assembly: Assembly) -> list[str]:
+    """Name holes that were touched and have another friction in MuJoCo."""
+    touched = {name for event in phase.events for name in event.contacts}
+    touched |= {name for contact in phase.contacts for name in (contact.point, contact.box)}
+    return [
+        f"{hole} has a friction of its own, {assembly.scene.friction_of[hole]:.4g}, and that of {few(parts)} in MuJoCo"
+        for hole, parts in assembly.frictions_of_parts.items()
+        if hole in touched
+    ]
+
+
 def _of_proof(done: Run, phase: PhaseRun) -> list[str]:
     proof = phase.proof
     found = []
@@ -232,5 +245,6 @@ def _of_proof(done: Run, phase: PhaseRun) -> list[str]:
         found.append(f"the load leaves {', '.join(proof.undetermined)} open: the pose is one of many in a row")
     if proof.verdict != "moves" and proof.needs_friction:
         friction = chosen_method(done.scene, done.method).friction(done.scene)
-        found.append(f"friction holds it (coefficient {friction:.4g}), in a range of poses and not in one")
+        of_all = "" if done.scene.friction_of else f" (coefficient {friction:.4g})"
+        found.append(f"friction holds it{of_all}, in a range of poses and not in one")
     return found

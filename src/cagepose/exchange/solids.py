@@ -65,6 +65,8 @@ class Assembly:
         By how much a surface is off at most, metres.
     notes
         What is not exactly as in the scene, in sentences.
+    frictions_of_parts
+        Holes with a friction of their own, by name, and the parts whose friction they have here in its place.
     """
 
     scene: Scene
@@ -73,6 +75,7 @@ class Assembly:
     point_radius_m: float
     error_m: float
     notes: tuple[str, ...]
+    frictions_of_parts: Mapping[str, Sequence[str]]
 
 
 def assembly_of(scene: Scene) -> Assembly:
@@ -88,6 +91,7 @@ def assembly_of(scene: Scene) -> Assembly:
     notes: list[str] = []
     errors_m = [0.0]
     problems: list[Problem] = []
+    replaced: dict[str, list[str]] = {}
     radius_m = POINT_OF_SIZE * scene.size_m
     cage_points = [
         Solid(name, name, Sphere(radius_m, Pose(point)))
@@ -104,12 +108,12 @@ def assembly_of(scene: Scene) -> Assembly:
         ("object", scene.object.parts, scene.object.holes, scene.size_m),
         ("cage", scene.cage.shapes, scene.cage.holes, 2.0 * scene.object.reach_m),
     ):
-        made = _Body(body, holes, reach_m, notes, errors_m, problems, scene.friction_of)
+        made = _Body(body, holes, reach_m, notes, errors_m, problems, scene.friction_of, replaced)
         bodies.append([solid for shape in (*shapes, *_alone(holes)) for solid in made.solids(shape)])
     if problems:
         raise SceneError(problems)
     held, cage = bodies
-    return Assembly(scene, tuple(held), (*cage_points, *cage), radius_m, max(errors_m), tuple(notes))
+    return Assembly(scene, tuple(held), (*cage_points, *cage), radius_m, max(errors_m), tuple(notes), replaced)
 
 
 def _alone(holes: Sequence[Hole]) -> list[Hole]:
@@ -127,6 +131,7 @@ class _Body:
     errors_m: list[float]
     problems: list[Problem]
     friction_of: Mapping[str, float]
+    replaced: dict[str, list[str]]
 
     def solids(self, shape: Shape) -> list[Solid]:
         name = str(shape.name)
@@ -188,6 +193,8 @@ class _Body:
         )
         rough = [str(hole.name) for hole in holes if hole.name in self.friction_of and hole.name != name]
         if rough:
+            for one in rough:
+                self.replaced.setdefault(one, []).append(name)
             self.notes.append(f"{few(rough)}, a hole with a friction of its own, has that of {name!r} here")
         return [Solid(f"{name}/{index + 1}", name, piece) for index, piece in enumerate(pierced_pieces(part, holes))]
 

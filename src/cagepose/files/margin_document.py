@@ -21,6 +21,7 @@ def margin_document(margin: Margin, length_unit: LengthUnit) -> dict[str, Any]:
             {
                 "point": contact.point,
                 "box": contact.box,
+                "at": None if contact.place_world is None else _numbers(from_metres(contact.place_world, length_unit)),
                 "least": contact.least_n,
                 "greatest": _or_unbounded(contact.greatest_n),
                 "equally_stiff_normal": contact.equally_stiff_n,

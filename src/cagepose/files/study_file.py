@@ -25,6 +25,7 @@ from cagepose.files.read import read_text
 from cagepose.files.scene_edit import with_values
 from cagepose.files.scene_file import SceneFile, SceneText, read_scene_text
 from cagepose.files.schema_study import DistributionModel, RunsModel, SampleModel, StudyModel
+from cagepose.files.units import unit_at
 from cagepose.files.yaml_source import YamlSource, parse_yaml
 from cagepose.model.wording import few
 
@@ -83,6 +84,11 @@ class StudyFile:
 
     def __repr__(self) -> str:
         return f"<StudyFile of {self.nominal.scene.name!r}: {few(one.key for one in self.varied)} vary>"
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Of each varied number, by its key; empty where there is none or it is not known."""
+        return {one.key: unit_at(one.path, self.nominal.length_unit) for one in self.varied}
 
 
 def read_study_file(path: str | os.PathLike[str]) -> StudyFile:

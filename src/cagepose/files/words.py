@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.wording import components, short
+from cagepose.runs.changes import Seen
 from cagepose.runs.run import Motion
 
 
@@ -21,7 +22,7 @@ class LengthWords:
         """Return lengths in metres as ``1, 2.5, 0``, in the unit."""
         return ", ".join(short(float(from_metres(length, self.unit)), 6, self.noise) for length in lengths_m)
 
-    def amount(self, motion: Motion, digits: int = 6) -> str:
+    def amount(self, motion: Motion | Seen, digits: int = 6) -> str:
         """Return how far a motion goes."""
         angle = f"{short(math.degrees(motion.angle_rad), digits, 1e-10)} deg"
         if motion.kind == "turn":
@@ -29,13 +30,12 @@ class LengthWords:
         if not math.isfinite(motion.distance_m):
             return "nothing ahead"
         distance = f"{short(float(from_metres(motion.distance_m, self.unit)), digits, self.noise)} {self.unit}"
-        return distance if motion.kind == "travel" else f"{distance}, {angle}"
+        return f"{distance}, {angle}" if motion.angle_rad else distance
 
 
-def line_of(motion: Motion) -> str:
+def line_of(motion: Motion | Seen) -> str:
     """Return the direction that a motion goes along or turns about."""
-    along = motion.direction_world if motion.axis_world is None else motion.axis_world
-    return "" if along is None else f"({components(along)})"
+    return f"({components(motion.line_world)})"
 
 
 def names_of(names: Iterable[str]) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 
 from cagepose.model.geometry import body_limits, object_size
 from cagepose.model.scene import Scene, millimetres
+from cagepose.model.shapes import Capsule, Cylinder, Sphere
 from cagepose.model.wording import few
 
 GREATEST_FRICTION = 2.0
@@ -20,6 +21,10 @@ SMALLEST_M, LARGEST_M = 1e-4, 10.0
 """Scenes beyond these sizes are mostly given in another unit than was meant."""
 SMALL_ENOUGH_M = 3.0
 """An object of this size may stand on a floor of any, as those of robots do."""
+EXACT = 1e-6
+"""Of a hole's radius: less clearance is none."""
+GREATEST_GRAVITY, EARTH = 300.0, 9.81
+"""m/s². Beyond what machines shake parts with; 386 in/s² and 9810 mm/s² are."""
 
 
 def remarks(scene: Scene) -> Iterator[str]:
@@ -27,6 +32,8 @@ def remarks(scene: Scene) -> Iterator[str]:
     yield from _friction(scene)
     yield from _pieces(scene)
     yield from _center(scene)
+    yield from _gravity(scene)
+    yield from _fits(scene)
     is_large = scene.size_m > LARGEST_M and object_size(scene.object) > SMALL_ENOUGH_M
     if is_large or scene.size_m < SMALLEST_M:
         yield (
@@ -78,3 +85,32 @@ def _center(scene: Scene) -> Iterator[str]:
             f"the centre of gravity lies {millimetres(outside)} outside the object; check center_of_gravity, which is"
             " given in the object's frame"
         )
+
+
+def _gravity(scene: Scene) -> Iterator[str]:
+    if scene.object.mass_kg is None:  # the direction alone counts
+        return
+    loads = dict[str, list[str]]()
+    for load in scene.loads:
+        strength = 0.0 if load.gravity_world is None else float(np.linalg.norm(load.gravity_world))
+        if strength > GREATEST_GRAVITY:
+            loads.setdefault(f"{strength:.6g} m/s² is {strength / EARTH:.0f} times the Earth's", []).append(load.name)
+    for found, names in loads.items():
+        yield (
+            f"{few(names)}: a gravity of {found}; it is given in m/s², whatever the unit of length ({EARTH} on Earth)"
+        )
+
+
+def _fits(scene: Scene) -> Iterator[str]:
+    """Round parts that are as wide as a hole of the other body."""
+    held, cage = scene.object, scene.cage
+    for parts, holes in ((held.parts, cage.holes), (cage.shapes, held.holes)):
+        round_ones = [part for part in parts if isinstance(part, Cylinder | Capsule | Sphere)]
+        for hole in holes:
+            exact = EXACT * hole.radius_m
+            names = [str(part.name) for part in round_ones if abs(part.radius_m - hole.radius_m) <= exact]
+            if names:
+                yield (
+                    f"{few(names)} and the hole {hole.name} are equally wide, so that rounding decides whether one goes"
+                    " into the other; give the clearance that the real ones have"
+                )

@@ -20,9 +20,10 @@ def unknown_shapes(scene: Scene) -> list[Problem]:
         body: Object | Cage = scene.object if path[0] == "object" else scene.cage
         solids = [solid for solid in (*_boxes_of(body), *body.shapes) if solid.name in hole.in_]
         if hole.leaves_sideways(solids):
-            found.append(
-                Problem(path, f"is a hole ({hole.name}) that comes out aslant, which no method runs; make it less deep")
+            says = (
+                f"is a hole ({hole.name}) that is wider than {', '.join(hole.in_)} somewhere below its mouth, or comes"
             )
+            found.append(Problem(path, f"{says} out aslant, which no method runs; make it narrower or less deep"))
         elif scene.cage.names and isinstance(body, Object) and any(isinstance(solid, Box) for solid in solids):
             says = f"is a hole ({hole.name}) in a box of the object, and points of the cage see no holes in boxes"
             found.append(Problem(path, f"{says}; make the box a convex shape, or the points small spheres"))

@@ -58,11 +58,17 @@ class Motion:
     angle_rad: float
 
     def __repr__(self) -> str:
-        along = self.direction_world if self.axis_world is None else self.axis_world
-        line = "" if along is None else f" {'along' if self.kind == 'travel' else 'about'} {coordinates(along, 4)}"
+        line = f" {'along' if self.kind == 'travel' else 'about'} {coordinates(self.line_world, 4)}"
         distance = "" if self.kind == "turn" else f" {self.distance_m:.6g} m"
         angle = "" if self.kind == "travel" else f" {self.angle_rad:.6g} rad"
         return f"<Motion: {self.kind}{distance}{angle}{line}>"
+
+    @property
+    def line_world(self) -> FloatArray:
+        """The direction of a travel, or the axis of a turn or a screw: a unit vector, (3,)."""
+        line = self.direction_world if self.axis_world is None else self.axis_world
+        assert line is not None
+        return line
 
     def pose_at(self, start: Pose, fraction: float) -> Pose:
         """Return where an object is that was at ``start``, after ``fraction`` (0 to 1) of the motion.
@@ -74,12 +80,10 @@ class Motion:
         """
         if math.isinf(self.distance_m):
             raise ValueError("this travel has no end, so there is no pose at a fraction of it")
-        along = self.direction_world if self.axis_world is None else self.axis_world
-        assert along is not None
         through = np.zeros(3) if self.through_world is None else self.through_world
         moved = moved_pose(
             *start.as_tuples(),
-            as_vector(along),
+            as_vector(self.line_world),
             as_vector(through),
             self.distance_m * fraction,
             self.angle_rad * fraction,

@@ -12,6 +12,7 @@ import cagepose
 from cagepose.files.design_file import DesignFile
 from cagepose.files.scene_edit import with_values
 from cagepose.files.study_file import SCENE_NAME, STUDY_NAME, copies
+from cagepose.files.units import with_unit
 from cagepose.files.write import check_can_write, is_made_by_us, json_text, write_whole
 from cagepose.model.wording import percent
 from cagepose.runs.methods import chosen_method
@@ -141,10 +142,11 @@ class DesignResults:
             if found.loosest is not None:
                 label = f"loosest: {found.loosest:.5g}"
                 panel.axvline(found.loosest, color=VERMILLION, linestyle="-.", linewidth=1.0, label=label)
-            panel.set_xlabel(self.file.study.varied[-1].key)
-            panel.set_ylabel(
-                "yield, %" if wish.share is not None else f"capture range of {next(iter(wish.capture or ()))}"
-            )
+            units = self.file.study.units
+            panel.set_xlabel(with_unit(self.file.study.varied[-1].key, units[self.file.study.varied[-1].key]))
+            captured = next(iter(wish.capture or ()), None)
+            ranged = "" if captured is None else with_unit(f"capture range of {captured}", units[captured])
+            panel.set_ylabel(ranged or "yield, %")
             figure.legend(loc="outside lower center", ncols=3)
         return figure
 

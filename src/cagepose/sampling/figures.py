@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import MaxNLocator
 
+from cagepose.files.units import with_unit
 from cagepose.model.checks import FloatArray
 from cagepose.sampling.capture_map import CaptureMap
 from cagepose.sampling.distribution import Distribution
@@ -27,8 +28,8 @@ LEAST_HEIGHT_IN = 1.7
 VERDICT_COLOURS = {
     "stable": GREEN,
     "rests": GREEN,
-    "may rest": SKY,
-    "escapes": ORANGE,
+    "may rest": ORANGE,
+    "escapes": SKY,
     "moves": PURPLE,
     "refused": PALE,
 }
@@ -40,14 +41,14 @@ def draw(findings: Findings) -> dict[str, Figure]:
     asked = _asked(findings)
     known = [found for found in findings.sensitivities if found.missing is None and found.name in (ACCEPTED, *asked)]
     rows = [row for row in findings.tolerances if row.name in asked and np.isfinite(row.derivatives).all()]
-    names = findings.results.columns.varied
+    names, units = findings.results.columns.varied, findings.results.columns.units
     pictures = {}
     with styled():
         if known:
             pictures["sobol"] = _sobol_figure(known, names)
         changing = [row for row in rows if np.ptp(row.worst) > row.resolution]
         if changing:
-            pictures["tornado"] = _tornado_figure(changing, names, findings.distributions)
+            pictures["tornado"] = _tornado_figure(changing, names, findings.distributions, units)
         resolution, all_spreads = findings.results.columns.resolution, findings.statistics.spreads
         spreads = {
             name: all_spreads[name]
@@ -55,13 +56,13 @@ def draw(findings: Findings) -> dict[str, Figure]:
             if all_spreads[name].greatest - all_spreads[name].least > resolution[name]
         }
         if spreads:
-            pictures["spread"] = _spread_figure(spreads)
+            pictures["spread"] = _spread_figure(spreads, units)
         if findings.maps:
-            pictures["map"] = _map_figure(findings.maps)
+            pictures["map"] = _map_figure(findings.maps, units)
             ends = {name: found for name, found in findings.maps[0].quantities.items() if name in asked}
             ends = {name: found for name, found in ends.items() if _reach(found) > resolution[name]}
             if ends:
-                pictures["ends"] = _ends_figure(findings.maps[0], ends)
+                pictures["ends"] = _ends_figure(findings.maps[0], ends, units)
     return pictures
 
 
@@ -106,7 +107,7 @@ def _sobol_figure(known: Sequence[Sensitivity], names: Sequence[str]) -> Figure:
 
 
 def _tornado_figure(
-    rows: Sequence[ToleranceRow], names: Sequence[str], distributions: Sequence[Distribution]
+    rows: Sequence[ToleranceRow], names: Sequence[str], distributions: Sequence[Distribution], units: Mapping[str, str]
 ) -> Figure:
     n_bars = min(len(names), MOST_BARS)
     reaches = np.array([(one.high - one.low) / 2.0 for one in distributions])
@@ -123,11 +124,11 @@ def _tornado_figure(
         panel.xaxis.set_major_formatter("{x:g}")
         panel.set_yticks(np.arange(n_bars), [names[one] for one in order])
         panel.set_title(row.name, loc="right")
-        panel.set_xlabel("change to either end")
+        panel.set_xlabel(with_unit("change to either end", units[row.name]))
     return figure
 
 
-def _spread_figure(spreads: dict[str, Spread]) -> Figure:
+def _spread_figure(spreads: dict[str, Spread], units: Mapping[str, str]) -> Figure:
     figure, panels = _panels(len(spreads), 1.7, 3)
     for panel, (name, spread) in zip(panels, spreads.items(), strict=True):
         counts = spread.counts.reshape(80, BINS // 80).sum(axis=1)
@@ -135,12 +136,13 @@ def _spread_figure(spreads: dict[str, Spread]) -> Figure:
         panel.stairs(counts / counts.max(), edges, fill=True, color=BLUE, alpha=0.7)
         panel.axvline(spread.mean, color=VERMILLION, linewidth=1.0)
         panel.set_title(name)
+        panel.set_xlabel(f"[{units[name]}]")
         panel.set_yticks([])
         panel.locator_params(axis="x", nbins=4)
     return figure
 
 
-def _map_figure(maps: Sequence[CaptureMap]) -> Figure:
+def _map_figure(maps: Sequence[CaptureMap], units: Mapping[str, str]) -> Figure:
     figure, panels = _panels(len(maps), 4.6 if len(maps) == 1 else 3.2, 2)
     verdicts = sorted({str(verdict) for found in maps for verdict in np.unique(found.verdicts)})
     colours = [VERDICT_COLOURS.get(verdict, VERMILLION) for verdict in verdicts]
@@ -148,8 +150,11 @@ def _map_figure(maps: Sequence[CaptureMap]) -> Figure:
         _draw_map(
             panel, found, np.array([to_rgb(colour) for colour in colours])[np.searchsorted(verdicts, found.verdicts)]
         )
+        across, up = (with_unit(key, units[key]) for key in found.keys)
+        panel.set_xlabel(across)
+        panel.set_ylabel(up)
         if found.layer is not None:
-            panel.set_title(f"{found.layer[0]} = {found.layer[1]:.5g}")
+            panel.set_title(f"{found.layer[0]} = {found.layer[1]:.5g} {units[found.layer[0]]}".rstrip())
     handles = [Patch(color=colour, label=verdict) for verdict, colour in zip(verdicts, colours, strict=True)]
     if any(found.box is not None for found in maps):
         handles.append(Patch(fill=False, edgecolor=BLACK, linestyle="--", label="largest box of accepted runs"))
@@ -165,17 +170,20 @@ def _reach(values: FloatArray) -> float:
     return float(np.ptp(known)) if len(known) else 0.0
 
 
-def _ends_figure(found: CaptureMap, ends: dict[str, FloatArray]) -> Figure:
+def _ends_figure(found: CaptureMap, ends: dict[str, FloatArray], units: Mapping[str, str]) -> Figure:
     figure, panels = _panels(len(ends), 2.3, 3)
     for panel, (name, values) in zip(panels, ends.items(), strict=True):
         panel.set_facecolor(PALE)
         across, up = found.across[found.lattice], found.up[found.lattice]
         picture = panel.pcolormesh(across, up, values, shading="nearest", rasterized=True)
-        figure.colorbar(picture, ax=panel, location="bottom", shrink=0.9).locator = MaxNLocator(4)
+        bar = figure.colorbar(picture, ax=panel, location="bottom", shrink=0.9, label=f"[{units[name]}]")
+        bar.locator = MaxNLocator(4)
         _draw_boundary(panel, found)
         panel.set_title(name)
         panel.set_yticks([])
         panel.locator_params(axis="x", nbins=4)
+    keys = [with_unit(key, units[key]) for key in found.keys]
+    figure.supxlabel(f"across: {keys[0]}; up: {keys[1]}", fontsize=8.5)
     return figure
 
 
@@ -199,5 +207,3 @@ def _draw_map(panel: Axes, found: CaptureMap, shades: FloatArray) -> None:
         panel.add_patch(
             Rectangle((left, bottom), right - left, top - bottom, fill=False, edgecolor=BLACK, linestyle="--")
         )
-    panel.set_xlabel(found.keys[0])
-    panel.set_ylabel(found.keys[1])

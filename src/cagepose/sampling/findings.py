@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 import cagepose
+from cagepose.files.progress import tell
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, FAILURES
 from cagepose.sampling.capture_map import CaptureMap, capture_maps
@@ -61,19 +62,27 @@ def findings_of(results: StudyResults, workers: int | None = None) -> Findings:
     runner = Runner(study, workers)
     distributions = tuple(distribution_of(one) for one in study.varied)
     try:
+        tell("cagepose: the report: what the rows say, and tolerances")
         statistics = statistics_of(results)
+        tolerances = tuple(tolerance_rows(runner, columns, distributions, statistics.spreads))
+        tell("cagepose: the report: which number matters, by runs of its own")
+        indices = tuple(sensitivities(runner, columns, distributions, study.model.sample.seed))
+        tell("cagepose: the report: the capture map, by runs of its own")
+        maps = capture_maps(runner, columns, distributions)
+        tell("cagepose: the report: contacts, typical and worst runs")
         return Findings(
             results,
             Sample(study.model.sample, distributions).n_runs,
             distributions,
             statistics,
-            tuple(tolerance_rows(runner, columns, distributions, statistics.spreads)),
-            tuple(sensitivities(runner, columns, distributions, study.model.sample.seed)),
-            capture_maps(runner, columns, distributions),
+            tolerances,
+            indices,
+            maps,
             contact_table(results, runner, statistics),
             tuple(chosen_runs(results, statistics)),
         )
     finally:
+        tell("")
         runner.close()
 
 

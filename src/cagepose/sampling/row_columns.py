@@ -34,6 +34,8 @@ class RowColumns:
         Those of the quantities that belong to watched points.
     resolution
         By quantity: what varies by less does not vary, but for rounding and the touch tolerance.
+    units
+        Of varied numbers and quantities, by name; empty where there is none or it is not known.
     verdicts
         Those of the verdicts, the last one first.
     touching, forces
@@ -51,6 +53,8 @@ class RowColumns:
         lengths = float(from_metres(SAME * scene.size_m, study.nominal.length_unit))
         self.quantities = (*(f"position_{axis}" for axis in AXES), *ANGLES, *self.watched)
         self.resolution = {name: SAME_DEG if name in ANGLES else lengths for name in self.quantities}
+        of_quantities = {name: "deg" if name in ANGLES else study.nominal.length_unit for name in self.quantities}
+        self.units = study.units | of_quantities
         self.verdicts = ("verdict", *(f"verdict_{load.name}" for load in scene.loads))
         self.touching = {f"touching_{name}": name for name in elements}
         self.forces = {f"force_{name}": name for name in elements} if study.model.forces else {}

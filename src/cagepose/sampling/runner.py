@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import ProcessPoolExecutor
 from copy import deepcopy
 from dataclasses import fields
@@ -27,8 +27,11 @@ ROWS_OF_A_BATCH = 16_384
 """Rows that are in memory at once, and those of one part of the table: a power of two, as Sobol sequences like it."""
 ROWS_ONE_BY_ONE = 1_024
 """The same where scenes are built row by row: about a second of work."""
-ROWS_OF_A_TASK = 64
+FEW_ROWS, ROWS_OF_A_TASK = 64, 16
+"""So few are not worth a process of their own; and what one process does before it says so."""
 
+Told = Callable[[int], None]
+"""Called with how many rows are done, while others are not."""
 Part = tuple[int, int]
 """Of the rows: the first, and the one behind the last."""
 RunPart = tuple[Part, FloatArray, Outcomes]
@@ -82,10 +85,10 @@ class Runner:
             self._pool.shutdown(wait=False, cancel_futures=True)
             self._pool = None
 
-    def run(self, values: FloatArray, *, with_forces: bool = False) -> Outcomes:
+    def run(self, values: FloatArray, *, with_forces: bool = False, told: Told | None = None) -> Outcomes:
         """Run rows of varied numbers, (n, n_varied), in the scene file's unit.
 
-        With forces, too, if ``accept`` may ask for them.
+        With forces, too, if ``accept`` may ask for them. ``told``: hears of rows whose scenes are built one by one.
 
         Raises
         ------
@@ -95,10 +98,15 @@ class Runner:
         has_forces = with_forces or self._is_judged_by_forces
         if self.is_batch:
             return self._run_batch(values, has_forces)
-        if (self._workers or 1) == 1 or len(values) <= ROWS_OF_A_TASK:
-            return self._run_one_by_one(values, has_forces)
+        if (self._workers or 1) == 1 or len(values) <= FEW_ROWS:
+            return self._run_one_by_one(values, has_forces, told)
         tasks = [values[first : first + ROWS_OF_A_TASK] for first in range(0, len(values), ROWS_OF_A_TASK)]
-        return _joined(list(self._processes().map(_run_task, tasks, repeat(has_forces))))
+        found = list[Outcomes]()
+        for outcomes in self._processes().map(_run_task, tasks, repeat(has_forces)):
+            found.append(outcomes)
+            if told is not None and len(found) < len(tasks):
+                told(len(found) * ROWS_OF_A_TASK)
+        return _joined(found)
 
     def run_in_parts(self, values: FloatArray, told: Callable[[Outcomes, FloatArray], None]) -> None:
         """Run rows as `run` does, so many at a time that memory does not grow with them."""
@@ -111,12 +119,15 @@ class Runner:
         values = np.array([[one.nominal for one in self.study.varied]])
         return self._run_one_by_one(values, bool(self.study.model.forces))
 
-    def _run_one_by_one(self, values: FloatArray, has_forces: bool) -> Outcomes:
+    def _run_one_by_one(self, values: FloatArray, has_forces: bool, told: Told | None = None) -> Outcomes:
         outcomes = empty_outcomes(self.study.nominal.scene, len(values), with_forces=has_forces)
-        self._write_one_by_one(values, range(len(values)), outcomes)
+        for row in range(len(values)):
+            self._write_one_by_one(values, [row], outcomes)
+            if told is not None and row + 1 < len(values):
+                told(row + 1)
         return outcomes
 
-    def _write_one_by_one(self, values: FloatArray, rows: Any, outcomes: Outcomes) -> None:
+    def _write_one_by_one(self, values: FloatArray, rows: Iterable[int], outcomes: Outcomes) -> None:
         paths = [one.path for one in self.study.varied]
         for row in rows:
             try:

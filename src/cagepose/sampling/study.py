@@ -13,7 +13,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.wording import few
 from cagepose.sampling.outcome import Outcomes
 from cagepose.sampling.results import StudyResults
-from cagepose.sampling.runner import Part, Runner, RunPart
+from cagepose.sampling.runner import Part, Runner, RunPart, Told
 from cagepose.views.extra import require_dask, require_study
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ class Study:
         dask
             The address of a Dask scheduler, such as ``"tcp://10.0.0.1:8786"``: its workers run the parts.
         progress
-            Called after each part.
+            Called after each part, and on the way where scenes are built row by row.
 
         Raises
         ------
@@ -136,14 +136,20 @@ class Study:
         size = runner.rows_of_a_part
         parts = [(first, min(first + size, n_runs)) for first in range(0, n_runs, size)]
         missing = [part for part in parts if not kept.has(*part)]
-        n_done = n_runs - sum(last - first for first, last in missing)
+        n_done = n_told = n_runs - sum(last - first for first, last in missing)
+
+        def tell(n_rows: int) -> None:
+            nonlocal n_told
+            if progress is not None and n_rows > n_told:  # a part is written while the next one runs
+                n_told = n_rows
+                progress(n_rows, n_runs, True)
+
         if progress is not None and n_done:
             progress(n_done, n_runs, False)
         try:
-            for n_rows in self._written(kept, self._outcomes(runner, missing, dask)):
+            for n_rows in self._written(kept, self._outcomes(runner, missing, dask, n_done, tell)):
                 n_done += n_rows
-                if progress is not None:
-                    progress(n_done, n_runs, True)
+                tell(n_done)
         finally:
             runner.close()
         return StudyResults(folder)
@@ -161,16 +167,25 @@ class Study:
         kept.write(*part, self._columns.table(part[0], values, outcomes))
         return len(values)
 
-    def _outcomes(self, runner: Runner, parts: Sequence[Part], dask: str | None) -> Iterator[RunPart]:
-        """Yield parts with their varied numbers and where their runs ended, in any order."""
+    def _outcomes(
+        self, runner: Runner, parts: Sequence[Part], dask: str | None, n_before: int, tell: Told
+    ) -> Iterator[RunPart]:
+        """Yield parts with their varied numbers and where their runs ended, in any order; tell how many rows were run,
+        those before included.
+        """
         if dask is not None:
             from cagepose.sampling.cluster import run_on_cluster
 
             yield from run_on_cluster(self._file, dask, parts, self._sample.values)
             return
+
+        def told(n_rows: int) -> None:
+            tell(n_before + n_rows)
+
         for part in parts:
             values = self._sample.values(*part)
-            yield part, values, runner.run(values, with_forces=bool(self._file.model.forces))
+            yield part, values, runner.run(values, with_forces=bool(self._file.model.forces), told=told)
+            n_before += len(values)
 
 
 def scene_name(scene: object) -> str:

@@ -44,8 +44,8 @@ class ContactMargin:
 
     Attributes
     ----------
-    point, box
-        Names.
+    point, box, place_world
+        Names, and where they touch, as in `Contact`.
     least_n, greatest_n
         Of its normal force, over all forces that balance the load; the greatest is infinite where contacts can press
         against each other without end, as in a wedge.
@@ -57,6 +57,7 @@ class ContactMargin:
 
     point: str
     box: str
+    place_world: FloatArray | None
     least_n: float
     greatest_n: float
     equally_stiff_n: float
@@ -148,7 +149,13 @@ def margin(run: Run, phase: int = -1) -> Margin | None:
         moment.direction,
         tuple(
             ContactMargin(
-                contact.point, contact.box, size_n * least, size_n * greatest, float(size_n * share[0]), tangential
+                contact.point,
+                contact.box,
+                contact.place_world,
+                size_n * least,
+                size_n * greatest,
+                float(size_n * share[0]),
+                tangential,
             )
             for contact, (least, greatest), share, tangential in zip(
                 contacts, found.ranges(), found.shares, size_n * found.tangential(), strict=True

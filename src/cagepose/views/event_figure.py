@@ -16,7 +16,8 @@ from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray
 from cagepose.model.scene import Scene
-from cagepose.runs.run import Event, Run
+from cagepose.runs.changes import Seen, changes_of
+from cagepose.runs.run import Run
 from cagepose.studies.ending import ending
 from cagepose.studies.support import convex_hull, load_view
 from cagepose.studies.support_region import SupportRegion, support_region
@@ -114,14 +115,12 @@ class _Grid:
 def _snapshots(run: Run, length_unit: LengthUnit) -> tuple[list[tuple[int, str]], int]:
     """Return (index of the event, -1: the start; title) of each snapshot, and how many motions have none."""
     shots = [(-1, "start")]
-    number = 0
-    for phase in run.phases:
-        for event in phase.events:
-            if event.motion is not None:
-                name, amount = f"{number + 1}. {_cut(phase.name)}, {event.rule}:", _amount(event, length_unit)
-                gap = " " if len(name) + len(amount) < LONGEST_TITLE else "\n"
-                shots.append((number, f"{name}{gap}{amount}"))
-            number += 1
+    for change in changes_of(run):
+        if change.seen is not None:
+            name = f"{change.number}. {_cut(change.phase.name)}, {change.event.rule}:"
+            amount = _amount(change.seen, length_unit)
+            gap = " " if len(name) + len(amount) < LONGEST_TITLE else "\n"
+            shots.append((change.number - 1, f"{name}{gap}{amount}"))
     if len(shots) <= MOST_SNAPSHOTS:
         return shots, 0
     return [*shots[: MOST_SNAPSHOTS - 1], shots[-1]], len(shots) - MOST_SNAPSHOTS
@@ -135,16 +134,15 @@ def _snapshot(stage: Stage, row: int) -> FloatArray:
     return np.asarray(maker.picture(shown.shots[after], is_captioned=False))
 
 
-def _amount(event: Event, length_unit: LengthUnit) -> str:
-    assert event.motion is not None
-    if not math.isfinite(event.motion.distance_m):
+def _amount(motion: Seen, length_unit: LengthUnit) -> str:
+    if not math.isfinite(motion.distance_m):
         return "travel, nothing ahead"
     parts = []
-    if event.motion.distance_m:
-        parts.append(f"{float(from_metres(event.motion.distance_m, length_unit)):.4g} {length_unit}")
-    if event.motion.angle_rad:
-        parts.append(f"{math.degrees(event.motion.angle_rad):.4g} deg")
-    return f"{event.motion.kind} {', '.join(parts) or 'of nothing'}"
+    if motion.distance_m:
+        parts.append(f"{float(from_metres(motion.distance_m, length_unit)):.4g} {length_unit}")
+    if motion.angle_rad:
+        parts.append(f"{math.degrees(motion.angle_rad):.4g} deg")
+    return f"{motion.kind} {', '.join(parts) or 'of nothing'}"
 
 
 def _cut(name: str) -> str:

@@ -15,6 +15,7 @@ from cagepose.views.viewer.playback import single_motion
 from cagepose.views.viewer.stage import Stage
 
 COLUMNS, PANEL_IN, PICTURE = 2, 2.7, (560, 384)
+EXAGGERATED = "where motions are exaggerated, parts can look as if they were inside each other; they are not"
 
 
 def extreme_figure(play: Play, length_unit: LengthUnit = "mm") -> Figure:
@@ -31,6 +32,7 @@ def extreme_figure(play: Play, length_unit: LengthUnit = "mm") -> Figure:
     with styled():
         figure = Figure(figsize=(PAGE_WIDTH_IN, rows * PANEL_IN), layout="constrained")
         figure.suptitle(f"{play.scene.name}: ends of the play", fontsize=11)
+        figure.supxlabel(EXAGGERATED, fontsize=8.5)
         for panel, (title, end) in zip(figure.subplots(rows, COLUMNS).flat, ends, strict=True):
             panel.imshow(_picture(play, end, length_unit))
             panel.set_axis_off()

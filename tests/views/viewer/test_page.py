@@ -9,9 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import ImageColor
 
 from cagepose import Cage, Scene, load_scene, run
 from cagepose.files.write import MADE_BY
+from cagepose.views.viewer.caption import VERDICT_INK
 from cagepose.views.viewer.page import page
 from cagepose.views.viewer.playback import playback
 from cagepose.views.viewer.stage import EXAGGERATIONS, Stage
@@ -62,6 +64,15 @@ def test_the_page_opens_at_the_end_with_the_verdict_and_the_forces(opened, rail)
         (rail.run.pose.position_m * 1000.0).tolist(), rel=1e-5
     )
     assert "rests (stable): the contacts balance the load without friction" in page.locator("#notes").inner_text()
+
+
+def test_what_only_may_rest_has_a_colour_of_its_own_on_the_page_and_in_pictures(opened):
+    page = opened(playback(run(load_scene(SCENES / "wedge.yaml"))))
+    assert page.locator("#verdict").inner_text() == "may rest"
+    color = page.locator("#verdict").evaluate("element => getComputedStyle(element).color")
+    assert color == "rgb({}, {}, {})".format(*ImageColor.getrgb(VERDICT_INK["open"]))
+    assert VERDICT_INK["open"] != VERDICT_INK["rest"]
+    assert page.locator("#events .open").inner_text().endswith("may rest")
 
 
 def test_every_event_has_a_line_and_a_click_goes_to_its_end(opened, rail):

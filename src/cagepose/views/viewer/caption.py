@@ -9,15 +9,15 @@ from PIL import Image, ImageDraw, ImageFont
 
 from cagepose.files.words import LengthWords
 from cagepose.runs.run import CONTRADICTED, Run
+from cagepose.studies.ending import Kind, run_kind
 from cagepose.views.viewer.labels import Pair, laid_out
 from cagepose.views.viewer.look import PAPER
-from cagepose.views.viewer.page_data import run_kind
 from cagepose.views.viewer.playback import Film, Playback, Shot
 
 LOUD_INK, QUIET_INK = "#000000", "#777777"
 """Of names: loads and contacts, and cage points that do not touch."""
 TITLE_INK, SOFT_INK, SCALE_INK = "#1a1a1a", "#5c5c5c", "#333333"
-VERDICT_INK = {"rest": "#00664a", "failure": "#a33b00", "elsewhere": "#a33b00"}
+VERDICT_INK: dict[Kind, str] = {"rest": "#00664a", "open": "#8a6100", "failure": "#a33b00", "elsewhere": "#a33b00"}
 MARK = "#e69f00"
 SMALL, LARGE = 13.0, 17.0
 """Heights of letters, pixels."""
@@ -85,7 +85,7 @@ class Caption:
             return "start"
         row = self.shown.rows[shot.row]
         words = LengthWords(self.shown.length_unit, self.shown.scene.size_m)
-        motion = row.event.motion
+        motion = row.seen
         what = None if motion is None else f"{motion.kind} {words.amount(motion)}"
         told = ", ".join(word for word in (row.event.rule, what, row.verdict) if word)
         return f"{run.phases[row.phase].name}, event {shot.row + 1}: {told}"

@@ -47,6 +47,8 @@ GRID_LINES, BELOW = 12, 0.01
 """From the middle of the ground to one side; how far it lies below all else, in drawing units."""
 NEAR_CAGE, LEAST_NEAR = 0.3, 0.06
 """Of the cage's extent, and in drawing units at least: what counts as near it."""
+FAR_FROM_CAGE = 1.0
+"""Of the cage's extent: what reaches beyond this is cut to what is near."""
 FEW_NAMES = 14
 """Of more contacts than these, only those are named that press or were just reached."""
 LEAST_FORCE = 1e-9

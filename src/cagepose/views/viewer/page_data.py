@@ -17,9 +17,10 @@ from cagepose.runs.cases import contact_friction
 from cagepose.runs.changes import Change, changes_of
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.methods import chosen_method
-from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, Run
+from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES
 from cagepose.studies.acts import Act
 from cagepose.studies.comparison import ENDS, same_pose
+from cagepose.studies.ending import run_kind, verdict_kind
 from cagepose.views.solids import Solid, solid_of
 from cagepose.views.viewer import look
 from cagepose.views.viewer.playback import Playback, Row, Shot, Touches
@@ -178,7 +179,7 @@ class _Writer:
         return contact_friction(self.run.scene, self.usual_friction, element, part)
 
     def _row(self, row: Row, change: Change) -> dict[str, Any]:
-        motion = row.event.motion
+        motion = row.seen
         return {
             "phase": row.phase,
             "rule": row.event.rule,
@@ -196,17 +197,14 @@ class _Writer:
         }
 
     def _line(self, row: Row) -> dict[str, Any] | None:
-        motion = row.event.motion
-        if motion is None:
+        if row.seen is None:
             return None
         before = self.shown.shots[row.first_shot - 1].pose_world_object
-        along = motion.direction_world if motion.axis_world is None else motion.axis_world
-        assert along is not None
-        through = before.position_m if motion.through_world is None else motion.through_world
+        through = before.position_m if row.seen.through_world is None else row.seen.through_world
         return {
-            "turns": motion.axis_world is not None,
+            "turns": row.seen.through_world is not None,
             "through": _numbers(before.inverse_transform(through) / self.stage.size_m),
-            "direction": _numbers(along @ before.rotation),
+            "direction": _numbers(row.seen.line_world @ before.rotation),
         }
 
     def _load(self, act: Act) -> dict[str, Any]:
@@ -225,18 +223,6 @@ class _Writer:
     def _force_unit(self) -> str:
         loads = self.run.scene.loads[: len(self.run.phases)]
         return "N" if all(scaled_load(self.run.scene, load).in_newtons for load in loads) else "parts of the load"
-
-
-def run_kind(run: Run) -> str:
-    """Return `verdict_kind` of a run, which is "elsewhere" where the mechanics contradicts a rest."""
-    return "elsewhere" if run.is_contradicted else verdict_kind(run.verdict)
-
-
-def verdict_kind(verdict: str) -> str:
-    """Return "rest", "failure" or "elsewhere", which a page gives colours."""
-    if verdict in AT_REST:
-        return "rest"
-    return "failure" if verdict in FAILURES else "elsewhere"
 
 
 def notes(shown: Playback) -> list[str]:

@@ -127,16 +127,19 @@ class PictureMaker:
         cage = self.scene.cage.pose_world_cage
         found += [self.stage.place(cage.transform(vertices_of([hole]))) for hole in self.scene.cage.holes]
         places = np.concatenate(found)
-        return places if not self.is_near else np.clip(places, *self._near_cage(last, now))
+        return places if not self.is_near else self._near_cage(places, last, now)
 
-    def _near_cage(self, shot: Shot, now: Look) -> tuple[FloatArray, FloatArray]:
-        """Return two corners of what is near the cage and its contacts."""
+    def _near_cage(self, places: FloatArray, shot: Shot, now: Look) -> FloatArray:
+        """Return places as they are, or where some are far from the cage and its contacts, moved to what is near."""
         cage = [self.stage.place(self.stage.points(now)), self.places(shot)]
         cage += [self.stage.place(body) for body in self.stage.bodies_world]
         cage.append(self.stage.place(self.stage.middles_world))
         low, high = np.concatenate(cage).min(axis=0), np.concatenate(cage).max(axis=0)
-        room = max(look.NEAR_CAGE * float((high - low).max()), look.LEAST_NEAR)
-        return low - room, high + room
+        extent = float((high - low).max())
+        if (np.maximum(low - places, places - high) <= look.FAR_FROM_CAGE * extent).all():
+            return places
+        room = max(look.NEAR_CAGE * extent, look.LEAST_NEAR)
+        return np.clip(places, low - room, high + room)
 
     def _name(self, place: FloatArray, text: str, *, is_loud: bool) -> None:
         x, y = self.seen_at(place).tolist()
@@ -291,14 +294,12 @@ class PictureMaker:
 
     def _draw_motion(self, shot: Shot, pose: Pose) -> None:
         row = self.shown.rows[shot.row] if shot.row >= 0 else None
-        if row is None or row.event.motion is None:
+        if row is None or row.seen is None:
             return
-        motion = row.event.motion
+        motion = row.seen
         before = self.shown.shots[row.first_shot - 1]
         carried = self.stage.pose(before.pose_world_object, self._look(before))
-        along = motion.direction_world if motion.axis_world is None else motion.axis_world
-        assert along is not None
-        direction = self.stage.normal(along, before.pose_world_object, carried)
+        direction = self.stage.normal(motion.line_world, before.pose_world_object, carried)
         if motion.through_world is None:
             center = self.stage.place(pose.transform(self.stage.center_object_m))
             self.marks.arrow(center, center + look.TRAVEL * self.eye.pixel(center) * direction, look.ROD, PAINT["axis"])

@@ -14,6 +14,7 @@ from cagepose.files.units import LengthUnit
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.runs.changes import Seen, as_seen
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
 from cagepose.studies.acts import Act, acts_of
 from cagepose.studies.touching import PlacesOfContact, TouchFinder
@@ -91,8 +92,8 @@ class Row:
     ----------
     phase
         Index of the phase.
-    event
-        What happened.
+    event, seen
+        What happened, and how its motion looks.
     verdict
         How the phase ended, if this was its last event.
     first_shot, last_shot
@@ -101,6 +102,7 @@ class Row:
 
     phase: int
     event: Event
+    seen: Seen | None
     verdict: str | None
     first_shot: int
     last_shot: int
@@ -150,7 +152,7 @@ def single_motion(scene: Scene, end: Pose, touching: tuple[str, ...], length_uni
     """Return the object's way from its start to a pose, where what has these names touches; without loads."""
     at, start = _TouchesAt(scene), scene.object.pose_world_object
     shots = (Shot(-1, 0, start, at.of(start, ())), Shot(0, 0, end, at.of(end, touching)))
-    rows = (Row(0, Event("", None, (), touching, end, None), None, 1, 1),)
+    rows = (Row(0, Event("", None, (), touching, end, None), None, None, 1, 1),)
     return Film(scene, length_unit, scene.cage.points_world(), shots, rows, 1, ((),))
 
 
@@ -225,7 +227,8 @@ class _Camera:
                 self.shots.append(Shot(row, phase_index, way, self.at.of(way, stays) if self.at.finder else kept))
             self.shots.append(Shot(row, phase_index, end, self._held(end, phase.contacts) if is_held else touches))
             verdict = phase.verdict if last else None
-            self.rows.append(Row(phase_index, event, verdict, first_shot, len(self.shots) - 1))
+            seen = as_seen(event, pose, self.run.scene)
+            self.rows.append(Row(phase_index, event, seen, verdict, first_shot, len(self.shots) - 1))
             pose, before = event.pose_world_object, frozenset(event.contacts)
 
     def _way(self, start: Pose, event: Event, escape: Motion | None) -> list[Pose]:
