@@ -171,3 +171,21 @@ def test_a_run_without_progress_tells_after_which_event(scene):
     film = playback(stalled)
     assert [row.verdict for row in film.rows] == [None] * (len(film.rows) - 1) + ["stalled"]
     assert f"stalled after event {len(film.rows)}: no progress" in "\n".join(notes(film))
+
+
+@pytest.mark.parametrize("name", ["peg-in-hole", "phone-dock", "plate-on-pins", "tapered-pin", "v-groove"])
+def test_what_touches_after_a_motion_touches_on_screen(name):
+    stage = Stage(playback(run(load_scene(SCENES / f"{name}.yaml"))))
+    for row in stage.shown.rows:
+        shot, look = stage.shown.shots[row.last_shot], stage.look(row.last_shot, stage.proposed)
+        true = shot.pose_world_object
+        on_object = stage.pose(true, look).transform(true.inverse_transform(shot.touches.places_world))
+        on_cage = shot.touches.places_world + stage.touch_shifts(shot.touches, look)
+        assert np.linalg.norm(on_object - on_cage, axis=1).max() < 0.05 * stage.size_m
+
+
+def test_a_fall_to_the_floor_of_a_hole_is_shown_as_it_is_and_the_tilt_in_it_exaggerated():
+    stage = Stage(playback(run(load_scene(SCENES / "peg-in-hole.yaml"))))
+    fall, *tilts = stage.proposed
+    assert fall == 1
+    assert min(tilts) >= 10

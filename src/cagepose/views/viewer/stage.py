@@ -10,7 +10,7 @@ on screen are then k times the true ones: what touches on screen touches. (Of a 
 along the way on which it was nearest.)
 
 Each phase has an exaggeration of its own. A long travel, such as the way into the cage, is shown as it is, and what
-follows is measured from its end.
+follows is measured from its end. So is a motion to what was not nearest before, which would not touch on screen.
 """
 
 from __future__ import annotations
@@ -36,6 +36,10 @@ EXAGGERATIONS = (1, 2, 5, 10, 20, 50, 100, 200)
 MOST_TURN_RAD, MOST_WAY = math.radians(10.0), 0.15
 """The exaggeration that is proposed shows no greater turn, and no longer way in sizes of the scene. A motion that would
 pass this at twice its size is a long one.
+"""
+MOST_PARTED, LONG_AT = 0.04, 10.0
+"""In sizes of the scene: nor do contacts part farther on screen. A motion at whose end they would at ten times its size
+is a long one, too, as where a screw falls into its seat: what touches then is not what was nearest before.
 """
 MOST_ADDED = 0.5
 """A cage point is moved away from the object by at most this many sizes: one that is far off must stay in the picture.
@@ -63,7 +67,8 @@ class PhaseView(NamedTuple):
     reference
         The shot whose pose all is measured from.
     proposed
-        The greatest of `EXAGGERATIONS` that keeps every turn and way small on screen; 1 where nothing moves.
+        The greatest of `EXAGGERATIONS` that keeps every turn and way small on screen, and what touches together; 1
+        where nothing moves.
     """
 
     first: int
@@ -208,7 +213,7 @@ class Stage:
             return np.zeros((len(self.shown.scene.cage.element_names), 3))
         gaps = self.gaps_world(look.reference)
         lengths = np.linalg.norm(gaps, axis=1, keepdims=True)
-        most = MOST_ADDED * self.size_m / np.maximum(lengths, np.finfo(np.float64).tiny)
+        most = MOST_ADDED * self.size_m / np.maximum(lengths, STILL * self.size_m)
         moved: FloatArray = np.minimum(look.factor - 1.0, most) * gaps
         return moved
 
@@ -246,15 +251,27 @@ class Stage:
     def _fits(self, moved: tuple[float, float], exaggeration: int) -> bool:
         return exaggeration * moved[0] <= MOST_TURN_RAD and exaggeration * moved[1] <= MOST_WAY * self.size_m
 
+    def _meet(self, shot: int, look: Look) -> bool:
+        """Whether what touches at a shot touches on screen."""
+        touches, true = self.shown.shots[shot].touches, self.shown.shots[shot].pose_world_object
+        on_object = self.pose(true, look).transform(true.inverse_transform(touches.places_world))
+        parted = on_object - touches.places_world - self.touch_shifts(touches, look)
+        return bool((np.linalg.norm(parted, axis=1) <= MOST_PARTED * self.size_m).all())
+
     def _is_long(self, one: int, other: int) -> bool:
-        return not self._fits(self._moved(one, other), 2)
+        return not (self._fits(self._moved(one, other), 2) and self._meet(other, Look(one, LONG_AT)))
 
     def _proposed(self, reference: int, start: int, last: int) -> int:
         ends = [row.last_shot for row in self.shown.rows if start < row.last_shot <= last]
         moves = [self._moved(reference, shot) for shot in ends]
         if all(turn < STILL and way < STILL * self.size_m for turn, way in moves):
             return 1
-        return max((k for k in EXAGGERATIONS if all(self._fits(move, k) for move in moves)), default=1)
+        for k in sorted(EXAGGERATIONS, reverse=True):
+            if all(self._fits(move, k) for move in moves) and all(
+                self._meet(shot, Look(reference, k)) for shot in ends
+            ):
+                return k
+        return 1
 
 
 def _extent(points: Sequence[FloatArray]) -> float:
