@@ -206,3 +206,14 @@ def test_a_bar_turns_in_a_slot_until_its_corners_touch(first, play):
     motion = motion_of(np.zeros(3), np.zeros(3), 1.0, np.array((0.0, 0.0, 1.0)))
     hit = Hit(*first(geometry, placed(geometry, Pose()), motion, 1.0, 0.0, 0.0))
     assert a * math.sin(hit.amount) + b * math.cos(hit.amount) == pytest.approx(b + play, abs=1e-12)
+
+
+def test_edges_that_begin_parallel_do_not_touch_where_their_lines_cross(first):
+    """Of two boxes that are in line with each other at first, and a thousandth of their size apart."""
+    part, cage_part = Box((0.000568673, 0.000213907, 0.0009823)), Box((0.00055105, 0.000914763, 0.000514868))
+    pose = Pose((0.000767347, 0.0, -0.000365364), (0.5, 0.5, 0.5, 0.5))
+    axis = np.array((-0.6828572797330864, -0.24960590801563143, 0.6865878139023598))
+    center = np.array((0.0008319189332212737, 0.000717186997976134, -0.0020505198662423836))
+    hit = check(first, part, cage_part, pose, motion_of(center, np.zeros(3), 1.0437845456989039, axis), 0.1)
+    assert hit is not None
+    assert hit.amount == pytest.approx(0.005, abs=0.001)

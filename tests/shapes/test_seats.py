@@ -237,3 +237,37 @@ def test_countersunk_heads_in_narrower_seats_come_to_the_middle_and_are_pushed_t
         assert pushed.potential(found) < pushed.potential(lowest) + 1e-9, HEADS[number]
         assert found == pytest.approx(lowest, abs=1e-5), HEADS[number]
     say(f"heads pushed in narrower seats: at most {worst:.1e} mm from where SciPy finds the least potential")
+
+
+LET_DOWN = [
+    (Cylinder(6.0 * MM, 1.0 * MM, Pose((0.0, 0.0, 0.5 * MM))), 6.0, 45.0, (0.0, 0.0, 3.0), (0.7, 0.7)),
+    (Cylinder(6.0 * MM, 5.0 * MM, Pose((0.0, 0.0, 2.5 * MM))), 6.0, 40.0, (0.1, 0.0, 2.0), (0.5, 0.0)),
+    (Cylinder(7.0 * MM, 5.0 * MM, Pose((0.0, 0.0, 2.5 * MM))), 7.0, 40.0, (0.2, 0.1, 3.0), (0.0, 0.0)),
+    (Cone(1.0 * MM, 6.0 * MM, 5.0 * MM, Pose((0.0, 0.0, -2.5 * MM))), 6.0, 40.0, (0.1, 0.0, 2.0), (0.0, 0.5)),
+]
+"""Part; radius of its rim, which is at its origin, mm; angle of the seat, degrees; where it starts, mm, and how it is
+tilted there about x and y, degrees.
+"""
+
+
+@pytest.mark.parametrize(("part", "rim", "angle_deg", "start", "tilt_deg"), LET_DOWN)
+def test_what_is_let_down_aslant_or_aside_comes_to_the_middle_of_its_seat(
+    part, rim, angle_deg, start, tilt_deg
+) -> None:
+    block = Box((0.08, 0.08, 0.04), Pose((0.0, 0.0, -0.02)), "block")
+    seat = Hole(4.0 * MM, 0.04, Chamfer(4.0 * MM, math.radians(angle_deg)), ["block"])
+    pose = Pose(tuple(MM * number for number in start), euler_zyx=(0.0, *np.radians(tilt_deg[::-1])))
+    held = Object(shapes=[part], mass_kg=0.1, pose=pose)
+    result = run(Scene(held, Cage(shapes=[block], holes=[seat]), [Load("weight", gravity=(0.0, 0.0, -9.81))]))
+    assert result.verdict == "rests"
+    middle = (0.0, 0.0, (rim - 8.0) / math.tan(math.radians(angle_deg)))
+    assert np.asarray(result.pose.position_m) / MM == pytest.approx(middle, abs=1e-8)
+
+
+@pytest.mark.parametrize("length", [5.0, 20.0])
+def test_a_pin_as_wide_as_its_bore_is_held_by_no_ring(length: float) -> None:
+    """Both of its rims lie in the wall all around, whose normals carry no weight."""
+    block = Box((0.06, 0.06, 0.03), Pose((0.0, 0.0, -0.015)), "block")
+    pin = Object(shapes=[Cylinder(5.0 * MM, length * MM)], mass_kg=0.1, pose=Pose((0.0, 0.0, -0.015)))
+    cage = Cage(shapes=[block], holes=[Hole(5.0 * MM, 0.03, in_=["block"])])
+    assert run(Scene(pin, cage, [Load("weight", gravity=(0.0, 0.0, -9.81))])).verdict == "escapes"

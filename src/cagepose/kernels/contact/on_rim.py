@@ -21,6 +21,10 @@ from cagepose.kernels.contact.metric import WRENCH, Frame, twist_of
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.flat_rims import SAME_WAY
 
+SAME_RIM, SAME_BALL = 1e-6, 1e-4
+"""In radii: contacts whose rims have centres so near are of one; and times how far apart the places are that their
+normals lead through, which differ by the tilt in the seat.
+"""
 MOST_ADDED = 40
 """Points of rims, for one question."""
 FOLLOWED, SAME_ANGLE = 30, 1e-9
@@ -53,12 +57,23 @@ def is_along_side(contacts: ContactSet, i: int) -> bool:
 
 @kernel
 def is_of_same_rim(contacts: ContactSet, i: int, other: int) -> bool:
-    """Whether another contact is of the same rim along the same side."""
+    """Whether another contact is of the same rim on the same round side."""
     row, one = contacts.rows[i], contacts.rows[other]
     if one.point != row.point or one.box != row.box or row.feature < 0 or one.feature < 0:
         return False
     rim, around = contacts.bends[i].on_rim, contacts.bends[other].on_rim
-    return around.is_on_ball and around.is_of_cage == rim.is_of_cage and around.length == rim.length
+    if not (rim.is_on_ball and around.is_on_ball) or around.is_of_cage != rim.is_of_cage or around.length != rim.length:
+        return False
+    between = minus(center_of_rim(contacts, i), center_of_rim(contacts, other))
+    from_ball = norm(minus(vector_from(rim.ball), vector_from(around.ball)))  # as seen from it, they differ by a tilt
+    return max(norm(between), from_ball * SAME_BALL) <= SAME_RIM * abs(rim.length)
+
+
+@kernel
+def center_of_rim(contacts: ContactSet, i: int) -> Vector:
+    """Return the centre of the rim that a contact is of, as seen from the centre of gravity."""
+    rim = contacts.bends[i].on_rim
+    return minus(vector_from(contacts.rows[i].arm), scaled(vector_from(rim.outward), rim.length))
 
 
 @kernel

@@ -1,9 +1,10 @@
-"""A rim that lies all around in the wall of a hole, as that of a countersunk head in its seat: a ball in it.
+"""A rim that lies all around in the slanted wall of a hole, as that of a countersunk head in its seat: a ball in it.
 
 The rim is on the ball about the place on the axis that its normals lead through. As the object turns about that place
 two of its points stay on the wall, equation (5.39): the rim moves as the ball does. Which two carry shows in gaps that
 go by the square of the tilt, and so not within the touch tolerance; contacts anywhere else, taken alone, would hold the
-object as a wedge, and tip it.
+object as a wedge, and tip it. So the rim counts as the ball where all of its vertices touch. Where fewer do, arcs are
+nearest, and vertices between those that are not do not count.
 """
 
 from __future__ import annotations
@@ -12,32 +13,50 @@ import math
 
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.collision.geometry import Geometry, Placement
-from cagepose.kernels.contact.contact_set import ContactSet, write_directions
+from cagepose.kernels.contact.contact_set import ContactSet, choose, write_directions
 from cagepose.kernels.contact.metric import Frame
 from cagepose.kernels.contact.on_rim import is_of_same_rim
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.bend import NOTHING, Curvatures, across, write_bend
-from cagepose.kernels.shapes.features import EDGE
-
-ALL_AROUND = 1e-9
-"""Of a full turn: so much less is one, too."""
+from cagepose.kernels.shapes.features import RIM
+from cagepose.kernels.shapes.rims import ARCS, is_rim_on_side
 
 
 @kernel
 def seat_rims(geometry: Geometry, placement: Placement, contacts: ContactSet, frame: Frame) -> None:
-    """Write the contacts of rims that lie all around in the wall of a hole as those of balls."""
+    """Write the contacts of rims that lie all around in the slanted wall of a hole as those of balls."""
     for i in range(contacts.used[0]):
-        if not is_in_hole(geometry, placement, contacts, i) or is_listed_before(contacts, i):
+        if not is_in_seat(geometry, placement, contacts, i) or is_listed_before(contacts, i):
             continue
-        angle, middle = 0.0, (0.0, 0.0, 0.0)
+        n_vertices, middle = 0, (0.0, 0.0, 0.0)
         for other in range(i, contacts.used[0]):
             if is_of_same_rim(contacts, i, other):
-                around = contacts.bends[other].on_rim
-                angle += around.before + around.after
-                middle = plus(middle, scaled(vector_from(around.ball), around.before + around.after))
-        for other in range(i, contacts.used[0] if angle >= (1.0 - ALL_AROUND) * 2.0 * math.pi else i):
+                n_vertices += 1
+                middle = plus(middle, vector_from(contacts.bends[other].on_rim.ball))
+        if n_vertices < ARCS:
+            leave_out_vertices(geometry, placement, contacts, i)
+            continue
+        middle = scaled(middle, 1.0 / n_vertices)
+        for other in range(contacts.used[0] - 1, i - 1, -1):  # this one last: it tells what is of the same rim
             if is_of_same_rim(contacts, i, other):
-                write_as_ball(contacts, other, scaled(middle, 1.0 / angle), frame)
+                write_as_ball(contacts, other, middle, frame)
+
+
+@kernel
+def leave_out_vertices(geometry: Geometry, placement: Placement, contacts: ContactSet, i: int) -> None:
+    """Let vertices of a rim not count that touch where an arc between them is nearer to the wall."""
+    is_off = False
+    for arc in range(contacts.used[0]):
+        row = contacts.rows[arc]
+        if row.feature >= 0 and row.point == contacts.rows[i].point and row.box == contacts.rows[i].box:
+            held, cage = placement.body.world.features[row.feature], geometry.cage.features[row.cage_feature]
+            rim = cage if contacts.bends[i].on_rim.is_of_cage else held
+            is_off = is_off or (rim.kind == RIM and rim.length == contacts.bends[i].on_rim.length)
+    for other in range(contacts.used[0] if is_off else 0):
+        around = contacts.bends[other].on_rim
+        if is_of_same_rim(contacts, i, other) and max(around.before, around.after) == 0.0:
+            contacts.rows[other].group = -1
+            choose(contacts, other, False)
 
 
 @kernel
@@ -50,14 +69,14 @@ def is_listed_before(contacts: ContactSet, i: int) -> bool:
 
 
 @kernel
-def is_in_hole(geometry: Geometry, placement: Placement, contacts: ContactSet, i: int) -> bool:
-    """Whether a contact is of a rim on the wall of a hole."""
+def is_in_seat(geometry: Geometry, placement: Placement, contacts: ContactSet, i: int) -> bool:
+    """Whether a contact is of a vertex of a rim on the slanted wall of a hole."""
     row = contacts.rows[i]
     if row.feature < 0 or contacts.bends[i].on_rim.length == 0.0:
         return False
-    is_held = contacts.bends[i].on_rim.is_of_cage
-    walls, wall = (placement.body.world, row.feature) if is_held else (geometry.cage, row.cage_feature)
-    return walls.features[wall].kind == EDGE and walls.features[wall].radius < 0.0
+    held, cage = placement.body.world.features[row.feature], geometry.cage.features[row.cage_feature]
+    wall = held if contacts.bends[i].on_rim.is_of_cage else cage
+    return is_rim_on_side(held, cage) and wall.radius < 0.0 and wall.taper != 0.0
 
 
 @kernel

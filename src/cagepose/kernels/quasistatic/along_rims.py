@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, norm, plus, scaled, vector_from
+import math
+
+from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.features import EDGE, RIM, VERTEX, Feature, Shapes, is_of_mouth, place_feature
 from cagepose.kernels.shapes.flat_rims import SAME_WAY
-from cagepose.kernels.shapes.meeting import PARALLEL, Meeting, apart, meeting
-from cagepose.kernels.shapes.rims import is_near_arc, lie_flat
+from cagepose.kernels.shapes.meeting import PARALLEL, Meeting, apart, meeting, reaches
+from cagepose.kernels.shapes.rims import ARCS, end_of_arc, is_near_arc, lie_flat, nearest_on_edge
 
-
-@kernel
-def is_rim_on_side(one: Feature, other: Feature) -> bool:
-    """Whether one of two features is a vertex of a rim and the other one a round side."""
-    return (one.kind == VERTEX and one.length != 0.0 and other.kind == EDGE) or (
-        other.kind == VERTEX and other.length != 0.0 and one.kind == EDGE
-    )
+DEEP = 2.0
+"""In touch tolerances: a rim on the wall of a hole may be so deep, as its vertices may be in the contacts there."""
 
 
 @kernel
 def meeting_along_rim(geometry: Geometry, i: int, j: int, position: Vector, rotation: Matrix, moved: Shapes) -> Meeting:
     """Return how a vertex of a rim that lay along a round side meets it; or, where the rim has come off the side, how
-    the arc beside the vertex does that is nearer. Apart: it is nearest to the side elsewhere.
+    the arc beside the vertex does that is nearer. Apart: it is nearest elsewhere, where other vertices keep it, or what
+    comes in is pushed out.
 
     A rim in a conical seat turns about the place on the axis that the normals lead through as on a ball, and then
     touches at two points, between vertices.
@@ -42,6 +40,44 @@ def meeting_along_rim(geometry: Geometry, i: int, j: int, position: Vector, rota
         if met.is_one and (not nearest.is_one or met.gap < nearest.gap):
             nearest = met
     return meeting(moved, i, cage, j) if is_flat else nearest
+
+
+@kernel
+def goes_through_wall(geometry: Geometry, i: int, j: int, position: Vector, rotation: Matrix, moved: Shapes) -> bool:
+    """Whether at a pose a rim, of which a vertex or an arc was on the wall of a hole, is somewhere deep in the wall.
+
+    What comes in on the far side of a seat is on all of it at one moment, when no place of an arc is the nearest: no
+    first contact is found there.
+    """
+    held, cage = moved.features[i], geometry.cage
+    is_held = cage.features[j].kind == EDGE
+    rim, at = (held, i) if is_held else (cage.features[j], j)
+    arc = at if rim.kind == RIM else rim.arc_after
+    place_feature(geometry.held, i, position, rotation, moved)
+    for _ in range(ARCS):
+        if is_held:
+            place_feature(geometry.held, arc, position, rotation, moved)
+            if is_deep_in_side(end_of_arc(moved.features[arc], 1.0), cage, j, geometry.touch_m):
+                return True
+            arc = moved.features[arc].arc_after
+        else:
+            if is_deep_in_side(end_of_arc(cage.features[arc], 1.0), moved, i, geometry.touch_m):
+                return True
+            arc = cage.features[arc].arc_after
+    return False
+
+
+@kernel
+def is_deep_in_side(point: Vector, shapes: Shapes, i: int, touch_m: float) -> bool:
+    """Whether a point is deep in a round side, where the side is."""
+    side = shapes.features[i]
+    nearest = nearest_on_edge(side, point)
+    gap = nearest.away - nearest.radius
+    if gap >= -DEEP * touch_m or nearest.away == 0.0:
+        return False
+    toward = scaled(minus(nearest.place, point), 1.0 / nearest.away)
+    core = plus(point, scaled(toward, gap + side.radius))
+    return reaches(shapes, i, scaled(toward, -1.0), core, math.inf, touch_m)
 
 
 @kernel

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.algebra.vector import (
     Vector,
     cross,
@@ -28,6 +28,7 @@ from cagepose.kernels.contact.loads import (
 from cagepose.kernels.contact.metric import moved_along_twist
 from cagepose.kernels.contact.on_rim import is_kept
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.quasistatic.along_rims import goes_through_wall
 from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
 from cagepose.kernels.quasistatic.projection import (
     GAP,
@@ -43,6 +44,7 @@ from cagepose.kernels.quasistatic.pushing_out import (
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.straying import STRAYED, strayed
 from cagepose.kernels.shapes.motion import motion_of
+from cagepose.kernels.shapes.rims import is_rim_on_wall
 
 HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
@@ -265,6 +267,7 @@ def stepped(
         place_object(geometry, moved[0], moved[1], placement)
         constrain_to_face(geometry, placement, hit.point, hit.box, work.constraints)
     done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], work)
+    done = done and not go_through_walls(setting, placement, contacts, new_position, new_quaternion)
     if done:
         total = total_load(setting.load, position, quaternion, setting.size_m)
         rounding = setting.tolerances.resolution_m * total
@@ -273,6 +276,19 @@ def stepped(
         return True, new_position, new_quaternion
     place_object(geometry, position, quaternion, placement)
     return False, position, quaternion
+
+
+@kernel
+def go_through_walls(
+    setting: Setting, placement: Placement, contacts: ContactSet, position: Vector, quaternion: Quaternion
+) -> bool:
+    """Whether at a pose a rim that was on the wall of a hole is deep in it."""
+    geometry, rotation, found = setting.geometry, matrix_from_quaternion(quaternion), False
+    for i in range(contacts.used[0]):
+        feature, cage_feature = contacts.rows[i].feature, contacts.rows[i].cage_feature
+        if feature >= 0 and is_rim_on_wall(geometry.held.features[feature], geometry.cage.features[cage_feature]):
+            found = found or goes_through_wall(geometry, feature, cage_feature, position, rotation, placement.moved)
+    return found
 
 
 @kernel

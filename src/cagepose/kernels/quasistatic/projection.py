@@ -37,13 +37,13 @@ from cagepose.kernels.contact.metric import (
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.along_rims import (
     is_along_axis,
-    is_rim_on_side,
     may_be_elsewhere,
     meeting_along_rim,
     meeting_beside,
 )
 from cagepose.kernels.shapes.features import Shapes, place_feature
 from cagepose.kernels.shapes.meeting import apart, meeting, meeting_kept, twin_pair
+from cagepose.kernels.shapes.rims import is_rim_on_side
 
 ROUNDS = 12
 ON_FACE = 4e-16
@@ -220,7 +220,7 @@ def lack(
 
 
 @kernel
-def may_lack_none(geometry: Geometry, constraint: PositionConstraint, moved: Shapes) -> bool:
+def may_be_left_out(geometry: Geometry, constraint: PositionConstraint, moved: Shapes) -> bool:
     """Whether a constraint that means nothing at a pose lets others count."""
     return constraint.which == FLAT or may_be_elsewhere(geometry, constraint.feature, constraint.cage_feature, moved)
 
@@ -277,7 +277,7 @@ def projected(
             if is_slip(rows[i]) != slips:
                 continue
             lacks = lack(geometry, constraints, rows[i], position, quaternion, moved)
-            if lacks.value == math.inf and may_lack_none(geometry, rows[i], moved):
+            if lacks.value == math.inf and may_be_left_out(geometry, rows[i], moved):
                 continue
             if lacks.value == math.inf:
                 return False, position, quaternion

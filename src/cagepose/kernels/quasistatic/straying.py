@@ -9,10 +9,11 @@ from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.metric import moved_along_twist
 from cagepose.kernels.contact.on_rim import is_along_side, is_kept
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.along_rims import is_rim_on_side, meeting_along_rim
+from cagepose.kernels.quasistatic.along_rims import meeting_along_rim
 from cagepose.kernels.quasistatic.projection import box_axis
 from cagepose.kernels.shapes.features import Shapes, place_feature
 from cagepose.kernels.shapes.meeting import meeting_kept, twin_pair
+from cagepose.kernels.shapes.rims import is_rim_on_side
 
 STRAYED = 2.0
 """Times the way that contacts stray: a point or an edge that was nearer than this is met because they do."""

@@ -39,6 +39,10 @@ LEAST_STEP = 1e-15
 BEHIND, FARTHER = 1e-9, 8.0
 """In amounts of the whole motion: how far behind a root that is no contact the search goes on, and how many times that
 if it is still at one."""
+NEAR_ROOT = 1e-12
+"""In amounts of the whole motion: features that stay apart for longer are at no contact, though F has changed sides in
+a step by how far apart they are, as where the lines of edges that were parallel cross.
+"""
 GRAZING = 1e-14
 """Of the square of the slope: less of a discriminant may be rounding, as where a small radius makes two roots one. The
 step then ends before them."""
@@ -380,7 +384,7 @@ def first_touch(
     is_sharp = are_sharp_edges(a, i, b, j)
     if is_sharp and side == 0.0:
         side = math.copysign(1.0, ahead(a, i, b, j, motion, 0.0, 0.0, 1.0, end).value)
-    amount, was_apart, behind = 0.0, False, BEHIND * end
+    amount, was_apart, is_jump, behind = 0.0, False, False, BEHIND * end
     for _ in range(EVALUATIONS):
         rest = end - amount
         now = ahead(a, i, b, j, motion, amount, level, side, rest)
@@ -388,11 +392,13 @@ def first_touch(
             level = 0.0
             continue
         is_at_root = was_apart and now.value < 0.0  # by rounding
+        if is_at_root and is_jump:
+            is_at_root = clear_step(a, i, b, j, motion, amount, moved) <= NEAR_ROOT * end
         if is_at_root and touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
             return amount
         if is_sharp and level == 0.0 and now.value < 0.0:  # lines that have crossed, but not where both edges are
             side, now = -side, Ahead(-now.value, -now.slope, now.low, now.high, False)
-        was_apart = now.value >= 0.0
+        was_apart, is_jump = now.value >= 0.0, False
         step = safe_step(now)
         if NARROWER * step < rest:
             span, is_over = NARROWER * step, True
@@ -400,7 +406,8 @@ def first_touch(
                 narrow = safe_step(ahead(a, i, b, j, motion, amount, level, side, span))
                 step, is_over = max(step, min(narrow, span)), narrow >= span
                 span *= NARROWER
-            step = max(step, clear_step(a, i, b, j, motion, amount, moved))
+            clear = clear_step(a, i, b, j, motion, amount, moved)
+            step, is_jump = max(step, clear), clear > step
             if stay_parallel(moved, i, b, j, motion, rest):
                 return math.inf
         if step >= rest:

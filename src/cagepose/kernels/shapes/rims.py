@@ -163,6 +163,24 @@ def lie_flat(one: Feature, other: Feature, touch_m: float) -> bool:
 
 
 @kernel
+def is_rim_on_side(one: Feature, other: Feature) -> bool:
+    """Whether one of two features is a vertex of a rim and the other one a round side."""
+    return (one.kind == VERTEX and one.length != 0.0 and other.kind == EDGE) or (
+        other.kind == VERTEX and other.length != 0.0 and one.kind == EDGE
+    )
+
+
+@kernel
+def is_rim_on_wall(one: Feature, other: Feature) -> bool:
+    """Whether one of two features is of a rim and the other one the wall of a hole."""
+    is_one = one.kind == RIM or (one.kind == VERTEX and one.length != 0.0)
+    is_other = other.kind == RIM or (other.kind == VERTEX and other.length != 0.0)
+    return (is_one and other.kind == EDGE and other.radius < 0.0) or (
+        is_other and one.kind == EDGE and one.radius < 0.0
+    )
+
+
+@kernel
 def lies_along(rim: Feature, side: Feature, touch_m: float) -> bool:
     """Whether a round side lies on all of an arc: at its ends and in its middle they are equally far apart."""
     first, middle = distance_at(side, end_of_arc(rim, -1.0)), distance_at(side, middle_of_arc(rim))
