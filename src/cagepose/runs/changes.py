@@ -13,6 +13,7 @@ from cagepose.model.scene import Scene
 from cagepose.runs.run import Event, MotionKind, PhaseRun, Run
 
 SLIGHT_TURN_RAD = 0.1
+"""A greater turn looks like one, however far off its axis is."""
 
 
 class Seen(NamedTuple):

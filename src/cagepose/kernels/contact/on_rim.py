@@ -21,9 +21,9 @@ from cagepose.kernels.contact.metric import WRENCH, Frame, twist_of
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.flat_rims import SAME_WAY
 
-SAME_RIM, SAME_BALL = 1e-6, 1e-4
-"""In radii: contacts whose rims have centres so near are of one; and times how far apart the places are that their
-normals lead through, which differ by the tilt in the seat.
+SAME_RIM, SAME_BALL = 1e-6, 1e-2
+"""In radii: how near the centres of the rims of two contacts are if they are one rim; and the places that their normals
+lead through if they are on one side of it, as far as it may be tilted there.
 """
 MOST_ADDED = 40
 """Points of rims, for one question."""
@@ -47,12 +47,17 @@ def is_under_rim(contacts: ContactSet, i: int, touch_m: float) -> bool:
 
 
 @kernel
-def is_along_side(contacts: ContactSet, i: int) -> bool:
-    """Whether a contact is of a rim that lies along a round side."""
+def is_along_wall(contacts: ContactSet, i: int) -> bool:
+    """Whether a contact is of a rim that lies along the wall of a hole. One that lies around a cone is held by it as by
+    a wedge, and one around a ball stays where it is.
+    """
     if contacts.rows[i].feature < 0:
         return False
-    rim = contacts.bends[i].on_rim
-    return rim.length != 0.0 and rim.is_on_ball and max(rim.before, rim.after) > 0.0
+    rim, row = contacts.bends[i].on_rim, contacts.rows[i]
+    if rim.length == 0.0 or not rim.is_on_ball or max(rim.before, rim.after) == 0.0:
+        return False
+    away = minus(vector_from(row.arm), vector_from(rim.ball))
+    return (dot(away, vector_from(row.directions[0])) > 0.0) != rim.is_of_cage
 
 
 @kernel
@@ -64,9 +69,9 @@ def is_of_same_rim(contacts: ContactSet, i: int, other: int) -> bool:
     rim, around = contacts.bends[i].on_rim, contacts.bends[other].on_rim
     if not (rim.is_on_ball and around.is_on_ball) or around.is_of_cage != rim.is_of_cage or around.length != rim.length:
         return False
-    between = minus(center_of_rim(contacts, i), center_of_rim(contacts, other))
-    from_ball = norm(minus(vector_from(rim.ball), vector_from(around.ball)))  # as seen from it, they differ by a tilt
-    return max(norm(between), from_ball * SAME_BALL) <= SAME_RIM * abs(rim.length)
+    between = norm(minus(center_of_rim(contacts, i), center_of_rim(contacts, other)))
+    balls = norm(minus(vector_from(rim.ball), vector_from(around.ball)))
+    return between <= SAME_RIM * abs(rim.length) and balls <= SAME_BALL * abs(rim.length)
 
 
 @kernel
@@ -82,7 +87,7 @@ def keeps_on_rim(contacts: ContactSet, i: int, velocity: Vector, spin: Vector, t
     if contacts.rows[i].feature < 0 or contacts.bends[i].on_rim.length == 0.0:
         return False
     rim, normal = contacts.bends[i].on_rim, vector_from(contacts.rows[i].directions[0])
-    if is_along_side(contacts, i):  # all normals lead through one place
+    if is_along_wall(contacts, i):  # all normals lead through one place
         return norm(plus(velocity, cross(spin, vector_from(rim.ball)))) <= slowest
     away = abs(dot(normal, plus(velocity, cross(spin, vector_from(contacts.rows[i].arm)))))
     tilt = abs(rim.length) * norm(cross(normal, spin))  # about a point of it, a rim may tip

@@ -15,10 +15,10 @@ from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scal
 from cagepose.kernels.collision.geometry import Geometry, Placement
 from cagepose.kernels.contact.contact_set import ContactSet, choose, write_directions
 from cagepose.kernels.contact.metric import Frame
-from cagepose.kernels.contact.on_rim import is_of_same_rim
+from cagepose.kernels.contact.on_rim import SAME_RIM, is_of_same_rim
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.bend import NOTHING, Curvatures, across, write_bend
-from cagepose.kernels.shapes.features import RIM
+from cagepose.kernels.shapes.features import EDGE, RIM
 from cagepose.kernels.shapes.rims import ARCS, is_rim_on_side
 
 
@@ -44,14 +44,19 @@ def seat_rims(geometry: Geometry, placement: Placement, contacts: ContactSet, fr
 
 @kernel
 def leave_out_vertices(geometry: Geometry, placement: Placement, contacts: ContactSet, i: int) -> None:
-    """Let vertices of a rim not count that touch where an arc between them is nearer to the wall."""
-    is_off = False
-    for arc in range(contacts.used[0]):
-        row = contacts.rows[arc]
-        if row.feature >= 0 and row.point == contacts.rows[i].point and row.box == contacts.rows[i].box:
-            held, cage = placement.body.world.features[row.feature], geometry.cage.features[row.cage_feature]
-            rim = cage if contacts.bends[i].on_rim.is_of_cage else held
-            is_off = is_off or (rim.kind == RIM and rim.length == contacts.bends[i].on_rim.length)
+    """Let vertices of a rim not count that touch where an arc between them is nearer to the same wall."""
+    rim = contacts.bends[i].on_rim
+    arcs, walls = (geometry.cage, placement.body.world) if rim.is_of_cage else (placement.body.world, geometry.cage)
+    center, is_off = vector_from(arcs.features[rim.arc_before].point), False
+    taper = walls.features[wall_of(contacts, i)].taper
+    for other in range(contacts.used[0]):
+        row = contacts.rows[other]
+        if row.feature < 0 or row.point != contacts.rows[i].point or row.box != contacts.rows[i].box:
+            continue
+        arc, wall = (row.cage_feature, row.feature) if rim.is_of_cage else (row.feature, row.cage_feature)
+        is_same = walls.features[wall].kind == EDGE and walls.features[wall].taper == taper
+        away = norm(minus(vector_from(arcs.features[arc].point), center))
+        is_off = is_off or (is_same and arcs.features[arc].kind == RIM and away <= SAME_RIM * abs(rim.length))
     for other in range(contacts.used[0] if is_off else 0):
         around = contacts.bends[other].on_rim
         if is_of_same_rim(contacts, i, other) and max(around.before, around.after) == 0.0:
@@ -66,6 +71,13 @@ def is_listed_before(contacts: ContactSet, i: int) -> bool:
     for before in range(i):
         found = found or is_of_same_rim(contacts, i, before)
     return found
+
+
+@kernel
+def wall_of(contacts: ContactSet, i: int) -> int:
+    """Return the feature that the rim of a contact lies on."""
+    is_of_cage = contacts.bends[i].on_rim.is_of_cage
+    return contacts.rows[i].feature if is_of_cage else contacts.rows[i].cage_feature
 
 
 @kernel

@@ -18,7 +18,7 @@ DEEP = 2.0
 
 @kernel
 def meeting_along_rim(geometry: Geometry, i: int, j: int, position: Vector, rotation: Matrix, moved: Shapes) -> Meeting:
-    """Return how a vertex of a rim that lay along a round side meets it; or, where the rim has come off the side, how
+    """Return how a vertex of a rim that lay along the wall of a hole meets it; or, where the rim has come off it, how
     the arc beside the vertex does that is nearer. Apart: it is nearest elsewhere, where other vertices keep it, or what
     comes in is pushed out.
 

@@ -15,7 +15,7 @@ from cagepose.kernels.collision.first_contact import allowed_depth
 from cagepose.kernels.collision.first_meeting import are_convex
 from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
-from cagepose.kernels.contact.on_rim import is_along_side, is_kept, is_of_same_rim
+from cagepose.kernels.contact.on_rim import is_along_wall, is_kept, is_of_same_rim
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.projection import (
     FLAT,
@@ -89,9 +89,9 @@ def kept_gap(geometry: Geometry, placement: Placement, contact: ContactRow, clos
 
 
 @kernel
-def least_along_side(contacts: ContactSet, i: int, closed_m: float) -> float:
-    """Return the gap that a rim keeps from a round side that it lies along, see `constrain_contacts`: the least of its
-    contacts, where it is on the side as it would be anywhere else after a turn.
+def least_along_wall(contacts: ContactSet, i: int, closed_m: float) -> float:
+    """Return the gap that a rim keeps from the wall that it lies along, see `constrain_contacts`: the least of its
+    contacts, where it is on the wall as it would be anywhere else after a turn.
     """
     least = contacts.rows[i].gap
     for other in range(contacts.used[0]):
@@ -113,15 +113,13 @@ def constrain_contacts(
         contact = contacts.rows[i]
         if not is_kept(contacts, i):
             continue
-        if is_along_side(contacts, i):
-            kept = least_along_side(contacts, i, closed_m)
-            constrain_features(constraints, contact.feature, contact.cage_feature, FLAT, kept)
-        elif contacts.states[i].stays_flat:
-            kept = kept_gap(geometry, placement, contact, closed_m)
+        if is_along_wall(contacts, i):
+            kept = least_along_wall(contacts, i, closed_m)
             constrain_features(constraints, contact.feature, contact.cage_feature, FLAT, kept)
         elif contact.feature >= 0:
+            which = FLAT if contacts.states[i].stays_flat else GAP
             kept = kept_gap(geometry, placement, contact, closed_m)
-            constrain_features(constraints, contact.feature, contact.cage_feature, GAP, kept)
+            constrain_features(constraints, contact.feature, contact.cage_feature, which, kept)
         else:
             at = geometry.half_sizes[contact.box, contact.axis]
             if contact.gap > closed_m:

@@ -7,7 +7,7 @@ from cagepose.kernels.algebra.vector import Vector, dot, minus, row
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.metric import moved_along_twist
-from cagepose.kernels.contact.on_rim import is_along_side, is_kept
+from cagepose.kernels.contact.on_rim import is_along_wall, is_kept
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.along_rims import meeting_along_rim
 from cagepose.kernels.quasistatic.projection import box_axis
@@ -49,7 +49,7 @@ def strayed(
             if twin >= 0:
                 place_feature(geometry.held, twin, end, matrix, moved)
             held, cage = moved.features[contact.feature], geometry.cage.features[contact.cage_feature]
-            is_along = is_along_side(contacts, i)
+            is_along = is_along_wall(contacts, i)
             if is_along and is_rim_on_side(held, cage):
                 met = meeting_along_rim(geometry, contact.feature, contact.cage_feature, end, matrix, moved)
             else:

@@ -163,21 +163,22 @@ def lie_flat(one: Feature, other: Feature, touch_m: float) -> bool:
 
 
 @kernel
+def is_vertex_of_rim(feature: Feature) -> bool:
+    return bool(feature.kind == VERTEX and feature.length != 0.0)
+
+
+@kernel
 def is_rim_on_side(one: Feature, other: Feature) -> bool:
     """Whether one of two features is a vertex of a rim and the other one a round side."""
-    return (one.kind == VERTEX and one.length != 0.0 and other.kind == EDGE) or (
-        other.kind == VERTEX and other.length != 0.0 and one.kind == EDGE
-    )
+    return bool((is_vertex_of_rim(one) and other.kind == EDGE) or (is_vertex_of_rim(other) and one.kind == EDGE))
 
 
 @kernel
 def is_rim_on_wall(one: Feature, other: Feature) -> bool:
-    """Whether one of two features is of a rim and the other one the wall of a hole."""
-    is_one = one.kind == RIM or (one.kind == VERTEX and one.length != 0.0)
-    is_other = other.kind == RIM or (other.kind == VERTEX and other.length != 0.0)
-    return (is_one and other.kind == EDGE and other.radius < 0.0) or (
-        is_other and one.kind == EDGE and one.radius < 0.0
-    )
+    """Whether one of two features is of a rim, be it an arc or a vertex, and the other one the wall of a hole."""
+    if one.kind == EDGE:
+        return bool(one.radius < 0.0 and (other.kind == RIM or is_vertex_of_rim(other)))
+    return bool(other.kind == EDGE and other.radius < 0.0 and (one.kind == RIM or is_vertex_of_rim(one)))
 
 
 @kernel

@@ -266,7 +266,7 @@ class Stage:
         moves = [self._moved(reference, shot) for shot in ends]
         if all(turn < STILL and way < STILL * self.size_m for turn, way in moves):
             return 1
-        for k in sorted(EXAGGERATIONS, reverse=True):
+        for k in reversed(EXAGGERATIONS):
             if all(self._fits(move, k) for move in moves) and all(
                 self._meet(shot, Look(reference, k)) for shot in ends
             ):
