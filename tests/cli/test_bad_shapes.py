@@ -261,6 +261,31 @@ def test_a_bore_that_is_wider_than_its_shank_is_told_so(command: Callable[..., A
     assert "(bore) that is wider than shank, flange somewhere below its mouth" in command("run", "scene.yaml").err
 
 
+@pytest.mark.parametrize(
+    ("block", "beside", "is_run"),
+    [
+        ("[20, 40, 20]}, position: [-10, 0, -6]", "box: {size: [20, 40, 20]}, position: [10, 0, -6]", False),
+        ("[20, 40, 20]}, position: [-6.5, 0, -6]", "box: {size: [20, 40, 20]}, position: [13.5, 0, -6]", False),
+        ("[40, 40, 20]}, position: [0, 0, -6]", "cylinder: {radius: 20, length: 20}, position: [18, 0, -6]", False),
+        ("[40, 40, 6]}, position: [0, 0, 1]", "box: {size: [20, 20, 14]}, position: [0, 0, -9]", True),
+        ("[40, 40, 6]}, position: [0, 0, 1]", "cylinder: {radius: 8, length: 20}, position: [0, 0, -6]", True),
+    ],
+    ids=["over the seam", "only the chamfer is over it", "overlapping", "stacked", "one in the other"],
+)
+def test_a_hole_along_the_side_of_one_of_its_parts_is_refused(
+    command: Callable[..., Any], in_folder: Path, block: str, beside: str, is_run: bool
+) -> None:
+    parts = (
+        f"name: block, box: {{size: {block}}}\n    - {{name: beside, {beside}}}\n"
+        "    - {name: seat, hole: {radius: 3, depth: 12, chamfer: {width: 1, angle_deg: 60}, in: [block, beside]}"
+        ", position: [0, 0, 4]"
+    )
+    (in_folder / "scene.yaml").write_text(SCENE.format("sphere: {radius: 2}, position: [0, 0, 30]", parts))
+    answer = command("run", "scene.yaml")
+    assert answer.code == (0 if is_run else 2), answer
+    assert ("along which the side of" in answer.err) != is_run, answer.err
+
+
 def test_a_part_that_starts_in_a_plate_beside_its_hole_is_refused(command: Callable[..., Any], in_folder: Path) -> None:
     hole = "hole: {radius: 6, depth: 9, in: [plate]}, position: [0, 0, 5]"
     plate = "name: plate, box: {size: [90, 90, 10]}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import ClassVar, Self
 
 import numpy as np
@@ -19,6 +19,10 @@ AROUND = 64
 """Corners of the polygon around a rim that stands for it where a hole is looked for within a part."""
 RINGS = (0.0, 0.5, 1.0)
 """Of the radius: circles of points throughout a hole."""
+STEPS = 16
+"""Heights between two rims at which it is asked what ends in a hole."""
+INNER = 0.999
+"""Of the radius: what ends on the wall of a hole is not in it."""
 ON_FACE = 1e-6
 """A mouth this close to a face, as a fraction of the hole's reach, is on it."""
 
@@ -135,6 +139,17 @@ class Hole(Turned):
         rings = np.concatenate([self._ring(-share * depth, self.radius_m) for share in (0.01, 0.5, 0.99)])
         return not np.any([part.holds(rings) for part in parts], axis=0).all()
 
+    def is_divided_by(self, part: Shape, parts: Sequence[Shape]) -> bool:
+        """Return whether one of the parts that the hole is cut out of ends within it other than in a face across it, so
+        that its edges would stand in the opening: asked by points, at heights that a face across is not likely at.
+        """
+        depth, _ = self.run_through(parts)
+        shares = (np.arange(STEPS) + 1.0 / math.sqrt(5.0)) / STEPS
+        ends = [max(height, -depth) for height, _ in self.rims]
+        steps = np.concatenate([low + shares * (high - low) for low, high in pairwise(ends)])
+        held = part.holds(self._filled(steps, INNER)).reshape(len(steps), -1)
+        return bool((held.any(axis=1) & ~held.all(axis=1)).any())
+
     def meets(self, other: Hole, parts: Sequence[Shape]) -> bool:
         """Return whether two holes in the same parts have a place in common; of ones that are aslant to each other,
         points are asked, so that the answer may be no where they are a little in each other.
@@ -143,7 +158,9 @@ class Hole(Turned):
         between, along = other.pose_body_shape.position_m - mouth, other.pose_body_shape.rotation[:, 2]
         depths, slack = [hole.run_through(parts)[0] for hole in (self, other)], self._slack_m
         if float(np.linalg.norm(np.cross(axis, along))) > ON_FACE:
-            return bool(other.holds(self._filled(depths[0])).any() or self.holds(other._filled(depths[1])).any())
+            even = np.linspace(-1.0, 0.0, AROUND)
+            filled, of_other = self._filled(even * depths[0]), other._filled(even * depths[1])
+            return bool(other.holds(filled).any() or self.holds(of_other).any())
         start, sense = float(between @ axis), math.copysign(1.0, float(along @ axis))
         heights, radii = np.array(self.rims).T
         others, other_radii = np.array(other.rims).T
@@ -155,12 +172,11 @@ class Hole(Turned):
         wide = np.interp(steps, heights, radii) + np.interp(sense * (steps - start), others, other_radii)
         return bool(float(np.linalg.norm(between - start * axis)) <= float(wide.max()) + slack)
 
-    def _filled(self, depth_m: float) -> FloatArray:
-        """Points of the body's frame throughout the hole, so far down."""
+    def _filled(self, steps: FloatArray, share: float = 1.0) -> FloatArray:
+        """Points of the body's frame throughout the hole at these heights, so much of the way to its wall."""
         heights, radii = np.array(self.rims).T
-        steps = np.linspace(-depth_m, 0.0, AROUND)
-        wide = np.interp(steps, heights, radii)
-        return np.concatenate([self._ring(h, share * r) for h, r in zip(steps, wide, strict=True) for share in RINGS])
+        wide = share * np.interp(steps, heights, radii)
+        return np.concatenate([self._ring(h, part * r) for h, r in zip(steps, wide, strict=True) for part in RINGS])
 
     @property
     def _slack_m(self) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from cagepose.errors import Key, Problem, SceneError
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
@@ -18,16 +20,25 @@ def unknown_shapes(scene: Scene) -> list[Problem]:
         if not isinstance(hole, Hole):
             continue
         body: Object | Cage = scene.object if path[0] == "object" else scene.cage
-        solids = [solid for solid in (*_boxes_of(body), *body.shapes) if solid.name in hole.in_]
-        if hole.leaves_sideways(solids):
-            says = (
-                f"is a hole ({hole.name}) that is wider than {', '.join(hole.in_)} somewhere below its mouth, or comes"
-            )
-            found.append(Problem(path, f"{says} out aslant, which no method runs; make it narrower or less deep"))
+        solids = tuple(solid for solid in (*_boxes_of(body), *body.shapes) if solid.name in hole.in_)
+        if says := _unknown_in(hole, solids):
+            found.append(Problem(path, says))
         elif scene.cage.names and isinstance(body, Object) and any(isinstance(solid, Box) for solid in solids):
             says = f"is a hole ({hole.name}) in a box of the object, and points of the cage see no holes in boxes"
             found.append(Problem(path, f"{says}; make the box a convex shape, or the points small spheres"))
     return found
+
+
+@lru_cache(maxsize=64)  # each run asks, and points throughout a hole take longer than many runs
+def _unknown_in(hole: Hole, solids: tuple[Shape, ...]) -> str | None:
+    """Return why no method runs a hole in these parts; None: one does."""
+    if hole.leaves_sideways(solids):
+        says = f"is a hole ({hole.name}) that is wider than {', '.join(hole.in_)} somewhere below its mouth, or comes"
+        return f"{says} out aslant, which no method runs; make it narrower or less deep"
+    if divided := [str(solid.name) for solid in solids if hole.is_divided_by(solid, solids)]:
+        says = f"is a hole ({hole.name}) along which the side of {' and of '.join(divided)} runs, which no method runs"
+        return f"{says}; draw what is around the hole as one shape, or as several on top of each other"
+    return None
 
 
 def _boxes_of(body: Object | Cage) -> tuple[Box, ...]:
