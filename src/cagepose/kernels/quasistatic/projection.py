@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
-from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear
+from cagepose.kernels.algebra.dense import cholesky, remove_span, solve_lower, solve_upper
+from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, inner
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion, rotated
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import (
@@ -53,7 +54,8 @@ ON_FACE = 4e-16
 DEPENDENT = 1e-5
 """Constraints that depend on others, but for such a part of their wrench, follow from them: faces of a plate without
 play can be tilted by the root of rounding, and to make up for that would take long ways."""
-
+LEAST_SLIP = 1e-10
+"""Of a slip squared: a motion beside that lets nothing slip is not made."""
 
 GAP, ALONG, FLAT = 0, 1, 3
 """Which number of two features a constraint is about: their gap; (1 and 2) the way along each tangent; the gap of a
@@ -92,8 +94,10 @@ class ProjectionWorkspace:
         How many constraints, and motions that contacts without play stop to second order.
     stopped_forces, stopped_moments
         Those motions y have s . y = 0 with these wrenches s, about the world's origin.
-    column, y
-        One wrench, and a scaled twist.
+    column, y, back
+        One wrench, and scaled twists: the motion, and what is added to it so that little slips.
+    slips
+        Matrix of its least squares, and then its Cholesky factor, lower.
     basis, values
         Of the constraints that depend on no others, and what each of these lacks, metres.
     """
@@ -104,6 +108,8 @@ class ProjectionWorkspace:
     stopped_moments: Annotated[FloatArray, WRENCH, 3]
     column: ScaledVector
     y: ScaledVector
+    back: ScaledVector
+    slips: Annotated[FloatArray, 6, 6]
     basis: PassiveSet
     values: ScaledVector
 
@@ -246,6 +252,62 @@ def is_slip(constraint: PositionConstraint) -> bool:
 
 
 @kernel
+def write_shortest(work: ProjectionWorkspace) -> None:
+    """Write the shortest motion that makes up for what the constraints of the basis lack."""
+    values = work.values
+    for k in range(6):
+        work.y[k] = 0.0
+    for i in range(work.basis.used):
+        for j in range(i):
+            values[i] -= work.basis.triangle[i, j] * values[j]
+        values[i] *= work.basis.triangle[i, i]
+        for k in range(6):
+            work.y[k] += values[i] * work.basis.basis[i, k]
+
+
+@kernel
+def add_least_slip(
+    geometry: Geometry,
+    constraints: Constraints,
+    position: Vector,
+    quaternion: Quaternion,
+    frame: Frame,
+    moved: Shapes,
+) -> bool:
+    """Add to the motion that closes gaps the one beside it with which features that stick slip least, in the sense of
+    least squares; False: a slip means nothing here.
+
+    Two points on slanted walls cannot both go straight off them. To let one not slip at all, and the other where it
+    must, would take a way many times longer than the gaps.
+    """
+    work, rows, n_slips = constraints.scratch[0], constraints.rows, 0
+    for j in range(6):
+        work.back[j] = 0.0
+        for k in range(6):
+            work.slips[j, k] = LEAST_SLIP if j == k else 0.0
+    for i in range(work.used):
+        if not is_slip(rows[i]):
+            continue
+        slip = lack(geometry, constraints, rows[i], position, quaternion, moved)
+        if slip.value == math.inf:
+            return False
+        write_scaled_wrench(slip.direction, cross(slip.arm, slip.direction), frame, work.column)
+        on_the_way = inner(work.column, work.y, 6)
+        remove_span(work.column, work.basis)
+        for j in range(6):
+            work.back[j] -= on_the_way * work.column[j]
+            for k in range(6):
+                work.slips[j, k] += work.column[j] * work.column[k]
+        n_slips += 1
+    if n_slips > 0 and cholesky(work.slips, 0.0):
+        solve_lower(work.slips, work.back, work.back)
+        solve_upper(work.slips, work.back)
+        for k in range(6):
+            work.y[k] += work.back[k]
+    return True
+
+
+@kernel
 def projected(
     geometry: Geometry,
     body: Body,
@@ -272,9 +334,8 @@ def projected(
             values[work.basis.used] = 0.0
             append_column(work.basis, work.column, i, 0.0)
         worst = 0.0
-        for at in range(2 * work.used):  # gaps first: what must not slip only says which way is left to close them
-            slips, i = at >= work.used, at % work.used
-            if is_slip(rows[i]) != slips:
+        for i in range(work.used):
+            if is_slip(rows[i]):
                 continue
             lacks = lack(geometry, constraints, rows[i], position, quaternion, moved)
             if lacks.value == math.inf and may_be_left_out(geometry, rows[i], moved):
@@ -289,14 +350,9 @@ def projected(
         if worst <= ON_FACE * size_m or worst >= worst_before:
             return worst <= 1e3 * ON_FACE * size_m, position, quaternion
         worst_before = worst
-        for k in range(6):
-            work.y[k] = 0.0
-        for i in range(work.basis.used):
-            for j in range(i):
-                values[i] -= work.basis.triangle[i, j] * values[j]
-            values[i] *= work.basis.triangle[i, i]
-            for k in range(6):
-                work.y[k] += values[i] * work.basis.basis[i, k]
+        write_shortest(work)
+        if not add_least_slip(geometry, constraints, position, quaternion, frame, moved):
+            return False, position, quaternion
         velocity, spin = twist_of(work.y, frame)
         position, quaternion = moved_along_twist(position, quaternion, velocity, spin, 1.0)
     return False, position, quaternion
