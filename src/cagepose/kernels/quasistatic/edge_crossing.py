@@ -20,6 +20,10 @@ from cagepose.kernels.shapes.motion import Motion, motion_of
 
 CLEAR = 2.0
 """In touch tolerances: how far beyond the edge a contact is let go, so that it does not touch the next face too."""
+MERGED = 0.99995
+"""Cosine between the normals of a contact and of another one on the same arc that takes its place as the two come
+together: neither is at an edge.
+"""
 HALVINGS = 50
 """Of a motion, to find where a contact of two shapes ends."""
 
@@ -50,12 +54,14 @@ def still_meet(
     held, cage, moved = placement.body.world, geometry.cage, placement.moved
     one, other = contact.feature, contact.cage_feature
     place_moved(held, one, motion, amount, moved)
-    met, twins = meeting(moved, one, cage, other), twin_pair(moved, one, cage, other)
-    if not met.is_one and twins[0] >= 0 and not is_listed(contacts, twins[0], twins[1]):
+    met, twins, normal = meeting(moved, one, cage, other), twin_pair(moved, one, cage, other), contact.directions[0]
+    if not met.is_one and twins[0] >= 0:
         one, other = twins  # where the first of two places on an arc has left it, the second one is the first
         place_moved(held, one, motion, amount, moved)
         met = meeting(moved, one, cage, other)
-    if dot(met.normal, vector_from(contact.directions[0])) < SAME_WAY:
+        if is_listed(contacts, one, other) and dot(met.normal, vector_from(normal)) < MERGED:
+            return False
+    if dot(met.normal, vector_from(normal)) < SAME_WAY:
         return False
     least = min(held.parts[contact.box].least_length, cage.parts[contact.point].least_length)
     slack = CLEAR * slack_of(held, contact.box, cage, contact.point, touch_m) - within_m / least

@@ -163,6 +163,18 @@ def constrain_features(constraints: Constraints, feature: int, cage_feature: int
 
 
 @kernel
+def drop_constraint(constraints: Constraints, i: int) -> None:
+    """Drop a constraint; those behind it move up."""
+    n, rows = constraints.scratch[0].used - 1, constraints.rows
+    for k in range(i, n):
+        row, after = rows[k], rows[k + 1]
+        row.point, row.box, row.axis, row.side = after.point, after.box, after.axis, after.side
+        row.feature, row.cage_feature, row.which = after.feature, after.cage_feature, after.which
+        row.target = after.target
+    constraints.scratch[0].used = n
+
+
+@kernel
 def box_axis(geometry: Geometry, box: int, axis: int) -> Vector:
     """Return an axis of a box in the object's frame."""
     r = geometry.box_rotations

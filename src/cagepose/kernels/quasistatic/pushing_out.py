@@ -18,16 +18,18 @@ from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.on_rim import is_along_wall, is_kept, is_of_same_rim
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.projection import (
+    ALONG,
     FLAT,
     GAP,
     Constraints,
     add_constraint,
     constrain_features,
+    drop_constraint,
     empty_constraints,
     projected,
 )
 from cagepose.kernels.quasistatic.setting import Setting
-from cagepose.kernels.shapes.features import is_of_mouth
+from cagepose.kernels.shapes.features import VERTEX, Feature, is_of_mouth
 from cagepose.kernels.shapes.meeting import meeting
 from cagepose.kernels.shapes.rims import EQUALLY_FAR
 from cagepose.kernels.shapes.touching import most_meetings
@@ -179,7 +181,7 @@ def pushed_out(
             box = box_around(geometry, placement, point)
             if not constrain_to_face(geometry, placement, point, box, work.constraints):
                 return False, position, quaternion
-        elif meeting == UNKNOWN_DEEP or not constrain_meeting(placement, meeting, work.constraints):
+        elif meeting == UNKNOWN_DEEP or not constrain_meeting(geometry, placement, meeting, work.constraints):
             return False, position, quaternion
     is_out = deepest_offender(placement, work.allowed) < 0 and deepest_meeting(placement, work) == NONE_DEEP
     return holds and is_out, position, quaternion
@@ -214,10 +216,27 @@ def excess_of(gap_m: float, one: int, other: int, work: StepWorkspace) -> float:
 
 
 @kernel
-def constrain_meeting(placement: Placement, at: int, constraints: Constraints) -> bool:
-    """Constrain the gap of a meeting that is too deep to zero."""
-    row = placement.meetings.rows[at]
-    return constrain_features(constraints, row.feature, row.cage_feature, GAP, 0.0)
+def constrain_meeting(geometry: Geometry, placement: Placement, at: int, constraints: Constraints) -> bool:
+    """Constrain the gap of a meeting that is too deep to zero. An arc of a rim takes the place of its ends, which are
+    farther out then.
+    """
+    row, held, cage = placement.meetings.rows[at], placement.body.world, geometry.cage
+    i, j, sticks = row.feature, row.cage_feature, False
+    for k in range(constraints.scratch[0].used - 1, -1, -1):
+        one, other = constraints.rows[k].feature, constraints.rows[k].cage_feature
+        is_end_of_held = other == j and one >= 0 and is_end_of(held.features[one], i)
+        if is_end_of_held or (one == i and is_end_of(cage.features[other], j)):
+            sticks = sticks or constraints.rows[k].which not in (GAP, FLAT)
+            drop_constraint(constraints, k)
+    for which in range(ALONG, ALONG + 2 if sticks else ALONG):
+        constrain_features(constraints, i, j, which, 0.0)
+    return constrain_features(constraints, i, j, GAP, 0.0)
+
+
+@kernel
+def is_end_of(feature: Feature, arc: int) -> bool:
+    """Whether a feature is a vertex at an end of an arc."""
+    return feature.kind == VERTEX and arc in (feature.arc_before, feature.arc_after)
 
 
 @kernel
