@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cagepose import Box, Cage, Capsule, Chamfer, Cylinder, Force, Hole, Load, Object, Pose, Scene, Sphere
+from cagepose import Box, Cage, Capsule, Chamfer, Cone, Cylinder, Force, Hole, Load, Object, Pose, Scene, Sphere
 
 MM = 1e-3
 Rng = np.random.Generator
@@ -51,6 +51,30 @@ def bolt_in_hole(rng: Rng) -> Scene:
     start = Pose((0, float(rng.choice((0.0, 0.5))) * play * MM, float(rng.choice((0.0, 0.5, 2.0))) * MM))
     at = (float(rng.choice((0, radius))), 0, 6)
     return _scene(rng, [shank, head], Cage(shapes=[plate], holes=[bore]), at, start)
+
+
+def countersunk(rng: Rng) -> Scene:
+    """A countersunk screw in a seat of its own or of another angle, with play; pushed at either end of its head."""
+    radius, wide, play, length = (float(rng.choice(x)) for x in ((2.5, 3, 4), (2, 3), (0.1, 0.2, 0.5), (10, 20)))
+    head_deg, seat_deg = (float(rng.choice((40, 45, 45, 50))) for _ in range(2))
+    parts, cage = screw_and_seat(radius, wide, play, length, head_deg, seat_deg)
+    start = Pose((float(rng.choice((0.0, 0.5, 0.9))) * play * MM, 0, float(rng.choice((0.5, 2.0))) * MM))
+    high = wide / math.tan(math.radians(head_deg))
+    return _scene(rng, parts, cage, (0, 0, float(rng.choice((0.0, -high)))), start)
+
+
+def screw_and_seat(
+    radius: float, wide: float, play: float, length: float, head_deg: float, seat_deg: float
+) -> tuple[list[Cone | Cylinder], Cage]:
+    """A screw with the top of its head at its origin, and a plate with a seat for it, mm: radius of the shank, how much
+    wider the head is, play of the shank, its length; half angles.
+    """
+    high = wide / math.tan(math.radians(head_deg))
+    head = Cone(radius * MM, (radius + wide) * MM, high * MM, Pose((0, 0, -high / 2 * MM)), "head")
+    shank = Cylinder(radius * MM, length * MM, Pose((0, 0, -(high + length / 2) * MM)), "shank")
+    plate = Box((80 * MM, 80 * MM, 12 * MM), Pose((0, 0, -6 * MM)), "plate")
+    seat = Hole((radius + play) * MM, 12 * MM, Chamfer(wide * MM, math.radians(seat_deg)), ["plate"], name="seat")
+    return [head, shank], Cage(shapes=[plate], holes=[seat])
 
 
 def ring_on_peg(rng: Rng) -> Scene:
@@ -202,7 +226,7 @@ def gripper(rng: Rng) -> Scene:
 
 def _scene(
     rng: Rng,
-    parts: Sequence[Box | Cylinder | Capsule | Sphere],
+    parts: Sequence[Box | Cone | Cylinder | Capsule | Sphere],
     cage: Cage,
     at_mm: Sequence[float],
     start: Pose,
