@@ -287,12 +287,12 @@ def add_least_slip(
     moved: Shapes,
 ) -> bool:
     """Add to the motion that closes gaps the one beside it with which features that stick slip least, in the sense of
-    least squares; False: a slip means nothing here.
+    least squares; False: they would by more than the touch tolerance, or a slip means nothing here.
 
     Two points on slanted walls cannot both go straight off them. To let one not slip at all, and the other where it
     must, would take a way many times longer than the gaps.
     """
-    work, rows, n_slips = constraints.scratch[0], constraints.rows, 0
+    work, rows, n_slips, slipped = constraints.scratch[0], constraints.rows, 0, 0.0
     for j in range(6):
         work.back[j] = 0.0
         for k in range(6):
@@ -305,6 +305,7 @@ def add_least_slip(
             return False
         write_scaled_wrench(slip.direction, cross(slip.arm, slip.direction), frame, work.column)
         on_the_way = inner(work.column, work.y, 6)
+        slipped += on_the_way * on_the_way
         remove_span(work.column, work.basis)
         for j in range(6):
             work.back[j] -= on_the_way * work.column[j]
@@ -313,10 +314,20 @@ def add_least_slip(
         n_slips += 1
     if n_slips > 0 and cholesky(work.slips, 0.0):
         solve_lower(work.slips, work.back, work.back)
+        slipped -= inner(work.back, work.back, 6)
         solve_upper(work.slips, work.back)
         for k in range(6):
             work.y[k] += work.back[k]
-    return True
+    return slipped <= geometry.touch_m * geometry.touch_m
+
+
+@kernel
+def has_slips(constraints: Constraints) -> bool:
+    """Whether there are constraints that features do not slip."""
+    found = False
+    for i in range(constraints.scratch[0].used):
+        found = found or is_slip(constraints.rows[i])
+    return found
 
 
 @kernel
@@ -327,11 +338,13 @@ def projected(
     quaternion: Quaternion,
     constraints: Constraints,
     size_m: float,
+    may_slip: bool,
     moved: Shapes,
 ) -> tuple[bool, Vector, Quaternion]:
     """Move the object so that all constraints hold; return (whether they do, position, quaternion).
 
-    Those that depend on others follow from them: where they do not, that shows as a point inside the object later.
+    Those that depend on others follow from them: where they do not, that shows as a point inside the object later. Or,
+    if what sticks ``may_slip``, gaps alone are made to hold, and it slips as little as that needs.
     """
     work, rows, values = constraints.scratch[0], constraints.rows, constraints.scratch[0].values
     worst_before = math.inf
@@ -346,8 +359,10 @@ def projected(
             values[work.basis.used] = 0.0
             append_column(work.basis, work.column, i, 0.0)
         worst = 0.0
-        for i in range(work.used):
-            if is_slip(rows[i]):
+        n_rounds = 1 if may_slip else 2  # gaps first: what must not slip only says which way is left to close them
+        for at in range(n_rounds * work.used):
+            slips, i = at >= work.used, at % work.used
+            if is_slip(rows[i]) != slips:
                 continue
             lacks = lack(geometry, constraints, rows[i], position, quaternion, moved)
             if lacks.value == math.inf and may_be_left_out(geometry, rows[i], moved):
@@ -363,7 +378,7 @@ def projected(
             return worst <= 1e3 * ON_FACE * size_m, position, quaternion
         worst_before = worst
         write_shortest(work)
-        if not add_least_slip(geometry, constraints, position, quaternion, frame, moved):
+        if may_slip and not add_least_slip(geometry, constraints, position, quaternion, frame, moved):
             return False, position, quaternion
         velocity, spin = twist_of(work.y, frame)
         position, quaternion = moved_along_twist(position, quaternion, velocity, spin, 1.0)

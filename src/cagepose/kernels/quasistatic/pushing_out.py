@@ -26,6 +26,7 @@ from cagepose.kernels.quasistatic.projection import (
     constrain_features,
     drop_constraint,
     empty_constraints,
+    has_slips,
     projected,
 )
 from cagepose.kernels.quasistatic.setting import Setting
@@ -162,6 +163,18 @@ def box_around(geometry: Geometry, placement: Placement, point: int) -> int:
 
 
 @kernel
+def put_back(
+    setting: Setting, placement: Placement, position: Vector, quaternion: Quaternion, constraints: Constraints
+) -> tuple[bool, Vector, Quaternion]:
+    """Make all constraints hold, and if that cannot be let what sticks slip as little as closing the gaps needs."""
+    geometry, body, size_m = setting.geometry, setting.body, setting.size_m
+    done, end, turned = projected(geometry, body, position, quaternion, constraints, size_m, False, placement.moved)
+    if done or not has_slips(constraints):
+        return done, end, turned
+    return projected(geometry, body, position, quaternion, constraints, size_m, True, placement.moved)
+
+
+@kernel
 def pushed_out(
     setting: Setting, placement: Placement, position: Vector, quaternion: Quaternion, work: StepWorkspace
 ) -> tuple[bool, Vector, Quaternion]:
@@ -170,9 +183,7 @@ def pushed_out(
     holds = True
     for _ in range(POINTS_PUSHED):
         if work.constraints.scratch[0].used > 0:
-            holds, position, quaternion = projected(
-                geometry, setting.body, position, quaternion, work.constraints, setting.size_m, placement.moved
-            )
+            holds, position, quaternion = put_back(setting, placement, position, quaternion, work.constraints)
         place_object(geometry, position, quaternion, placement)
         point, meeting = deepest_offender(placement, work.allowed), deepest_meeting(placement, work)
         if not holds or (point < 0 and meeting == NONE_DEEP):
