@@ -286,6 +286,21 @@ def test_a_hole_along_the_side_of_one_of_its_parts_is_refused(
     assert ("along which the side of" in answer.err) != is_run, answer.err
 
 
+def test_a_hole_in_two_thin_covers_side_by_side_is_refused(command: Callable[..., Any], in_folder: Path) -> None:
+    covers = "".join(
+        f"    - {{name: {name}, box: {{size: [20, 40, 0.3]}}, position: [{x}, 0, 4.15]}}\n"
+        for name, x in (("left", -10), ("right", 10))
+    )
+    parts = (
+        f"name: block, box: {{size: [40, 40, 20]}}, position: [0, 0, -6]}}\n{covers}"
+        "    - {name: bore, hole: {radius: 3, depth: 12, in: [block, left, right]}, position: [0, 0, 4.3]"
+    )
+    (in_folder / "scene.yaml").write_text(SCENE.format("sphere: {radius: 2}, position: [0, 0, 30]", parts))
+    answer = command("run", "scene.yaml")
+    assert answer.code == 2
+    assert "(bore) along which the side of left and of right runs" in answer.err
+
+
 def test_a_part_that_starts_in_a_plate_beside_its_hole_is_refused(command: Callable[..., Any], in_folder: Path) -> None:
     hole = "hole: {radius: 6, depth: 9, in: [plate]}, position: [0, 0, 5]"
     plate = "name: plate, box: {size: [90, 90, 10]}"

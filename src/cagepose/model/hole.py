@@ -20,7 +20,7 @@ AROUND = 64
 RINGS = (0.0, 0.5, 1.0)
 """Of the radius: circles of points throughout a hole."""
 STEPS = 16
-"""Heights between two rims at which it is asked what ends in a hole."""
+"""Heights between two ends of parts, or rims, at which it is asked what ends in a hole."""
 INNER = 0.999
 """Of the radius: what ends on the wall of a hole is not in it."""
 ON_FACE = 1e-6
@@ -139,16 +139,25 @@ class Hole(Turned):
         rings = np.concatenate([self._ring(-share * depth, self.radius_m) for share in (0.01, 0.5, 0.99)])
         return not np.any([part.holds(rings) for part in parts], axis=0).all()
 
-    def is_divided_by(self, part: Shape, parts: Sequence[Shape]) -> bool:
-        """Return whether one of the parts that the hole is cut out of ends within it other than in a face across it, so
-        that its edges would stand in the opening: asked by points, at heights that a face across is not likely at.
+    def divided_by(self, parts: Sequence[Shape]) -> list[Shape]:
+        """Return those of the parts that the hole is cut out of that end within it other than in a face across it, so
+        that their edges would stand in the opening: asked by points between the heights where parts begin and end. Not
+        asked is a bar that lies across the hole.
         """
+        if len(parts) == 1:  # convex, it holds what is between the ends of the hole
+            return []
+        axis, mouth = self.pose_body_shape.rotation[:, 2], self.pose_body_shape.position_m
         depth, _ = self.run_through(parts)
+        ends = [height for height, _ in self.rims]
+        for way in (axis, -axis):
+            ends += [float(way @ axis) * float(part.heights_m(way[None])[0]) - float(mouth @ axis) for part in parts]
         shares = (np.arange(STEPS) + 1.0 / math.sqrt(5.0)) / STEPS
-        ends = [max(height, -depth) for height, _ in self.rims]
-        steps = np.concatenate([low + shares * (high - low) for low, high in pairwise(ends)])
-        held = part.holds(self._filled(steps, INNER)).reshape(len(steps), -1)
-        return bool((held.any(axis=1) & ~held.all(axis=1)).any())
+        levels = pairwise(np.unique(np.clip(ends, -depth, 0.0)))
+        steps = np.concatenate([low + shares * (high - low) for low, high in levels if high - low > self._slack_m])
+        inside = self._filled(steps, INNER)
+        asked = [part for part in parts if not _is_bar_across(part, axis)]
+        held = [part.holds(inside).reshape(len(steps), -1) for part in asked]
+        return [part for part, of in zip(asked, held, strict=True) if (of.any(axis=1) & ~of.all(axis=1)).any()]
 
     def meets(self, other: Hole, parts: Sequence[Shape]) -> bool:
         """Return whether two holes in the same parts have a place in common; of ones that are aslant to each other,
@@ -209,6 +218,10 @@ class Hole(Turned):
         angles = 2.0 * math.pi * np.arange(AROUND) / AROUND
         ring = np.stack([radius * np.cos(angles), radius * np.sin(angles), np.full(AROUND, height)], axis=1)
         return self.pose_body_shape.transform(ring)
+
+
+def _is_bar_across(part: Shape, axis: FloatArray) -> bool:
+    return isinstance(part, Turned) and abs(float(part.pose_body_shape.rotation[:, 2] @ axis)) <= ON_FACE
 
 
 def check_holes(

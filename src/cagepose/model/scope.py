@@ -29,15 +29,15 @@ def unknown_shapes(scene: Scene) -> list[Problem]:
     return found
 
 
-@lru_cache(maxsize=64)  # each run asks, and points throughout a hole take longer than many runs
+@lru_cache(maxsize=1024)  # each run asks, and points throughout a hole take longer than many runs
 def _unknown_in(hole: Hole, solids: tuple[Shape, ...]) -> str | None:
     """Return why no method runs a hole in these parts; None: one does."""
     if hole.leaves_sideways(solids):
         says = f"is a hole ({hole.name}) that is wider than {', '.join(hole.in_)} somewhere below its mouth, or comes"
         return f"{says} out aslant, which no method runs; make it narrower or less deep"
-    if divided := [str(solid.name) for solid in solids if hole.is_divided_by(solid, solids)]:
+    if divided := [str(solid.name) for solid in hole.divided_by(solids)]:
         says = f"is a hole ({hole.name}) along which the side of {' and of '.join(divided)} runs, which no method runs"
-        return f"{says}; draw what is around the hole as one shape, or as several on top of each other"
+        return f"{says}; draw what is around it as one shape, or as several that meet in faces across the hole"
     return None
 
 
