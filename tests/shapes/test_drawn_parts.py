@@ -16,7 +16,7 @@ from shapes.sprung_contacts import BALANCED, on_springs
 
 UNDECIDED = 0.01
 """Of runs, at most so many may end without an answer, by name."""
-SCREWS_UNDECIDED = 0.02
+SCREWS_UNDECIDED = 0.03
 """The same of countersunk screws in seats of other angles."""
 PUT_BACK = 1e-9
 """In sizes, the touch tolerance: what lies in a seat may be as deep on its way, and is put back on its faces where it

@@ -255,8 +255,8 @@ def stepped(
     """Move by ``amount``, keep the contacts that carry on their faces, and put the one that is hit on its own.
 
     A contact that touches across a gap, within the touch tolerance, keeps the gap, as its gap rate of zero says.
-    False: a point would be inside, a contact would not stay on its face, or the loads would do negative work, more than
-    it takes to put back what is deep. The placement is that of the new pose, or of the old one.
+    False: a point would be inside, a contact would not stay on its face, or the loads would do negative work. The
+    placement is that of the new pose, or of the old one.
     """
     geometry = setting.geometry
     constrain_contacts(geometry, placement, contacts, setting.tolerances.rounding_m, work.constraints)
@@ -271,24 +271,11 @@ def stepped(
     if done:
         total = total_load(setting.load, position, quaternion, setting.size_m)
         rounding = setting.tolerances.resolution_m * total
-        allowed = rounding + work_to_close(contacts)
-        done = work_done(setting.load, position, quaternion, new_position, new_quaternion) >= -allowed
+        done = work_done(setting.load, position, quaternion, new_position, new_quaternion) >= -rounding
     if done:
         return True, new_position, new_quaternion
     place_object(geometry, position, quaternion, placement)
     return False, position, quaternion
-
-
-@kernel
-def work_to_close(contacts: ContactSet) -> float:
-    """Return a bound on the work that it takes to put contacts back on their faces that are in them, within the touch
-    tolerance: all that carry as far as the deepest.
-    """
-    total, deepest = 0.0, 0.0
-    for i in range(contacts.used[0]):
-        if is_kept(contacts, i):
-            total, deepest = total + contacts.states[i].forces[0], max(deepest, -contacts.rows[i].gap)
-    return total * deepest
 
 
 @kernel
