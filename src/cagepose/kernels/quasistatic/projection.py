@@ -292,7 +292,7 @@ def add_least_slip(
     Two points on slanted walls cannot both go straight off them. To let one not slip at all, and the other where it
     must, would take a way many times longer than the gaps.
     """
-    work, rows, n_slips, slipped = constraints.scratch[0], constraints.rows, 0, 0.0
+    work, rows, slipped = constraints.scratch[0], constraints.rows, 0.0
     for j in range(6):
         work.back[j] = 0.0
         for k in range(6):
@@ -311,13 +311,13 @@ def add_least_slip(
             work.back[j] -= on_the_way * work.column[j]
             for k in range(6):
                 work.slips[j, k] += work.column[j] * work.column[k]
-        n_slips += 1
-    if n_slips > 0 and cholesky(work.slips, 0.0):
-        solve_lower(work.slips, work.back, work.back)
-        slipped -= inner(work.back, work.back, 6)
-        solve_upper(work.slips, work.back)
-        for k in range(6):
-            work.y[k] += work.back[k]
+    if not cholesky(work.slips, 0.0):
+        return False
+    solve_lower(work.slips, work.back, work.back)
+    slipped -= inner(work.back, work.back, 6)
+    solve_upper(work.slips, work.back)
+    for k in range(6):
+        work.y[k] += work.back[k]
     return slipped <= geometry.touch_m * geometry.touch_m
 
 
