@@ -28,7 +28,8 @@ from cagepose.kernels.shapes.touching import Meetings
 
 SAFE = 1.0 + 1e-9
 THIN = 0.1
-"""Of the reach of a part: nothing may go deeper into it, or it could come out on the other side."""
+"""Of the reach of the smaller of two parts: it may not go deeper, or could come out on the other side. A point has no
+sides: it may as far as the other part's reach says."""
 ALMOST_STRAIGHT, PAST = 0.25, 1.01
 """Radians; and how many times longer than its chord an arc that turns by no more is at most."""
 LEAST_SLACK = 1e-12
@@ -171,7 +172,8 @@ def search_between(
     """Return what the first meeting of two parts is asked with."""
     reach, cage_reach = held.parts[one].reach, cage.parts[other].reach
     speed = greatest_speed(motion, vector_from(held.parts[one].middle), reach)
-    depth = min(near_depth_m, THIN * min(reach, max(cage_reach, touch_m)))
+    thinner = min(reach, cage_reach) if min(reach, cage_reach) > touch_m else max(reach, cage_reach)
+    depth = min(near_depth_m, THIN * thinner)
     exact = max(LEAST_SLACK, touch_m / (reach + cage_reach))
     return Search(near_m, depth, slack_of(held, one, cage, other, touch_m), exact, speed, touch_m)
 
