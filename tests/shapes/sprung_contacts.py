@@ -17,7 +17,8 @@ GIVES, STAYS = 1e-6, 1e-4
 """Of the scene's size: what a spring gives under all of the load, and what moves less is held."""
 BALANCED = 1e-6
 """Of the load."""
-RAMP, STEPS = 12_000, 200_000
+RAMP, STEPS, MORE = 12_000, 200_000, 10
+"""Steps of the load's growth, and of all; so many times more where the part has stayed and forces still change."""
 
 
 class Sprung(NamedTuple):
@@ -47,7 +48,7 @@ def on_springs(done: Run, phase_index: int, friction: float) -> Sprung:
     relaxation = np.repeat([1.0 / relaxed, 1.0 / (relaxed * lever**2)], 3)
     load = np.concatenate([wrench.force, wrench.moment])
     twist, before, held = np.zeros(6), np.zeros_like(places), np.zeros_like(places)
-    for step in range(STEPS):
+    for step in range(MORE * STEPS):
         share = min(1.0, (step + 1) / RAMP)
         way = jacobian @ twist
         pressed = np.maximum(0.0, -stiffness * (way * normals).sum(axis=1))
@@ -64,6 +65,7 @@ def on_springs(done: Run, phase_index: int, friction: float) -> Sprung:
                 float(np.linalg.norm(jacobian @ twist, axis=1).max() / scene.size_m),
                 float(max(np.linalg.norm(left[:3]), np.linalg.norm(left[3:]) / scene.size_m) / load_n),
             )
-            if ended.holds or ended.moved > 10.0 * STAYS:
+            is_late = step >= STEPS and ended.moved >= STAYS
+            if ended.holds or ended.moved > 10.0 * STAYS or is_late:
                 break
     return ended
