@@ -27,42 +27,13 @@ from cagepose.cli.app import main
 from cagepose.exchange.stl import binary_stl
 from cagepose.files.meshes import decomposed, mesh_file, run_coacd
 from cagepose.files.meshes.manifolds import Triangles
-from cagepose.files.meshes.mesh_file import checked
-from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
 from cagepose.model.checks import ProblemList
-from cagepose.model.shapes import Shape
 from cagepose.model.surface import Mesh, shape_mesh
 from cagepose.model.union import body_moments
+from files.bodies import PLACE, SEGMENTS, body, shapes_of
 
 manifold3d = pytest.importorskip("manifold3d")
 pytest.importorskip("trimesh")
-
-PLACE = Pose((3.0, 4.0, 5.0), euler_zyx=(0.4, -0.7, 1.1))
-SEGMENTS = 64
-
-
-def refuse(mesh: Triangles) -> None:
-    raise AssertionError(f"{mesh!r} needs no decomposition")
-
-
-def body(*added: Shape, without: tuple[Shape, ...] = ()):
-    """A body of manifold3d: shapes, less others."""
-
-    def of(shape: Shape):
-        mesh = shape_mesh(shape, SEGMENTS)
-        return manifold3d.Manifold(manifold3d.Mesh64(mesh.vertices_m, mesh.triangles.astype(np.uint64)))
-
-    union = manifold3d.Manifold.batch_boolean([of(shape) for shape in added], manifold3d.OpType.Add)
-    return manifold3d.Manifold.batch_boolean([union, *map(of, without)], manifold3d.OpType.Subtract)
-
-
-def shapes_of(solid, *, single: bool = False, decompose=refuse) -> MeshShapes:
-    """What is recognised of a body that is turned and, as in an STL file, in single precision."""
-    mesh = Triangles.of(solid)
-    vertices = PLACE.transform(mesh.vertices)
-    if single:
-        vertices = vertices.astype(np.float32).astype(np.float64)
-    return mesh_shapes(checked(Triangles(vertices, mesh.faces), ""), "part", "mm", decompose)
 
 
 @pytest.mark.parametrize(("single", "rounding"), [(False, 1e-9), (True, 3e-6)])

@@ -18,7 +18,7 @@ from cagepose.exchange.model_bodies import WORLD, ModelBodies
 from cagepose.exchange.model_friction import scene_friction
 from cagepose.exchange.model_text import ModelText, read_model_text
 from cagepose.exchange.solids_document import METRES, SOLIDS, kept_friction, solids_document
-from cagepose.files.meshes.mesh_shapes import MOST_CORNERS
+from cagepose.files.meshes.pieces import MOST_CORNERS
 from cagepose.files.scene_file import SceneText
 from cagepose.files.yaml_source import YamlSource
 from cagepose.model.pose import Pose

@@ -3,64 +3,78 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cagepose.files.meshes.edges import reflex_edges
+from cagepose.files.meshes.flat_sides import FlatSides
 from cagepose.files.meshes.manifolds import ROUNDING, Triangles, manifold3d
 from cagepose.model.checks import FloatArray
+from cagepose.model.hole import Hole
 
 Piece = TypeVar("Piece")
 
-NOT_CONVEX = 1e-5
-"""Of a hull's volume: a body that is less by more is not convex."""
 NOTHING = 1e-9
 """Of the whole body's volume: a piece that is less is rounding."""
 MOST_PIECES = 60
 """What needs more is round where no shape of ours is."""
 MOST_TRIES = 8
 """Of planes that cut nothing off, at an edge that rounding has tilted."""
-ABOVE = 1e-6
+NEAR = 1.5e-6
+"""Of a body's size: what is as near to a plane is in it, but for the rounding of single precision."""
+ABOVE = 1e-9
 """Of a body's size: so far above a face it is cut."""
 MOST_EDGES = 2000
 """Hollow ones of a body that is cut."""
+ACROSS = 1e-4
+"""Sine of the angle between a hole's axis and the normal of a plane: with less, the plane is across the hole."""
 
 
-def is_convex(body: Any) -> bool:
-    """Whether a body fills its hull."""
-    return bool(body.volume() >= (1.0 - NOT_CONVEX) * body.hull().volume())
-
-
-def cut_until(parts: Sequence[Any], known: Callable[[Any], Piece | None]) -> list[Piece] | None:
+def cut_until(
+    parts: Sequence[Any], known: Callable[[Any], Piece | None], sides: FlatSides, holes: Sequence[Hole]
+) -> list[Piece] | None:
     """Return what is known of bodies that are some bodies together and share no volume; None: it needs too many.
 
-    ``known`` says it of a convex body, and maybe of another; None: it has to be cut.
+    Parameters
+    ----------
+    parts
+        Bodies, their holes filled.
+    known
+        Says it of a convex body, and maybe of another; None: it has to be cut.
+    sides
+        Of the bodies.
+    holes
+        Cuts run along as few of them as may be.
     """
     least = NOTHING * sum(part.volume() for part in parts)
+    allowed = ROUNDING * max((Triangles.of(part).size for part in parts), default=0.0)
     pieces: list[Piece] = []
     waiting = [*parts]
     while waiting:
         part = waiting.pop()
-        if part.volume() <= least:
-            continue
+        if part.volume() <= max(least, allowed * part.surface_area()):
+            continue  # nothing, or a film
         found = known(part)
         if found is not None:
             pieces.append(found)
         else:
-            sides = _cut(part, least)
-            if sides is None:
+            halves = _cut(part, least, allowed, sides, holes)
+            if halves is None:
                 return None
-            waiting += sides
+            waiting += halves
         if len(pieces) + len(waiting) > MOST_PIECES:
             return None
     return pieces
 
 
-def _cut(body: Any, least: float) -> list[Any] | None:
-    """Return the two sides of the plane in which the most of the hollow edges lie; None: there is none."""
+def _cut(body: Any, least: float, allowed: float, sides: FlatSides, holes: Sequence[Hole]) -> list[Any] | None:
+    """Return the two sides of the plane that runs along the fewest holes, of these the one in which the most of the
+    hollow edges lie; None: there is none.
+    """
     mesh = Triangles.of(body)
-    allowed = ROUNDING * mesh.size
     edges = reflex_edges(mesh, allowed)
     if not 0 < len(edges.corners) <= MOST_EDGES:
         return None
@@ -68,31 +82,44 @@ def _cut(body: Any, least: float) -> list[Any] | None:
     lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     faces = np.unique(edges.faces)
     faces = faces[np.argsort(-np.linalg.norm(mesh.areas[faces], axis=1), kind="stable")]  # large ones tell planes best
-    normals, heights = (
-        mesh.normals[faces],
-        np.einsum("ij,ij->i", mesh.normals[faces], mesh.vertices[mesh.faces[faces, 0]]),
-    )
+    normals, heights = sides.planes(mesh, faces)
     is_in = (np.abs(ends @ normals.T - heights) <= 10.0 * allowed).all(axis=1)
     resolved = lengths @ is_in
-    for plane in np.argsort(-resolved, kind="stable")[:MOST_TRIES].tolist():
-        sides = cut_above(body, normals[plane], float(heights[plane]))
-        if min(side.volume() for side in sides) > least:
-            return [piece for side in sides for piece in separate(side.simplify(allowed))]
+    n_along = sum((_run_along(hole, normals, heights, allowed) for hole in holes), np.zeros(len(faces)))
+    for plane in np.lexsort((-resolved, n_along))[:MOST_TRIES].tolist():
+        halves = cut_above(body, normals[plane], float(heights[plane]))
+        if min(half.volume() for half in halves) > least:
+            return [piece for half in halves for piece in separate(half.as_original().simplify(allowed))]
     return None
 
 
-def cut_above(body: Any, normal: FloatArray, height: float) -> list[Any]:
-    """Return what is above and below a plane along a face of the body: cut just above it, lest a film of rounding stays
-    on the upper side, and then moved to it.
-    """
-    step = ABOVE * Triangles.of(body).size
+def _run_along(hole: Hole, normals: FloatArray, heights: FloatArray, allowed: float) -> NDArray[np.bool_]:
+    """Return which planes, each a unit normal (n, 3) and a height (n,), divide a hole other than across its axis."""
+    aslant = np.linalg.norm(np.cross(normals, hole.pose_body_shape.rotation[:, 2]), axis=1)
+    centers = hole.pose_body_shape.transform(np.array([(0.0, 0.0, height) for height, _ in hole.rims]))
+    off = centers @ normals.T - heights
+    reach = np.outer([radius for _, radius in hole.rims], aslant)
+    is_cut = ((off - reach).min(axis=0) < -allowed) & ((off + reach).max(axis=0) > allowed)
+    found: NDArray[np.bool_] = is_cut & (aslant > ACROSS)
+    return found
 
-    def onto(points: FloatArray) -> FloatArray:
+
+def cut_above(body: Any, normal: FloatArray, height: float) -> list[Any]:
+    """Return what is above and below a plane along a face of the body.
+
+    What is in the plane but for rounding is moved into it, and the body is cut just above, lest a film of the face
+    stays on the upper side.
+    """
+    size = Triangles.of(body).size
+
+    def within(distance: float, points: FloatArray) -> FloatArray:
         off = points @ normal - height
-        moved: FloatArray = points - np.outer(np.where(np.abs(off) <= 1.5 * step, off, 0.0), normal)
+        moved: FloatArray = points - np.outer(np.where(np.abs(off) <= distance, off, 0.0), normal)
         return moved
 
-    return [side.warp_batch(onto) for side in body.split_by_plane(normal.tolist(), height + step)]
+    flat = body.warp_batch(partial(within, NEAR * size))
+    sides = flat.split_by_plane(normal.tolist(), height + ABOVE * size)
+    return [side.warp_batch(partial(within, 2.0 * ABOVE * size)) for side in sides]
 
 
 def separate(body: Any) -> list[Any]:

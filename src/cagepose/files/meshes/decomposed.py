@@ -12,6 +12,7 @@ import numpy as np
 from cagepose.files.extra import files_library, require
 from cagepose.files.meshes import run_coacd
 from cagepose.files.meshes.cuts import together
+from cagepose.files.meshes.flat_sides import FlatSides
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
 from cagepose.files.progress import tell
 from cagepose.files.write import MADE_BY, check_can_write, is_made_by_us, json_line, write_whole
@@ -24,12 +25,6 @@ SAMPLES = 4000
 MOST_KEPT = 8
 """Bodies of one mesh."""
 VERSION = 3
-ROUNDING = 1e-6
-"""Of the size: corners that are this near to a flat side are in it; coacd answers in single precision."""
-FLAT_SIDE = 1e-3
-"""Of the surface's area: what is less is no flat side that a part stands on."""
-PROJECTIONS = 20
-"""Onto all flat sides that a corner is near to; each halves at least what is left, where they are not nearly one."""
 
 
 class Decomposition(NamedTuple):
@@ -53,7 +48,7 @@ def decomposed(mesh: Triangles) -> Decomposition:
     tell(f"coacd makes convex parts of {len(mesh.faces):,} triangles, which takes it {run_coacd.SECONDS:g} s at most")
     found = run_coacd.convex_parts(_simplified(mesh))
     ends = np.cumsum([len(corners) for corners in found])
-    parts = np.split(_on_flat_sides(np.concatenate(found), mesh), ends[:-1])
+    parts = np.split(FlatSides.of(mesh).taking(np.concatenate(found)), ends[:-1])
     hulls = [manifold3d().Manifold.hull_points(corners) for corners in parts]
     tell(f"{len(hulls)} convex parts: how far they are off")
     union = Triangles.of(together(hulls))
@@ -94,24 +89,6 @@ def _kept(path: Path) -> dict[str, Any]:
     except (OSError, ValueError, RecursionError):
         return {}
     return dict(found.get("parts_of") or {}) if isinstance(found, dict) else {}
-
-
-def _on_flat_sides(points: FloatArray, mesh: Triangles) -> FloatArray:
-    """Return points moved onto the flat sides that they are near to: a part that stands on a table does so to the last
-    digits, and not within it.
-    """
-    heights = np.einsum("ij,ij->i", mesh.normals, mesh.vertices[mesh.faces[:, 0]])
-    areas = np.linalg.norm(mesh.areas, axis=1)
-    planes = np.column_stack([mesh.normals, heights / mesh.size]).round(6)
-    _, first, which = np.unique(planes, axis=0, return_index=True, return_inverse=True)
-    large = np.bincount(which.ravel(), areas) > FLAT_SIDE * areas.sum()
-    found = points.copy()
-    for _ in range(PROJECTIONS):
-        for side in first[large]:
-            off = found @ mesh.normals[side] - heights[side]
-            off = np.where(np.abs(off) <= ROUNDING * mesh.size, off, 0.0)
-            found -= np.outer(off, mesh.normals[side])
-    return found
 
 
 def _simplified(mesh: Triangles) -> Triangles:

@@ -1,8 +1,8 @@
-"""Edges at which a body is not convex: `reflex_edges`."""
+"""Edges at which a body is not convex, and how deep they are: `reflex_edges`, `hollow_depth`."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,11 @@ from cagepose.files.meshes.manifolds import Triangles
 
 BLUNT, FLAT, SEVERAL = 0.9, 0.9997, 4
 """Cosines between the faces of an edge of a round (others are a little hollow by chance), and how many tell one."""
+
+NOT_CONVEX = 1e-5
+"""Of a hull's volume: a body that is less by more is not convex."""
+AT_ONCE = 1000
+"""Points whose depths are found together: arrays of more take much memory."""
 
 
 class Edges(NamedTuple):
@@ -50,3 +55,27 @@ def reflex_edges(mesh: Triangles, allowed: float) -> Edges:
         for side in (0, 1)
     ]
     return edges.of(np.minimum(*out) > allowed)
+
+
+def hollow_depth(body: Any, allowed: float) -> float | None:
+    """Return how deep the hollow edges of a body that hangs together are within its hull; None: it is not convex.
+
+    It is, if the edges that are deeper than ``allowed`` are blunt, as between the facets of what is round.
+    """
+    hull = body.hull()
+    if hull.volume() - body.volume() > max(NOT_CONVEX * hull.volume(), allowed * hull.surface_area()):
+        return None
+    mesh, around = Triangles.of(body), Triangles.of(hull)
+    edges = reflex_edges(mesh, allowed)
+    if len(edges.corners) == 0:
+        return 0.0
+    sides = around.vertices[np.roll(around.faces, -1, axis=1)] - around.vertices[around.faces]
+    thin = np.linalg.norm(around.areas, axis=1) <= allowed * np.linalg.norm(sides, axis=2).max(axis=1)
+    normals = around.normals[~thin]  # a thinner triangle tells no plane
+    planes = np.einsum("ij,ij->i", normals, around.vertices[around.faces[~thin, 0]])
+    ends = mesh.vertices[edges.corners]
+    asked = np.concatenate([ends[:, 0], ends[:, 1], ends.mean(axis=1)])
+    rows = np.array_split(asked, 1 + len(asked) // AT_ONCE)
+    depths = np.concatenate([(planes - some @ normals.T).min(axis=1) for some in rows]).reshape(3, -1).max(axis=0)
+    is_sharp = np.einsum("ij,ij->i", *np.moveaxis(mesh.normals[edges.faces], 1, 0)) < BLUNT
+    return None if (is_sharp & (depths > allowed)).any() else float(depths.max())

@@ -13,11 +13,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cagepose.files.meshes.convex_shapes import Recognised, convex_shape
-from cagepose.files.meshes.cuts import cut_above, cut_until, is_convex, separate
-from cagepose.files.meshes.decomposed import Decomposition, farthest_from
+from cagepose.files.meshes.convex_shapes import Recognised
+from cagepose.files.meshes.cuts import separate
+from cagepose.files.meshes.decomposed import Decomposition
 from cagepose.files.meshes.edges import is_hollow_and_round
 from cagepose.files.meshes.manifolds import ROUNDING, Triangles, without_rounding
+from cagepose.files.meshes.pieces import convex_pieces, parts_of, simplified
 from cagepose.files.meshes.round_holes import RoundHole, filled
 from cagepose.files.progress import tell
 from cagepose.model.box import Box
@@ -25,24 +26,9 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Shape, Sphere
-from cagepose.model.surface import shape_mesh
 
-MOST_CORNERS = 300
-"""Of a convex shape: the time of runs grows with the square of it."""
-MOST_TRIANGLES = 10_000
-"""Of a body that is not convex: more of them are simplified first."""
-FIRST = 1e-5
-"""Of the size: by how much triangles are moved first."""
-HALVINGS = 4
-"""Of the last such step, for a convex body: as many of its corners as may be should stay."""
-HOLLOW = 0.97
-"""Of its hull's volume: what is round has more."""
 DIGITS = 11
 """Of the size that numbers are written with; what follows is the rounding of double precision."""
-SEGMENTS = 64
-"""Chords of what is round, where it is asked whether a hole is in a piece."""
-LEAST_SHARED = 1e-6
-"""Of a hole's volume: what is less of a piece is rounding."""
 
 Decompose = Callable[[Triangles], Decomposition]
 
@@ -85,20 +71,24 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str, decompose: Decompose) -> 
     found: list[Recognised] = []
     holes: list[RoundHole] = []
     notes: list[str] = []
-    errors = [0.0]
+    errors: list[float] = []
     is_filleted = False
     for part in separate(body):
         tell(f"{name!r}: {part.num_tri():,} triangles, its shape recognised")
-        simple, tolerance = _simplified(part)
+        simple, tolerance = simplified(part)
         if tolerance > 0.0:
-            notes.append(
-                f"{name!r} has too many triangles: here, simplified, up to {_words(scale * tolerance, unit)} off"
-            )
-            errors.append(tolerance)
+            off = _words(scale * tolerance, unit)
+            notes.append(f"{name!r} has too many triangles: here, simplified, up to {off} off")
         whole, of_part = filled(simple)
         is_filleted |= is_hollow_and_round(Triangles.of(whole), ROUNDING * Triangles.of(whole).size)
-        pieces = cut_until(_cut_at_steps(whole, of_part), _recognised)
-        if pieces is None:
+        pieces = convex_pieces(whole, [one.hole for one in of_part])
+        if pieces is not None:
+            found += pieces.found
+            if pieces.error > 0.0:
+                off = _words(scale * pieces.error, unit)
+                notes.append(f"{name!r} would be too many convex parts: here, simplified, up to {off} off")
+            errors.append(tolerance + pieces.error)
+        else:
             made = decompose(Triangles.of(whole))
             off = _words(scale * made.error, unit)
             notes.append(f"{name!r} is not convex: here, {len(made.parts)} convex parts, up to {off} off")
@@ -108,8 +98,7 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str, decompose: Decompose) -> 
                     " badly: fill those that matter in the mesh and give them as `hole`"
                 )
             found += [Recognised(Convex(corners), made.error) for corners in made.parts]
-        else:
-            found += pieces
+            errors.append(tolerance)
         holes += of_part
     of_shapes = max([*(one.error for one in found), *(one.error for one in holes)])
     error = scale * (of_shapes + max(errors))
@@ -151,85 +140,13 @@ def tidied(shape: Shape, scale: float, origin: FloatArray) -> Shape:
     return type(shape)(**numbers, pose_body_shape=pose, name=shape.name)
 
 
-def _cut_at_steps(whole: Any, holes: Sequence[RoundHole]) -> list[Any]:
-    """Return a filled body, cut where a hole ends at the bottom of a wider one."""
-    parts = [whole]
-    for hole, _ in holes:
-        others = [other for other, _ in holes if other is not hole and other.radius_m > hole.radius_m]
-        axis = hole.pose_body_shape.rotation[:, 2]
-        for end in hole.nodes_body():
-            if any(_is_at_bottom(end, other) for other in others):
-                parts = [side for part in parts for side in cut_above(part, axis, float(axis @ end))]
-    return parts
-
-
-def _is_at_bottom(point: FloatArray, hole: Hole) -> bool:
-    x, y, z = hole.pose_body_shape.inverse_transform(point).tolist()
-    return math.hypot(x, y) < hole.radius_m and abs(z + hole.depth_m) < 1e-4 * hole.radius_m
-
-
-def _simplified(body: Any) -> tuple[Any, float]:
-    """Return a body that is not convex with fewer triangles, where it has too many, and how far they are moved."""
-    if body.num_tri() <= MOST_TRIANGLES or is_convex(body):
-        return body, 0.0
-    tolerance, moved = FIRST, 0.0
-    while body.num_tri() > MOST_TRIANGLES:
-        body, moved = body.simplify(tolerance), moved + tolerance
-        tolerance *= 2.0
-    return body, moved
-
-
-def _recognised(piece: Any) -> Recognised | None:
-    """Return the shape of a convex piece, with fewer corners where it has too many; None: it is not convex.
-
-    Triangles between the corners of a cone may be a little hollow.
-    """
-    hull = piece.hull()
-    is_full = is_convex(piece)
-    if not is_full and piece.volume() < HOLLOW * hull.volume():
-        return None
-    surface = without_rounding(hull) if is_full else piece
-    found = convex_shape(Triangles.of(surface))
-    if found is not None or not is_full:
-        return found
-    if surface.num_vert() <= MOST_CORNERS:
-        return Recognised(Convex(Triangles.of(surface).vertices), 0.0)
-    fewer = Triangles.of(_with_fewer_corners(surface).hull())
-    return Recognised(Convex(fewer.vertices), farthest_from(Triangles.of(surface), fewer))
-
-
-def _with_fewer_corners(body: Any) -> Any:
-    """Return a body with as many corners as are allowed, and not many fewer."""
-    found, tolerance = body.simplify(FIRST), FIRST
-    while found.num_vert() > MOST_CORNERS:
-        body, tolerance = found, 2.0 * tolerance
-        found = body.simplify(tolerance)
-    few, many = tolerance, tolerance / 2.0
-    for _ in range(HALVINGS):
-        middle = (few + many) / 2.0
-        simple = body.simplify(middle)
-        if simple.num_vert() <= MOST_CORNERS:
-            found, few = simple, middle
-        else:
-            many = middle
-    return found
-
-
 def _as_convex(shape: Shape) -> Shape:
     return Convex(shape.nodes_body(), 0.0, None, shape.name) if isinstance(shape, Box) else shape
 
 
 def _in_pieces(hole: Hole, pieces: Sequence[Shape], name: str) -> Hole:
     """Return a hole with its name and those of the pieces that it is cut out of."""
-    plug = _body(hole)
-    least = LEAST_SHARED * plug.volume()
-    in_ = [str(piece.name) for piece in pieces if (plug ^ _body(piece)).volume() > least]
-    return hole.cut_out_of(in_).renamed(name)
-
-
-def _body(shape: Shape) -> Any:
-    mesh = shape_mesh(shape, SEGMENTS)
-    return Triangles(mesh.vertices_m, mesh.triangles).body()
+    return hole.cut_out_of([str(piece.name) for piece in parts_of(hole, pieces)]).renamed(name)
 
 
 def _words(length: float, unit: str) -> str:

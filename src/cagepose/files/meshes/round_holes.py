@@ -45,7 +45,7 @@ def filled(body: Any) -> tuple[Any, list[RoundHole]]:
     if not plugs:
         return body, []
     whole = manifold3d().Manifold.batch_boolean([body, *plugs], manifold3d().OpType.Add)
-    return whole.simplify(ROUNDING * mesh.size), found
+    return whole.as_original().simplify(ROUNDING * mesh.size), found
 
 
 def _walls(mesh: Triangles) -> list[FloatArray]:

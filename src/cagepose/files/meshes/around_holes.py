@@ -1,0 +1,78 @@
+"""Cuts of a body that round holes ask for, which are filled in it: `cut_at_steps`, `set_apart`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import permutations
+from typing import Any
+
+import numpy as np
+
+from cagepose.files.meshes.cuts import cut_above
+from cagepose.files.meshes.edges import hollow_depth
+from cagepose.files.meshes.manifolds import ROUNDING, Triangles, manifold3d
+from cagepose.model.checks import FloatArray
+from cagepose.model.hole import Hole
+
+WIDTHS = (1.5, 1.2, 1.05)
+"""Of a block around a hole, in widths of its mouth: the first that is convex is taken."""
+BEYOND = 0.1
+"""Of a hole's radius: so far a block goes on beyond both ends of the hole."""
+ALONG = 1e-6
+"""Cosine between a hole's axis and the normal of a face along it, at most."""
+SQUARE = np.array([(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)])
+
+
+def cut_at_steps(body: Any, holes: Sequence[Hole]) -> list[Any]:
+    """Return a body, cut where a hole ends at the bottom of a wider one."""
+    parts = [body]
+    for hole, other in permutations(holes, 2):
+        axis = hole.pose_body_shape.rotation[:, 2]
+        for end in _ends_at_bottom(hole, other):
+            parts = [side for part in parts for side in cut_above(part, axis, float(axis @ end))]
+    return parts
+
+
+def set_apart(body: Any, holes: Sequence[Hole]) -> tuple[list[Any], Any]:
+    """Return convex blocks of a body, each around one of the holes, and the rest of it. A hole that has no convex block
+    around it stays in the rest.
+    """
+    blocks, rest = [], body
+    mesh = Triangles.of(body)
+    allowed = ROUNDING * mesh.size
+    for hole in sorted(holes, key=lambda one: -one.radius_m):  # a narrower one may go on from its bottom
+        for width in WIDTHS:
+            block = _block(mesh, hole, width, holes)
+            inside = (rest ^ block).as_original().simplify(allowed)
+            if not inside.is_empty() and hollow_depth(inside, allowed) is not None:
+                blocks.append(inside)
+                rest = (rest - block).as_original().simplify(allowed)
+                break
+    return blocks, rest
+
+
+def _block(mesh: Triangles, hole: Hole, width: float, holes: Sequence[Hole]) -> Any:
+    """Return a square prism around a hole, with sides along the largest face of a body that is along the hole."""
+    axis, mouth = hole.pose_body_shape.rotation[:, 2], hole.pose_body_shape.position_m
+    is_along = np.abs(mesh.normals @ axis) < ALONG
+    largest = int(np.where(is_along, np.linalg.norm(mesh.areas, axis=1), -1.0).argmax())
+    toward = mesh.normals[largest] if is_along.any() else hole.pose_body_shape.rotation[:, 0]
+    half = width * max(radius for _, radius in hole.rims)
+    sides = half * SQUARE @ np.stack([toward, np.cross(axis, toward)])
+    beyond = BEYOND * hole.radius_m
+    goes_on = any(_ends_at_bottom(other, hole) for other in holes)
+    ends = np.outer((beyond, -hole.depth_m - (0.0 if goes_on else beyond)), axis)
+    return manifold3d().Manifold.hull_points((mouth + sides + ends[:, None]).reshape(-1, 3))
+
+
+def _ends_at_bottom(hole: Hole, other: Hole) -> list[FloatArray]:
+    """Return the end of a hole that is within the bottom of a wider one, if one is."""
+    if hole.radius_m >= other.radius_m:
+        return []
+    found = []
+    for end in hole.nodes_body():
+        x, y, z = other.pose_body_shape.inverse_transform(end).tolist()
+        if math.hypot(x, y) < other.radius_m and abs(z + other.depth_m) < 1e-4 * other.radius_m:
+            found.append(end)
+    return found
