@@ -110,11 +110,11 @@ def _recognised(sides: FlatSides, piece: Any) -> Recognised | None:
     if depth is None:
         is_round = piece.volume() >= HOLLOW * piece.hull().volume()
         return convex_shape(Triangles.of(piece)) if is_round else None
+    error = depth if depth > DENT else 0.0
     surface = without_rounding(piece.hull())
     found = convex_shape(Triangles.of(surface))
     if found is not None:
-        return found
-    error = depth if depth > DENT else 0.0
+        return Recognised(found.shape, found.error + error)
     corners = Triangles.of(surface).vertices
     if len(corners) > MOST_CORNERS:
         corners = Triangles.of(_with_fewer_corners(surface).hull()).vertices
