@@ -379,13 +379,13 @@ def onset_from_anywhere(held: Held, random: np.random.Generator) -> bool:
 
 @pytest.mark.parametrize("friction", [0.1, 0.2, 0.4])
 def test_where_rest_is_the_only_onset_no_other_search_finds_one(search, cases, say, friction):
-    random, n = np.random.default_rng(24), cases(15, 300)
+    random, other, n = np.random.default_rng(24), np.random.default_rng(25), cases(15, 300)
     found = {UNIQUE: 0, OTHER_FOUND: 0}
     answers = []
     for held in itertools.islice(held_blocks(random, friction), n):
         answers.append(search(held))
         if answers[-1] != NOT_SHOWN:
-            found[answers[-1]] += onset_from_anywhere(held, random)
+            found[answers[-1]] += onset_from_anywhere(held, other)  # of its own, lest a last digit changes the blocks
     say(
         f"friction {friction}: {answers.count(UNIQUE)} only rest, {answers.count(OTHER_FOUND)} another onset, of which "
         f"{found[OTHER_FOUND]} found from random forces too, {answers.count(NOT_SHOWN)} not shown"
