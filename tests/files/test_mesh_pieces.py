@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from cagepose import Box, Convex, Cylinder, Hole, Pose
+from cagepose import Box, Cone, Convex, Cylinder, Hole, Pose
 from cagepose.files.meshes import around_holes
 from cagepose.files.meshes.decomposed import farthest_from
 from cagepose.files.meshes.manifolds import Triangles
@@ -59,6 +59,18 @@ DRILLED = {
         *(Box((10, 60, 50), Pose((x, 0, 20))) for x in (-45, 45)),
         without=(Cylinder(6, 120, LYING), drilled(0, 0)),
     ),
+    "counterbores": body(
+        PLATE,
+        Box((5, 60, 25), Pose((0, 0, 10))),
+        without=tuple(
+            cut for x in (-35, 35) for y in (-20, 20) for cut in (drilled(x, y, 3), Cylinder(6, 6, Pose((x, y, 3))))
+        ),
+    ),
+    "counterbore level with a step": body(
+        PLATE, without=(Box((60, 70, 10), Pose((40, 0, 7))), drilled(-30, 0, 3), Cylinder(6, 10, Pose((-30, 0, 7))))
+    ),
+    "chamfer above": body(PLATE, without=(drilled(0, 0), Cone(6, 8, 2, Pose((0, 0, 4))))),
+    "chamfer below": body(PLATE, without=(drilled(0, 0), Cone(8, 6, 2, Pose((0, 0, -4))))),
     "pocket": body(PLATE, without=(Box((60, 30, 10), Pose((0, 0, 5))), drilled(0, 22, 4), drilled(-40, 0))),
 }
 
@@ -68,7 +80,9 @@ DRILLED = {
 def test_cuts_run_beside_holes(name, single):
     """The bottom of a notch goes on through the holes beside it, its sides do not."""
     found = shapes_of(DRILLED[name], single=single)
-    assert len(parted(found)[1]) == DRILLED[name].genus()
+    n_counterbores = 4 if name == "counterbores" else name.startswith("counterbore")
+    assert len(parted(found)[1]) == DRILLED[name].genus() + n_counterbores
+    assert any(hole.chamfer is not None for hole in parted(found)[1]) == name.startswith("chamfer")
     assert divided(found) == []
     assert off_on_average(found, DRILLED[name]) < 0.1 * found.error  # of the chords of holes
 

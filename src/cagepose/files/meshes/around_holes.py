@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.files.meshes.cuts import cut_above
+from cagepose.files.meshes.cuts import cut_above, tidy
 from cagepose.files.meshes.edges import hollow_depth
 from cagepose.files.meshes.manifolds import ROUNDING, Triangles, manifold3d
 from cagepose.model.checks import FloatArray
@@ -19,18 +19,28 @@ WIDTHS = (1.5, 1.2, 1.05)
 """Of a block around a hole, in widths of its mouth: the first that is convex is taken."""
 BEYOND = 0.1
 """Of a hole's radius: so far a block goes on beyond both ends of the hole."""
+ONE_PLANE = 1e-5
+"""Between the normals of planes, and of the size between their heights: less is rounding."""
+AT_BOTTOM = 1e-4
+"""Of a hole's radius: an end that is so near to its bottom is in it."""
 ALONG = 1e-6
 """Cosine between a hole's axis and the normal of a face along it, at most."""
 SQUARE = np.array([(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)])
 
 
 def cut_at_steps(body: Any, holes: Sequence[Hole]) -> list[Any]:
-    """Return a body, cut where a hole ends at the bottom of a wider one."""
-    parts = [body]
+    """Return a body, cut where a hole ends at the bottom of a wider one; holes that are alike end in one plane."""
+    size = Triangles.of(body).size
+    parts, planes = [body], np.empty((0, 4))
     for hole, other in permutations(holes, 2):
         axis = hole.pose_body_shape.rotation[:, 2]
         for end in _ends_at_bottom(hole, other):
-            parts = [side for part in parts for side in cut_above(part, axis, float(axis @ end))]
+            plane = np.append(axis, axis @ end)
+            apart = np.abs(np.concatenate([planes - plane, planes + plane])).max(axis=1) if len(planes) else [np.inf]
+            if np.min(apart) > ONE_PLANE * size:
+                planes = np.vstack([planes, plane])
+                halves = [half for part in parts for half in cut_above(part, axis, float(axis @ end))]
+                parts = tidy(halves, ROUNDING * size)
     return parts
 
 
@@ -44,9 +54,9 @@ def set_apart(body: Any, holes: Sequence[Hole]) -> tuple[list[Any], Any]:
     for hole in sorted(holes, key=lambda one: -one.radius_m):  # a narrower one may go on from its bottom
         for width in WIDTHS:
             block = _block(mesh, hole, width, holes)
-            inside = (rest ^ block).as_original().simplify(allowed)
-            if not inside.is_empty() and hollow_depth(inside, allowed) is not None:
-                blocks.append(inside)
+            inside = tidy([rest ^ block], allowed)
+            if len(inside) == 1 and hollow_depth(inside[0], allowed) is not None:
+                blocks += inside
                 rest = (rest - block).as_original().simplify(allowed)
                 break
     return blocks, rest
@@ -73,6 +83,6 @@ def _ends_at_bottom(hole: Hole, other: Hole) -> list[FloatArray]:
     found = []
     for end in hole.nodes_body():
         x, y, z = other.pose_body_shape.inverse_transform(end).tolist()
-        if math.hypot(x, y) < other.radius_m and abs(z + other.depth_m) < 1e-4 * other.radius_m:
+        if math.hypot(x, y) < other.radius_m and abs(z + other.depth_m) < AT_BOTTOM * other.radius_m:
             found.append(end)
     return found

@@ -55,8 +55,8 @@ def cut_until(
     waiting = [*parts]
     while waiting:
         part = waiting.pop()
-        if part.volume() <= max(least, allowed * part.surface_area()):
-            continue  # nothing, or a film
+        if part.volume() <= least:
+            continue
         found = known(part)
         if found is not None:
             pieces.append(found)
@@ -89,7 +89,7 @@ def _cut(body: Any, least: float, allowed: float, sides: FlatSides, holes: Seque
     for plane in np.lexsort((-resolved, n_along))[:MOST_TRIES].tolist():
         halves = cut_above(body, normals[plane], float(heights[plane]))
         if min(half.volume() for half in halves) > least:
-            return [piece for half in halves for piece in separate(half.as_original().simplify(allowed))]
+            return tidy(halves, allowed)
     return None
 
 
@@ -120,6 +120,12 @@ def cut_above(body: Any, normal: FloatArray, height: float) -> list[Any]:
     flat = body.warp_batch(partial(within, NEAR * size))
     sides = flat.split_by_plane(normal.tolist(), height + ABOVE * size)
     return [side.warp_batch(partial(within, 2.0 * ABOVE * size)) for side in sides]
+
+
+def tidy(bodies: Sequence[Any], allowed: float) -> list[Any]:
+    """Return the parts that hang together of bodies that were cut, without corners and films that are rounding."""
+    parts = [part for body in bodies for part in separate(body.as_original().simplify(allowed))]
+    return [part for part in parts if part.volume() > allowed * part.surface_area()]
 
 
 def separate(body: Any) -> list[Any]:

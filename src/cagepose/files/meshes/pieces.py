@@ -119,7 +119,9 @@ def _recognised(sides: FlatSides, piece: Any) -> Recognised | None:
     if len(corners) > MOST_CORNERS:
         corners = Triangles.of(_with_fewer_corners(surface).hull()).vertices
         error += farthest_from(Triangles.of(surface), Triangles.of(manifold3d().Manifold.hull_points(corners)))
-    return Recognised(Convex(sides.taking(corners)), error)
+    in_sides = sides.taking(corners)
+    is_flat = manifold3d().Manifold.hull_points(in_sides).volume() < 0.5 * surface.hull().volume()  # a thin one
+    return Recognised(Convex(corners if is_flat else in_sides), error)
 
 
 def _with_fewer_corners(body: Any) -> Any:

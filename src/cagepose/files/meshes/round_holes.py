@@ -40,7 +40,9 @@ def filled(body: Any) -> tuple[Any, list[RoundHole]]:
         hole = _hole(body, wall)
         if hole is not None:
             chamfered, cone = _with_chamfer(mesh, wall, hole)
-            found.append(chamfered)
+            if len(cone) == 0:  # at its other end, if it is open there
+                chamfered, cone = _with_chamfer(mesh, wall, RoundHole(_from_below(hole.hole), hole.error))
+            found.append(chamfered if len(cone) > 0 else hole)
             plugs.append(manifold3d().Manifold.hull_points(np.concatenate([wall, cone])))
     if not plugs:
         return body, []
@@ -117,6 +119,12 @@ def _hole(body: Any, wall: FloatArray) -> RoundHole | None:
     up, mouth = (axis, high) if is_open[1] else (-axis, low)
     pose = Pose(circle.center + mouth * axis, turn_from_z(up))
     return RoundHole(Hole(circle.radius, high - low, None, (), pose), circle.sagitta + circle.off)
+
+
+def _from_below(hole: Hole) -> Hole:
+    """Return a hole with its mouth where its bottom was."""
+    turn = Pose((0.0, 0.0, -hole.depth_m), np.array((0.0, 1.0, 0.0, 0.0)))
+    return Hole(hole.radius_m, hole.depth_m, None, (), hole.pose_body_shape @ turn)
 
 
 def _with_chamfer(mesh: Triangles, wall: FloatArray, found: RoundHole) -> tuple[RoundHole, FloatArray]:
