@@ -88,20 +88,20 @@ def test_cuts_run_beside_holes(name, single):
 
 
 def test_a_hole_that_every_cut_runs_along_keeps_a_block_around_it(monkeypatch):
-    """In the corner of a stair of two steps: the face of each tread and of each riser goes on through a hole."""
-    stair = body(
+    """In an L, one hole in each leg: either face of its inner corner goes on through one of them."""
+    angle = body(
         Box((60, 60, 10), Pose((30, 30, 0))),
         without=(
             Box((40, 40, 30), Pose((50, 50, 0))),
             *(drilled(x, y, 5.0) for x, y in ((30, 10), (10, 30))),
         ),
     )
-    found = shapes_of(stair)
+    found = shapes_of(angle)
     assert divided(found) == []
     assert all(len(hole.in_) == 1 for hole in parted(found)[1])
-    assert off_on_average(found, stair) < 0.1 * found.error
+    assert off_on_average(found, angle) < 0.1 * found.error
     monkeypatch.setattr(around_holes, "WIDTHS", ())
-    assert divided(shapes_of(stair)) != []
+    assert divided(shapes_of(angle)) != []
 
 
 @pytest.mark.parametrize("size", [2.0, 1.0])
