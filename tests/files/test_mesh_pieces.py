@@ -10,9 +10,9 @@ import pytest
 
 from cagepose import Box, Cone, Convex, Cylinder, Hole, Pose
 from cagepose.files.meshes import around_holes
-from cagepose.files.meshes.decomposed import farthest_from
 from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.meshes.mesh_shapes import MeshShapes
+from cagepose.files.meshes.surface_distance import farthest_from
 from files.bodies import body, shapes_of, turned
 
 pytest.importorskip("trimesh")

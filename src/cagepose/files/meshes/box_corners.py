@@ -7,13 +7,11 @@ from itertools import combinations
 
 import numpy as np
 
+from cagepose.files.meshes.manifolds import SINGLE_PRECISION
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.pose import Pose
 from cagepose.model.volume import BOX_SIGNS
-
-SINGLE_PRECISION = 1e-6
-"""Of a box's size: corners this close to those of a box are they; single precision is off by some 1e-7."""
 
 
 def box_of_corners(corners_m: FloatArray) -> Box | None:

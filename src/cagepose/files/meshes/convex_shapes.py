@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cagepose.files.meshes.box_corners import SINGLE_PRECISION, box_of_corners
-from cagepose.files.meshes.manifolds import Triangles, circle_through
+from cagepose.files.meshes.box_corners import box_of_corners
+from cagepose.files.meshes.manifolds import SINGLE_PRECISION, Triangles, circle_through
 from cagepose.files.meshes.rounded_hulls import ball_through, rounded_hull
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose, turn_from_z

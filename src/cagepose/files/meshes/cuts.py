@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from cagepose.files.meshes.edges import reflex_edges
 from cagepose.files.meshes.flat_sides import FlatSides
-from cagepose.files.meshes.manifolds import ROUNDING, Triangles, manifold3d
+from cagepose.files.meshes.manifolds import ROUNDING, SINGLE_PRECISION, Triangles, manifold3d
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
 
@@ -23,8 +23,8 @@ MOST_PIECES = 60
 """What needs more is round where no shape of ours is."""
 MOST_TRIES = 8
 """Of planes that cut nothing off, at an edge that rounding has tilted."""
-NEAR = 1.5e-6
-"""Of a body's size: what is as near to a plane is in it, but for the rounding of single precision."""
+NEAR = 1.5 * SINGLE_PRECISION
+"""Of a body's size: what is as near to the plane of a cut is in it; more, as such a plane is rounded itself."""
 ABOVE = 1e-9
 """Of a body's size: so far above a face it is cut."""
 MOST_EDGES = 2000

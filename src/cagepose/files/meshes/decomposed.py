@@ -9,19 +9,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cagepose.files.extra import files_library, require
+from cagepose.files.extra import require
 from cagepose.files.meshes import run_coacd
 from cagepose.files.meshes.cuts import together
 from cagepose.files.meshes.flat_sides import FlatSides
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
+from cagepose.files.meshes.surface_distance import farthest_from
 from cagepose.files.progress import tell
 from cagepose.files.write import MADE_BY, check_can_write, is_made_by_us, json_line, write_whole
 from cagepose.model.checks import FloatArray
 
 TRIANGLES = 2000
 """Of what coacd is given: of twice as many it makes parts that are no nearer, in half as much time again."""
-SAMPLES = 4000
-"""Points of each surface that are asked how far they are from the other."""
 MOST_KEPT = 8
 """Bodies of one mesh."""
 VERSION = 3
@@ -98,22 +97,3 @@ def _simplified(mesh: Triangles) -> Triangles:
         body = body.simplify(tolerance)
         tolerance *= 1.5
     return Triangles.of(body)
-
-
-def farthest_from(one: Triangles, other: Triangles, *, outside: bool = False) -> float:
-    """Return how far points of one surface, spread evenly and at its corners, are from another at most.
-
-    ``outside``: of those alone that are outside of it, as between the parts of a body there may be gaps within it.
-    """
-    trimesh = files_library("trimesh", "a mesh that is not convex needs trimesh")
-    files_library("rtree", "a mesh that is not convex needs rtree")
-    random = np.random.default_rng(0)
-    doubled = np.linalg.norm(one.areas, axis=1)
-    chosen = one.vertices[one.faces[random.choice(len(one.faces), SAMPLES, p=doubled / doubled.sum())]]
-    inside = np.einsum("ij,ijk->ik", random.dirichlet(np.ones(3), SAMPLES), chosen)
-    corners = one.vertices[:: max(1, len(one.vertices) // SAMPLES)]
-    surface = trimesh.Trimesh(other.vertices, other.faces, process=False)
-    points = np.concatenate([inside, corners])
-    nearest, distances, faces = trimesh.proximity.closest_point(surface, points)
-    is_outside = np.einsum("ij,ij->i", points - nearest, other.normals[faces]) > 0.0
-    return float(distances[is_outside].max(initial=0.0) if outside else distances.max())

@@ -8,11 +8,9 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.files.meshes.manifolds import Triangles
+from cagepose.files.meshes.manifolds import SINGLE_PRECISION, Triangles
 from cagepose.model.checks import FloatArray
 
-NEAR = 1e-6
-"""Of the size: corners that are this near to a flat side are in it; coacd answers in single precision."""
 LARGE = 1e-3
 """Of the surface's area: what is less is no flat side that a part stands on."""
 PROJECTIONS = 20
@@ -58,7 +56,7 @@ class FlatSides:
             before = found.copy()
             for normal, height in zip(self.normals, self.heights, strict=True):
                 off = found @ normal - height
-                found -= np.outer(np.where(np.abs(off) <= NEAR * self.size, off, 0.0), normal)
+                found -= np.outer(np.where(np.abs(off) <= SINGLE_PRECISION * self.size, off, 0.0), normal)
             if np.abs(found - before).max() <= DONE * self.size:
                 break
         return found
@@ -74,5 +72,5 @@ class FlatSides:
         off = np.abs(corners @ self.normals.T - self.heights).max(axis=1)
         same = np.where(normals @ self.normals.T > 0.0, off, np.inf)
         side = same.argmin(axis=1)
-        is_in = same.min(axis=1) <= NEAR * self.size
+        is_in = same.min(axis=1) <= SINGLE_PRECISION * self.size
         return np.where(is_in[:, None], self.normals[side], normals), np.where(is_in, self.heights[side], heights)

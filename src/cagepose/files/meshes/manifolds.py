@@ -15,6 +15,8 @@ from cagepose.model.checks import FloatArray
 
 ROUNDING = 3e-7
 """Of a mesh's size: what stands out by less does not. Single precision is off by as much."""
+SINGLE_PRECISION = 1e-6
+"""Of a body's size: what is this near to a place or a plane is there, after single precision and some sums with it."""
 ENOUGH = 0.99
 """Of the triangles: what leaves more of them was the last pass."""
 

@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 from cagepose.files.meshes.around_holes import cut_at_steps, set_apart
 from cagepose.files.meshes.convex_shapes import Recognised, convex_shape
 from cagepose.files.meshes.cuts import cut_until
-from cagepose.files.meshes.decomposed import farthest_from
 from cagepose.files.meshes.edges import hollow_depth, reflex_edges
 from cagepose.files.meshes.flat_sides import FlatSides
 from cagepose.files.meshes.manifolds import ROUNDING, Triangles, manifold3d, without_rounding
+from cagepose.files.meshes.surface_distance import farthest_from
 from cagepose.model.hole import Hole
 from cagepose.model.shapes import Convex, Shape
 from cagepose.model.surface import shape_mesh

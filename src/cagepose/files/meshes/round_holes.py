@@ -7,10 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cagepose.files.meshes.box_corners import SINGLE_PRECISION
 from cagepose.files.meshes.convex_shapes import FEWEST_SIDES
 from cagepose.files.meshes.edges import edges_of, reflex_edges
-from cagepose.files.meshes.manifolds import ROUNDING, Triangles, circle_through, manifold3d
+from cagepose.files.meshes.manifolds import ROUNDING, SINGLE_PRECISION, Triangles, circle_through, manifold3d
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.pose import Pose, turn_from_z
