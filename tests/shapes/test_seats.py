@@ -115,6 +115,29 @@ def test_cones_in_a_mouth_tilt_as_wedges_do(cases, say):
     assert not wrong, "\n".join(wrong[:5])
 
 
+@pytest.mark.parametrize("chamfer", [None, Chamfer(4.0 * MM, math.radians(40.0))], ids=["rim", "chamfer"])
+@pytest.mark.parametrize("push_deg", [0.0, 10.0, 22.5, 45.0, 77.0])
+@pytest.mark.parametrize(("center_mm", "stability"), [(0.0, "marginal"), (-1.0, "marginal"), (1.0, "unstable")])
+def test_a_ball_that_leans_on_a_round_seat_turns_in_it_as_its_weight_wills(
+    chamfer: Chamfer | None, push_deg: float, center_mm: float, stability: str
+) -> None:
+    """Wherever on the circle the push presses it, by 0.97 of what lifts it there. With its centre of gravity in the
+    middle it turns freely, above it rolls over, and below it comes back, but about the upright.
+    """
+    way = np.array([math.cos(math.radians(push_deg)), math.sin(math.radians(push_deg)), 0.0])
+    hole = Hole(6.0 * MM, 20.0 * MM, chamfer, in_=["block"])
+    block = Box((80.0 * MM, 80.0 * MM, 40.0 * MM), Pose((0.0, 0.0, -20.0 * MM)), name="block")
+    center = (0.0, 0.0, center_mm * MM)
+    ball = Object(shapes=[Sphere(10.0 * MM)], center_of_gravity_m=center, pose=Pose((0.0, 0.0, 11.0 * MM)), mass_kg=1.0)
+    lifts = 0.75 if chamfer is None else 1.0 / math.tan(chamfer.angle_rad)  # for a weight of 1
+    push = Force(way, (0.0, 0.0, 0.0), 0.97 * 9.81 * lifts)
+    loads = [Load("seat", gravity=(0.0, 0.0, -9.81)), Load("push", gravity=(0.0, 0.0, -9.81), force=push)]
+    result = run(Scene(ball, Cage(shapes=[block], holes=[hole]), loads))
+    assert [phase.verdict for phase in result.phases] == ["rests", "rests"]
+    assert [phase.proof.stability for phase in result.phases] == [stability, stability]
+    assert result.phases[1].proof.undetermined == (("roll", "pitch", "yaw") if center_mm == 0.0 else ("yaw",))
+
+
 @pytest.mark.parametrize("friction", [0.0, 0.5])
 @pytest.mark.parametrize("push_deg", [0.0, 20.0, 45.0, 135.0, 199.0])
 @pytest.mark.parametrize("chamfer_deg", [30.0, 45.0])

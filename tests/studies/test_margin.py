@@ -11,7 +11,24 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cagepose import Box, Cage, Cylinder, Load, Margin, Object, Pose, Run, Scene, Spring, load_scene, margin, run
+from cagepose import (
+    Box,
+    Cage,
+    Chamfer,
+    Cylinder,
+    Hole,
+    Load,
+    Margin,
+    Object,
+    Pose,
+    Run,
+    Scene,
+    Sphere,
+    Spring,
+    load_scene,
+    margin,
+    run,
+)
 from cagepose.files.document import run_document
 from cagepose.studies.contact_cones import ConeProgram, ContactCones, contact_cones
 from cagepose.studies.equal_stiffness import equally_stiff_forces
@@ -278,3 +295,18 @@ def test_places_of_a_rim_that_lie_beside_a_face_do_not_count() -> None:
     stand = Cage(shapes=[Box((2 * half, 2 * half, 0.02), Pose((0, 0, -0.01)), "stand")])
     found = margin_of(run(Scene(can, stand, [Load("weight", gravity=(0, 0, -9.81))], friction_coefficient=5.0)))
     assert found.moment_nm <= half * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3])
+@pytest.mark.parametrize("chamfer_deg", [None, 30.0, 45.0])
+def test_a_ball_leaves_a_round_seat_over_any_place_of_it(chamfer_deg: float | None, turn: float) -> None:
+    """Smooth contacts all around give the forces within a cone: a weight W is in its middle, W sin a from its side, a
+    the angle of the normals with the axis. Of four places it would be the cosine of 45 deg of that."""
+    radius, mouth = 0.01, 0.006
+    chamfer = None if chamfer_deg is None else Chamfer(0.004, math.radians(chamfer_deg))
+    aslant = math.asin(mouth / radius) if chamfer_deg is None else math.radians(90.0 - chamfer_deg)
+    block = Box((0.08, 0.08, 0.04), Pose((0, 0, -0.02), (math.cos(turn), 0, 0, math.sin(turn))), name="block")
+    ball = Object(shapes=[Sphere(radius)], pose=Pose((0, 0, 0.02)))
+    seat = Cage(shapes=[block], holes=[Hole(mouth, 0.02, chamfer, in_=["block"])])
+    found = margin_of(run(Scene(ball, seat, [Load("weight", gravity=(0, 0, -9.81))])))
+    assert 0.998 * math.sin(aslant) <= found.force_n <= found.force_below_n <= math.sin(aslant) * (1 + 1e-5)

@@ -14,9 +14,10 @@ from cagepose.exchange.solids_note import SHOWN, read_solids_note
 from cagepose.exchange.step_solids import read_step
 from cagepose.exchange.stl import MM
 from cagepose.files.meshes import mesh_file
-from cagepose.files.meshes.decomposed import farthest_from, kept_beside
+from cagepose.files.meshes.decomposed import kept_beside
 from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
+from cagepose.files.meshes.surface_distance import farthest_from
 from cagepose.files.progress import tell
 from cagepose.files.scene_document import SceneWriter
 from cagepose.model.checks import FloatArray

@@ -29,7 +29,8 @@ class LoadView:
     load_point
         Where the load's line passes, (2,).
     polygon
-        Corners of the convex hull of the contacts, counter-clockwise, (n, 2); of a rim that lies flat all around, 128.
+        Corners of the convex hull of the contacts, counter-clockwise, (n, 2); 128 of a circle along which
+        parts touch all around.
     margin_m
         Distance of the load's line from the hull's outline: above zero inside, below zero outside. A hull without area
         has no inside.

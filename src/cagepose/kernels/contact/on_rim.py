@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.least_squares import inner, length
+from cagepose.kernels.algebra.pose import matrix_from_quaternion, quaternion_about
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.contact.cone import ConeWorkspace, steepest_tangent
@@ -19,6 +20,7 @@ from cagepose.kernels.contact.contact_set import ContactSet, choose, stays_on_fa
 from cagepose.kernels.contact.edges import has_one_choice
 from cagepose.kernels.contact.metric import WRENCH, Frame, twist_of
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.bend import write_turned
 from cagepose.kernels.shapes.flat_rims import SAME_WAY
 
 SAME_RIM, SAME_BALL = 1e-6, 1e-2
@@ -165,11 +167,11 @@ def angle_of_deepest(
 
 
 @kernel
-def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
-    """Append the contact at an angle along the rim from a place of it that touches."""
+def write_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
+    """Write the row of the contact at an angle along the rim from a place of it that touches, behind all that count."""
     row, rim, place = contacts.rows[i], contacts.bends[i].on_rim, contacts.used[0]
     arm, normal = on_rim(contacts, i, angle)
-    new, state = contacts.rows[place], contacts.states[place]
+    new = contacts.rows[place]
     new.point, new.box, new.axis, new.side, new.gap, new.group = row.point, row.box, 0, 1.0, row.gap, place
     new.is_added = True
     arc = rim.arc_after if angle > 0.0 else rim.arc_before
@@ -178,12 +180,22 @@ def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
     else:
         new.feature, new.cage_feature = arc, (row.cage_feature if rim.face < 0 else rim.face)
     write_directions(new, normal, arm, norm(vector_from(row.directions[1])), frame)
+
+
+@kernel
+def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
+    """Append the contact at an angle along the rim from a place of it that touches."""
+    write_point(contacts, i, angle, frame)
+    place = contacts.used[0]
+    new, state, rim = contacts.rows[place], contacts.states[place], contacts.bends[i].on_rim
     choose(contacts, place, True)
     state.is_locked = state.is_sticking = state.has_carried = state.kept_chosen = False
     for k in range(3):
         state.forces[k] = state.kept_forces[k] = 0.0
     contacts.bends[place] = contacts.bends[i]  # type: ignore[index]
     contacts.bends[place].on_rim.length = 0.0
+    by, normal = matrix_from_quaternion(quaternion_about(vector_from(rim.axis), angle)), vector_from(new.directions[0])
+    write_turned(contacts.bends[i], by, normal, vector_from(new.arm), frame.axes, frame.radii, contacts.bends[place])
     contacts.used[0] = place + 1
 
 
@@ -230,12 +242,11 @@ def add_on_rims(contacts: ContactSet, frame: Frame, friction: float, y: FloatArr
                 angle = angle_of_deepest(contacts, i, friction, velocity, spin, deepest if k == 0 else 0.0)
             if angle == 0.0 or abs(angle) > (1.0 + ENTERS) * (rim.after if angle > 0.0 else rim.before):
                 continue
-            add_point(contacts, i, angle, frame)
+            write_point(contacts, i, angle, frame)
             new = contacts.rows[n_listed]
             speed = inner(new.columns[0], y, WRENCH)
             if friction > 0.0:
                 speed += friction * steepest_tangent(new, y)[0]
-            contacts.used[0] = n_listed
             if speed > least:
                 fastest, at_fastest, least = i, angle, speed
     if fastest < 0:

@@ -22,7 +22,20 @@ import math
 from typing import Annotated, NamedTuple
 
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, minus, norm, plus, scaled, times, vector_from
+from cagepose.kernels.algebra.vector import (
+    Matrix,
+    Vector,
+    cross,
+    dot,
+    matrix_from,
+    minus,
+    norm,
+    plus,
+    scaled,
+    times,
+    transposed_times,
+    vector_from,
+)
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.features import EDGE, FACE, RIM, Shapes
 from cagepose.kernels.shapes.flat_rims import OnRim
@@ -47,7 +60,7 @@ class Bend:
         K and L, (3, 3): how the normal turns as they slide, radians for each metre, and as they roll.
     parallel
         P, (3, 3): how far the place where they touch moves as they roll, metres for each radian.
-    has_twin, twin_sliding, twin_parallel
+    has_twin, twin_sliding, twin_relative, twin_share, twin_parallel
         Whether features that bend more meet at the same place with the same normal, as where a face ends in a round
         edge; and theirs.
     on_rim
@@ -60,6 +73,8 @@ class Bend:
     parallel: Annotated[FloatArray, 3, 3]
     has_twin: bool
     twin_sliding: Annotated[FloatArray, 6, 6]
+    twin_relative: Annotated[FloatArray, 3, 3]
+    twin_share: Annotated[FloatArray, 3, 3]
     twin_parallel: Annotated[FloatArray, 3, 3]
     on_rim: OnRim
 
@@ -223,7 +238,39 @@ def write_twin(found: Curvatures, normal: Vector, arm: Vector, axes: Matrix, rad
     """Write the bend of the features that bend more; see `write_bend`."""
     out.has_twin = True
     write_sliding(found, normal, arm, axes, radii, out.twin_sliding)
+    write_rows(found.relative, out.twin_relative)
+    write_rows(found.share, out.twin_share)
     write_rows(found.parallel, out.twin_parallel)
+
+
+@kernel
+def turned(matrix: Matrix, by: Matrix) -> Matrix:
+    """Return R m R^T."""
+    return (
+        times(by, transposed_times(matrix, by[0])),
+        times(by, transposed_times(matrix, by[1])),
+        times(by, transposed_times(matrix, by[2])),
+    )
+
+
+@kernel
+def write_turned(bend: Bend, by: Matrix, normal: Vector, arm: Vector, axes: Matrix, radii: Vector, out: Bend) -> None:
+    """Write the bend of a pair of features at another place of a rim, from that at one of its places: both features are
+    round about the rim's axis, and ``by`` turns the one place into the other. See `write_bend`.
+    """
+    there = Curvatures(
+        turned(matrix_from(bend.relative), by),
+        turned(matrix_from(bend.share), by),
+        turned(matrix_from(bend.parallel), by),
+    )
+    write_bend(there, normal, arm, axes, radii, out)
+    if bend.has_twin:
+        there = Curvatures(
+            turned(matrix_from(bend.twin_relative), by),
+            turned(matrix_from(bend.twin_share), by),
+            turned(matrix_from(bend.twin_parallel), by),
+        )
+        write_twin(there, normal, arm, axes, radii, out)
 
 
 @kernel
