@@ -131,6 +131,32 @@ def walled(names: Iterable[str], others: Iterable[Shape] = ()) -> Scene:
     return Scene(Object([Box((20 * MM,) * 3)]), Cage(shapes=[*walls, *others]), DOWN, friction_coefficient=0.3)
 
 
+def test_what_is_heavy_on_one_side_is_lifted_straight_out():
+    """By its origin it turns at once, and catches on the walls."""
+    arm = Box(np.array([60, 10, 5]) * MM, Pose(np.array([40, 0, 13]) * MM))
+    cube = walled(WALLS)
+    found = play(Scene(Object([*cube.object.boxes, arm]), cube.cage, DOWN), search_s=0.0)
+    assert (found.cage.verdict, found.cage.reason) == ("escapes", "pushed along +z, it gets out")
+    assert found.freedoms["z"].high.is_open
+
+
+def test_why_a_room_that_pushes_do_not_leave_is_not_proven_to_be_closed():
+    """A cube of 10 mm with 1 mm on every side, and a window of 9.99 mm: points of its frame alone do not close it."""
+    walls = {
+        "left": ((10, 60, 60), (-11, 0, 0)),
+        "front": ((60, 10, 60), (0, -11, 0)),
+        "back": ((60, 10, 60), (0, 11, 0)),
+        "floor": ((60, 60, 10), (0, 0, -11)),
+        "lid": ((60, 60, 10), (0, 0, 11)),
+        "above": ((10, 60, 60), (11, 0, 34.995)),
+        "below": ((10, 60, 60), (11, 0, -34.995)),
+    }
+    room = [Box(np.array(size) * MM, Pose(np.array(middle) * MM), name) for name, (size, middle) in walls.items()]
+    found = play(Scene(Object([Box((10 * MM,) * 3)]), Cage(shapes=room), DOWN), search_s=0.1)
+    assert not found.cage.free_directions
+    assert found.cage.reason.startswith("the proof takes points within the cage's shapes")
+
+
 def test_a_seated_cube_goes_to_the_walls_and_not_up():
     found = play(walled(WALLS), seated="weight")
     assert found.cage is None

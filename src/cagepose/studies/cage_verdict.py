@@ -26,6 +26,10 @@ MOST_STATIONS = 100_000
 BATCH = 500
 """Motions that are tried between two looks at the clock: some milliseconds."""
 SEED = 20250101
+STAND_INS_ARE_FREE = (
+    "the proof takes points within the cage's shapes and boxes within the object, and the points leave the boxes free"
+)
+"""Of shapes that are not boxes and points themselves, where pushes come to an end in every direction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +106,8 @@ def why_not_caged(
 ) -> tuple[str, Pose | None]:
     """Return why there is no proof, and the pose at which a point leaves its face."""
     proof, certificate = bounds.proof, bounds.proof.certificate
+    if certificate.outcome == FREE and not free_directions:
+        return STAND_INS_ARE_FREE, None
     if certificate.outcome == FREE:
         return f"nothing limits {' '.join(free_directions)}", None
     if certificate.outcome == UNSOLVED:

@@ -69,6 +69,7 @@ class PushedPlay:
         An object that gets out is pushed from the start alone: out there nothing has an end.
         """
         named, asked = range(len(FREEDOMS)), range(len(FREEDOMS), len(self._freedoms))
+        self._push_middle()
         self._push_all(named, [()])
         first_steps = self._pushes.n_steps
         new = self._chains(named)
@@ -82,6 +83,19 @@ class PushedPlay:
                 break
         if asked:
             self._push_all(asked, [(), *(pool if self.escape is None else ())])
+
+    def _push_middle(self) -> None:
+        """Push the centre of gravity each way: where it is not the origin, a push of that turns the object, which may
+        catch on what it would pass straight.
+        """
+        center = self.scene.object.center_of_gravity_m
+        for place in range(LENGTHS if center.any() else 0):
+            for sign in (-1.0, 1.0):
+                freedom = replace(self._freedoms[place], at_object_m=center)
+                pushed = self._checked(freedom, sign, self._pushes.push(freedom, sign, self._pushes.start))
+                if pushed.verdict == "escapes":
+                    self._note_escape((pushed,), _words(place, sign))
+                    self._found[place, sign] = _Found(math.inf, pushed, ())
 
     def _chains_of(self, places: Sequence[int]) -> list[tuple[tuple[int, float], Chain]]:
         return [
