@@ -66,10 +66,27 @@ def test_the_hole_that_the_starter_shows_goes_into_its_shapes() -> None:
     assert [found.name for found in scene.cage.holes] == ["bore"]
 
 
-def test_the_change_that_the_starter_proposes_works() -> None:
-    text = starter_text("x")
+@pytest.mark.parametrize("holes", [False, True])
+def test_the_change_that_the_starter_proposes_works(holes: bool) -> None:
+    text = starter_text("x", holes=holes)
     (change,) = re.findall(r"--set (\S+)", text)
     assert run(parse_scene(text, set_values=[change])).verdict == "rests"
+
+
+def test_the_starter_with_a_hole_rests_by_its_forces_and_with_all_its_options() -> None:
+    text = starter_text("pin", holes=True)
+    plain, whole = (parse_scene(one) for one in (text, re.sub(r"(?m)^(\s*)# ([a-z_]+: |- \{)", r"\1\2", text)))
+    assert (plain.name, [hole.chamfer for hole in plain.cage.holes]) == ("pin", [None])
+    assert [phase.proof.stability for phase in run(plain).phases] == ["stable", "stable"]
+    assert [shape.name for shape in (*whole.object.shapes, *whole.cage.shapes)] == [
+        "shank",
+        "head",
+        "tip",
+        "plate",
+        "stop",
+    ]
+    assert whole.cage.holes[0].chamfer is not None
+    assert run(whole).verdict == "rests"
 
 
 @pytest.mark.parametrize("name", ["null", "True", "fixture-2", "Größe", "a_b"])

@@ -77,7 +77,7 @@ COMMANDS = {
     "schema": ("cagepose.cli.schema_command:schema_command", "Print the JSON Schema of scene files, for editors."),
     "init": (
         "cagepose.cli.init_command:init_command",
-        "Write a commented scene to start from, pins and holes among its options.",
+        "Write a commented scene to start from; with --holes a pin in a round hole.",
     ),
 }
 

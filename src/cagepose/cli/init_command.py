@@ -8,13 +8,20 @@ from typing import Annotated
 from cyclopts import Parameter
 
 
-def init_command(name: Annotated[str, Parameter(help="The scene's name; the file is NAME.yaml.")], /) -> int:
+def init_command(
+    name: Annotated[str, Parameter(help="The scene's name; the file is NAME.yaml.")],
+    /,
+    *,
+    holes: Annotated[
+        bool, Parameter(negative="", show_default=False, help="A pin in a round hole, instead of a plate on points.")
+    ] = False,
+) -> int:
     """Write NAME.yaml into the current folder; an existing file is left alone."""
     from cagepose.errors import printable
     from cagepose.files.starter import write_starter
 
     try:
-        path = write_starter(name)
+        path = write_starter(name, holes=holes)
     except FileExistsError:
         message = "exists already; choose another name or remove the file"
         sys.stderr.write(printable(f"{name.removesuffix('.yaml')}.yaml: {message}") + "\n")

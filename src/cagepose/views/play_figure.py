@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -32,6 +32,7 @@ LINES: dict[str, Look] = {
 ARROW: dict[str, Any] = {"arrowstyle": "-|>", "color": VERMILLION, "linewidth": 1.0, "shrinkA": 0.0, "shrinkB": 0.0}
 ARROW_FROM, ARROW_TO = 0.78, 0.97
 """Of the way to the edge of a picture: arrows along which a point has no end."""
+PERHAPS_FARTHER = "?: perhaps farther"
 WORDS = {"certified": "certified: cannot be passed", "exact": "exact", "linear": "linear"}
 
 
@@ -57,7 +58,7 @@ def play_figure(play: Play, at: Sequence[ArrayLike] = (), length_unit: LengthUni
                 _draw_outline(panel, outline, length_unit)
         title = f"{play.scene.name}: play from the start pose ({play.verdict})"
         figure.suptitle(title, fontsize=11)
-        handles = [Patch(label=WORDS[kind], **look) for kind, look in BARS.items()]
+        handles = [Patch(label=WORDS[kind], **look) for kind, look in BARS.items() if _is_known(play, kind)]
         lines = [Line2D([], [], label=f"{kind}, of a point", **look) for kind, look in LINES.items()]
         figure.legend(handles=[*handles, *(lines if at else [])], loc="outside lower center", ncols=5, handlelength=2.0)
     return figure
@@ -72,8 +73,8 @@ def _draw_bars(panel: Axes, play: Play, names: tuple[str, ...], unit: float) -> 
             low, high = (_end(end, kind) for end in (ends.low, ends.high))
             if kind == "certified" and (low is None or high is None):
                 continue
-            if kind == "linear" and all(end.linear is None and not end.is_open for end in (ends.low, ends.high)):
-                continue  # not known of such shapes
+            if not _is_known(play, kind):
+                continue
             left = -reach if low is None else unit * low
             right = reach if high is None else unit * high
             panel.barh(row, right - left, left=left, height=HEIGHTS[kind], **look)
@@ -81,13 +82,26 @@ def _draw_bars(panel: Axes, play: Play, names: tuple[str, ...], unit: float) -> 
             if end.is_open:
                 panel.plot([tip], [row], marker=marker, color=VERMILLION, markersize=7.0, clip_on=False, zorder=5)
             elif end.exact is None and end.reached is not None:
-                panel.plot([unit * end.reached], [row], marker="$?$", color=VERMILLION, markersize=9.0, zorder=5)
+                _draw_doubt(panel, unit * end.reached, row, "left" if tip > 0.0 else "right")
+                panel.set_title(PERHAPS_FARTHER, fontsize=8.0, color=VERMILLION, pad=3.0)
     panel.axvline(0.0, color=GREY, linewidth=0.8)
     panel.set_xlim(-reach, reach)
     panel.set_yticks(range(len(names)), names)
     panel.invert_yaxis()
     panel.grid(axis="x", color=PALE, linewidth=0.6)
     panel.set_axisbelow(True)
+    panel.locator_params(axis="x", nbins=6)
+
+
+def _draw_doubt(panel: Axes, x: float, y: float, side: Literal["left", "center", "right"] = "center") -> None:
+    panel.text(x, y, "?", color=VERMILLION, fontsize=9.0, fontweight="bold", ha=side, va="center", zorder=5)
+
+
+def _is_known(play: Play, kind: str) -> bool:
+    """Whether bars of this kind say something: of most shapes nothing is known to first order, and no bound."""
+    ends = [end for one in play.freedoms.values() for end in (one.low, one.high)]
+    is_open = kind != "certified" and all(end.is_open for end in ends)
+    return is_open or any(_end(end, kind) is not None for end in ends)
 
 
 def _end(end: PlayEnd, kind: str) -> float | None:
@@ -117,9 +131,9 @@ def _draw_outline(panel: Axes, outline: PointOutline, length_unit: LengthUnit) -
             panel.annotate("", ARROW_TO * way, ARROW_FROM * way, arrowprops=ARROW)
         told.append("no end along the arrows" if len(outline.no_end) else "no end in some directions")
     if len(outline.not_converged):
-        places = from_metres(outline.not_converged, length_unit)
-        panel.plot(*places.T, linestyle="none", marker="$?$", color=VERMILLION, markersize=7.0)
-        told.append("?: perhaps farther")
+        for x, y in from_metres(outline.not_converged, length_unit):
+            _draw_doubt(panel, x, y)
+        told.append(PERHAPS_FARTHER)
     panel.set_title("; ".join(told), fontsize=8.0, color=VERMILLION, pad=3.0)
     panel.set_xlabel(f"{outline.axes[0]} [{length_unit}]")
     panel.set_ylabel(f"{outline.axes[1]} [{length_unit}]", labelpad=1.0)

@@ -4,7 +4,8 @@
 
 Far from a balance rho is large and delta follows the motion from rest; near a stable one rho falls with the speed and
 delta becomes Newton's step, so that the path ends in the balance to rounding instead of zigzagging towards it. Where
-the balance is unstable, rho is raised until the matrix is positive, and delta leads away from it.
+S is not convex, what it has below zero is left out: the step leads down along it as an explicit one does. It may be large
+across the motion, as of a rim that hardly tips and could roll aside.
 """
 
 from __future__ import annotations
@@ -22,8 +23,6 @@ from cagepose.kernels.contact.onset import motion_with_faces
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
-RAISES = 12
-"""How often rho is raised, four times each, before the explicit step is taken after all."""
 LEVEL = 1e-9
 """Of the step: a rim of which no point goes farther out or in stays flat."""
 LEAST_RHO = 1e-9
@@ -101,6 +100,21 @@ def write_matrix(work: ImplicitStepWorkspace, rho: float) -> None:
 
 
 @kernel
+def write_convex_matrix(work: ImplicitStepWorkspace, rho: float) -> None:
+    """Write rho 1 + S, but for what S has below zero: a step down from where it is unstable is an explicit one."""
+    write_matrix(work, 0.0)
+    symmetric_eigen(work.factor, work.vectors, WRENCH)
+    curvatures = work.b
+    for e in range(WRENCH):
+        curvatures[e] = rho + max(work.factor[e, e], 0.0)
+    for j in range(WRENCH):
+        for k in range(WRENCH):
+            work.factor[j, k] = 0.0
+            for e in range(WRENCH):
+                work.factor[j, k] += curvatures[e] * work.vectors[j, e] * work.vectors[k, e]
+
+
+@kernel
 def implicit_step(
     contacts: ContactSet,
     turned: ContactSet,
@@ -114,14 +128,11 @@ def implicit_step(
     Given are the explicit motion ``solver.y``, ``work.curvature`` along the faces, and which contacts stick; ``turned``
     is memory for the contacts in the step's coordinates.
     """
-    size = frobenius_norm(work.curvature)
-    for _ in range(RAISES):
-        write_matrix(work, rho)
-        if cholesky(work.factor, 1e-3 * rho):
-            break
-        rho = max(4.0 * rho, 1e-3 * size)
-    else:
-        return False
+    write_matrix(work, rho)
+    if not cholesky(work.factor, 1e-3 * rho):
+        write_convex_matrix(work, rho)
+        if not cholesky(work.factor, 1e-3 * rho):
+            return False
     turned.used[0] = contacts.used[0]
     for i in range(contacts.used[0]):
         turned.states[i].counts = contacts.states[i].counts
