@@ -181,4 +181,4 @@ def test_a_start_inside_a_shape_is_told_at_the_shape() -> None:
         Scene(held, Cage(shapes=[Sphere(0.1, Pose((3.0, 0.0, 0.0))), wall]), [Load("weight", gravity=(0.0, 0.0, -1.0))])
     (problem,) = caught.value.problems
     assert problem.path == ("cage", "shapes", 1)
-    assert problem.message.startswith("starts 150 mm inside object.shapes[0] (sphere1)")
+    assert problem.message.startswith("box1 starts 150 mm inside object.shapes[0] (sphere1)")

@@ -350,10 +350,11 @@ def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: 
         part = key_path(("object", *held.part_paths[one][:2]))
         is_point = other < n_points
         path: tuple[Key, ...] = ("points", cage.names[other]) if is_point else cage.shape_paths[other - n_points][:2]
+        what = "" if is_point else f"{cage.element_names[other]} "
         problems.add(
             ("cage", *path),
-            f"starts {millimetres(-gaps[one, other])} inside {part} ({held.element_names[one]}); move it out or move"
-            " the object's start pose",
+            f"{what}starts {millimetres(-gaps[one, other])} inside {part} ({held.element_names[one]}); move it out or"
+            " move the object's start pose",
         )
 
 
@@ -367,7 +368,7 @@ def _check_pierced_apart(held: Object, cage: Cage, problems: ProblemList) -> Non
         for shape, path in zip(cage.shapes, cage.shape_paths, strict=False):
             others = [hole for hole in cage.holes if shape.name in hole.in_]
             if (holes or others) and are_in_each_other(part, shape, pose, holes, others):
-                where = f"starts inside {key_path(('object', *part_path[:2]))} ({part.name})"
+                where = f"{shape.name} starts inside {key_path(('object', *part_path[:2]))} ({part.name})"
                 problems.add(("cage", *path[:2]), f"{where}; move it out or move the object's start pose")
 
 

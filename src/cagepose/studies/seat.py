@@ -37,6 +37,8 @@ def seated(scene: Scene, phase: str) -> Pushes:
         why = "no stable rest without friction is near"
         if settled.verdict == "escapes":
             why = "friction alone keeps it there"
-        raise SceneError([Problem(("phase",), f"is {phase!r}, and {why}; ask about another phase")])
+        others = [name for name in names if name != phase]
+        which = f", such as {few(others)}" if others else ""
+        raise SceneError([Problem(("phase",), f"is {phase!r}, and {why}; ask about another phase{which}")])
     pushes.start = settled.pose
     return pushes
