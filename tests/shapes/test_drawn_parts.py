@@ -178,3 +178,17 @@ def test_a_leaning_can_rolls_past_the_end_of_its_table():
     result = run(Scene(can, Cage(shapes=boxes), [load], friction_coefficient=0.1))
     assert result.verdict == "escapes"
     assert len(path_of(result.phases[0])) < 1000
+
+
+@pytest.mark.parametrize(("slope_deg", "tips"), [(26.5, False), (26.6, True), (27.0, True), (30.0, True)])
+def test_a_can_on_a_slope_tips_over_its_rim_at_the_angle_of_its_diagonal(slope_deg: float, tips: bool) -> None:
+    """atan(1/2) = 26.565 deg, at a friction that keeps it from sliding. A rim that hardly tips could roll aside on it,
+    too: where it did not, it crept over by 1e-6 rad a step, to the limit."""
+    turned = Pose(euler_zyx=(0, math.radians(slope_deg), 0))
+    can = Object(shapes=[Cylinder(10 * MM, 40 * MM, Pose((0, 0, 20 * MM)))], mass_kg=1.0, pose=turned)
+    slope = Box((400 * MM, 400 * MM, 10 * MM), turned @ Pose((0, 0, -5 * MM)), "slope")
+    result = run(Scene(can, Cage(shapes=[slope]), [Load("weight", gravity=(0, 0, -9.81))], friction_coefficient=0.7))
+    assert result.verdict == "rests"
+    lies = turned.rotation[:, 2] @ result.pose.rotation[:, 2] < 1e-9
+    assert lies == tips
+    assert len(path_of(result.phases[0])) < 200

@@ -35,6 +35,11 @@ class KernelTolerances(NamedTuple):
 RESOLUTION_OF_SIZE = 1e-12
 ROUNDING_OF_SIZE = 1e-14
 TIE = 1e-9
+PROBE, PROBE_MARGIN = 3.0, 1.5
+"""In touch tolerances: how far into a part it is asked whether there is material. The probe must clear a point that
+lies a whole tolerance inside (hence more than 1 and more than the margin), and the margin must clear boxes that meet up
+to a tolerance apart. Scenes refuse boxes thinner than 10.
+"""
 
 
 def kernel_tolerances(size_m: float, touch: float) -> KernelTolerances:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.algebra.tolerances import KernelTolerances
+from cagepose.kernels.algebra.tolerances import PROBE, PROBE_MARGIN, KernelTolerances
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, row, scaled
 from cagepose.kernels.collision.geometry import (
     Geometry,
@@ -27,12 +27,6 @@ from cagepose.kernels.collision.geometry import (
     point_in_box,
 )
 from cagepose.kernels.native.kernel import kernel
-
-# In touch tolerances. The probe must clear a point that lies a whole tolerance inside (hence more than 1 and more
-# than the margin), and the margin must clear boxes that meet up to a tolerance apart. Scenes refuse boxes thinner
-# than 10.
-PROBE = 3.0
-PROBE_MARGIN = 1.5
 
 
 @kernel

@@ -162,6 +162,13 @@ def choose(contacts: ContactSet, i: int, chosen: bool) -> None:
 
 
 @kernel
+def count_chosen(contacts: ContactSet) -> None:
+    """Let all contacts that are chosen count again."""
+    for i in range(contacts.used[0]):
+        contacts.states[i].counts = contacts.states[i].chosen
+
+
+@kernel
 def tangents_to(normal: Vector) -> tuple[Vector, Vector]:
     """Return two unit vectors across a unit normal and each other."""
     x, y, z = abs(normal[0]), abs(normal[1]), abs(normal[2])

@@ -17,7 +17,7 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.span import extend, write_complement, write_outside, write_reduced
 from cagepose.kernels.algebra.vector import cross, vector_from
 from cagepose.kernels.contact.cone import N_ROWS, ConeWorkspace, clear_cone, cone_residual
-from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.contact_set import ContactSet, count_chosen
 from cagepose.kernels.contact.curvature import add_face_curvature, clear_matrix
 from cagepose.kernels.contact.metric import WRENCH, Frame, write_scaled_wrench
 from cagepose.kernels.contact.workspace import STRESS_LIMIT, ContactWorkspace, SelfStressWorkspace
@@ -225,13 +225,6 @@ def find_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> N
         take_out_locked(contacts, work)
     work.is_chained = 0 < n_locked < work.locked.used
     count_chosen(contacts)
-
-
-@kernel
-def count_chosen(contacts: ContactSet) -> None:
-    """Let all contacts that are chosen count again."""
-    for i in range(contacts.used[0]):
-        contacts.states[i].counts = contacts.states[i].chosen
 
 
 @kernel

@@ -11,7 +11,7 @@ import math
 
 from cagepose.kernels.algebra.vector import cross, dot, vector_from
 from cagepose.kernels.contact.cone import clear_cone, cone_residual
-from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.contact_set import ContactSet, count_chosen
 from cagepose.kernels.contact.coulomb import coulomb_onset, obeys
 from cagepose.kernels.contact.metric import WRENCH, Frame, ScaledVector, twist_of
 from cagepose.kernels.contact.on_rim import add_on_rims, add_point, angle_of_deepest
@@ -55,7 +55,7 @@ def tips_on_rim(contacts: ContactSet, frame: Frame, friction: float, work: Conta
             work.residual = left
             return True
         contacts.used[0] = n_before
-        take_in_all(contacts)
+        count_chosen(contacts)
     return False
 
 
@@ -104,13 +104,6 @@ def leave_out_rim(contacts: ContactSet, i: int) -> None:
             contacts.states[j].counts = False
             for k in range(3):
                 contacts.states[j].forces[k] = 0.0
-
-
-@kernel
-def take_in_all(contacts: ContactSet) -> None:
-    """Let all contacts that are chosen count again."""
-    for i in range(contacts.used[0]):
-        contacts.states[i].counts = contacts.states[i].chosen
 
 
 @kernel
@@ -177,7 +170,7 @@ def turns_about(
     row, beyond = row_on_rim_at(contacts, n_before, i, angle)
     if row < 0 or way_from_tip(contacts, n_before, row, beyond, frame, friction, work) == math.inf:
         return False
-    take_in_all(contacts)
+    count_chosen(contacts)
     n_all = contacts.used[0]
     if add_on_rims(contacts, frame, 0.0, work.y, work.load_terms):
         contacts.used[0] = n_all

@@ -4,8 +4,8 @@
 
 Far from a balance rho is large and delta follows the motion from rest; near a stable one rho falls with the speed and
 delta becomes Newton's step, so that the path ends in the balance to rounding instead of zigzagging towards it. Where
-S is not convex, what it has below zero is left out: the step leads down along it as an explicit one does. It may be large
-across the motion, as of a rim that hardly tips and could roll aside.
+S is not convex, what it has below zero is left out: the step leads down along it as an explicit one does. It may be
+large across the motion, as of a rim that hardly tips and could roll aside.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
 LEVEL = 1e-9
-"""Of the step: a rim of which no point goes farther out or in stays flat."""
+"""Of the step: a rim of which no point goes farther out or in stays flat; nor one whose points go by rounding."""
 LEAST_RHO = 1e-9
 """In curvatures: freedoms without curvature (a block that slides on a plane) keep the matrix regular by this."""
 
@@ -120,6 +120,7 @@ def implicit_step(
     turned: ContactSet,
     friction: float,
     rho: float,
+    rounding_m: float,
     work: ImplicitStepWorkspace,
     solver: ContactWorkspace,
 ) -> bool:
@@ -156,6 +157,6 @@ def implicit_step(
         state.is_sticking = state.is_sticking and state.forces[0] > 0.0
     for i in range(contacts.used[0]):
         state, away = contacts.states[i], abs(inner(contacts.rows[i].columns[0], work.delta, 6))
-        is_level = away <= LEVEL * length(contacts.rows[i].columns[0], 6) * length(work.delta, 6)
+        is_level = away <= max(LEVEL * length(contacts.rows[i].columns[0], 6) * length(work.delta, 6), rounding_m)
         state.stays_flat = state.stays_flat and is_level
     return True

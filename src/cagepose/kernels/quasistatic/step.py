@@ -155,7 +155,7 @@ def next_twist(
         is_round = turns * end > STIFF * turn_step_rad and turns > ROUND * norm(spin)
         for _ in range(LONGER if is_round else 1):
             if not (is_stiff or is_round) or not implicit_step(
-                contacts, work.turned, friction, rho, scratch.stiff, scratch.solver
+                contacts, work.turned, friction, rho, setting.tolerances.rounding_m, scratch.stiff, scratch.solver
             ):
                 break
             velocity, spin = twist_of(scratch.stiff.delta, frame)

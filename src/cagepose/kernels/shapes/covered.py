@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 
+from cagepose.kernels.algebra.tolerances import PROBE, PROBE_MARGIN
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.along_motion import distance_from
@@ -24,8 +25,6 @@ from cagepose.kernels.shapes.features import (
 from cagepose.kernels.shapes.meeting import reaches
 from cagepose.kernels.shapes.rims import nearest_on_edge
 
-PROBE, PROBE_MARGIN = 3.0, 1.5
-"""In touch tolerances, as in `cagepose.kernels.collision.contacts`."""
 BESIDE = 4.0 * PROBE
 """In touch tolerances: how near to a place a part must be to cover it."""
 
