@@ -192,3 +192,22 @@ def test_a_can_on_a_slope_tips_over_its_rim_at_the_angle_of_its_diagonal(slope_d
     lies = turned.rotation[:, 2] @ result.pose.rotation[:, 2] < 1e-9
     assert lies == tips
     assert len(path_of(result.phases[0])) < 200
+
+
+@pytest.mark.parametrize("push_n", [4.0, 5.0, 6.0])
+def test_a_can_that_sticks_to_both_sides_of_a_v_tips_in_it(push_n: float) -> None:
+    """Pushed at its top it turns about its two places, and closes their gaps by slipping a little, as it goes off both
+    slanted sides at once. It crept on by 1e-5 rad a step, to the limit. It ends on its side, against the stop."""
+    slanted = [Pose((s * 28.480762 * MM, 0, 10.669873 * MM), euler_zyx=(0, -s * math.pi / 6, 0)) for s in (1, -1)]
+    sides = [
+        Box((60 * MM, 60 * MM, 10 * MM), pose, name) for pose, name in zip(slanted, ("right", "left"), strict=True)
+    ]
+    stop = Box((60 * MM, 10 * MM, 60 * MM), Pose((0, 30 * MM, 25 * MM)), "stop")
+    can = Object(shapes=[Cylinder(10 * MM, 10 * MM)], mass_kg=1.0, pose=Pose((0, 2 * MM, 40 * MM)))
+    weight = (0.0, 0.0, -9.81)
+    push = Force((0, 1, 0), (0, 0, 10 * MM), push_n)
+    loads = [Load("weight", gravity=weight), Load("push", gravity=weight, force=push)]
+    result = run(Scene(can, Cage(shapes=[*sides, stop]), loads, friction_coefficient=0.3))
+    assert result.verdict == "rests"
+    assert abs(result.pose.rotation[2, 2]) < 1e-9
+    assert len(path_of(result.phases[1])) < 200

@@ -46,6 +46,10 @@ from cagepose.kernels.quasistatic.straying import STRAYED, strayed
 from cagepose.kernels.shapes.motion import motion_of
 from cagepose.kernels.shapes.rims import is_rim_on_wall
 
+MAY_SLIP = 0.01
+"""Of the way of a step: what sticks in two places may slip by as much, where it cannot turn without, as in a V. That is
+of second order in the step, by which its path is wrong anyway.
+"""
 HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
 ROUNDING = 1e-15
@@ -260,6 +264,8 @@ def stepped(
     """
     geometry = setting.geometry
     constrain_contacts(geometry, placement, contacts, setting.tolerances.rounding_m, work.constraints)
+    way = amount * (norm(twist.velocity) + setting.body.reach_m * norm(twist.spin))
+    work.constraints.scratch[0].may_slip_m = max(setting.tolerances.touch_m, MAY_SLIP * way)
     moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
     if hit.feature >= 0:
         constrain_features(work.constraints, hit.feature, hit.cage_feature, GAP, 0.0)

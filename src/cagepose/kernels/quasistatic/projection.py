@@ -92,6 +92,8 @@ class ProjectionWorkspace:
     ----------
     used, n_stopped
         How many constraints, and motions that contacts without play stop to second order.
+    may_slip_m
+        How far what sticks may slip where its gaps do not close without, metres.
     stopped_forces, stopped_moments
         Those motions y have s . y = 0 with these wrenches s, about the world's origin.
     column, y, back
@@ -104,6 +106,7 @@ class ProjectionWorkspace:
 
     used: int
     n_stopped: int
+    may_slip_m: float
     stopped_forces: Annotated[FloatArray, WRENCH, 3]
     stopped_moments: Annotated[FloatArray, WRENCH, 3]
     column: ScaledVector
@@ -287,7 +290,7 @@ def add_least_slip(
     moved: Shapes,
 ) -> bool:
     """Add to the motion that closes gaps the one beside it with which features that stick slip least, in the sense of
-    least squares; False: they would by more than the touch tolerance, or a slip means nothing here.
+    least squares; False: they would by more than they may, or a slip means nothing here.
 
     Two points on slanted walls cannot both go straight off them. To let one not slip at all, and the other where it
     must, would take a way many times longer than the gaps.
@@ -318,7 +321,7 @@ def add_least_slip(
     solve_upper(work.slips, work.back)
     for k in range(6):
         work.y[k] += work.back[k]
-    return slipped <= geometry.touch_m * geometry.touch_m
+    return slipped <= work.may_slip_m * work.may_slip_m
 
 
 @kernel
