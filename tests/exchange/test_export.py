@@ -291,3 +291,14 @@ def test_the_command_writes_files_and_says_what_they_do_not_hold(tmp_path, monke
     assert main(["export", scene, "--to", "mjcf", "-o", "mine.xml"]) == 2
     assert "holds something else than an export of cagepose" in capsys.readouterr().err
     assert Path("mine.xml").read_text() == "<mujoco/>"
+
+
+def test_what_is_written_has_no_name_of_another_kind(tmp_path, monkeypatch, capsys):
+    from cagepose.cli.app import main
+
+    monkeypatch.chdir(tmp_path)
+    scene = str(next(path for path in SCENES if path.stem == "phone-dock"))
+    assert main(["export", scene, "--to", "step", "-o", "dock.stl"]) == 2
+    assert capsys.readouterr().err == "--out dock.stl: is not the name of a step file; write --out dock.step\n"
+    assert main(["export", scene, "--to", "csv", "-o", "dock.poses"]) == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["dock.poses"]

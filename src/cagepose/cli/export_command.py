@@ -11,6 +11,16 @@ from cagepose.cli.options import FILE, FileName, MethodOption, SetOption, refusa
 from cagepose.cli.run_source import RunOrSceneArgument, read_run_or_scene, run_of
 
 
+SUFFIXES = {
+    "mjcf": (".xml", ".mjcf"),
+    "urdf": (".urdf", ".xml"),
+    "step": (".step", ".stp"),
+    "stl": (".stl",),
+    "csv": (".csv",),
+}
+"""Of what is written; others that no kind has are nobody's business."""
+
+
 def export_command(
     run_or_scene: RunOrSceneArgument,
     /,
@@ -38,7 +48,11 @@ def export_command(
     def check(path: Path) -> None:
         check_can_write(path, is_made_by_us, "an export of cagepose")
 
-    option = f"--out {out}"
+    option, suffix = f"--out {out}", Path(out).suffix.lower()
+    if suffix not in SUFFIXES[to] and any(suffix in others for others in SUFFIXES.values()):
+        proposed = Path(out).with_suffix(SUFFIXES[to][0])
+        sys.stderr.write(printable(f"{option}: is not the name of a {to} file; write --out {proposed}") + "\n")
+        return 2
     source = read_run_or_scene(run_or_scene, set_values, method, lambda: check(Path(out)), option)
     if source is None:
         return 2
