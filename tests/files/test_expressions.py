@@ -202,6 +202,13 @@ def by_itself(expression: Expression, a: float) -> float:
     return found if isinstance(found, float) else math.nan
 
 
+def test_a_bare_word_is_told_to_stand_in_quotes():
+    with pytest.raises(
+        ValueError, match='unknown name rests; known names: verdict; text stands in quotes, as in verdict == "rests"'
+    ):
+        Expression("rests").value({"verdict": np.array(["rests"])})
+
+
 def test_comparisons_answer_for_all_rows() -> None:
     verdicts, tilts = np.array(["rests", "escapes", "rests"]), np.array([0.1, 0.0, -0.3])
     expression = Expression("verdict == 'rests' and -0.2 < pitch.deg < 0.2 or not abs(pitch_deg) > 0")

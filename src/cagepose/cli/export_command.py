@@ -10,7 +10,6 @@ from cyclopts import Parameter
 from cagepose.cli.options import FILE, FileName, MethodOption, SetOption, refusal
 from cagepose.cli.run_source import RunOrSceneArgument, read_run_or_scene, run_of
 
-
 SUFFIXES = {
     "mjcf": (".xml", ".mjcf"),
     "urdf": (".urdf", ".xml"),

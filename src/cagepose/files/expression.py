@@ -65,7 +65,8 @@ class Expression:
                 return evaluator.known(evaluator.eval(self.text, previously_parsed=self._tree))
         except NameNotDefined as error:
             known = ", ".join(names) or "none"
-            raise ValueError(f"has the unknown name {error.name}; known names: {known}") from None
+            hint = '; text stands in quotes, as in verdict == "rests"' if "verdict" in names else ""
+            raise ValueError(f"has the unknown name {error.name}; known names: {known}{hint}") from None
         except FunctionNotDefined as error:
             raise ValueError(f"calls {error.func_name}, which no expression may; {_ALLOWED}") from None
         except OperatorNotDefined as error:
