@@ -219,5 +219,5 @@ def test_machined_parts_are_what_they_were(cases, say):
         assert off < 0.6 * found.error + 1e-4, f"part {index}"
         farthest = max(farthest, off)
     assert n_many <= 1 + 0.06 * n_drawn
-    assert n_divided <= 1 + 0.05 * n_drawn  # a run of it is refused
+    assert n_divided <= 1 + 0.02 * n_drawn  # a run of it is refused
     say(f"{n_drawn} machined parts: {n_many} need too many pieces, holes of {n_divided} divided; {farthest:.1e} mm off")

@@ -65,7 +65,8 @@ class Expression:
                 return evaluator.known(evaluator.eval(self.text, previously_parsed=self._tree))
         except NameNotDefined as error:
             known = ", ".join(names) or "none"
-            hint = '; text stands in quotes, as in verdict == "rests"' if "verdict" in names else ""
+            texts = [name for name, value in names.items() if np.asarray(value).dtype.kind == "U"]
+            hint = f'; text stands in quotes, as in {texts[0]} == "{error.name}"' if texts else ""
             raise ValueError(f"has the unknown name {error.name}; known names: {known}{hint}") from None
         except FunctionNotDefined as error:
             raise ValueError(f"calls {error.func_name}, which no expression may; {_ALLOWED}") from None

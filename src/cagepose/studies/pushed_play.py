@@ -92,9 +92,8 @@ class PushedPlay:
         for place in range(LENGTHS if center.any() else 0):
             for sign in (-1.0, 1.0):
                 freedom = replace(self._freedoms[place], at_object_m=center)
-                pushed = self._checked(freedom, sign, self._pushes.push(freedom, sign, self._pushes.start))
+                pushed = self._pushed_from((), freedom, sign, _words(place, sign))
                 if pushed.verdict == "escapes":
-                    self._note_escape((pushed,), _words(place, sign))
                     self._found[place, sign] = _Found(math.inf, pushed, ())
 
     def _chains_of(self, places: Sequence[int]) -> list[tuple[tuple[int, float], Chain]]:
@@ -118,15 +117,21 @@ class PushedPlay:
 
     def _push(self, place: int, sign: float, chain: Chain) -> None:
         freedom = self._freedoms[place]
-        pushed = self._pushes.push(freedom, sign, chain[-1].pose if chain else self._pushes.start)
-        pushed = self._checked(freedom, sign, pushed)
-        if pushed.verdict == "escapes":
-            self._note_escape((*chain, pushed), _words(place, sign) if place < len(FREEDOMS) else "there")
+        by = _words(place, sign) if place < len(FREEDOMS) else "there"
+        pushed = self._pushed_from(chain, freedom, sign, by)
         value = math.inf if pushed.goes_on else sign * self._pushes.value(freedom, (*chain, pushed))
         before = self._found.get((place, sign))
         unit = self.scene.size_m if freedom.angle is None else 1.0
         if before is None or value > before.value + FARTHER * unit:
             self._found[place, sign] = _Found(value, pushed, chain)
+
+    def _pushed_from(self, chain: Chain, freedom: Freedom, sign: float, by: str) -> Pushed:
+        """Push from where others led; ``by``: in words, if it gets out."""
+        start = chain[-1].pose if chain else self._pushes.start
+        pushed = self._checked(freedom, sign, self._pushes.push(freedom, sign, start))
+        if pushed.verdict == "escapes":
+            self._note_escape((*chain, pushed), by)
+        return pushed
 
     def _checked(self, freedom: Freedom, sign: float, pushed: Pushed) -> Pushed:
         """Return a push as it is if its end is free of overlap, and if it escapes what is ahead of it; else as stalled.
@@ -197,12 +202,9 @@ class PushedPlay:
             along = rng.normal(size=3)
             aim = Freedom(center + reach * rng.uniform(-1.0, 1.0, 3), along / np.linalg.norm(along))
             chain = chains[rng.integers(len(chains))]
-            pushed = self._pushes.push(aim, 1.0, chain[-1].pose if chain else self._pushes.start)
-            pushed = self._checked(aim, 1.0, pushed)
+            pushed = self._pushed_from(chain, aim, 1.0, "at random")
             n_tried += 1
-            if pushed.verdict == "escapes":
-                self._note_escape((*chain, pushed), "at random")
-            elif pushed.rests:
+            if pushed.rests:
                 chains.append((*chain, pushed))
         if self.escape is not None:
             n_before = len(self.escape) - 1

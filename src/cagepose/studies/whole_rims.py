@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from cagepose.kernels.shapes.meeting import SAME_PLACE
 from cagepose.model.cage import Cage
@@ -28,11 +29,21 @@ WIDEST = 0.51 * np.pi
 """Angle between places that are listed, at most, of what touches all around."""
 
 
-class _Axis(NamedTuple):
-    """Axis of a shape of revolution: a point and a direction in the world, and the shape's name."""
+class _Side(NamedTuple):
+    """The object's or the cage's side of a contact: the body, its part's name, the body's pose, and which way along the
+    normal it is.
+    """
 
-    middle: FloatArray
-    along: FloatArray
+    body: Object | Cage
+    name: str
+    pose: Pose
+    sign: float
+
+
+class _Axis(NamedTuple):
+    """A shape of revolution: its pose in the world, z being its axis, and its name."""
+
+    pose: Pose
     name: str | None
 
 
@@ -42,92 +53,90 @@ def more_places(scene: Scene, ended: PhaseRun) -> list[Contact]:
     """
     found = list[Contact]()
     for contacts in _by_pair(ended.contacts):
-        for axis in _axes(scene, ended, contacts[0]):
-            circles = [_places(scene, ended, circle, axis) for circle in _circles(contacts, axis, scene.touch_m)]
+        sides = _sides(scene, ended, contacts[0])
+        for axis in _axes(sides):
+            circles = list(_circles(contacts, axis, scene.touch_m))
+            for circle in circles:
+                found += _places(sides, circle[0], axis, PROBE * scene.touch_m)
             if circles:
-                found += [contact for places in circles for contact in places]
                 break
     return found
 
 
 def _by_pair(contacts: Sequence[Contact]) -> list[list[Contact]]:
     """Return contacts that have a place, those of two parts together."""
-    placed = sorted((contact for contact in contacts if contact.place_world is not None), key=_pair)
-    return [list(pair) for _, pair in groupby(placed, key=_pair)]
+    pairs: dict[tuple[str, str], list[Contact]] = {}
+    for contact in contacts:
+        if contact.place_world is not None:
+            pairs.setdefault((contact.point, contact.box), []).append(contact)
+    return list(pairs.values())
 
 
-def _pair(contact: Contact) -> tuple[str, str]:
-    return contact.point, contact.box
-
-
-def _axes(scene: Scene, ended: PhaseRun, contact: Contact) -> Iterator[_Axis]:
-    """Yield the axes of the two parts of a contact that have one."""
-    bodies: tuple[tuple[Object | Cage, str, Pose], ...] = (
-        (scene.object, contact.box, ended.pose),
-        (scene.cage, contact.point, scene.cage.pose_world_cage),
+def _sides(scene: Scene, ended: PhaseRun, contact: Contact) -> tuple[_Side, _Side]:
+    return (
+        _Side(scene.object, contact.box, ended.pose, -1.0),
+        _Side(scene.cage, contact.point, scene.cage.pose_world_cage, 1.0),
     )
-    for body, name, pose_world_body in bodies:
-        for part in (*body.shapes, *body.holes):
-            if part.name == name and isinstance(part, Turned):
-                pose = pose_world_body @ part.pose_body_shape
-                yield _Axis(pose.position_m, pose.rotation[:, 2], part.name)
+
+
+def _axes(sides: Sequence[_Side]) -> Iterator[_Axis]:
+    """Yield the parts of a contact that have an axis."""
+    for side in sides:
+        for part in (*side.body.shapes, *side.body.holes):
+            if part.name == side.name and isinstance(part, Turned):
+                yield _Axis(side.pose @ part.pose_body_shape, part.name)
+
+
+class _About(NamedTuple):
+    """Where a contact is about an axis, and its normal: outward, around and along the axis."""
+
+    height: float
+    radius: float
+    angle: float
+    normal: FloatArray
+
+
+def _about(contact: Contact, axis: _Axis) -> _About:
+    assert contact.place_world is not None
+    x, y, height = axis.pose.inverse_transform(contact.place_world).tolist()
+    angle = math.atan2(y, x)
+    return _About(height, math.hypot(x, y), angle, _around(angle) @ axis.pose.rotation.T @ contact.normal_world)
+
+
+def _around(angles: ArrayLike) -> FloatArray:
+    """Return unit vectors outward, around and along z at angles about it, (..., 3, 3), rows."""
+    cosine, sine, zero, one = np.cos(angles), np.sin(angles), np.zeros_like(angles), np.ones_like(angles)
+    rows = [[cosine, sine, zero], [-sine, cosine, zero], [zero, zero, one]]
+    return np.moveaxis(np.array(rows, dtype=float), (0, 1), (-2, -1))
 
 
 def _circles(contacts: Sequence[Contact], axis: _Axis, touch_m: float) -> Iterator[list[Contact]]:
     """Yield the contacts of each circle about an axis that are spread all around it, with normals that are as round."""
     left = [(contact, _about(contact, axis)) for contact in contacts]
     while left:
-        height, radius, _, normal = left[0][1]
-        near = [
-            (abs(other[0] - height) <= SAME_PLACE * touch_m and abs(other[1] - radius) <= SAME_PLACE * touch_m)
-            and float(np.linalg.norm(other[3] - normal)) <= SAME_WAY
-            for _, other in left
-        ]
-        circle = [one for one, is_near in zip(left, near, strict=True) if is_near]
-        left = [one for one, is_near in zip(left, near, strict=True) if not is_near]
-        angles = np.sort([other[2] for _, other in circle])
+        first, same, others = left[0][1], list[tuple[Contact, _About]](), list[tuple[Contact, _About]]()
+        for contact, about in left:
+            apart_m = max(abs(about.height - first.height), abs(about.radius - first.radius))
+            is_same = apart_m <= SAME_PLACE * touch_m and np.linalg.norm(about.normal - first.normal) <= SAME_WAY
+            (same if is_same else others).append((contact, about))
+        angles = np.sort([about.angle for _, about in same])
         gaps = np.diff(angles, append=angles[0] + 2.0 * np.pi)
-        if radius > SAME_PLACE * touch_m and gaps.max() <= WIDEST:
-            yield [contact for contact, _ in circle]
+        if first.radius > SAME_PLACE * touch_m and gaps.max() <= WIDEST:
+            yield [contact for contact, _ in same]
+        left = others
 
 
-def _about(contact: Contact, axis: _Axis) -> tuple[float, float, float, FloatArray]:
-    """Return height, radius and angle of a contact about an axis; and its normal: outward, around, along the axis."""
-    assert contact.place_world is not None
-    away = contact.place_world - axis.middle
-    height = float(away @ axis.along)
-    one, two = _across(axis)
-    x, y = float(away @ one), float(away @ two)
-    radius = float(np.hypot(x, y))
-    outward = (x * one + y * two) / (radius or 1.0)
-    directions = np.array([outward, np.cross(axis.along, outward), axis.along])
-    return height, radius, float(np.arctan2(y, x)), directions @ contact.normal_world
-
-
-def _across(axis: _Axis) -> tuple[FloatArray, FloatArray]:
-    """Return two unit vectors across an axis and each other."""
-    one = np.cross(axis.along, np.eye(3)[np.abs(axis.along).argmin()])
-    one /= float(np.linalg.norm(one))
-    return one, np.cross(axis.along, one)
-
-
-def _places(scene: Scene, ended: PhaseRun, circle: Sequence[Contact], axis: _Axis) -> Iterator[Contact]:
-    """Yield contacts all along a circle where there is material on both sides: a face may end between two places that
-    are listed.
+def _places(sides: Sequence[_Side], listed: Contact, axis: _Axis, probe_m: float) -> Iterator[Contact]:
+    """Yield contacts all along the circle of one that is listed, where there is material on both sides: a face may end
+    between two places that are listed.
     """
-    height, radius, _, (out, around, along) = _about(circle[0], axis)
-    one, two = _across(axis)
-    angles = 2.0 * np.pi * np.arange(PLACES) / PLACES
-    outward = np.outer(np.cos(angles), one) + np.outer(np.sin(angles), two)
-    places = axis.middle + height * axis.along + radius * outward
-    normals = out * outward + around * np.cross(axis.along, outward) + along * axis.along
-    is_held = np.ones(len(places), np.bool_)
-    bodies: tuple[tuple[Object | Cage, str, Pose, float], ...] = (
-        (scene.object, circle[0].box, ended.pose, -1.0),
-        (scene.cage, circle[0].point, scene.cage.pose_world_cage, 1.0),
-    )
-    for body, name, pose, side in bodies:
-        probes = pose.inverse_transform(places + side * PROBE * scene.touch_m * normals)
+    height, radius, _, normal = _about(listed, axis)
+    around = _around(2.0 * np.pi * np.arange(PLACES) / PLACES)
+    places = axis.pose.transform(np.array((radius, 0.0, height)) @ around)
+    normals = normal @ around @ axis.pose.rotation.T
+    is_held = np.ones(PLACES, np.bool_)
+    for body, name, pose, sign in sides:
+        probes = pose.inverse_transform(places + sign * probe_m * normals)
         of = next((hole.in_ for hole in body.holes if hole.name == name), (name,))
         if of != (axis.name,):  # at its own rim, what is inside is rounding
             parts = body.parts if isinstance(body, Object) else body.shapes
@@ -135,5 +144,5 @@ def _places(scene: Scene, ended: PhaseRun, circle: Sequence[Contact], axis: _Axi
         for hole in body.holes:
             if hole.name != axis.name and set(hole.in_) & set(of):
                 is_held &= ~hole.holds(probes)
-    for place, normal in zip(places[is_held], normals[is_held], strict=True):
-        yield replace(circle[0], place_world=place, normal_world=normal)
+    for place, there in zip(places[is_held], normals[is_held], strict=True):
+        yield replace(listed, place_world=place, normal_world=there)

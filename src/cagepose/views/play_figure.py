@@ -47,9 +47,10 @@ def play_figure(play: Play, at: Sequence[ArrayLike] = (), length_unit: LengthUni
         figure = Figure(figsize=(PAGE_WIDTH_IN, 2.35 + 2.5 * len(at) + 0.75), layout="constrained")
         parts = figure.subfigures(rows, 1, height_ratios=[2.35] + [2.5] * len(at), squeeze=False)[:, 0]
         lengths, angles = parts[0].subplots(1, 2)
-        _draw_bars(lengths, play, ("x", "y", "z"), float(from_metres(1.0, length_unit)))
+        known = [kind for kind in BARS if _is_known(play, kind)]
+        _draw_bars(lengths, play, known, ("x", "y", "z"), float(from_metres(1.0, length_unit)))
         lengths.set_xlabel(f"displacement of the object's origin [{length_unit}]")
-        _draw_bars(angles, play, ("roll", "pitch", "yaw"), math.degrees(1.0))
+        _draw_bars(angles, play, known, ("roll", "pitch", "yaw"), math.degrees(1.0))
         angles.set_xlabel("ZYX angle [deg]")
         for part, point in zip(parts[1:], at, strict=True):
             place = ", ".join(f"{value:.6g}" for value in from_metres(np.asarray(point, dtype=float), length_unit))
@@ -58,26 +59,24 @@ def play_figure(play: Play, at: Sequence[ArrayLike] = (), length_unit: LengthUni
                 _draw_outline(panel, outline, length_unit)
         title = f"{play.scene.name}: play from the start pose ({play.verdict})"
         figure.suptitle(title, fontsize=11)
-        handles = [Patch(label=WORDS[kind], **look) for kind, look in BARS.items() if _is_known(play, kind)]
+        handles = [Patch(label=WORDS[kind], **BARS[kind]) for kind in known]
         lines = [Line2D([], [], label=f"{kind}, of a point", **look) for kind, look in LINES.items()]
         figure.legend(handles=[*handles, *(lines if at else [])], loc="outside lower center", ncols=5, handlelength=2.0)
     return figure
 
 
-def _draw_bars(panel: Axes, play: Play, names: tuple[str, ...], unit: float) -> None:
+def _draw_bars(panel: Axes, play: Play, known: Sequence[str], names: tuple[str, ...], unit: float) -> None:
     largest = max((abs(value) for name in names for value in _all_ends(play.freedoms[name])), default=0.0)
     reach = 1.12 * unit * (largest or 1.0)
     for row, name in enumerate(names):
         ends = play.freedoms[name]
-        for kind, look in BARS.items():
+        for kind in known:
             low, high = (_end(end, kind) for end in (ends.low, ends.high))
             if kind == "certified" and (low is None or high is None):
                 continue
-            if not _is_known(play, kind):
-                continue
             left = -reach if low is None else unit * low
             right = reach if high is None else unit * high
-            panel.barh(row, right - left, left=left, height=HEIGHTS[kind], **look)
+            panel.barh(row, right - left, left=left, height=HEIGHTS[kind], **BARS[kind])
         for end, tip, marker in ((ends.low, -reach, "<"), (ends.high, reach, ">")):
             if end.is_open:
                 panel.plot([tip], [row], marker=marker, color=VERMILLION, markersize=7.0, clip_on=False, zorder=5)
