@@ -30,12 +30,14 @@ $(LOCKED): requirements.lock
 	    echo "$(PYTHON) cannot make virtual environments; on Debian and Ubuntu: apt install python3-venv" >&2; exit 1; }
 	@echo "Creating $(VENV) and installing the locked packages (a minute or two, once) ..."
 	@$(PYTHON) -m venv --clear $(VENV)
-	@$(BIN)/python -m pip install -qq --require-hashes -r requirements.lock
+	@set -o pipefail; $(BIN)/python -m pip install --progress-bar off --require-hashes -r requirements.lock | awk ' \
+	    /^Collecting/ { n++; if (n % 20 == 0) { print "  " n " packages found"; fflush() } } \
+	    /^Installing/ { print "  installing " n " packages"; fflush() }'
 	@touch $@
 
 # A kernel's change makes a new library; `pip install` below then finds it built.
 $(BUILT): $(LOCKED) $(shell find src/cagepose/kernels -name '*.py') $(wildcard build_kernels/*.*)
-	@echo "Compiling the kernels (two to three minutes) ..."
+	@echo "Compiling the kernels (a minute or two; later builds compile what has changed) ..."
 	@PYTHONPATH=src $(BIN)/python -m build_kernels
 	@touch $@
 

@@ -24,14 +24,15 @@ class KernelsHook(BuildHookInterface):  # type: ignore[type-arg]
 
         return [] if c_compiler() else ["ziglang"]
 
-    def initialize(self, version: str, build_data: dict[str, Any]) -> None:  # noqa: ARG002  (as hatchling calls it)
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         if self.target_name != "wheel":
             return
         sys.path[:0] = [str(ROOT), str(ROOT / "src")]
         from build_kernels.build import build, is_built
 
-        if not is_built():
-            build()
+        all_levels = version != "editable"  # a checkout is for this machine
+        if not is_built(all_levels=all_levels):
+            build(all_levels=all_levels)
         # The library is called through ctypes: it fits every Python on this platform.
         platform = next(tag for tag in platform_tags() if not tag.startswith(("manylinux", "musllinux")))
         build_data.update(pure_python=False, tag=f"py3-none-{platform}")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
 import os
-import platform
 import shutil
 import subprocess
 import sys
@@ -15,29 +15,38 @@ from pathlib import Path
 
 import llvmlite.binding as llvm
 
+from build_kernels import kept
 from build_kernels.c_compiler import c_compiler
-from build_kernels.compile import Module
+from build_kernels.c_functions import Module
+from build_kernels.levels import LEVELS
 
 HERE = Path(__file__).resolve().parent
-LEVELS = ("x86-64-v2", "x86-64-v3") if platform.machine().lower() in ("x86_64", "amd64") else ("generic",)
-"""In the order of ``best_level.c``."""
 
 
-def link(module: Module, sources_hash: str, target: Path) -> None:
+def own_level() -> str:
+    """Return the best level that this machine's processor can run, by the features that ``best_level.c`` asks for."""
+    features = llvm.get_host_cpu_features()
+    return LEVELS[-1] if all(features.get(name, False) for name in ("avx2", "fma", "bmi2")) else LEVELS[0]
+
+
+def link(module: Module, levels: Sequence[str], sources_hash: str, target: Path) -> None:
     """Write the library; whoever reads it meanwhile sees the old one or the new one whole."""
-    description = {"levels": LEVELS, "signatures": module.signatures, "sources": sources_hash}
+    description = {
+        "levels": LEVELS,
+        "built": levels,
+        "signatures": module.signatures,
+        "sources": sources_hash,
+    }
+    objects = [kept.folder() / f"{module.digest}.{level}.o" for level in levels]
+    wanted = [(level, path) for level, path in zip(levels, objects, strict=True) if kept.read(path) is None]
+    if wanted:
+        bitcode, names = module.llvm_module.as_bitcode(), list(module.signatures)
+        with ProcessPoolExecutor() as processes:  # LLVM takes most of its time here, one level in each process
+            list(processes.map(_write_machine_code, *zip(*[(bitcode, names, *one) for one in wanted], strict=True)))
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         quoted = json.dumps(json.dumps(description))  # a JSON text in quotes is a C string
         (folder / "description.h").write_text(f"#define CAGEPOSE_DESCRIPTION {quoted}\n", encoding="utf-8")
-        objects = [str(folder / f"{level}.o") for level in LEVELS]
-        text = str(module.llvm_module)
-        with ProcessPoolExecutor() as processes:  # LLVM takes most of its time here, one level in each process
-            list(
-                processes.map(
-                    _write_machine_code, [text] * len(LEVELS), [list(module.signatures)] * len(LEVELS), LEVELS, objects
-                )
-            )
         made = folder / target.name
         command = [
             *(c_compiler() or [sys.executable, "-m", "ziglang", "cc"]),
@@ -46,19 +55,20 @@ def link(module: Module, sources_hash: str, target: Path) -> None:
             "-O1",
             f"-I{folder}",
             *map(str, sorted(HERE.glob("*.c"))),
-            *objects,
+            *map(str, objects),
         ]
         subprocess.run([*command, "-lm", "-o", str(made)], check=True)
+        ctypes.CDLL(str(made))  # what cannot be loaded, since something is missing, takes nobody's place
         part = target.with_name(f".{target.name}.{os.getpid()}")
         shutil.copyfile(made, part)
         part.replace(target)
 
 
-def _write_machine_code(text: str, names: Sequence[str], level: str, path: str) -> None:
+def _write_machine_code(bitcode: bytes, names: Sequence[str], level: str, path: Path) -> None:
     """Write an object file in which each entry is called ``name.level``."""
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    module = llvm.parse_assembly(text)
+    module = llvm.parse_bitcode(bitcode)
     for name in names:
         module.get_function(name).name = f"{name}.{level}"
     target = llvm.Target.from_triple(llvm.get_process_triple())
@@ -67,4 +77,4 @@ def _write_machine_code(text: str, names: Sequence[str], level: str, path: str) 
     options.loop_vectorization = True  # packing scalars into vectors ("slp") made runs slower by 5 %
     builder = llvm.create_pass_builder(machine, options)
     builder.getModulePassManager().run(module, builder)
-    Path(path).write_bytes(machine.emit_object(module))
+    kept.write(path, machine.emit_object(module))

@@ -2,7 +2,7 @@
 onset takes seconds, and Coulomb's law up to two.
 
 They come from a library of their own, which is built once for each state of the kernels and kept in ``build/``; that
-takes some 15 s of one processor. As a program, ``inner_kernels.py PATH`` builds it.
+takes some 5 s after the program's own library was built. As a program, ``inner_kernels.py PATH`` builds it.
 """
 
 from __future__ import annotations
@@ -78,12 +78,12 @@ def _library() -> Library | None:
 def _build(target: Path, level: str) -> None:
     """Build as `build_kernels.build.build` does, other entries and one level of processors."""
     os.environ.update(NUMBA_OPT="0", NUMBA_DISABLE_INTEL_SVML="1")
-    from build_kernels import link
-    from build_kernels.compile import module_of, take_over
+    from build_kernels.c_functions import module_of
+    from build_kernels.compile import take_over
+    from build_kernels.link import link
 
     take_over()
-    link.LEVELS = (level,)
-    link.link(module_of(entries()), sources_hash(), target)
+    link(module_of(entries()), (level,), sources_hash(), target)
 
 
 if __name__ == "__main__":

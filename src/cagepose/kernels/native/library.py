@@ -39,6 +39,8 @@ class Library:
     ----------
     signatures
         For each entry what it takes, as `Slots.kinds`, and what it gives, as letters of `struct`.
+    levels
+        Those that it holds; a checkout builds the one of its own processor.
     level
         Whose machine code is used.
     call_until, call_until_interrupt
@@ -63,14 +65,15 @@ class Library:
             described = ctypes.c_char_p.in_dll(self._library, "cagepose_description").value or b""
             description = json.loads(described)
             levels: list[str] = description["levels"]
+            self.levels: list[str] = description["built"]
             self.signatures: dict[str, tuple[str, str]] = description["signatures"]
             self.sources_hash: str = description["sources"]
         except (ValueError, KeyError) as error:
             raise KernelsError(f"{path}: this is no library of kernels ({error}); {REMEDY}") from None
         best = self._library.cagepose_best_level()
-        if best < 0:
-            raise KernelsError(f"this processor is older than {levels[0]}; set {VARIABLE}={PLAIN_PYTHON}")
-        can_run = levels[: best + 1]
+        can_run = [name for name in levels[: best + 1] if name in self.levels]
+        if not can_run:
+            raise KernelsError(f"this processor is older than {self.levels[0]}; set {VARIABLE}={PLAIN_PYTHON}")
         if level and level not in can_run:
             raise KernelsError(
                 f"{VARIABLE}={level} is not for this processor; choose {PLAIN_PYTHON} or one of {', '.join(can_run)}"
