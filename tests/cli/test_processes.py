@@ -117,3 +117,18 @@ def test_a_full_disk_is_told_and_is_no_bug_of_ours() -> None:
         done = subprocess.run([*CAGEPOSE, "schema"], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert done.returncode == 2
     assert done.stderr == "cagepose: the output cannot be written: No space left on device\n"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="closes streams as a POSIX shell does")
+@pytest.mark.parametrize("arguments", [["run"], ["check"], ["schema"], ["--help"]])
+def test_a_closed_output_is_bad_input_with_a_message(arguments: list[str], tmp_path: Path, sample_text: str) -> None:
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(sample_text, encoding="utf-8")
+    given = [*CAGEPOSE, *arguments, *([str(scene)] if arguments[0] in ("run", "check") else [])]
+    done = subprocess.run(["sh", "-c", '"$@" >&-', "sh", *given], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (
+        2,
+        "cagepose: standard output is closed; send it to a file, or to /dev/null\n",
+    )
+    quiet = subprocess.run(["sh", "-c", '"$@" >&- 2>&-', "sh", *given], capture_output=True, text=True, check=False)
+    assert quiet.returncode == 2

@@ -167,6 +167,7 @@ def test_set_can_mend_a_broken_file(sample_text: str) -> None:
                                 " a whole"),
         ("object.mass=[1", "is not YAML: expected ',' or ']', but got the end of the file;"
                            " close the bracket or quote that is open"),
+        (f"{'a.' * 4999}a=1", "names a place 5000 levels deep; a scene has at most 32"),
         ("object.mass=!x 1", "has the tag !x; remove it (scene files have no tags)"),
         ("object.mass=true", "object.mass: is true; give a number"),
         ("objct.mass=1", "objct: is no known key; did you mean object? known keys: name, units, parameters, object,"

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections import Counter
 
 import numpy as np
+import pytest
 
 from balance import imbalance
 from cagepose import Cage, Contact, Load, Pose, Scene, Spring, run
+from cagepose.files.scene_file import parse_scene
 from quasistatic.paths import RESTS, depth, distance, path_of, potential
 from quasistatic.test_end_poses import came_back, is_isolated
 from sprung_scenes import cube, sprung
@@ -117,3 +119,25 @@ def hessian(scene: Scene, pose: Pose, step: float = 1e-4) -> np.ndarray:
                 4.0 * step**2
             )
     return found
+
+
+@pytest.mark.parametrize("chamfer_mm", [0.0, 1.0, 3.0])
+def test_a_hole_in_the_cage_leaves_the_far_ends_of_springs_where_they_are(chamfer_mm):
+    """Hand answer: 1 kg hangs in balance at the start (preload 9.81 N), so it stays, whatever the floor's hole is like.
+
+    A chamfered hole has three circles, and the mean of their middles was taken for the hole's own middle.
+    """
+    chamfer = f", chamfer: {{width: {chamfer_mm}, angle_deg: 45}}" if chamfer_mm else ""
+    scene = parse_scene(f"""
+name: a block on a spring above a hole
+object: {{mass: 1, shapes: [{{name: block, box: {{size: [20, 20, 20]}}}}], pose: {{position: [0, 0, 40]}}}}
+cage:
+  shapes:
+    - {{name: floor, box: {{size: [100, 100, 20]}}, position: [0, 0, -10]}}
+    - {{name: hole, hole: {{radius: 5, depth: 20, in: [floor]{chamfer}}}}}
+loads:
+  - {{name: hang, gravity: [0, 0, -9.81], springs: [{{at: [0, 0, 10], to: [0, 0, 100], stiffness: 1, preload: 9.81}}]}}
+""")
+    result = run(scene)
+    assert result.verdict == "rests"
+    assert result.pose.position_m == pytest.approx([0.0, 0.0, 0.04], abs=1e-12)

@@ -96,6 +96,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(tokens: list[str]) -> int:
+    if sys.stderr is None:  # the shell closed it; Python then has none
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115  (for as long as the process lives)
+    if sys.stdout is None:
+        sys.stderr.write("cagepose: standard output is closed; send it to a file, or to /dev/null\n")
+        return BAD_INPUT
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # a name that the terminal cannot show is no reason to stop
     try:

@@ -22,7 +22,7 @@ from cagepose.files.points_file import POINTS_KEY, PointsTable, read_points
 from cagepose.files.read import read_text, starts_as_run
 from cagepose.files.schema import PointsFileModel, SceneModel
 from cagepose.files.units import LengthUnit
-from cagepose.files.yaml_source import YamlSource, parse_yaml
+from cagepose.files.yaml_source import MAX_DEPTH, YamlSource, parse_yaml
 from cagepose.model.scene import Scene
 
 
@@ -184,6 +184,8 @@ def _apply_settings(data: object, set_values: Sequence[str]) -> list[_Setting]:
             if not equals:
                 raise ValueError("has no =; write key.path=value, such as object.mass=0.5")
             path = parse_key_path(key.strip())
+            if len(path) > MAX_DEPTH:
+                raise ValueError(f"names a place {len(path)} levels deep; a scene has at most {MAX_DEPTH}")
             value = parse_yaml(text, source) if text.strip() else YamlSource(None, source)
             problems += [replace(problem, line=None, column=None) for problem in value.problems]
             settings.append(_Setting(source, set_value(data, path, value.data)))

@@ -17,8 +17,8 @@ from cagepose.kernels.contact.loads import (
     acting,
     total_load,
 )
-from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray, as_vector
+from cagepose.model.geometry import cage_shapes
 from cagepose.model.load import Load, Spring
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -115,21 +115,22 @@ def tensions_at_zero(spring: Spring, positions_m: FloatArray, quaternions: Float
 
 def cage_middle(scene: Scene) -> FloatArray:
     """Return the middle of the cage's points, shapes and holes in the world, (3,), metres."""
-    cage, pose = scene.cage, scene.cage.pose_world_cage
-    found: FloatArray = cage_middles(cage, cage.points_cage[None], pose.position_m[None], pose.quaternion_wxyz[None])[0]
+    points, pose = scene.cage.points_cage, scene.cage.pose_world_cage
+    found: FloatArray = cage_middles(scene, points[None], pose.position_m[None], pose.quaternion_wxyz[None])[0]
     return found
 
 
-def cage_middles(cage: Cage, points_cage_m: FloatArray, positions_m: FloatArray, quaternions: FloatArray) -> FloatArray:
+def cage_middles(
+    scene: Scene, points_cage_m: FloatArray, positions_m: FloatArray, quaternions: FloatArray
+) -> FloatArray:
     """Return the middles of cages in the world, (n, 3), metres, from which kernels see all positions.
 
-    Points are (n, n_points, 3), poses (n, 3) and (n, 4), each also one row for all; the shapes are those of ``cage``.
-    Number by number, as below.
+    Points are (n, n_points, 3), poses (n, 3) and (n, 4), each also one row for all; the shapes are those of the scene,
+    and their middles are the kernels' own (`cagepose.kernels.outcome.cases.start_of`). Number by number, as below.
     """
-    places = points_cage_m
-    if cage.shapes or cage.holes:
-        shapes = np.array([[shape.nodes_body().mean(axis=0) for shape in (*cage.shapes, *cage.holes)]])
-        places = np.concatenate([places, np.repeat(shapes, len(places), axis=0)], axis=1)
+    n_points = points_cage_m.shape[1]
+    shapes = np.asarray(cage_shapes(scene.object, scene.cage).parts)["middle"][n_points:]
+    places = np.concatenate([points_cage_m, np.repeat(shapes[None], len(points_cage_m), axis=0)], axis=1)
     middles = places.cumsum(axis=1)[:, -1] / places.shape[1]
     found: FloatArray = positions_m + np.stack(_turned(quaternions, *middles.T), axis=1)
     return found

@@ -140,7 +140,7 @@ def _vary_springs(scene: Scene, columns: dict[str, FloatArray], actions: np.ndar
     """
     start, cage = scene.object.pose_world_object, scene.cage.pose_world_cage
     middles = cage_middles(
-        scene.cage,
+        scene,
         columns.get("points_cage_m", scene.cage.points_cage[None]),
         columns.get("cage_position_m", cage.position_m[None]),
         _quaternions(columns.get("cage_euler_zyx"), cage),

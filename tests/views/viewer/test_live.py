@@ -5,6 +5,7 @@ from __future__ import annotations
 import http.client
 import json
 import re
+import socket
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -176,6 +177,25 @@ def test_the_server_answers_nobody_who_comes_by_another_name_or_without_json(ser
     assert post(server, "/run", b"{}", Host="evil.example")[0] == 403
     assert post(server, "/run", b"{}", **{"Content-Type": "text/plain"})[0] == 422
     assert post(server, "/run", b"{" * 100_000)[0] == 422
+
+
+REFUSED = {
+    "another name": "POST /run HTTP/1.1\r\nHost: evil.example\r\nContent-Length: {length}\r\n\r\n",
+    "another path": "POST /nowhere HTTP/1.1\r\nHost: {host}\r\nContent-Length: {length}\r\n\r\n",
+    "no length": "POST /run HTTP/1.1\r\nHost: {host}\r\n\r\n",
+    "a length that is none": "POST /run HTTP/1.1\r\nHost: {host}\r\nContent-Length: -5\r\n\r\n",
+}
+
+
+@pytest.mark.parametrize("head", REFUSED.values(), ids=REFUSED)
+def test_what_a_refused_request_sent_is_not_read_as_the_next_one(server, head):
+    host = f"127.0.0.1:{server.server_port}"
+    hidden = f"GET / HTTP/1.1\r\nHost: {host}\r\n\r\n"
+    with socket.create_connection(("127.0.0.1", server.server_port), timeout=30) as connection:
+        connection.sendall((head.format(host=host, length=len(hidden)) + hidden).encode())
+        answer = b"".join(iter(lambda: connection.recv(65536), b""))
+    assert answer.count(b"HTTP/1.1 ") == 1
+    assert answer.startswith((b"HTTP/1.1 403", b"HTTP/1.1 404", b"HTTP/1.1 422"))
 
 
 @pytest.mark.parametrize(

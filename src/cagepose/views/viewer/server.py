@@ -85,6 +85,7 @@ class _Answers(BaseHTTPRequestHandler):
             return
         what_if = self.server.what_if
         if what_if is None or self.path not in ("/run", "/scene"):
+            self.close_connection = True  # what was sent is left unread, and must not be taken for the next request
             self._send(HTTPStatus.NOT_FOUND, "text/plain", b"nothing can be changed here\n")
             return
         try:
@@ -100,15 +101,16 @@ class _Answers(BaseHTTPRequestHandler):
         names = self.server.names
         if names is None or self.headers.get("Host") in names:
             return True
+        self.close_connection = True
         self._send(HTTPStatus.FORBIDDEN, "text/plain", b"this server answers only under its own name\n")
         return False
 
     def _values(self) -> object:
-        length = int(self.headers.get("Content-Length") or 0)
-        if not 0 <= length <= MAX_BODY_BYTES:
-            self.close_connection = True  # what was sent is left unread
-            raise ValueError("too much was sent")
-        body = self.rfile.read(length)
+        length = self.headers.get("Content-Length") or ""
+        if not (length.isascii() and length.isdigit() and int(length) <= MAX_BODY_BYTES):
+            self.close_connection = True
+            raise ValueError("too much was sent" if length.isdigit() else "the length of what was sent is missing")
+        body = self.rfile.read(int(length))
         if self.headers.get_content_type() != "application/json":
             raise ValueError("values must be sent as JSON")
         try:
@@ -124,6 +126,8 @@ class _Answers(BaseHTTPRequestHandler):
         self.send_header("Content-Type", f"{kind}; charset=utf-8")
         self.send_header("Content-Length", str(len(content)))
         self.send_header("Cache-Control", "no-store")
+        if self.close_connection:
+            self.send_header("Connection", "close")
         self.end_headers()
         self.wfile.write(content)
 
