@@ -168,8 +168,8 @@ def gap_of(shape: Convex, point) -> float:
 
 
 def torus() -> Triangles:
-    section = manifold3d.CrossSection.circle(3.0, 16).translate((10.0, 0.0))
-    return Triangles.of(manifold3d.Manifold.revolve(section, 32))
+    section = manifold3d.CrossSection.circle(3.0, 8).translate((10.0, 0.0))
+    return Triangles.of(manifold3d.Manifold.revolve(section, 16))
 
 
 def test_what_cannot_be_cut_is_decomposed_with_its_error_and_kept(tmp_path, monkeypatch):

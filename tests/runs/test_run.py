@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from bench.ours import read_run
 from cagepose import Box, Cage, Load, Object, Scene, SceneError, load_scene, run
+from cagepose.kernels.native.kernel import Entry
 from cagepose.kernels.outcome.trace import LIMIT, STALLED
 from cagepose.model.methods import DEFAULT_FRICTION, DEFAULT_METHOD, METHODS
 from cagepose.runs.methods import REGISTRY
@@ -31,6 +33,20 @@ def test_motions_lead_from_each_pose_to_the_next(method):
     assert_replays(run(rail_scene(pitch_deg=0.1), method))
     for scene in random_scenes(30, seed=3):
         assert_replays(run(scene, method))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_run_is_one_native_call_whatever_is_read_of_it(monkeypatch, method):
+    called, until = list[str](), Entry.until
+
+    def note(entry, *given):
+        called.append(entry.name)
+        return until(entry, *given)
+
+    scene = rail_scene(pitch_deg=0.1)
+    monkeypatch.setattr(Entry, "until", note)
+    read_run(scene, method)
+    assert called == [f"run_{method}"]
 
 
 @pytest.mark.parametrize(

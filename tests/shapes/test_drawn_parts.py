@@ -68,7 +68,7 @@ def test_ordinary_parts_have_an_answer(cases, say):
 
 def test_countersunk_screws_have_an_answer(cases, say):
     rng, seen = np.random.default_rng(74), Seen(PUT_BACK)
-    for number in range(cases(20, 400)):
+    for number in range(cases(10, 400)):
         try:
             scene = countersunk(rng)
         except SceneError:  # it begins in its seat

@@ -142,7 +142,7 @@ def name_of(feature) -> str:
 def test_normals_and_second_derivatives_are_those_of_the_gap(cases, say):
     rng, seen, wrong = np.random.default_rng(21), {}, []
     worst = [0.0, 0.0, 0.0]
-    for held, i, cage, j, met in touching(rng, cases(80, 800)):
+    for held, i, cage, j, met in touching(rng, cases(40, 800)):
         one, other = held.features[i], cage.features[j]
         normal = np.array(met.normal)
         place, there = np.array(met.place), np.array(met.place) + met.gap * normal
