@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from bench.ours import read_run
-from cagepose import Box, Cage, Load, Object, Scene, SceneError, load_scene, run
+from cagepose import Box, Cage, Load, Moment, Object, Pose, Scene, SceneError, load_scene, run
 from cagepose.kernels.native.kernel import Entry
 from cagepose.kernels.outcome.trace import LIMIT, STALLED
 from cagepose.model.methods import DEFAULT_FRICTION, DEFAULT_METHOD, METHODS
@@ -125,3 +125,19 @@ def test_an_unknown_method_is_refused_with_the_known_ones():
 def test_what_runs_a_method_is_registered_for_each_name():
     assert tuple(REGISTRY) == METHODS == tuple(DEFAULT_FRICTION)
     assert DEFAULT_METHOD in METHODS
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize("stop_deg", [20.0, 100.0, 179.0, 186.8, 200.0, 331.93, 353.0])
+def test_a_turn_keeps_its_angle_and_its_axis_however_far_it_goes(sense, stop_deg):
+    """Hand answer: a bar, 2 mm to either side of its middle, meets a point at r = 17 mm when asin(2 / 17) is left."""
+    around = sense * np.radians(stop_deg)
+    held = Object(
+        [Box((0.04, 0.004, 0.004), Pose((0.02, 0.0, 0.0)))], (0.0, 0.0, 0.0), inertia_kg_m2=np.eye(3), mass_kg=1.0
+    )
+    turning = Load("turn", moments=[Moment((0.0, 0.0, sense), 1.0)])
+    scene = Scene(held, Cage([0.017 * np.array([np.cos(around), np.sin(around), 0.0])]), [turning])
+    first = run(scene).phases[0].events[0]
+    assert first.motion.kind == "turn"
+    assert first.motion.angle_rad == pytest.approx(abs(around) - np.arcsin(2.0 / 17.0), abs=1e-9)
+    assert first.motion.axis_world == pytest.approx([0.0, 0.0, sense], abs=1e-12)

@@ -365,7 +365,7 @@ def motion_between(start: Pose, end: Pose, center_object_m: FloatArray, size_m: 
     ``size_m``: how far the object's points are apart at most, or more.
     """
     before, after = as_vector(start.transform(center_object_m)), as_vector(end.transform(center_object_m))
-    found = kernel.motion_between(before, start.as_tuples()[1], after, end.as_tuples()[1], size_m)
+    found = kernel.motion_between(before, start.as_tuples()[1], after, end.as_tuples()[1], size_m, (0.0, 0.0, 0.0))
     if found.motion == NONE:
         return None
     along, through = np.array(found.along), np.array(found.through)

@@ -38,10 +38,27 @@ class ScrewMotion(NamedTuple):
 
 
 @kernel
+def rotation_vector(start: Quaternion, end: Quaternion) -> Vector:
+    """Return axis times angle, radians, of one step's turn; quaternions keep their sign from step to step."""
+    back = (start[0], -start[1], -start[2], -start[3])
+    turn = quaternion_product(end, back)
+    vector = (turn[1], turn[2], turn[3])
+    sine = norm(vector)
+    return scaled(vector, 2.0 * math.atan2(sine, turn[0]) / sine) if sine > 0.0 else (0.0, 0.0, 0.0)
+
+
+@kernel
 def motion_between(
-    start: Vector, start_quaternion: Quaternion, end: Vector, end_quaternion: Quaternion, size_m: float
+    start: Vector,
+    start_quaternion: Quaternion,
+    end: Vector,
+    end_quaternion: Quaternion,
+    size_m: float,
+    turned: Vector,
 ) -> ScrewMotion:
     """Return the motion from one pose to another.
+
+    Two poses leave open how many times the object has turned, and which way round; the steps between them tell.
 
     Parameters
     ----------
@@ -51,6 +68,8 @@ def motion_between(
         Orientations.
     size_m
         How far the object's points are apart at most, or more.
+    turned
+        The turns on the way added up, axes times angles, radians; zero: it turned by 180 degrees at most.
     """
     zero = (0.0, 0.0, 0.0)
     way = minus(end, start)
@@ -66,6 +85,9 @@ def motion_between(
             return ScrewMotion(NONE, zero, zero, 0.0, 0.0)
         return ScrewMotion(TRAVEL, scaled(way, 1.0 / distance), zero, distance, 0.0)
     axis = scaled(vector, 1.0 / sine)
+    angle += 2.0 * math.pi * math.floor((dot(turned, axis) - angle) / (2.0 * math.pi) + 0.5)
+    if angle < 0.0:
+        axis, angle = scaled(axis, -1.0), -angle
     rise = dot(axis, way)
     across = minus(way, scaled(axis, rise))
     lever = scaled(cross(axis, across), 0.5 / math.tan(0.5 * angle))

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.pose import Quaternion, write_upright
-from cagepose.kernels.algebra.vector import Vector, vector_from
+from cagepose.kernels.algebra.vector import Vector, plus, vector_from
 from cagepose.kernels.collision.contacts import is_near_edge
 from cagepose.kernels.contact.metric import frame_at, twist_of
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.cases import Part, Start, object_position
-from cagepose.kernels.outcome.motion import motion_between, motion_of_twist
+from cagepose.kernels.outcome.motion import motion_between, motion_of_twist, rotation_vector
 from cagepose.kernels.outcome.records import Outcome, PhaseRecord
 from cagepose.kernels.outcome.trace import LET_GO, NONE, RESTS, SCREW, STALLED, Trace
 from cagepose.kernels.stability.proof import OTHER_ONSET, PROVEN_MOVES, TOO_MANY_CONTACTS, ProofWorkspace
@@ -103,6 +103,7 @@ def publish_events(
     first pose to its last. Otherwise each step is an event with a motion of its own.
     """
     first_step = outcome.counts[STEPS]
+    before, turns = quaternion, (0.0, 0.0, 0.0)
     for step in range(n_steps):
         record = trace.rows[step]
         end, turned = (
@@ -114,6 +115,7 @@ def publish_events(
                 record.quaternion[3],
             ),
         )
+        turns, before = plus(turns, rotation_vector(before, turned)), turned
         placed = object_position(start, part, end, turned)
         place = outcome.counts[STEPS]
         outcome.counts[STEPS] += 1
@@ -132,7 +134,7 @@ def publish_events(
         along, through = vector_from(record.along), vector_from(record.through)
         event.distance, event.angle = record.distance, record.angle
         if joins_steps and record.motion != NONE and record.distance < math.inf:
-            moved = motion_between(position, quaternion, end, turned, start.size_m)
+            moved = motion_between(position, quaternion, end, turned, start.size_m, turns)
             event.motion, along, through = moved.motion, moved.along, moved.through
             event.distance, event.angle = moved.distance, moved.angle
         for k in range(3):
@@ -143,7 +145,7 @@ def publish_events(
             outcome.touching[outcome.counts[EVENTS], point] = trace.touching[step, point]
             outcome.hit[outcome.counts[EVENTS], point] = trace.hit[step, point]
         outcome.counts[EVENTS] += 1
-        position, quaternion = end, turned
+        position, quaternion, turns = end, turned, (0.0, 0.0, 0.0)
 
 
 @kernel
