@@ -42,7 +42,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
 
     contacts, load = empty_contact_set(1), np.zeros(7)
     cone, newton, tree = empty_record(ConeWorkspace), empty_record(NewtonWorkspace), empty_record(ModeTree)
-    yield cone_residual, (contacts, 0.0, load, cone)
+    yield cone_residual, (contacts, 0.0, cone)
     yield coulomb_onset, (contacts, 0.0, load, cone, load, newton)
     yield other_onset, (contacts, 0.0, load, tree, newton, empty_system(N_COLUMNS))
     vectors, origin = np.zeros((1, 3)), (0.0, 0.0, 0.0)

@@ -120,7 +120,7 @@ def test_the_frictionless_onset_obeys_the_optimality_conditions(cases):
         work = empty_record(ConeWorkspace)
         contacts, forces = contacts_with(columns)
         clear_cone(work, b, WRENCH, np.linalg.norm(b))
-        residual(contacts, 0.0, b, work)
+        residual(contacts, 0.0, work)
         left = np.linalg.norm(work.passive.residual[:6])
         write_forces(work, 0.0, contacts)
         normals = columns[:, 0]
@@ -170,7 +170,7 @@ def test_the_onset_with_friction_obeys_coulombs_law(say, cases):
         cone, y = empty_record(ConeWorkspace), np.zeros(6)
         contacts, forces = contacts_with(columns)
         clear_cone(cone, b, WRENCH, np.linalg.norm(b))
-        left = residual(contacts, friction, b, cone)
+        left = residual(contacts, friction, cone)
         write_forces(cone, friction, contacts)
         scale = np.linalg.norm(b) + forces[:, 0] @ np.linalg.norm(columns[:, 0], axis=1)
         if left <= HELD:

@@ -49,14 +49,17 @@ class PassiveSet:
         A column of which less than this part lies outside the span of the others depends on them.
     labels
         Which column each one is.
-    columns, sizes, basis
-        A_p, transposed, the lengths of its columns, and Q, transposed.
+    sizes, basis
+        The lengths of the columns, and Q, transposed.
     triangle
         R transposed, with the inverse of its diagonal.
     costs
         Cost c of each column; zero for plain least squares.
     x, target, held
         The present coefficients, those that the passive columns aim at, and scratch.
+    n_aimed, left, parts
+        Row k of ``left`` is what the first k basis vectors leave of b, and ``parts[k]`` is how much of b is along the
+        next one: both are known of the first ``n_aimed``, so that a column that comes in last costs one step.
     residual
         b - A x at the target.
     """
@@ -66,7 +69,6 @@ class PassiveSet:
     terms: float
     dependent: float
     labels: Annotated[IntArray, MOST_ROWS + 1]
-    columns: Annotated[FloatArray, MOST_ROWS + 1, MOST_ROWS]
     sizes: Annotated[FloatArray, MOST_ROWS + 1]
     basis: Annotated[FloatArray, MOST_ROWS + 1, MOST_ROWS]
     triangle: Annotated[FloatArray, MOST_ROWS + 1, MOST_ROWS + 1]
@@ -74,6 +76,9 @@ class PassiveSet:
     x: Annotated[FloatArray, MOST_ROWS + 1]
     target: Annotated[FloatArray, MOST_ROWS + 1]
     held: Annotated[FloatArray, MOST_ROWS + 1]
+    n_aimed: int
+    left: Annotated[FloatArray, MOST_ROWS + 1, MOST_ROWS]
+    parts: Annotated[FloatArray, MOST_ROWS + 1]
     residual: Annotated[FloatArray, MOST_ROWS]
 
 
@@ -115,11 +120,12 @@ def length(a: FloatArray, n: int) -> float:
 def clear(passive: PassiveSet, n_rows: int, terms: float) -> None:
     """Start from no columns."""
     passive.n_rows, passive.used, passive.terms, passive.dependent = n_rows, 0, terms, DEPENDENT
+    passive.n_aimed = 0
 
 
 @kernel
 def orthogonalise(passive: PassiveSet, place: int) -> bool:
-    """Make basis vector ``place`` from its column and those before it; False: the column depends on them."""
+    """Make basis vector ``place``, which is a column, orthogonal to those before it; False: it depends on them."""
     if passive.n_rows == WRENCH_ROWS:  # nearly always: loops of a length that is known are several times as fast
         return orthogonalise_rows(passive, place, WRENCH_ROWS)
     return orthogonalise_rows(passive, place, passive.n_rows)
@@ -127,12 +133,10 @@ def orthogonalise(passive: PassiveSet, place: int) -> bool:
 
 @kernel
 def orthogonalise_rows(passive: PassiveSet, place: int, n_rows: int) -> bool:
-    column, vector, basis, triangle = passive.columns[place], passive.basis[place], passive.basis, passive.triangle
-    for row in range(n_rows):
-        vector[row] = column[row]
+    vector, basis, triangle = passive.basis[place], passive.basis, passive.triangle
     for k in range(place):
         triangle[place, k] = 0.0
-    size = inner(column, column, n_rows)
+    size = inner(vector, vector, n_rows)
     left = size
     for _ in range(2):
         before = left
@@ -159,8 +163,9 @@ def append_column(passive: PassiveSet, column: FloatArray, label: int, cost: flo
     place = passive.used
     if place >= passive.n_rows:
         return False
+    passive.n_aimed = min(passive.n_aimed, place)
     for row in range(passive.n_rows):
-        passive.columns[place, row] = column[row]
+        passive.basis[place, row] = column[row]
     if not orthogonalise(passive, place):
         return False
     passive.labels[place] = label
@@ -174,14 +179,13 @@ def append_column(passive: PassiveSet, column: FloatArray, label: int, cost: flo
 def remove_column(passive: PassiveSet, place: int) -> None:
     """Take one column out. R keeps one entry below the diagonal in each column behind it; rotations take them away."""
     passive.used -= 1
+    passive.n_aimed = min(passive.n_aimed, place)
     n, triangle = passive.used, passive.triangle
     for k in range(place, n):
         passive.labels[k] = passive.labels[k + 1]
         passive.costs[k] = passive.costs[k + 1]
         passive.x[k] = passive.x[k + 1]
         passive.sizes[k] = passive.sizes[k + 1]
-        for row in range(passive.n_rows):
-            passive.columns[k, row] = passive.columns[k + 1, row]
         for row in range(k + 1):
             triangle[k, row] = triangle[k + 1, row]
         triangle[k, k + 1] = 1.0 / triangle[k + 1, k + 1]
@@ -192,34 +196,60 @@ def remove_column(passive: PassiveSet, place: int) -> None:
         for later in range(k + 1, n):
             upper, lower = triangle[later, k], triangle[later, k + 1]
             triangle[later, k], triangle[later, k + 1] = cosine * upper + sine * lower, cosine * lower - sine * upper
-        one, other = passive.basis[k], passive.basis[k + 1]
-        for row in range(passive.n_rows):
-            upper, lower = one[row], other[row]
-            one[row], other[row] = cosine * upper + sine * lower, cosine * lower - sine * upper
+        if passive.n_rows == WRENCH_ROWS:
+            rotate_rows(passive, k, cosine, sine, WRENCH_ROWS)
+        else:
+            rotate_rows(passive, k, cosine, sine, passive.n_rows)
 
 
 @kernel
-def aim(passive: PassiveSet, b: FloatArray) -> None:
-    """Write the unconstrained least squares solution over the passive columns into ``target``."""
-    if passive.n_rows == WRENCH_ROWS:
-        aim_rows(passive, b, WRENCH_ROWS)
-    else:
-        aim_rows(passive, b, passive.n_rows)
-
-
-@kernel
-def aim_rows(passive: PassiveSet, b: FloatArray, n_rows: int) -> None:
-    n, residual, basis = passive.used, passive.residual, passive.basis
+def rotate_rows(passive: PassiveSet, place: int, cosine: float, sine: float, n_rows: int) -> None:
+    """Turn a basis vector and the next one in their plane."""
+    one, other = passive.basis[place], passive.basis[place + 1]
     for row in range(n_rows):
-        residual[row] = b[row]
-    for k in range(n):  # one basis vector after the other, from what is left: rounding stays that of the residual
-        part = inner(basis[k], residual, n_rows)
-        passive.target[k] = part
+        upper, lower = one[row], other[row]
+        one[row], other[row] = cosine * upper + sine * lower, cosine * lower - sine * upper
+
+
+@kernel
+def aim_at(passive: PassiveSet, b: FloatArray) -> None:
+    """Take another b."""
+    passive.n_aimed = 0
+    for row in range(passive.n_rows):
+        passive.left[0, row] = b[row]
+
+
+@kernel
+def aim(passive: PassiveSet) -> None:
+    """Write the unconstrained least squares solution over the passive columns into ``target``, for b of `aim_at`."""
+    if passive.n_rows == WRENCH_ROWS:
+        aim_rows(passive, WRENCH_ROWS)
+    else:
+        aim_rows(passive, passive.n_rows)
+
+
+@kernel
+def aim_rows(passive: PassiveSet, n_rows: int) -> None:
+    n, residual, left, basis = passive.used, passive.residual, passive.left, passive.basis
+    for k in range(n):
+        if k < passive.n_aimed:
+            continue
+        # One basis vector after the other, from what is left: rounding stays that of the residual.
+        part = inner(basis[k], left[k], n_rows)
+        passive.parts[k] = part
         for row in range(n_rows):
-            residual[row] -= part * basis[k, row]
-    for k in range(n):  # costs hold the columns at a_k . residual = c_k: add Q R^-T c
+            left[k + 1, row] = left[k, row] - part * basis[k, row]
+    passive.n_aimed = n
+    for row in range(n_rows):
+        residual[row] = left[n, row]
+    n_free = n  # of leading columns without a cost
+    for k in range(n):
+        passive.target[k] = passive.parts[k]
+        if passive.costs[k] != 0.0:
+            n_free = min(n_free, k)
+    for k in range(n_free, n):  # costs hold the columns at a_k . residual = c_k: add Q R^-T c
         held = passive.costs[k]
-        for earlier in range(k):
+        for earlier in range(n_free, k):
             held -= passive.triangle[k, earlier] * passive.held[earlier]
         passive.held[k] = held * passive.triangle[k, k]
         if held != 0.0:
@@ -232,17 +262,21 @@ def aim_rows(passive: PassiveSet, b: FloatArray, n_rows: int) -> None:
 @kernel
 def solve_triangle(passive: PassiveSet) -> None:
     """Replace ``target`` by R^-1 target."""
-    for k in range(passive.used - 1, -1, -1):
-        for later in range(k + 1, passive.used):
-            passive.target[k] -= passive.triangle[later, k] * passive.target[later]
-        passive.target[k] *= passive.triangle[k, k]
+    n, target, triangle = passive.used, passive.target, passive.triangle
+    for place in range(n):  # counted up: the compiler then knows that no index is negative, which is twice as fast
+        k = n - 1 - place
+        value = target[k]
+        for later in range(n):
+            if later > k:
+                value -= triangle[later, k] * target[later]
+        target[k] = value * triangle[k, k]
 
 
 @kernel
-def settle(passive: PassiveSet, b: FloatArray) -> None:
+def settle(passive: PassiveSet) -> None:
     """Go from x towards the target until a coefficient reaches zero, drop its column, and so on."""
     while passive.used > 0:
-        aim(passive, b)
+        aim(passive)
         fraction = 1.0
         for k in range(passive.used):
             if passive.target[k] <= 0.0:
@@ -257,7 +291,7 @@ def settle(passive: PassiveSet, b: FloatArray) -> None:
             if passive.target[k] <= 0.0 and passive.x[k] < lowest_x:
                 lowest, lowest_x = k, passive.x[k]
         remove_column(passive, lowest)
-    aim(passive, b)
+    aim(passive)
 
 
 @kernel
@@ -346,7 +380,7 @@ def nonnegative_least_squares(system: System, n_columns: int, passive: PassiveSe
         if best == n_columns:
             break
         if append_column(passive, columns[best], best, 0.0):
-            settle(passive, b)
+            settle(passive)
         if label_is_passive(passive, best):
             for j in range(n_columns):
                 rejected[j] = False
@@ -358,13 +392,14 @@ def nonnegative_least_squares(system: System, n_columns: int, passive: PassiveSe
 @kernel
 def keep_above(passive: PassiveSet, b: FloatArray, least: float) -> None:
     """Keep of the passive columns a set whose coefficients for the new ``b`` are above ``least``."""
-    aim(passive, b)
+    aim_at(passive, b)
+    aim(passive)
     while passive.used > 0 and least_target(passive) <= least:
         lowest = passive.used - 1
         for k in range(passive.used):
             if passive.target[k] < passive.target[lowest]:
                 lowest = k
         remove_column(passive, lowest)
-        aim(passive, b)
+        aim(passive)
     for k in range(passive.used):
         passive.x[k] = passive.target[k]

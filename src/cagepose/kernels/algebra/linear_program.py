@@ -18,6 +18,7 @@ import numpy as np
 from cagepose.kernels.algebra.least_squares import (
     PassiveSet,
     aim,
+    aim_at,
     append_column,
     clear,
     exchange_column,
@@ -158,7 +159,8 @@ def solve_program(rows: FloatArray, bounds: FloatArray, program: Program) -> int
                 for k in range(N_UNKNOWNS):
                     program.ray[k] = passive.residual[k]
                     program.target[k] -= passive.residual[k]
-            settle(passive, program.target)
+                aim_at(passive, program.target)
+            settle(passive)
             continue
 
         # The row that x violates most comes in, beside the others or for one of them.
@@ -170,7 +172,7 @@ def solve_program(rows: FloatArray, bounds: FloatArray, program: Program) -> int
             passive, rows[enters], enters, 0.0
         ):
             return INFEASIBLE
-        aim(passive, program.target)
+        aim(passive)
         for k in range(passive.used):
             passive.x[k] = max(passive.target[k], 0.0)
     return FAILED

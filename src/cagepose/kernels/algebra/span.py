@@ -59,7 +59,7 @@ def write_complement(basis: PassiveSet, free: FloatArray) -> int:
             if left > best_size:
                 best, best_size = axis, left
         for k in range(N):
-            basis.columns[place, k] = 1.0 if k == best else 0.0
+            basis.basis[place, k] = 1.0 if k == best else 0.0
         orthogonalise(basis, place)
         for k in range(N):
             free[place - n_held, k] = basis.basis[place, k]

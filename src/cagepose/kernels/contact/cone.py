@@ -15,6 +15,7 @@ from cagepose.kernels.algebra.least_squares import (
     PRICE,
     PassiveSet,
     aim,
+    aim_at,
     append_column,
     clear,
     exchange_column,
@@ -91,7 +92,8 @@ def clear_cone(cone: ConeWorkspace, b: FloatArray, n_rows: int, terms: float) ->
     """Start from no force: b is (6,), or (7,) where a sum of the normal forces is asked for too, of terms so long."""
     cone.is_corrected = False
     clear(cone.passive, n_rows, terms)
-    aim(cone.passive, b)
+    aim_at(cone.passive, b)
+    aim(cone.passive)
 
 
 @kernel
@@ -150,7 +152,7 @@ def renumber_generators(contacts: ContactSet, cone: ConeWorkspace) -> int:
 
 
 @kernel
-def add_generator(contacts: ContactSet, friction: float, b: FloatArray, number: int, cone: ConeWorkspace) -> int:
+def add_generator(contacts: ContactSet, friction: float, number: int, cone: ConeWorkspace) -> int:
     """Let the generator in that lies most along the residual, as the one with this number; return the next number.
 
     -1: none lies along it. Parameters as for `cone_residual`.
@@ -181,7 +183,7 @@ def add_generator(contacts: ContactSet, friction: float, b: FloatArray, number: 
     if append_column(passive, cone.column, number, cost) or (
         cone.is_corrected and exchange_column(passive, cone.column, number, cost)
     ):
-        settle(passive, b)
+        settle(passive)
     if label_is_passive(passive, number):
         for i in range(contacts.used[0]):
             states[i].is_rejected = False
@@ -191,7 +193,7 @@ def add_generator(contacts: ContactSet, friction: float, b: FloatArray, number: 
 
 
 @kernel
-def cone_residual(contacts: ContactSet, friction: float, b: FloatArray, cone: ConeWorkspace) -> float:
+def cone_residual(contacts: ContactSet, friction: float, cone: ConeWorkspace) -> float:
     """Return the least |b - sum of contact forces| in lengths of b, going on from the forces in ``cone``.
 
     Parameters
@@ -200,10 +202,9 @@ def cone_residual(contacts: ContactSet, friction: float, b: FloatArray, cone: Co
         At a pose.
     friction
         Coefficient of friction.
-    b
-        Scaled wrench of the load, (at least 6,); see `clear_cone`.
     cone
-        The solution. Start with `clear_cone`, or with the solution for no friction: rays are those of one coefficient.
+        The solution. Start with `clear_cone`, which takes the load b, or with the solution for no friction: rays are
+        those of one coefficient.
 
     Returns
     -------
@@ -217,7 +218,7 @@ def cone_residual(contacts: ContactSet, friction: float, b: FloatArray, cone: Co
     while 0 <= n_generators < GENERATOR_LIMIT:
         if friction > 0.0 and not cone.is_corrected and residual_in_loads(passive) <= BALANCED:
             break
-        n_generators = add_generator(contacts, friction, b, n_generators, cone)
+        n_generators = add_generator(contacts, friction, n_generators, cone)
     return residual_in_loads(passive)
 
 

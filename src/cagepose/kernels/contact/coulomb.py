@@ -196,7 +196,7 @@ def coulomb_onset(
             states[i].slip_speed += share * (slip - states[i].slip_speed)
         clear_cone(cone, b, WRENCH, terms)
         cone.is_corrected = True
-        cone_residual(contacts, friction, b, cone)
+        cone_residual(contacts, friction, cone)
     if solves_with_any_modes(contacts, friction, b, cone, y, newton):
         return True
     read_cone(contacts, friction, b, cone, y)

@@ -38,8 +38,8 @@ class NewtonWorkspace:
         Each one's row, what it does, and the place of its normal force in the system.
     matrix
         The system, right side last.
-    order
-        Which unknown each column holds.
+    order, greatest_of
+        Which unknown each column holds, and memory, see `eliminate`.
     changes
         What a step adds to each unknown.
     """
@@ -50,6 +50,7 @@ class NewtonWorkspace:
     first_unknowns: Annotated[IntArray, CARRYING_LIMIT]
     matrix: Annotated[FloatArray, UNKNOWNS, UNKNOWNS + 1]
     order: Annotated[IntArray, UNKNOWNS]
+    greatest_of: Annotated[FloatArray, UNKNOWNS]
     changes: Annotated[FloatArray, UNKNOWNS]
 
 
@@ -170,7 +171,7 @@ def newton_on_modes(
         return
     for _ in range(NEWTON_STEPS):
         write_system(contacts, friction, b, y, n, newton)
-        eliminate(newton.matrix, newton.order, n)
+        eliminate(newton.matrix, newton.order, newton.greatest_of, n)
         if add_changes(contacts, friction, y, n, newton) <= STILL * length(b, 6):
             break
     let_open(contacts, newton)

@@ -47,7 +47,7 @@ AT_REST, ON_THE_WAY = 1.0, 0.1
 def least_residual(contacts: ContactSet, friction: float, b: FloatArray, terms: float, work: ContactWorkspace) -> float:
     """Return what contact forces with this friction leave of a load, in lengths of its terms; they are in the cone."""
     clear_cone(work.cone, b, WRENCH, terms)
-    return cone_residual(contacts, friction, b, work.cone)
+    return cone_residual(contacts, friction, work.cone)
 
 
 @kernel

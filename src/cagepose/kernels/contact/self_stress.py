@@ -49,7 +49,7 @@ def self_stress(contacts: ContactSet, friction: float, stress: SelfStressWorkspa
         stress.twist[k] = 0.0
     stress.twist[N_ROWS - 1] = 1.0
     clear_cone(stress.cone, stress.twist, N_ROWS, 1.0)
-    return cone_residual(contacts, friction, stress.twist, stress.cone)
+    return cone_residual(contacts, friction, stress.cone)
 
 
 @kernel
@@ -107,7 +107,7 @@ def balance_by_locked(contacts: ContactSet, wrench: FloatArray, frame: Frame, wo
             for k in range(WRENCH):
                 column[k] = (MOMENTS if k >= 3 else 1.0) * (work.trial[k] - column[k])
     clear_cone(stress.reaction, stress.twist, WRENCH, length(stress.twist, WRENCH))
-    cone_residual(contacts, 0.0, stress.twist, stress.reaction)
+    cone_residual(contacts, 0.0, stress.reaction)
     for i in range(contacts.used[0]):
         if contacts.states[i].is_locked:
             for k in range(WRENCH):

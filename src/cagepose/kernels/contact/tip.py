@@ -75,7 +75,7 @@ def has_one_normal_each(contacts: ContactSet) -> bool:
 def solve_cones(contacts: ContactSet, friction: float, work: ContactWorkspace) -> float:
     """Return what forces in the cones of the contacts that count leave of the load: where `coulomb_onset` starts."""
     clear_cone(work.cone, work.load, WRENCH, work.load_terms)
-    return cone_residual(contacts, friction, work.load, work.cone)
+    return cone_residual(contacts, friction, work.cone)
 
 
 @kernel

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from cagepose.kernels.algebra.least_squares import aim, inner, least_target
+from cagepose.kernels.algebra.least_squares import aim, aim_at, inner, least_target
 from cagepose.kernels.algebra.linear_program import OPTIMAL, renew_rows, solve_program, write_corner
 from cagepose.kernels.algebra.pose import euler_zyx_from_quaternion
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
@@ -119,7 +119,8 @@ def write_newton_step(
         hold_limits(work.rows, n_pairs, work.program, newton)
     is_top = False
     for _ in range(6):
-        aim(newton.held, objective)
+        aim_at(newton.held, objective)
+        aim(newton.held)
         write_curvature(goal, motion, factor, work)
         is_top = write_steps(work.bounds, objective, newton)
         blocks = join_steps(work.rows, work.bounds, n_pairs, is_top, longest, newton)

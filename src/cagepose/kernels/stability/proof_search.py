@@ -10,6 +10,7 @@ from cagepose.kernels.contact.cone import HELD
 from cagepose.kernels.contact.edges import CHOICES_LIMIT, EVERY, first_choice, has_one_choice, keep_choice
 from cagepose.kernels.contact.equilibrium import (
     AT_REST,
+    HELD_BY_FRICTION,
     HELD_WITHOUT_FRICTION,
     MOVES,
     equilibrium_of_choice,
@@ -73,8 +74,11 @@ def search_faces(friction: float, frame: Frame, at: ProofWorkspace) -> int:
     forget_locked(contacts, frame, solver)
     first_choice(contacts)
     one_choice = has_one_choice(contacts)
+    is_known = one_choice and not solver.has_locked  # by the proof: friction balances the load, and nothing is locked
     for _ in range(CHOICES_LIMIT):
-        code = equilibrium_of_choice(contacts, frame, friction, AT_REST, solver)
+        code = HELD_BY_FRICTION
+        if not is_known:
+            code = equilibrium_of_choice(contacts, frame, friction, AT_REST, solver)
         if code == MOVES and not one_choice:
             return UNIQUENESS_NOT_SHOWN
         n_asked = contacts.used[0]

@@ -267,7 +267,7 @@ def add_generator(friction: float, number: int, work: Relaxation) -> int:
         for k in range(6):
             work.generator[k] = wrenches[0, k] + used * (one * wrenches[1, k] + two * wrenches[2, k])
     if append_column(passive, work.generator, number, 0.0):
-        settle(passive, work.aimed)
+        settle(passive)
     return number + 1 if label_is_passive(passive, number) else -1
 
 
