@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from audit import balance, certified, order, robustness, stability, uniqueness, way
+from audit import balance, certified, groups, order, robustness, stability, uniqueness, way
 from audit.case import Answer, Case, Failure
 from audit.families import make_case
 from cagepose import Run, run
@@ -16,6 +16,7 @@ ORACLES: dict[str, Callable[[Run], Answer]] = {
     "moves": balance.unbalance,
     "forces": balance.forces,
     "contacts": balance.contacts,
+    "groups": groups.groups,
     "robust": robustness.robustness,
     "valley": stability.stability,
     "unique": uniqueness.uniqueness,

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from audit import balance, certified, order, robustness, stability, uniqueness, way
+from audit import balance, certified, groups, order, robustness, stability, uniqueness, way
 from audit.case import Case
 from audit.families import FAMILIES, make_case
 from audit.geometry import acting
@@ -48,7 +48,9 @@ def test_a_right_run_passes_all_oracles():
     for scene in (block_on(FLOOR), block_on(FLOOR, friction=0.2)):
         finding = examine(Case("floor", 0, 0, scene, "rests"))
         assert not finding.failures
-        assert {ENDING, TIME, "balance", "forces", "contacts", "depth", "falls", "batch"} <= set(finding.asked)
+        assert {ENDING, TIME, "balance", "forces", "contacts", "groups", "depth", "falls", "batch"} <= set(
+            finding.asked
+        )
 
 
 def test_a_rest_beside_its_supports_is_not_balanced():
@@ -99,6 +101,19 @@ def test_a_contact_that_is_missing_is_found():
     one = dropped()
     assert balance.contacts(one) == []
     assert balance.contacts(with_phase(one, contacts=one.contacts[1:]))
+
+
+@pytest.mark.parametrize(
+    "told", [(0, 1, 2, 3, 4), (0, 1, 2, 3, 3), (0, 1, 2, 3, -1), (0, 1, 2, 4, 4), (0, 1, 2, 3, None)]
+)
+def test_a_contact_in_another_group_is_found(told):
+    """The last point is on an edge, so that its two contacts are one group."""
+    one = run(block_on([*FLOOR, (0.05, 0.0, 0.0)], height=0.01))
+    assert groups.groups(one) == []
+    phase = one.phases[-1]
+    assert [contact.group for contact in phase.contacts] == [0, 1, 2, 3, 3]
+    planted = [replace(contact, group=group) for contact, group in zip(phase.contacts, told, strict=True)]
+    assert bool(groups.groups(with_phase(one, contacts=tuple(planted)))) == (told != (0, 1, 2, 3, 3))
 
 
 def test_a_stable_rest_that_a_disturbance_ends_is_found():

@@ -19,7 +19,7 @@ TOP = ["version", "scene", "units", "method", "verdict", "warnings", "pose", "ph
 POSE = ["position", "euler_zyx_deg", "quat_wxyz", "center_of_gravity"]
 PHASE = ["name", "verdict", "force_unit", "pose", "events", "contacts", "proof"]
 EVENT = ["rule", "motion", "direction", "axis", "through", "distance", "angle_deg", "hit", "contacts", "pose"]
-CONTACT = ["point", "box", "at", "normal", "gap", "force_normal", "force_tangential"]
+CONTACT = ["point", "box", "at", "normal", "gap", "group", "force_normal", "force_tangential"]
 PROOF = [
     *("verdict", "uniqueness", "reason", "residual", "gap_work", "largest_force", "needs_friction", "stability"),
     *("undetermined", "shared", "motion", "critical_friction"),

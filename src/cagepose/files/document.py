@@ -132,6 +132,7 @@ class _Writer:
             "at": None if contact.place_world is None else self._lengths(contact.place_world),
             "normal": _numbers(contact.normal_world),
             "gap": self._length(contact.gap_m),
+            "group": contact.group,
             "force_normal": contact.force_normal_n,
             "force_tangential": _vector_or_none(contact.force_tangential_n),
         }

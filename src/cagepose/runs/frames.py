@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 POSITION, ANGLES = ("x_m", "y_m", "z_m"), ("yaw_rad", "pitch_rad", "roll_rad")
 CONTACT_COLUMNS = (
     "phase", "point", "box", "force_normal_n", *(f"force_tangential_n_{axis}" for axis in "xyz"),
-    *(f"normal_{axis}" for axis in "xyz"), *POSITION, "gap_m", "near_edge", "force_unit",
+    *(f"normal_{axis}" for axis in "xyz"), *POSITION, "gap_m", "near_edge", "group",
+    "force_unit",
 )  # fmt: skip
 """Of a run without contacts, too."""
 NOWHERE = np.full(3, np.nan)
@@ -87,6 +88,7 @@ def _contact(contact: Contact) -> dict[str, object]:
         **dict(zip(POSITION, (NOWHERE if place is None else place).tolist(), strict=True)),
         "gap_m": contact.gap_m,
         "near_edge": contact.near_edge,
+        "group": contact.group,
     }
 
 

@@ -112,6 +112,11 @@ class Contact:
     place_world
         Where they touch, (3,), metres: the cage's point, or a point of the surface of the cage's shape. None in a run
         that was saved before contacts had it.
+    group
+        Of contacts with the same number one counts at a time: faces at an edge that a point is on, and the normals of
+        sharp features that meet at one place. It is the place of the first of them among the phase's contacts, from 0.
+        -1: the contact never counts, as another says all that it does (a flush face of another box). None in a run that
+        was saved before contacts had it.
     """
 
     point: str
@@ -122,6 +127,7 @@ class Contact:
     force_normal_n: float | None = None
     force_tangential_n: FloatArray | None = None
     place_world: FloatArray | None = None
+    group: int | None = None
 
     def __repr__(self) -> str:
         force = "" if self.force_normal_n is None else f": normal force {self.force_normal_n:.4g}"

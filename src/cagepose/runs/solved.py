@@ -169,6 +169,7 @@ def _contacts(scene: Scene, outcome: Outcome) -> list[Contact]:
         contacts["normal"],
         contacts["gap"].tolist(),
         contacts["near_edge"].tolist(),
+        contacts["group"].tolist(),
         contacts["force_normal"].tolist(),
         contacts["force_tangential"],
         contacts["place"],
@@ -185,8 +186,9 @@ def _contacts(scene: Scene, outcome: Outcome) -> list[Contact]:
             force_normal_n=force_normal,
             force_tangential_n=force_tangential,
             place_world=place,
+            group=group,
         )
-        for point, box, normal, gap, near_edge, force_normal, force_tangential, place in columns
+        for point, box, normal, gap, near_edge, group, force_normal, force_tangential, place in columns
     ]
 
 

@@ -9,13 +9,12 @@ from itertools import islice, product
 
 import numpy as np
 
-from cagepose.kernels.contact.contact_set import SAME_NORMAL
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
-from cagepose.kernels.shapes.meeting import SAME_PLACE
 from cagepose.model.checks import FloatArray, expect
 from cagepose.model.wording import counted
 from cagepose.runs.actions import wrench_at
 from cagepose.runs.cases import contact_friction
+from cagepose.runs.judge import judge_pose
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, Contact, Run
@@ -30,6 +29,8 @@ from cagepose.studies.equal_stiffness import equally_stiff_forces
 from cagepose.studies.extra_load import NOTHING, WITHOUT_BOUND, ExtraLoad, least_extra_load
 from cagepose.studies.whole_rims import more_places
 
+NEVER = -1
+"""The group of a contact that does not count."""
 UNBALANCED = 1e-7
 """Of the load: forces that leave more do not balance it to first order. A rest leaves at most 1e-8."""
 CUT_FOR_BOUNDS, CUT_FOR_RANGES = 1e-6, 1e-9
@@ -126,7 +127,7 @@ def margin(run: Run, phase: int = -1) -> Margin | None:
     ended = run.phases[number]
     if ended.verdict not in AT_REST or ended.proof.verdict == "moves" or not ended.contacts:
         return None
-    contacts, groups = _faces(ended.contacts, SAME_PLACE * run.scene.touch_m)
+    contacts, groups = _counting_contacts(run, number)
     choices = list(islice(product(*groups), CHOICES_LIMIT + 1))
     if len(choices) > CHOICES_LIMIT:
         return None
@@ -164,40 +165,20 @@ def margin(run: Run, phase: int = -1) -> Margin | None:
     )
 
 
-def _faces(contacts: tuple[Contact, ...], near_m: float) -> tuple[list[Contact], list[list[int]]]:
-    """Return the contacts that count, and groups of their numbers: those of two parts at one place, of which one counts
-    at a time. Flush faces of another box that say nothing new are left out, as by `find_contacts`.
+def _counting_contacts(run: Run, phase: int) -> tuple[list[Contact], list[list[int]]]:
+    """Return the contacts that count, and groups of their numbers, of which one counts at a time.
+
+    A run that was saved before contacts told their groups is asked anew at its pose.
     """
-    at_places = list[list[Contact]]()
-    for contact in contacts:
-        for group in at_places:
-            if group[0].box == contact.box and _is_at_place(group[0], contact, near_m):
-                group.append(contact)
-                break
-        else:
-            at_places.append([contact])
-    kept, groups = list[Contact](), list[list[int]]()
-    for group in at_places:
-        if all(_is_listed(contact, kept, near_m) for contact in group):
-            continue
-        groups.append(list(range(len(kept), len(kept) + len(group))))
-        kept += group
-    return kept, groups
-
-
-def _is_at_place(one: Contact, other: Contact, near_m: float) -> bool:
-    """Whether two contacts are of one part of the cage and at one place, as those of a point are."""
-    if one.point != other.point or one.place_world is None or other.place_world is None:
-        return one.point == other.point
-    return float(np.linalg.norm(one.place_world - other.place_world)) <= near_m
-
-
-def _is_listed(contact: Contact, others: list[Contact], near_m: float) -> bool:
-    return any(
-        _is_at_place(other, contact, near_m)
-        and float(np.linalg.norm(other.normal_world - contact.normal_world)) <= SAME_NORMAL
-        for other in others
-    )
+    contacts = run.phases[phase].contacts
+    if any(contact.group is None for contact in contacts):
+        friction = chosen_method(run.scene, run.method).friction(run.scene)
+        contacts = judge_pose(run.scene, run.phases[phase].pose, phase, friction)[1]
+    counting = [contact for contact in contacts if contact.group != NEVER]
+    groups = dict[int | None, list[int]]()
+    for number, contact in enumerate(counting):
+        groups.setdefault(contact.group, []).append(number)
+    return counting, list(groups.values())
 
 
 def _cones(run: Run, phase: int, contacts: list[Contact]) -> ContactCones:

@@ -154,7 +154,7 @@ def publish_contacts(start: Start, position: Vector, at: ProofWorkspace, outcome
     for i in range(at.contacts.used[0]):
         found, forces = at.contacts.rows[i], at.contacts.states[i].forces
         contact = outcome.contacts[outcome.counts[CONTACTS]]
-        contact.point, contact.box, contact.gap = found.point, found.box, found.gap
+        contact.point, contact.box, contact.gap, contact.group = found.point, found.box, found.gap, found.group
         contact.near_edge = found.feature < 0 and is_near_edge(
             start.geometry, at.placement, found.box, found.point, found.axis, start.tolerances.touch_m
         )

@@ -94,6 +94,9 @@ class ContactRecord:
         Where in the world, outward unit normal of the object, and the distance, below zero inside.
     near_edge
         Whether a point lies within the touch tolerance of an edge of the surface of the union of boxes.
+    group
+        Which of the phase's contacts, counted from 0, is the first of those of which one counts at a time; -1: it does
+        not count, as others say all that it does.
     force_normal, force_tangential
         Force on the object: its part along -n, and the rest.
     is_shared
@@ -106,6 +109,7 @@ class ContactRecord:
     normal: Annotated[FloatArray, 3]
     gap: float
     near_edge: bool
+    group: int
     force_normal: float
     force_tangential: Annotated[FloatArray, 3]
     is_shared: bool

@@ -1,0 +1,60 @@
+"""Which contacts count one at a time, and which never do? Found anew from points and boxes, by (2.4)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from audit.case import Answer
+from audit.geometry import Touch, touches, touches_are_clear
+from cagepose import PhaseRun, Run
+
+NEVER = -1
+SAME_NORMAL = 1e-9
+
+
+def groups(run: Run) -> Answer:
+    """Faces of one box that a point touches are a group; flush faces of a later box, all of whose faces there are
+    listed, never count. A group is told by the place of its first contact.
+    """
+    found, asked = [], False
+    for phase in run.phases:
+        if phase.contacts and touches_are_clear(run.scene, phase.pose):
+            asked = True
+            expected = expected_groups(touches(run.scene, phase.pose))
+            told = _told_groups(run, phase)
+            if told != expected:
+                found.append(f"{phase.name}: groups of contacts are {told}, not {expected}")
+    return found if asked else None
+
+
+Group = tuple[int, int, int, bool]
+"""Point, box, number of faces, and whether they count."""
+
+
+def expected_groups(found: Sequence[Touch]) -> list[Group]:
+    """Return the groups of what touches, sorted."""
+    expected = list[Group]()
+    for point in sorted({touch.point for touch in found}):
+        listed = list[np.ndarray]()
+        of_point = [touch for touch in found if touch.point == point]
+        for box in sorted({touch.box for touch in of_point}):
+            normals = [touch.normal for touch in of_point if touch.box == box]
+            is_new = not all(any(np.linalg.norm(n - other) <= SAME_NORMAL for other in listed) for n in normals)
+            expected.append((point, box, len(normals), is_new))
+            listed += normals if is_new else []
+    return expected
+
+
+def _told_groups(run: Run, phase: PhaseRun) -> list[Group]:
+    """Return the groups that a run tells, sorted; one whose number is not its first contact's place has no faces."""
+    names, boxes = run.scene.cage.names, [box.name for box in run.scene.object.boxes]
+    members = dict[tuple[int, int, int | None], list[int]]()
+    for place, contact in enumerate(phase.contacts):
+        pair = names.index(contact.point), boxes.index(contact.box)
+        members.setdefault((*pair, contact.group), []).append(place)
+    return sorted(
+        (point, box, len(places) if group in (NEVER, places[0]) else 0, group != NEVER)
+        for (point, box, group), places in members.items()
+    )
