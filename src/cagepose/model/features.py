@@ -235,11 +235,18 @@ def _hull_features(hull: Hull, pose: Pose, radius_m: float) -> _Features:
     reach = float(np.linalg.norm(vertices - middle, axis=1).max()) + radius_m
     made = _Features(SOLID, middle, reach, float(lengths.min(initial=np.inf)))
     outward = _outward_in_faces(hull, vertices, normals)
-    for index, vertex in enumerate(vertices):
-        away = [*along[hull.edges[:, 0] == index], *-along[hull.edges[:, 1] == index]]
+    away_from: list[list[FloatArray]] = [[] for _ in vertices]
+    for end, ways in ((0, along), (1, -along)):
+        for index, way in zip(hull.edges[:, end].tolist(), ways, strict=True):
+            away_from[index].append(way)
+    inward_of: dict[tuple[int, int], list[FloatArray]] = {}
+    for sides in outward:
+        for side, direction in sides:
+            inward_of.setdefault(side, []).append(-direction)
+    for vertex, away in zip(vertices, away_from, strict=True):
         made.add(VERTEX, placed, vertex, radius=radius_m, fences=[(direction, 0.0, 0.0) for direction in away])
-    for index, pair in enumerate(hull.edges.tolist()):
-        inward = [(-direction, 0.0, 0.0) for sides in outward for side, direction in sides if side == tuple(pair)]
+    for index, (start, end) in enumerate(hull.edges.tolist()):
+        inward = [(direction, 0.0, 0.0) for direction in inward_of.get((start, end), ())]
         made.add(EDGE, placed, starts[index], along[index], float(lengths[index]), radius_m, fences=inward)
     for face, normal, sides in zip(hull.faces, normals, outward, strict=True):
         center = vertices[list(face)].mean(axis=0)

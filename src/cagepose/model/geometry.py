@@ -128,7 +128,7 @@ def _body_size(nodes: FloatArray, shapes: tuple[Shape, ...]) -> float:
 
 def body_limits(shapes: Sequence[Shape], points: FloatArray | None = None) -> FloatArray:
     """The lowest and highest coordinates of shapes and points (n, 3) in their body's frame, (2, 3), metres."""
-    ends = np.array([(-shape.heights_m(-np.eye(3)), shape.heights_m(np.eye(3))) for shape in shapes]).reshape(-1, 2, 3)
+    ends = np.array([shape.limits_m() for shape in shapes]).reshape(-1, 2, 3)
     lows, highs = np.moveaxis(ends, 1, 0)
     given = np.zeros((0, 3)) if points is None else points
     return np.array([np.concatenate([lows, given]).min(axis=0), np.concatenate([highs, given]).max(axis=0)])

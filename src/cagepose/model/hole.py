@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations, pairwise
+from itertools import pairwise
 from typing import ClassVar, Self
 
 import numpy as np
 
 from cagepose.errors import Key
 from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, degrees_of, is_finite
+from cagepose.model.near_pairs import near_pairs
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Shape, Turned, set_lengths
 
@@ -242,8 +243,17 @@ def check_holes(
             hole.check_mouth([named[name] for name in hole.in_], path, problems)
     if problems.problems:
         return
-    for (one, _), (other, path) in combinations(zip(holes, paths, strict=True), 2):
+    for first, second in _near(holes):
+        one, other, path = holes[first], holes[second], paths[second]
         shared = [named[name] for name in one.in_ if name in other.in_]
         if shared and one.meets(other, shared):
             found = f"meets {one.name} in {', '.join(str(part.name) for part in shared)}; keep holes apart"
             problems.add(path, f"{found}, or build a slot or a step in a bore from boxes and plates with one hole each")
+
+
+def _near(holes: Sequence[Hole]) -> list[list[int]]:
+    """Return the pairs of holes that are near each other, by their indices."""
+    limits = np.array([hole.limits_m() for hole in holes]).reshape(-1, 2, 3)
+    room = 2.0 * np.array([hole._slack_m for hole in holes]).reshape(-1, 1)
+    pairs: list[list[int]] = near_pairs(limits[:, 0] - room, limits[:, 1] + room).tolist()
+    return pairs

@@ -1,9 +1,9 @@
 """The convex hull of points in space, as contact takes it: corners, edges, and flat faces with all their corners.
 
-Points are added one by one to a hull of triangles. On which side of a triangle a point lies is decided exactly, in
-whole numbers where rounding leaves it open, so that the triangles always close up; only then triangles that lie in one
-plane within `FLAT` are made one face. A corner that is left with fewer than three faces lies within a face or an edge:
-it is no corner.
+Points outside are added, the farthest first, to a hull of triangles. On which side of a triangle a point lies is
+decided exactly, in whole numbers where rounding leaves it open, so that the triangles always close up; only then
+triangles that lie in one plane within `FLAT` are made one face. A corner that is left with fewer than three faces lies
+within a face or an edge: it is no corner.
 """
 
 from __future__ import annotations
@@ -15,7 +15,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from cagepose.kernels.algebra.vector import Vector
 from cagepose.model.checks import FloatArray, unit_rows
+from cagepose.model.near_pairs import near_pairs
 
 FLAT = 1e-9
 """Points this close to a plane, a line or each other lie on it, as a fraction of the points' extent."""
@@ -109,11 +111,12 @@ def _hull_of(numbers: bytes) -> Hull:
 
 def _distinct(points: FloatArray, tolerance: float) -> list[int]:
     """Return the indices of the points, without those that lie on an earlier one."""
-    kept: list[int] = []
-    for index, point in enumerate(points):
-        if not kept or float(np.abs(points[kept] - point).max(axis=1).min()) > tolerance:
-            kept.append(index)
-    return kept
+    first = np.sort(np.unique(points, axis=0, return_index=True)[1])
+    is_kept = [True] * len(first)
+    for earlier, later in near_pairs(points[first] - tolerance, points[first]).tolist():
+        if is_kept[earlier]:
+            is_kept[later] = False
+    return [index for index, kept in zip(first.tolist(), is_kept, strict=True) if kept]
 
 
 def _simplex(points: FloatArray, tolerance: float) -> list[int]:
@@ -158,33 +161,89 @@ def _height(point: FloatArray, start: FloatArray, end: FloatArray) -> float:
 
 
 def _triangles(points: FloatArray, scaled: FloatArray, simplex: list[int]) -> list[_Triangle]:
-    """Return the triangles of the hull, counter-clockwise seen from outside (incremental construction)."""
+    """Return the triangles of the hull, counter-clockwise seen from outside (Barber, Dobkin and Huhdanpaa's quickhull).
+
+    Each point that is still outside waits at one triangle that it sees; the farthest there comes next. All triangles
+    that it sees hang together, and make way for new ones to their outline. What waited there sees one of these, or lies
+    inside: a new triangle's plane leads through an edge between one that was seen and one that was not.
+    """
     whole = _whole_numbers(points)
     a, b, c, d = simplex
     if _side(whole, (a, b, c), d) > 0:
         b, c = c, b
-    triangles: list[_Triangle] = [(a, b, c), (a, d, b), (b, d, c), (c, d, a)]
-    normals = [_normal(scaled, triangle) for triangle in triangles]
-    for point in range(len(scaled)):
-        if point in simplex:
-            continue
-        starts = scaled[[triangle[0] for triangle in triangles]]
-        heights = np.einsum("ij,ij->i", np.array(normals), scaled[point] - starts).tolist()
-        visible = {
-            index
-            for index, height in enumerate(heights)
-            if height > DECIDED or (height > -DECIDED and _side(whole, triangles[index], point) > 0)
-        }
-        if not visible:
-            continue
-        sides = {side for index in visible for side in _sides(triangles[index])}
-        horizon = [side for side in sorted(sides) if side[::-1] not in sides]
-        triangles = [triangle for index, triangle in enumerate(triangles) if index not in visible]
-        normals = [normal for index, normal in enumerate(normals) if index not in visible]
-        for start, end in horizon:
-            triangles.append((start, end, point))
-            normals.append(_normal(scaled, (start, end, point)))
-    return triangles
+    outside = _Outside(scaled, whole)
+    across: dict[tuple[int, int], _Triangle] = {}  # by its sides
+
+    def add(new: list[_Triangle], waiting: NDArray[np.int64]) -> None:
+        across.update({side: triangle for triangle in new for side in _sides(triangle)})
+        outside.add(new, waiting)
+
+    add([(a, b, c), (a, d, b), (b, d, c), (c, d, a)], np.setdiff1d(np.arange(len(scaled)), simplex))
+    while (found := outside.farthest()) is not None:
+        point, seed = found
+        seen, reached, horizon = {seed}, [seed], []
+        for triangle in reached:
+            for start, end in _sides(triangle):
+                beside = across[end, start]
+                if beside in seen:
+                    continue
+                if outside.sees(beside, point):
+                    seen.add(beside)
+                    reached.append(beside)
+                else:
+                    horizon.append((start, end))
+        waiting = outside.leave(reached)
+        for triangle in reached:
+            for side in _sides(triangle):
+                del across[side]
+        add([(start, end, point) for start, end in horizon], waiting[waiting != point])
+    return list(dict.fromkeys(across.values()))
+
+
+class _Outside:
+    """The points outside of a hull that grows, each with a triangle that it sees."""
+
+    def __init__(self, scaled: FloatArray, whole: list[tuple[int, int, int]]) -> None:
+        self._scaled, self._whole = scaled, whole
+        self._plane: dict[_Triangle, tuple[Vector, Vector]] = {}
+        self._waiting: dict[_Triangle, tuple[NDArray[np.int64], int]] = {}
+
+    def add(self, triangles: list[_Triangle], points: NDArray[np.int64]) -> None:
+        """Add triangles, and let points wait where they see one; others lie inside."""
+        corners = self._scaled[np.array(triangles)]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        starts = corners[:, 0]
+        self._plane.update(zip(triangles, zip(starts.tolist(), normals.tolist(), strict=True), strict=True))
+        for triangle, start, normal in zip(triangles, starts, normals, strict=True):
+            if len(points) == 0:
+                return
+            heights = (self._scaled[points] - start) @ normal
+            sees = heights > DECIDED
+            for index in np.flatnonzero(np.abs(heights) <= DECIDED).tolist():
+                sees[index] = _side(self._whole, triangle, int(points[index])) > 0
+            if sees.any():
+                here = points[sees]
+                self._waiting[triangle] = here, int(here[np.argmax(heights[sees])])
+                points = points[~sees]
+
+    def farthest(self) -> tuple[int, _Triangle] | None:
+        """Return a point that waits, the farthest from its triangle, and that triangle; None: all are inside."""
+        triangle = next(iter(self._waiting), None)
+        return None if triangle is None else (self._waiting[triangle][1], triangle)
+
+    def sees(self, triangle: _Triangle, point: int) -> bool:
+        """Whether a point lies outside of a triangle's plane, exactly."""
+        start, normal = self._plane[triangle]
+        x, y, z = self._scaled[point].tolist()
+        height = (x - start[0]) * normal[0] + (y - start[1]) * normal[1] + (z - start[2]) * normal[2]
+        return height > DECIDED or (height > -DECIDED and _side(self._whole, triangle, point) > 0)
+
+    def leave(self, triangles: list[_Triangle]) -> NDArray[np.int64]:
+        """Take triangles away; return the points that waited there."""
+        for triangle in triangles:
+            del self._plane[triangle]
+        waiting = [self._waiting.pop(triangle)[0] for triangle in triangles if triangle in self._waiting]
+        return np.sort(np.concatenate(waiting))
 
 
 def _sides(triangle: _Triangle) -> list[tuple[int, int]]:
@@ -223,13 +282,14 @@ def _merged(points: FloatArray, triangles: list[_Triangle], tolerance: float) ->
         if seed in face_of:
             continue
         face_of[seed] = n_faces
-        heights = (points - points[triangles[seed][0]]) @ (normals[seed] / areas[seed])
-        is_on_plane = np.abs(heights) <= tolerance
+        origin, normal = points[triangles[seed][0]], normals[seed] / areas[seed]
         reached = [seed]
         for index in reached:
             for start, end in _sides(triangles[index]):
                 beside = across[end, start]
-                if beside not in face_of and is_on_plane[list(triangles[beside])].all():
+                if beside in face_of:
+                    continue
+                if float(np.abs((points[list(triangles[beside])] - origin) @ normal).max()) <= tolerance:
                     face_of[beside] = n_faces
                     reached.append(beside)
         n_faces += 1

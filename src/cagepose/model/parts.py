@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated
@@ -15,11 +15,15 @@ from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, finite_array, is_finite
 from cagepose.model.hole import Hole, check_holes
 from cagepose.model.naming import check_names, names_of, placed
+from cagepose.model.near_pairs import near_pairs
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import AnyShape, Disc, Shape
 from cagepose.model.union import body_moments
 from cagepose.model.volume import VolumeMoments
 from cagepose.model.wording import counted
+
+MOST_PAIRS = 200_000
+"""Pairs of parts that overlap or touch, at most: minutes of work. Of flush cubes in a block each has 13."""
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -89,6 +93,7 @@ class Object:
             problems.add((), "has neither boxes nor shapes; give at least one of them")
         check_names(names_of(everything), [path[:2] for path in paths], problems)
         holes = tuple(hole for hole in everything if isinstance(hole, Hole))
+        _check_crowd(parts, problems)
         check_holes(holes, paths[len(parts) :], parts, problems)
         if mass_kg is not None and not (is_finite(mass_kg) and mass_kg > 0.0):
             problems.add(("mass",), f"is {mass_kg!r}; a mass must be a finite number above zero")
@@ -165,6 +170,14 @@ class Object:
             remedy = "give its center_of_gravity, mass and inertia, or add a part with a volume"
             raise SceneError([Problem((), f"has no volume, as discs and holes have none; {remedy}")])
         return moments
+
+
+def _check_crowd(parts: Sequence[Shape], problems: ProblemList) -> None:
+    """What each part shares with others is found pair by pair."""
+    limits = np.array([part.limits_m() for part in parts]).reshape(-1, 2, 3)
+    if len(near_pairs(limits[:, 0], limits[:, 1], MOST_PAIRS)) > MOST_PAIRS:
+        found = f"has more than {MOST_PAIRS:,} pairs of parts that overlap or touch, of its {len(parts):,} parts"
+        problems.add((), f"{found}; leave out what lies inside others, and make one of what is one")
 
 
 def _checked_inertia(value: ArrayLike) -> FloatArray:

@@ -8,13 +8,13 @@ the object.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import combinations
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from cagepose.model.checks import FloatArray
+from cagepose.model.near_pairs import IntArray, near_pairs
 
 GREATEST_TILT = 1e-6
 """Faces parallel within this angle (radians) can be flush: Euler angles are often written with six decimals."""
@@ -50,11 +50,10 @@ def close_seams(boxes: Sequence[PlacedBox], touch_m: float) -> Seams:
 
 def _between_pairs(boxes: Sequence[PlacedBox], touch_m: float) -> Seams:
     seams = Seams([], [])
-    for first, second in combinations(range(len(boxes)), 2):
+    low, high = _limits(boxes)
+    room = touch_m + 2.0 * GREATEST_TILT * float((high - low).max(initial=0.0))
+    for first, second in near_pairs(low - room, high + room).tolist():
         one, other = boxes[first], boxes[second]
-        reach = np.linalg.norm(one.half_size) + np.linalg.norm(other.half_size) + touch_m
-        if np.linalg.norm(one.position - other.position) > reach:
-            continue
         bridge = _bridge(one, other, touch_m) or _bridge(other, one, touch_m)
         if bridge is not None:
             seams.bridges.append(bridge)
@@ -63,13 +62,33 @@ def _between_pairs(boxes: Sequence[PlacedBox], touch_m: float) -> Seams:
     return seams
 
 
+def _limits(boxes: Sequence[PlacedBox]) -> tuple[FloatArray, FloatArray]:
+    """Return the least and the greatest coordinates of each box, (n, 3) both."""
+    positions = np.array([box.position for box in boxes]).reshape(-1, 3)
+    reach = np.array([np.abs(box.rotation) @ box.half_size for box in boxes]).reshape(-1, 3)
+    return positions - reach, positions + reach
+
+
 def _needed(bridges: list[PlacedBox], boxes: Sequence[PlacedBox]) -> list[PlacedBox]:
     """Drop each bridge that lies within a box or within another bridge: many pairs close the same line."""
-    kept: list[PlacedBox] = []
-    for bridge in sorted(bridges, key=lambda box: -float(np.prod(box.half_size))):
-        if not any(_contains(outer, bridge) for outer in (*kept, *boxes)):
-            kept.append(bridge)
-    return kept
+    every = [*sorted(bridges, key=lambda box: -float(np.prod(box.half_size))), *boxes]
+    low, high = _limits(every)
+    room = WITHIN * float((high - low).max(initial=0.0))
+    is_kept = [True] * len(every)
+    for bridge, beside in _neighbours(near_pairs(low - room, high + room), len(bridges)):
+        is_kept[bridge] = not any(is_kept[outer] and _contains(every[outer], every[bridge]) for outer in beside)
+    return [bridge for bridge, kept in zip(every[: len(bridges)], is_kept, strict=False) if kept]
+
+
+def _neighbours(pairs: IntArray, n_bridges: int) -> Iterator[tuple[int, list[int]]]:
+    """Yield each bridge, the greatest first, with the greater ones and the boxes that are near it."""
+    near: list[list[int]] = [[] for _ in range(n_bridges)]
+    for first, second in pairs.tolist():
+        if second < n_bridges:
+            near[second].append(first)
+        elif first < n_bridges:
+            near[first].append(second)
+    yield from enumerate(near)
 
 
 def _contains(outer: PlacedBox, inner: PlacedBox) -> bool:

@@ -81,6 +81,11 @@ class Shape(ABC):
         heights: FloatArray = (directions_body @ self.nodes_body().T).max(axis=1)
         return heights
 
+    def limits_m(self) -> FloatArray:
+        """Return the lowest and the highest coordinates of the shape in its body's frame, (2, 3), metres."""
+        ends: FloatArray = np.array([-self.heights_m(-np.eye(3)), self.heights_m(np.eye(3))])
+        return ends
+
     @abstractmethod
     def holds(self, points_body: FloatArray) -> NDArray[np.bool_]:
         """Return which of some points (n, 3) of the body's frame lie in the shape, (n,); of the rounding of a hull,

@@ -8,7 +8,6 @@ falls with the square of its chords; two meshes, the second with every chord hal
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from cagepose.model.apart import are_apart
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
+from cagepose.model.near_pairs import near_pairs
 from cagepose.model.shape_moments import NOTHING, Sums, shape_moments, sums_of
 from cagepose.model.shapes import Shape
 from cagepose.model.surface import Mesh, shape_mesh
@@ -63,11 +63,13 @@ def body_moments(parts: Sequence[Shape], holes: Sequence[Hole] = ()) -> VolumeMo
     least = NEARLY_NOTHING * sum(shape_moments(part).volume_m3 for part in material)
     for _, moments in solid:
         total += sums_of(moments, origin)
-    clean = [hole for hole in holes if _is_clean(hole, material, holes)]
+    every = [*material, *holes]
+    near = _near(every)
+    clean = [hole for hole, by in zip(holes, near[len(material) :], strict=True) if _is_clean(hole, every, by)]
     for hole in clean:
         total += sums_of(shape_moments(hole), origin).times(-1.0)
     others = [hole for hole in holes if hole not in clean]
-    for group in _groups(material):
+    for group in _groups(material, near):
         cuts = [hole for hole in others if any(part.name in hole.in_ for part in group)]
         if cuts or (len(group) > 1 and any(not isinstance(part, Box) for part in group)):
             coarse, fine = (_too_much(group, cuts, origin, halved=halved) for halved in (False, True))
@@ -75,24 +77,39 @@ def body_moments(parts: Sequence[Shape], holes: Sequence[Hole] = ()) -> VolumeMo
     return total.moments(origin) if total.volume > least else None
 
 
-def _is_clean(hole: Hole, parts: Sequence[Shape], holes: Sequence[Hole]) -> bool:
-    """Whether a hole takes all its volume away from one shape, which has it to itself there."""
-    beside = [part for part in parts if not are_apart(hole, part)]
-    return (
-        len(beside) == 1
-        and beside[0].name in hole.in_
-        and hole.is_within(beside[0])
-        and all(other is hole or are_apart(hole, other) for other in holes)
-    )
+def _near(shapes: Sequence[Shape]) -> list[list[int]]:
+    """Return, of each shape, the places of those that may share volume with it."""
+    limits = np.array([shape.limits_m() for shape in shapes])
+    found: list[list[int]] = [[] for _ in shapes]
+    for one, other in near_pairs(limits[:, 0], limits[:, 1]).tolist():
+        found[one].append(other)
+        found[other].append(one)
+    return found
 
 
-def _groups(parts: Sequence[Shape]) -> list[list[Shape]]:
-    """Part shapes into groups that share no volume with each other."""
-    group_of = list(range(len(parts)))
-    for one, other in combinations(range(len(parts)), 2):
-        if group_of[one] != group_of[other] and not are_apart(parts[one], parts[other]):
-            group_of = [group_of[one] if group == group_of[other] else group for group in group_of]
-    return [[part for part, of in zip(parts, group_of, strict=True) if of == group] for group in sorted({*group_of})]
+def _is_clean(hole: Hole, shapes: Sequence[Shape], near: Sequence[int]) -> bool:
+    """Whether a hole takes all its volume away from one shape, which has it to itself there; given the places of those
+    that are near it.
+    """
+    beside = [shapes[place] for place in near if not are_apart(hole, shapes[place])]
+    return len(beside) == 1 and beside[0].name in hole.in_ and hole.is_within(beside[0])
+
+
+def _groups(parts: Sequence[Shape], near: Sequence[Sequence[int]]) -> list[list[Shape]]:
+    """Part shapes into groups that share no volume with each other, given the places of those near each."""
+    groups = list[list[Shape]]()
+    is_reached = [False] * len(parts)
+    for seed in range(len(parts)):
+        if is_reached[seed]:
+            continue
+        is_reached[seed], reached = True, [seed]
+        for one in reached:
+            for other in near[one]:
+                if other < len(parts) and not is_reached[other] and not are_apart(parts[one], parts[other]):
+                    is_reached[other] = True
+                    reached.append(other)
+        groups.append([parts[place] for place in sorted(reached)])
+    return groups
 
 
 def _too_much(group: Sequence[Shape], holes: Sequence[Hole], origin: FloatArray, *, halved: bool) -> Sums:

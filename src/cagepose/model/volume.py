@@ -17,6 +17,7 @@ from itertools import pairwise
 import numpy as np
 
 from cagepose.model.checks import FloatArray
+from cagepose.model.near_pairs import near_pairs
 
 ON_PLANE = 32.0 * float(np.finfo(np.float64).eps)
 """Corners this close to a plane lie on it, as a fraction of the union's extent: some roundings of a corner's position.
@@ -103,10 +104,13 @@ def _turned_moments(
     ]
     tolerance = ON_PLANE * max(float(np.abs(box.points).max()) for box in boxes)
     parts = []
+    reach = np.einsum("nij,nj->ni", np.abs(rotations), half_sizes)
+    cutters = _cutters(centers - reach, centers + reach)
     for place, box in enumerate(boxes):
         pieces = [box]
-        for cutter in zip(half_sizes[:place], centers[:place], rotations[:place], strict=True):
-            pieces = [left for piece in pieces for left in _outside(piece, *cutter, tolerance)]
+        for cutter in cutters[place]:
+            by = half_sizes[cutter], centers[cutter], rotations[cutter]
+            pieces = [left for piece in pieces for left in _outside(piece, *by, tolerance)]
         if len(pieces) == 1 and pieces[0] is box:
             parts.append(_box_samples(box, half_sizes[place], centers[place]))
         else:
@@ -131,10 +135,11 @@ def _aligned_moments(
         tuple(zip(*box, strict=True)) for box in zip(centers.tolist(), half_sizes.tolist(), strict=True)
     ]
     parts = list[_Aligned]()
+    cutters = _cutters(centers - half_sizes, centers + half_sizes)
     for place, box in enumerate(boxes):
         pieces = [box]
-        for cutter in boxes[:place]:
-            pieces = [left for piece in pieces for left in _outside_aligned(piece, cutter, tolerance)]
+        for cutter in cutters[place]:
+            pieces = [left for piece in pieces for left in _outside_aligned(piece, boxes[cutter], tolerance)]
         parts += pieces
     middles, halves = np.moveaxis(np.array(parts), 2, 0)
     volumes = 8.0 * halves.prod(axis=1)
@@ -143,6 +148,14 @@ def _aligned_moments(
     arms = middles - centroid
     second_moment = (arms.T * volumes @ arms + np.diag(volumes @ halves**2 / 3.0)) / volume
     return volume, rotation @ centroid, rotation @ second_moment @ rotation.T
+
+
+def _cutters(low: FloatArray, high: FloatArray) -> list[list[int]]:
+    """Return, of each box, the earlier ones that are near it, by what they reach along the axes, (n, 3) both."""
+    found: list[list[int]] = [[] for _ in low]
+    for earlier, later in near_pairs(low, high).tolist():
+        found[later].append(earlier)
+    return found
 
 
 def _outside_aligned(piece: _Aligned, box: _Aligned, tolerance: float) -> Iterator[_Aligned]:

@@ -152,14 +152,16 @@ def load_size(scene: Scene, phase: int, pose: Pose) -> float:
     what the springs' tensions are made of, and the moments over the scene's size.
     """
     center = pose.transform(scene.object.center_of_gravity_m) - cage_middle(scene)
-    return total_load(actions_of(scene)[phase], as_vector(center), pose.as_tuples()[1], scene.size_m)
+    return total_load(
+        _actions_of_phase(scene, scene.loads[phase]), as_vector(center), pose.as_tuples()[1], scene.size_m
+    )
 
 
 def wrench_at(scene: Scene, phase: int, pose: Pose) -> Wrench:
     """Return the sum of all that acts in a phase while the object is at a pose."""
     center = pose.transform(scene.object.center_of_gravity_m) - cage_middle(scene)
     force, moment = np.zeros(3), np.zeros(3)
-    for action in actions_of(scene)[phase]:
+    for action in _actions_of_phase(scene, scene.loads[phase]):
         one = acting(action, as_vector(center), pose.as_tuples()[1])
         force += one.share * np.array(one.force)
         moment += one.share * np.array(one.moment)
