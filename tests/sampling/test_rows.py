@@ -249,6 +249,27 @@ def test_after_five_kills_at_random_moments_the_table_is_the_same(tmp_path: Path
     assert rows_of(killed) == rows_of(whole)
 
 
+def test_a_folder_that_another_process_writes_is_refused_until_that_ends_however_it_ends(tmp_path: Path) -> None:
+    """The one waits inside its first part; then it is killed."""
+    study = tmp_path / "study.yaml"
+    study.write_text(f"scene: {RAIL}\nvary: {{friction.coefficient: {{uniform: [0, 0.3]}}}}\nsample: {{runs: 100}}\n")
+    out = tmp_path / "out"
+    waits = "runner.Runner.run = lambda *a, **b: (print('inside', flush=True), __import__('time').sleep(600))"
+    command = [sys.executable, "-c", f"from cagepose.sampling import runner\n{waits}{KILLED}", str(study), str(out)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stdout is not None
+            assert [process.stdout.readline() for _ in range(2)] == ["begun\n", "inside\n"]
+            (out / "parts" / ".rows.123.part").write_bytes(b"its own")
+            with pytest.raises(StudyFolderError, match="out: is being written by another study that runs now; wait"):
+                Study.load(study).run(out, resume=True)
+            assert (out / "parts" / ".rows.123.part").exists()
+        finally:
+            process.kill()
+    assert len(Study.load(study).run(out, resume=True)) == 100
+    assert not list((out / "parts").glob(".*"))
+
+
 def test_a_folder_of_something_else_is_refused_and_left_alone(run_study: RunStudy, tmp_path: Path) -> None:
     one = run_study(ANGLES, 10)
     before = rows_of(one)

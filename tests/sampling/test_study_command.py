@@ -58,7 +58,7 @@ def test_a_study_prints_what_its_page_says_and_show_says_it_again(
     assert f"yield {percent(share)}, between" in out
     assert "what matters for accepted" in out
     assert "largest box of accepted runs: cage.pose.euler_zyx_deg[1]" in out
-    n_beside = len(list(Path("out").glob("*.*"))) - len(["report.html", "study.yaml", "scene.yaml"])
+    n_beside = len(list(Path("out").glob("[!.]*.*"))) - len(["report.html", "study.yaml", "scene.yaml"])
     assert out.splitlines()[-1] == f"wrote {Path('out/report.html')} and {n_beside} files beside it"
     shown = answer(capsys, "show", "out")
     assert shown == (0, out[: out.index("wrote")], "")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import pyarrow as pa
@@ -13,8 +14,9 @@ from cagepose import __version__
 from cagepose.errors import StudyFolderError, printable
 from cagepose.files.study_file import STUDY_NAME, StudyFile, copies, read_study_file
 from cagepose.files.write import write_whole
+from cagepose.sampling.lock import LockedError, locked
 
-PARTS = "parts"
+PARTS, LOCK = "parts", ".lock"
 
 
 class StudyFolder:
@@ -26,26 +28,40 @@ class StudyFolder:
     def __repr__(self) -> str:
         return f"<StudyFolder {os.fspath(self.path)!r}>"
 
-    def begin(self, study: StudyFile, *, resume: bool) -> None:
-        """Make the folder ready for the parts of a study.
+    @contextmanager
+    def begun(self, study: StudyFile, *, resume: bool) -> Iterator[None]:
+        """Make the folder ready for the parts of a study, and keep it from others as long as the context lasts.
 
         Raises
         ------
         StudyFolderError
-            It holds another study, something else, or this study without ``resume``.
+            It holds another study, something else, or this study without ``resume``; or it is being written.
         OSError
             It cannot be made or written.
         """
         wanted = copies(study)
+        self._check(wanted, resume=resume)  # before a lock is left in a folder of somebody else
+        self.path.mkdir(exist_ok=True)
+        try:
+            with locked(self.path / LOCK):
+                self._check(wanted, resume=resume)
+                self._begin(wanted)
+                yield
+        except LockedError:
+            raise self._refused(
+                "is being written by another study that runs now; wait for its end or stop it, or name another folder"
+            ) from None
+
+    def _check(self, wanted: dict[str, bytes], *, resume: bool) -> None:
         if "\0" in str(self.path):
             raise self._refused("is not a folder's name; remove the unprintable character")
         if self.path.exists() and not self.path.is_dir():
             raise self._refused("is not a folder; name one, or a new one")
         if not self.path.parent.is_dir():
             raise self._refused("its folder does not exist; make the folder first")
-        self.path.mkdir(exist_ok=True)
         if not (self.path / STUDY_NAME).exists():
-            if not all(_is_remnant(path) or _holds(path, wanted.get(path.name)) for path in self.path.iterdir()):
+            others = [path for path in self.path.glob("*") if path.name != LOCK and not _is_remnant(path)]
+            if not all(_holds(path, wanted.get(path.name)) for path in others):
                 raise self._refused("holds something else than a study; name another folder, or a new one")
         else:
             for name, content in wanted.items():
@@ -54,6 +70,8 @@ class StudyFolder:
                     raise self._refused(message)
             if not resume:
                 raise self._refused("holds this study already; add --resume to go on with it, or name another folder")
+
+    def _begin(self, wanted: dict[str, bytes]) -> None:
         for path in (*self.path.glob(".*"), *(self.path / PARTS).glob(".*")):
             if _is_remnant(path):
                 path.unlink()  # of a process that was killed

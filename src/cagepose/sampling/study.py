@@ -121,7 +121,7 @@ class Study:
         MissingExtraError
             The extra ``dask`` is not installed.
         StudyFolderError
-            The folder holds something else.
+            The folder holds something else, or another study writes it now.
         OSError
             It cannot be written.
         KeyboardInterrupt
@@ -131,9 +131,14 @@ class Study:
             require_dask()
         from cagepose.sampling.folder import StudyFolder
 
-        kept, runner, n_runs = StudyFolder(folder), Runner(self._file, workers), len(self)
-        kept.begin(self._file, resume=resume)
-        size = runner.rows_of_a_part
+        kept, runner = StudyFolder(folder), Runner(self._file, workers)
+        with kept.begun(self._file, resume=resume):
+            self._run_missing(kept, runner, dask, progress)
+        return StudyResults(folder)
+
+    def _run_missing(self, kept: StudyFolder, runner: Runner, dask: str | None, progress: Progress | None) -> None:
+        """Run and write the parts that are not there."""
+        n_runs, size = len(self), runner.rows_of_a_part
         parts = [(first, min(first + size, n_runs)) for first in range(0, n_runs, size)]
         missing = [part for part in parts if not kept.has(*part)]
         n_done = n_told = n_runs - sum(last - first for first, last in missing)
@@ -152,7 +157,6 @@ class Study:
                 tell(n_done)
         finally:
             runner.close()
-        return StudyResults(folder)
 
     def _written(self, kept: StudyFolder, parts: Iterable[RunPart]) -> Iterator[int]:
         """Write parts, each while the next one runs, and yield how many rows were written."""
