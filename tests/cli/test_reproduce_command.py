@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from cagepose.files import extra
+from cagepose.paper.cases import run_cases
 from cagepose.paper.report import report_files
 from cagepose.paper.reproduction import METHODS
 
@@ -38,6 +39,25 @@ def test_the_whole_command_writes_a_report_prints_the_table_and_takes_under_30_s
     assert len(steps) == 22
     seconds = [float(step[1:].split()[0]) for step in steps]
     assert seconds == sorted(seconds)
+
+
+def test_what_was_done_before_a_kill_is_a_report_of_its_own(
+    command: Command, in_folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is stopped as its second method begins."""
+    first, second = METHODS
+
+    def stopped(method: str, progress: Any) -> Any:
+        if method == second:
+            raise KeyboardInterrupt
+        return run_cases(method, progress)
+
+    monkeypatch.setattr("cagepose.paper.reproduction.run_cases", stopped)
+    assert command("reproduce", "--out", "report").code == 130
+    assert sorted(path.name for path in (in_folder / "report").iterdir()) == sorted(report_files([first]))
+    page = (in_folder / "report" / "report.md").read_text(encoding="utf-8")
+    assert f"{first}-rail-events.png" in page
+    assert second not in page.split("| section")[1].split("\n")[0]
 
 
 @pytest.mark.parametrize(

@@ -26,14 +26,16 @@ def reproduce_command(
     from cagepose.views.extra import require_report
 
     require_report()
+    from cagepose.paper.figures import Picture
     from cagepose.paper.report import check_report_folder, write_report
     from cagepose.paper.reproduction import METHODS, reproduce
 
     try:
         check_report_folder(out, METHODS)
         progress = _teller()
-        reproduction = reproduce(METHODS, progress)
-        written = write_report(out, reproduction, progress)
+        pictures = dict[str, Picture]()
+        reproduction = reproduce(METHODS, progress, lambda part: write_report(out, part, progress, pictures))
+        written = write_report(out, reproduction, progress, pictures)
     except OSError as error:
         sys.stderr.write(refusal(f"--out {out}", error) + "\n")
         return 2

@@ -52,10 +52,11 @@ FIGURES = (*(name for figures in CASE_FIGURES.values() for name in figures), "ra
 """Of each method; in the names of files, the method's name stands before them."""
 
 
-def draw_pictures(reproduction: Reproduction, progress: Progress) -> dict[str, Picture]:
-    """Return all pictures by name, such as "stepwise-rail-events"."""
+def draw_pictures(reproduction: Reproduction, methods: Sequence[str], progress: Progress) -> dict[str, Picture]:
+    """Return all pictures of some of its methods by name, such as "stepwise-rail-events"."""
     pictures = dict[str, Picture]()
-    for method, runs in reproduction.runs.items():
+    for method in methods:
+        runs = reproduction.runs[method]
         for beginning, figures in CASE_FIGURES.items():
             progress(f"{method}: {beginning}")
             pictures |= {f"{method}-{name}": _picture(draw(runs)) for name, draw in figures.items()}

@@ -123,8 +123,15 @@ def check_report_folder(folder: str | os.PathLike[str], methods: Sequence[str]) 
         raise PermissionError("cannot be made, as the folder that it would lie in cannot be written; name another")
 
 
-def write_report(folder: str | os.PathLike[str], reproduction: Reproduction, progress: Progress) -> list[Path]:
+def write_report(
+    folder: str | os.PathLike[str],
+    reproduction: Reproduction,
+    progress: Progress,
+    pictures: dict[str, Picture] | None = None,
+) -> list[Path]:
     """Write the report into ``folder``: a page that stands alone, the same as Markdown, and the pictures.
+
+    ``pictures`` are those of an earlier report, by name: they are not drawn again, and new ones are added to them.
 
     Returns
     -------
@@ -137,7 +144,9 @@ def write_report(folder: str | os.PathLike[str], reproduction: Reproduction, pro
         See `check_report_folder`; or the disk is full.
     """
     check_report_folder(folder, reproduction.methods)
-    pictures = draw_pictures(reproduction, progress)
+    pictures = {} if pictures is None else pictures
+    new = [method for method in reproduction.methods if f"{method}-{FIGURES[-1]}" not in pictures]
+    pictures |= draw_pictures(reproduction, new, progress)
     contents = {name: report_text(form, reproduction, pictures).encode() for form, name in NAMES.items()}
     for name, picture in pictures.items():
         contents |= {f"{name}.png": picture.png, f"{name}.svg": picture.svg}

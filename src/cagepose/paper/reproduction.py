@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,8 +42,12 @@ class Reproduction:
         return tuple(self.runs)
 
 
-def reproduce(methods: Sequence[str], progress: Progress) -> Reproduction:
-    """Run the paper's cases and its range of misalignments by each of ``methods``."""
+def reproduce(
+    methods: Sequence[str], progress: Progress, keep: Callable[[Reproduction], object] | None = None
+) -> Reproduction:
+    """Run the paper's cases and its range of misalignments by each of ``methods``; ``keep`` gets what is there after
+    each but the last.
+    """
     runs, ranges = dict[str, CaseRuns](), {}
     half = PAPER_RAIL.pin_spacing_m / 2.0
     for method in methods:
@@ -52,4 +56,6 @@ def reproduce(methods: Sequence[str], progress: Progress) -> Reproduction:
         ranges[method] = tuple(
             range_study(angle, RANGE_RAD, pin_y_m, method) for angle in ANGLES for pin_y_m in (half, -half)
         )
+        if keep is not None and method != methods[-1]:
+            keep(Reproduction(dict(runs), tuple(number_rows(runs)), dict(ranges)))
     return Reproduction(runs, tuple(number_rows(runs)), ranges)
