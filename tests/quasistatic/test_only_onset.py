@@ -24,7 +24,7 @@ from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS, Newton
 from cagepose.kernels.outcome.cases import start_of
 from cagepose.kernels.stability.proof import empty_proof_workspace, stand_at
 from cagepose.kernels.stability.relaxation import CLOSED, N_COLUMNS, UNDECIDED
-from cagepose.kernels.stability.strong import NOT_SHOWN, OTHER_FOUND, SECTORS, UNIQUE, ModeTree, other_onset
+from cagepose.kernels.stability.strong import FIRST_SECTORS, NOT_SHOWN, OTHER_FOUND, UNIQUE, ModeTree, other_onset
 from cagepose.runs.cases import cases_of, part_of
 from inner_kernels import as_machine_code
 
@@ -151,7 +151,7 @@ def covers(parts: list[tuple[int, float, float]], above: Leaf, place: int) -> bo
     )  # a motion so near to an edge is in neither, but for rounding
     if above.slips[place] == UNDECIDED:
         wide = abs(sum(width for _, width in sectors) - 2 * np.pi) < 1e-12
-        return gapless and wide and modes == sorted([STICKS] + SECTORS * [SLIPS])
+        return gapless and wide and modes == sorted([STICKS] + FIRST_SECTORS * [SLIPS])
     whole = (above.starts[place], above.starts[place] + above.widths[place])
     ends = (sectors[0][0], sectors[-1][0] + sectors[-1][1])
     return gapless and modes == [SLIPS, SLIPS] and bool(np.allclose(ends, whole, rtol=0, atol=1e-12))

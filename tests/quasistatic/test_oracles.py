@@ -8,11 +8,12 @@ from scipy.optimize import nnls
 
 from cagepose.kernels.algebra.least_squares import PassiveSet, empty_system, nonnegative_least_squares
 from cagepose.kernels.algebra.record import empty_record
-from cagepose.kernels.contact.cone import HELD, ConeWorkspace, clear_cone, cone_residual, write_forces
+from cagepose.kernels.contact.cone import ConeWorkspace, clear_cone, cone_residual, write_forces
 from cagepose.kernels.contact.contact_set import empty_contact_set
 from cagepose.kernels.contact.coulomb import coulomb_onset
 from cagepose.kernels.contact.coulomb_newton import NewtonWorkspace
 from cagepose.kernels.contact.metric import WRENCH
+from cagepose.kernels.contact.tolerances import RESIDUAL_AT_LIMIT
 from inner_kernels import as_machine_code
 
 
@@ -173,7 +174,7 @@ def test_the_onset_with_friction_obeys_coulombs_law(say, cases):
         left = residual(contacts, friction, cone)
         write_forces(cone, friction, contacts)
         scale = np.linalg.norm(b) + forces[:, 0] @ np.linalg.norm(columns[:, 0], axis=1)
-        if left <= HELD:
+        if left <= RESIDUAL_AT_LIMIT:
             balance = np.einsum("ijk,ij->k", columns, forces)
             assert balance == pytest.approx(b, abs=1e-8 * np.linalg.norm(b))
             assert (np.linalg.norm(forces[:, 1:], axis=1) <= friction * forces[:, 0] * (1.0 + 1e-12)).all()

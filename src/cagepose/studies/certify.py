@@ -18,7 +18,7 @@ from cagepose.kernels.contact.friction import friction_of
 from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.stability import relaxation, strong
 from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
-from cagepose.kernels.stability.relaxation import ANY_WAY, AWAY, BEFORE, BEHIND, INTO, QUARTERS, VELOCITIES
+from cagepose.kernels.stability.relaxation import ANY_WAY, AWAY, BEFORE, BEHIND, INTO, N_VELOCITIES, QUARTER_TURNS
 from cagepose.model.checks import FloatArray, expect
 from cagepose.runs.cases import cases_of
 from cagepose.runs.judge import judged_workspace
@@ -171,7 +171,7 @@ class _Search:
         for number, leaf in enumerate(leaves):
             for way, share in zip(tree.ways[leaf].tolist(), tree.shares[leaf].tolist(), strict=True):
                 if way >= 0:
-                    contact, which = divmod(way, VELOCITIES)
+                    contact, which = divmod(way, N_VELOCITIES)
                     size = share / sizes[contact] * self.lengths[places[contact]]
                     pressures[number, contact] += size * _not_allowed(found, leaf, contact, which)
         return replace(found, twists=tree.twists[leaves] @ self.problem.scale, pressures=pressures)
@@ -194,4 +194,4 @@ def _not_allowed(tree: ModeTree, leaf: int, contact: int, which: int) -> FloatAr
         slip = next(slips)
         first, last = tree.starts_rad[slip], tree.starts_rad[slip] + tree.widths_rad[slip]
         return np.array((0.0, *((np.sin(first), -np.cos(first)) if which == BEFORE else (-np.sin(last), np.cos(last)))))
-    return np.array((0.0, *QUARTERS[which - ANY_WAY : which - ANY_WAY + 2]))
+    return np.array((0.0, *QUARTER_TURNS[which - ANY_WAY : which - ANY_WAY + 2]))

@@ -27,7 +27,7 @@ MOST_PLANES = 400
 a level floor, which slides alike all ways around, 116."""
 NOTHING, WITHOUT_BOUND = 1e-8, 1e5
 """In lengths of the load: less than the one is nothing, for that much is left by forces that balance; forces of more
-than the other come of surfaces that are parallel but for rounding (`OPPOSED` of the kernels)."""
+than the other come of surfaces that are parallel but for rounding (`RESIDUAL_OF_SELF_STRESS` of the kernels)."""
 
 
 class ExtraLoad(NamedTuple):

@@ -11,7 +11,7 @@ from cagepose.kernels.play.clearances import LimitingGap, find_limiting_gaps
 from cagepose.kernels.play.extreme import Extreme
 from cagepose.kernels.play.goal import SHIFT, Goal
 from cagepose.kernels.play.polytope import empty_play_workspace
-from cagepose.kernels.play.tolerances import PRICELESS
+from cagepose.kernels.play.tolerances import LEAST_PRICE
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -89,7 +89,7 @@ def pressed_clearances(scene: Scene, pose: Pose, contacts: np.ndarray, push: Flo
     for point in np.unique(contacts["point"]):
         together = np.flatnonzero(contacts["point"] == point)
         greatest = greatest_normal_force(program, load / size, counts, together)
-        if greatest <= PRICELESS:
+        if greatest <= LEAST_PRICE:
             continue
         least = max(0.0, least_normal_force(program, load / size, counts, together))
         box = contacts["box"][together[0]]

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.tolerances import NEGLIGIBLE_ROTATION
 from cagepose.kernels.native.kernel import kernel
 
-SWEEPS = 30
-NEGLIGIBLE = 1e-20
-"""In diagonal entries: a rotation would turn by less than any rounding."""
+MOST_SWEEPS = 30
 
 
 @kernel
@@ -18,11 +17,11 @@ def symmetric_eigen(matrix: FloatArray, vectors: FloatArray, n: int) -> None:
     for i in range(n):
         for j in range(n):
             vectors[i, j] = 1.0 if i == j else 0.0
-    for _ in range(SWEEPS):
+    for _ in range(MOST_SWEEPS):
         off = 0.0
         for p in range(n):
             for q in range(p + 1, n):
-                if abs(matrix[p, q]) <= NEGLIGIBLE * (abs(matrix[p, p]) + abs(matrix[q, q])):
+                if abs(matrix[p, q]) <= NEGLIGIBLE_ROTATION * (abs(matrix[p, p]) + abs(matrix[q, q])):
                     continue
                 off += abs(matrix[p, q])
                 rotate(matrix, vectors, n, p, q)

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray
+from cagepose.kernels.algebra.tolerances import SINGULAR_PIVOT
 from cagepose.kernels.native.kernel import kernel
-
-SINGULAR = 1e-11
-"""Pivots below this fraction of the greatest are zero."""
 
 
 @kernel
@@ -44,7 +42,7 @@ def eliminate(m: FloatArray, order: IntArray, greatest_of: FloatArray, n: int) -
             if greatest_of[i] > pivot:
                 at_row, pivot = i, greatest_of[i]
         greatest = max(greatest, pivot)
-        if pivot <= SINGULAR * greatest:
+        if pivot <= SINGULAR_PIVOT * greatest:
             break
         while abs(m[at_row, at_column]) != pivot:
             at_column += 1

@@ -12,10 +12,8 @@ import math
 from cagepose.kernels.algebra.least_squares import PassiveSet, System, clear, nonnegative_least_squares
 from cagepose.kernels.algebra.linear_program import N_UNKNOWNS
 from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.tolerances import RESIDUAL_OF_RIGHT_SIDE
 from cagepose.kernels.native.kernel import entry
-
-NOTHING_LEFT = 1e-11
-"""Of the right side: less of it is rounding, and there is no vector."""
 
 
 @entry
@@ -34,7 +32,7 @@ def shortest_inside(rows: FloatArray, bounds: FloatArray, system: System, passiv
         system.right_side[k] = 0.0
     system.right_side[N_UNKNOWNS] = 1.0
     clear(passive, N_UNKNOWNS + 1, 1.0)
-    if nonnegative_least_squares(system, len(rows), passive) <= NOTHING_LEFT:
+    if nonnegative_least_squares(system, len(rows), passive) <= RESIDUAL_OF_RIGHT_SIDE:
         return False
     for k in range(N_UNKNOWNS):
         x[k] = -passive.residual[k] / passive.residual[N_UNKNOWNS]

@@ -16,22 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray
+from cagepose.kernels.algebra.tolerances import DEPENDENT_COLUMN, LEAST_COEFFICIENT, LEAST_PRICE, ORTHOGONAL_SHARE
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import kernel
 
 MOST_ROWS = 7
-"""Of all systems that are solved with this: those of a wrench, and one more."""
+"""All systems that are solved with this have at most so many rows: those of a wrench, and one more."""
 WRENCH_ROWS = 6
-"""Of most of them."""
-ENOUGH_LEFT = 0.5
-"""A vector of whose square one orthogonalisation leaves more is orthogonal to rounding."""
-DEPENDENT = 1e-10
-"""A column whose part outside the span of the others is smaller than this fraction of it depends on them, where nothing
-else is said."""
-PRICE = 1e-14
-"""In lengths of the terms of the residual: a column that points along the residual by less only meets rounding."""
-GIVES_WAY = 1e-11
-"""A column that a dependent one takes less of than this cannot be dropped for it: that would divide by rounding."""
+"""Most systems have so many rows."""
 ROUNDS_PER_COLUMN = 10
 """The method is finite; in exact arithmetic it takes about one round for each passive column."""
 
@@ -119,7 +111,7 @@ def length(a: FloatArray, n: int) -> float:
 @kernel
 def clear(passive: PassiveSet, n_rows: int, terms: float) -> None:
     """Start from no columns."""
-    passive.n_rows, passive.used, passive.terms, passive.dependent = n_rows, 0, terms, DEPENDENT
+    passive.n_rows, passive.used, passive.terms, passive.dependent = n_rows, 0, terms, DEPENDENT_COLUMN
     passive.n_aimed = 0
 
 
@@ -146,7 +138,7 @@ def orthogonalise_rows(passive: PassiveSet, place: int, n_rows: int) -> bool:
             for row in range(n_rows):
                 vector[row] -= part * basis[k, row]
         left = inner(vector, vector, n_rows)
-        if left > ENOUGH_LEFT * before:
+        if left > ORTHOGONAL_SHARE * before:
             break
     if left <= passive.dependent * passive.dependent * size:
         return False
@@ -306,13 +298,13 @@ def exchange_column(passive: PassiveSet, column: FloatArray, label: int, cost: f
     solve_triangle(passive)
     share = math.inf
     for k in range(n):
-        if passive.target[k] > GIVES_WAY:
+        if passive.target[k] > LEAST_COEFFICIENT:
             share = min(share, passive.x[k] / passive.target[k])
     if share == math.inf:
         return False
-    leaves, most = n, GIVES_WAY
+    leaves, most = n, LEAST_COEFFICIENT
     for k in range(n):  # of those that come to zero together, the one that the new column takes most of
-        if passive.target[k] > most and passive.x[k] <= (share + GIVES_WAY) * passive.target[k]:
+        if passive.target[k] > most and passive.x[k] <= (share + LEAST_COEFFICIENT) * passive.target[k]:
             leaves, most = k, passive.target[k]
     for k in range(n):
         passive.x[k] = max(0.0, passive.x[k] - share * passive.target[k])
@@ -369,7 +361,7 @@ def nonnegative_least_squares(system: System, n_columns: int, passive: PassiveSe
     for j in range(n_columns):
         lengths[j], rejected[j] = length(columns[j], passive.n_rows), False
     for _ in range(ROUNDS_PER_COLUMN * (n_columns + passive.n_rows)):
-        least_price = PRICE * rounding_scale(passive)
+        least_price = LEAST_PRICE * rounding_scale(passive)
         best, best_price = n_columns, 0.0
         for j in range(n_columns):
             if rejected[j]:

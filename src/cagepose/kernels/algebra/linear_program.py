@@ -28,16 +28,13 @@ from cagepose.kernels.algebra.least_squares import (
     settle,
 )
 from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.tolerances import RESIDUAL_OF_OBJECTIVE, VIOLATION_OF_ROW
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import entry, kernel
 
 N_UNKNOWNS = 6
 OPTIMAL, UNBOUNDED, INFEASIBLE, FAILED = range(4)
 
-MISSED = 1e-11
-"""Of the terms that f is the sum of: the rows in use give f but for rounding. As little of a ray may end at a row."""
-VIOLATED = 1e-13
-"""Of the terms that x is the sum of: a row that x violates by less holds but for rounding."""
 MOST_PIVOTS = 100
 """Programs of some hundred rows take about a dozen steps. None of 300,000 degenerate ones (small whole numbers, bounds
 of zero, rows given twice) took more than 28, so there is no rule against cycles here."""
@@ -89,7 +86,7 @@ def start_from_last(rows: FloatArray, bounds: FloatArray, program: Program) -> N
     program.passive.terms = length(program.objective, N_UNKNOWNS)
     for k in range(N_UNKNOWNS):
         program.target[k] = program.objective[k]
-    keep_above(program.passive, program.target, -MISSED)
+    keep_above(program.passive, program.target, -RESIDUAL_OF_OBJECTIVE)
 
 
 @kernel
@@ -152,8 +149,10 @@ def solve_program(rows: FloatArray, bounds: FloatArray, program: Program) -> int
 
         # The row that lies most along what the rows in use miss of f comes in. None does: that is a ray.
         missed, scale = length(passive.residual, N_UNKNOWNS), rounding_scale(passive)
-        if missed > MISSED * scale:
-            enters = farthest_row(rows, bounds, passive.residual, 0.0, MISSED * missed + VIOLATED * scale)
+        if missed > RESIDUAL_OF_OBJECTIVE * scale:
+            enters = farthest_row(
+                rows, bounds, passive.residual, 0.0, RESIDUAL_OF_OBJECTIVE * missed + VIOLATION_OF_ROW * scale
+            )
             if enters < 0 or not append_column(passive, rows[enters], enters, 0.0):
                 outcome = UNBOUNDED
                 for k in range(N_UNKNOWNS):
@@ -165,7 +164,7 @@ def solve_program(rows: FloatArray, bounds: FloatArray, program: Program) -> int
 
         # The row that x violates most comes in, beside the others or for one of them.
         terms = write_corner(bounds, passive, x)
-        enters = farthest_row(rows, bounds, x, 1.0, VIOLATED * terms)
+        enters = farthest_row(rows, bounds, x, 1.0, VIOLATION_OF_ROW * terms)
         if enters < 0:
             return outcome
         if not append_column(passive, rows[enters], enters, 0.0) and not exchange_column(

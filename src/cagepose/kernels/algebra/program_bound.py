@@ -12,10 +12,8 @@ import math
 
 from cagepose.kernels.algebra.linear_program import N_UNKNOWNS, OPTIMAL, UNBOUNDED, Program, solve_program
 from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.tolerances import SUM_ROUNDING
 from cagepose.kernels.native.kernel import entry, kernel
-
-SUM_ROUNDING = 4e-15
-"""Of the magnitudes that are summed: twice the rounding of six products and their sum, twice."""
 
 
 @kernel

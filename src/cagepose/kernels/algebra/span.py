@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 
-from cagepose.kernels.algebra.least_squares import ENOUGH_LEFT, PassiveSet, inner, orthogonalise
+from cagepose.kernels.algebra.least_squares import PassiveSet, inner, orthogonalise
 from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.tolerances import ORTHOGONAL_SHARE
 from cagepose.kernels.native.kernel import kernel
 
 N = 6
@@ -26,7 +27,7 @@ def write_outside(basis: PassiveSet, vector: FloatArray, least: float, out: Floa
                 for k in range(N):
                     out[k] -= part * basis.basis[place, k]
             left = inner(out, out, N)
-            if left > ENOUGH_LEFT * before:
+            if left > ORTHOGONAL_SHARE * before:
                 break
         if left > least * least * size:
             return True

@@ -1,4 +1,4 @@
-"""The tolerances of lengths, which scale with the scene."""
+"""The tolerances of lengths, which scale with the scene, and those of linear algebra, which have no unit."""
 
 from __future__ import annotations
 
@@ -34,12 +34,36 @@ class KernelTolerances(NamedTuple):
 
 RESOLUTION_OF_SIZE = 1e-12
 ROUNDING_OF_SIZE = 1e-14
-TIE = 1e-9
+TIE_OF_MOMENT = 1e-9
+"""See `KernelTolerances`."""
 PROBE, PROBE_MARGIN = 3.0, 1.5
 """In touch tolerances: how far into a part it is asked whether there is material. The probe must clear a point that
 lies a whole tolerance inside (hence more than 1 and more than the margin), and the margin must clear boxes that meet up
 to a tolerance apart. Scenes refuse boxes thinner than 10.
 """
+
+NEGLIGIBLE_ROTATION = 1e-20
+"""Fraction of the diagonal entries. A rotation for a smaller entry would turn by less than any rounding."""
+SINGULAR_PIVOT = 1e-11
+"""Fraction of the greatest pivot. A smaller pivot is zero."""
+RESIDUAL_OF_RIGHT_SIDE = 1e-11
+"""Fraction of the right side. A smaller residual is rounding, and there is no vector."""
+DEPENDENT_COLUMN = 1e-10
+"""Fraction of a column. A column whose part outside the span of the others is smaller depends on them, where nothing
+else is said."""
+LEAST_PRICE = 1e-14
+"""In lengths of the residual's terms. A column that points along the residual by less only meets rounding."""
+LEAST_COEFFICIENT = 1e-11
+"""A column that a dependent one takes less of than this cannot be dropped for it: that would divide by rounding."""
+ORTHOGONAL_SHARE = 0.5
+"""Share of the square of a vector. If one orthogonalisation leaves more, the vector is orthogonal to rounding."""
+RESIDUAL_OF_OBJECTIVE = 1e-11
+"""Fraction of the terms that f is the sum of. With a smaller residual the rows in use give f but for rounding. A share
+of a ray that is smaller than this ends at no row."""
+VIOLATION_OF_ROW = 1e-13
+"""Fraction of the terms that x is the sum of. A row that x violates by less holds but for rounding."""
+SUM_ROUNDING = 4e-15
+"""Fraction of the magnitudes that are summed. It is twice the rounding of six products and their sum, twice."""
 
 
 def kernel_tolerances(size_m: float, touch: float) -> KernelTolerances:
@@ -48,7 +72,7 @@ def kernel_tolerances(size_m: float, touch: float) -> KernelTolerances:
         touch_m=touch * size_m,
         resolution_m=RESOLUTION_OF_SIZE * size_m,
         rounding_m=ROUNDING_OF_SIZE * size_m,
-        tie=TIE,
+        tie=TIE_OF_MOMENT,
     )
 
 

@@ -22,7 +22,7 @@ from cagepose.kernels.native.kernel import kernel
 SAFE = 1.0 + 1e-12
 """So that rounding passes over nothing that is just in reach."""
 THIN = 0.5
-"""Of half the thickness of a box: no point may go deeper, or it could come out on the other side."""
+"""Share of half the thickness of a box. No point may go deeper, or it could come out on the other side."""
 
 
 @kernel

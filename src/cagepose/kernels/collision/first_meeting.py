@@ -28,8 +28,8 @@ from cagepose.kernels.shapes.touching import Meetings
 
 SAFE = 1.0 + 1e-9
 THIN = 0.1
-"""Of the reach of the smaller of two parts: it may not go deeper, or could come out on the other side. A point has no
-sides: it may as far as the other part's reach says."""
+"""Share of the reach of the smaller of two parts. It may not go deeper, or could come out on the other side. A point
+has no sides: it may go as far as the other part's reach says."""
 ALMOST_STRAIGHT, PAST = 0.25, 1.01
 """Radians; and how many times longer than its chord an arc that turns by no more is at most."""
 LEAST_SLACK = 1e-12

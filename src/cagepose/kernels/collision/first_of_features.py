@@ -27,7 +27,8 @@ from cagepose.kernels.shapes.rims import lie_flat
 from cagepose.kernels.shapes.touching import Meetings
 
 LEAVES = 1e-6
-"""Of the fastest speed of a part: features that touch and move apart faster leave each other, and may meet again."""
+"""Fraction of the fastest speed of a part. Features that touch and move apart faster leave each other, and may meet
+again."""
 CLOSE = 4.0
 """In touch tolerances: where an arc is nearer, its places are followed one by one."""
 TOGETHER = 40

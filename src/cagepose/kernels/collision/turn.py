@@ -24,7 +24,7 @@ from cagepose.kernels.collision.geometry import box_gap
 from cagepose.kernels.native.kernel import kernel
 
 SAFE = 1e-12
-"""Of a key: so that rounding passes over nothing that comes first."""
+"""Fraction of a key. It keeps rounding from passing over what comes first."""
 Below = tuple[float, float, bool]
 """Solution set of one inequality in c: (first, second, between). Between the roots, or outside of them."""
 

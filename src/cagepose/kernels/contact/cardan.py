@@ -11,10 +11,8 @@ from cagepose.kernels.algebra.pose import Quaternion, rotated
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, norm, plus, scaled
 from cagepose.kernels.contact.metric import Frame
+from cagepose.kernels.contact.tolerances import LEAST_COSINE_OF_PITCH
 from cagepose.kernels.native.kernel import kernel
-
-LEAST_COSINE = 1e-6
-"""Of the pitch: nearer to the joint's pole yaw and roll are one, and their slopes are taken as here."""
 
 
 class Cardan(NamedTuple):
@@ -34,7 +32,7 @@ def cardan_at(yaw_axis: Vector, roll_axis: Vector) -> Cardan:
     """Return the joint between two unit vectors of the world."""
     across = cross(yaw_axis, roll_axis)
     cosine = norm(across)
-    if cosine < LEAST_COSINE:
+    if cosine < LEAST_COSINE_OF_PITCH:
         across = cross(yaw_axis, (1.0, 0.0, 0.0) if abs(yaw_axis[0]) < 0.5 else (0.0, 1.0, 0.0))
     pitch_axis = scaled(across, 1.0 / norm(across))
     return Cardan(
@@ -42,7 +40,7 @@ def cardan_at(yaw_axis: Vector, roll_axis: Vector) -> Cardan:
         pitch_axis,
         cross(pitch_axis, yaw_axis),
         -dot(yaw_axis, roll_axis),
-        max(cosine, LEAST_COSINE),
+        max(cosine, LEAST_COSINE_OF_PITCH),
     )
 
 

@@ -12,7 +12,6 @@ import math
 from typing import Annotated
 
 from cagepose.kernels.algebra.least_squares import (
-    PRICE,
     PassiveSet,
     aim,
     aim_at,
@@ -26,22 +25,19 @@ from cagepose.kernels.algebra.least_squares import (
     settle,
 )
 from cagepose.kernels.algebra.record import FloatArray, IntArray
+from cagepose.kernels.algebra.tolerances import LEAST_PRICE
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.metric import ScaledVector
+from cagepose.kernels.contact.tolerances import (
+    LEAST_FORCE,
+    MOST_FORCES_COUNTED,
+    RESIDUAL_OF_LOAD,
+    SHARE_OF_FORCES,
+    STEEPER_BY_ROUNDING,
+)
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import kernel
 
-BALANCED = 1e-11
-"""In lengths of the load: so little of it may be left by forces that balance it."""
-HELD = 1e-9
-"""The same at the limit of friction, where round cones leave more: rounding counts by its square root there."""
-FORCES_COUNT, FORCES_LIMIT = 1e-5, 1e8
-"""Of their lengths, forces add to the length that a residual is measured in: that allows for their rounding. Up to so
-many lengths of the load: no balance leaves more than 1e-8 of it."""
-NOTHING = 1e-13
-"""In lengths of the load: a contact that carries less carries nothing."""
-STEEPER = 1e-13
-"""In lengths of the residual: a generator that points along it by so little more than one in use is no better."""
 GENERATOR_LIMIT = 400
 N_ROWS = 7
 """With one more row than a wrench has, the last one adds up the normal forces."""
@@ -129,8 +125,8 @@ def generator_cost(contacts: ContactSet, i: int, friction: float, cone: ConeWork
 @kernel
 def residual_in_loads(passive: PassiveSet) -> float:
     """Return what is left of the load, in its lengths: zero, to rounding, if forces balance it."""
-    forces = min(rounding_scale(passive) - passive.terms, FORCES_LIMIT * passive.terms)
-    scale = passive.terms + FORCES_COUNT * forces
+    forces = min(rounding_scale(passive) - passive.terms, MOST_FORCES_COUNTED * passive.terms)
+    scale = passive.terms + SHARE_OF_FORCES * forces
     return length(passive.residual, passive.n_rows) / scale if scale > 0.0 else 0.0
 
 
@@ -168,7 +164,10 @@ def add_generator(contacts: ContactSet, friction: float, number: int, cone: Cone
         if price <= 0.0:
             continue
         size = length(contacts.rows[i].columns[0], 6) + (1.0 if passive.n_rows == N_ROWS else 0.0)
-        if price > best_price * size and price > (STEEPER * left if is_steeper else PRICE * scale) * size:
+        if (
+            price > best_price * size
+            and price > (STEEPER_BY_ROUNDING * left if is_steeper else LEAST_PRICE * scale) * size
+        ):
             best, best_price = i, price / size
     if best < 0:
         return -1
@@ -216,7 +215,7 @@ def cone_residual(contacts: ContactSet, friction: float, cone: ConeWorkspace) ->
     passive = cone.passive
     n_generators = renumber_generators(contacts, cone)
     while 0 <= n_generators < GENERATOR_LIMIT:
-        if friction > 0.0 and not cone.is_corrected and residual_in_loads(passive) <= BALANCED:
+        if friction > 0.0 and not cone.is_corrected and residual_in_loads(passive) <= RESIDUAL_OF_LOAD:
             break
         n_generators = add_generator(contacts, friction, n_generators, cone)
     return residual_in_loads(passive)
@@ -231,7 +230,7 @@ def write_forces(cone: ConeWorkspace, friction: float, contacts: ContactSet) -> 
     for k in range(cone.passive.used):
         label = cone.passive.labels[k]
         forces, x = contacts.states[cone.contacts[label]].forces, cone.passive.x[k]
-        if x * cone.passive.sizes[k] <= NOTHING * cone.passive.terms:
+        if x * cone.passive.sizes[k] <= LEAST_FORCE * cone.passive.terms:
             continue
         forces[0] += x
         forces[1] += x * friction * cone.directions[label, 0]

@@ -19,9 +19,6 @@ from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.bend import Bend
 from cagepose.kernels.shapes.touching import most_meetings
 
-SAME_NORMAL = 1e-9
-"""Radians. Flush faces of two boxes give one contact."""
-
 CONTACTS_PER_POINT = 12
 """Faces that a point may touch, taken over all points. More: the run stalls, by name."""
 

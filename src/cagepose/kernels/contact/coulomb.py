@@ -26,24 +26,25 @@ from cagepose.kernels.contact.coulomb_newton import (
     newton_on_modes,
 )
 from cagepose.kernels.contact.metric import WRENCH
+from cagepose.kernels.contact.tolerances import (
+    LEAST_SPEED_OF_LAW,
+    LONGEST_MOTION,
+    SLIP_TRIED_LAST,
+    SLIP_TRIED_STICKING,
+    VIOLATION_IN_LOADS,
+    VIOLATION_OF_COULOMB,
+)
 from cagepose.kernels.native.kernel import kernel
 
-ROUNDS = 240
-ROUNDS_UNDAMPED = 60
-DAMPED = 0.4
+SWEEPS_OF_ALL = 240
+SWEEPS_UNDAMPED = 60
+DAMPING_FACTOR = 0.4
 """Contacts that take turns in slipping meet half way if each goes only this part of its way."""
-FIRST_ROUNDS, ROUNDS_BETWEEN = 3, 6
-"""Newton's method is tried after each of the first rounds, which mostly show the modes, and then after so many."""
-OBEYS, LAST_RESORT = 1e-9, 1e-6
-"""In lengths of the motion: the greatest violation of Coulomb's law. Where that is not reached, in lengths of the load:
-it bends the path by far less than a step does."""
-LONGEST = 1.0 + 1e-9
-"""In lengths of the load: no motion is longer."""
-ROUNDING = 1e-5
-"""In lengths of the load: the violation of the law by a motion slower than this is measured as if it were as fast."""
-SLOW, SLOWEST = 1e-6, 1e-10
-"""In lengths of the motion: a slower contact is tried as one that sticks, first with the one limit, then the other."""
-ENUMERATED = 5
+FIRST_SWEEPS = 3
+"""Newton's method is tried after each of the first sweeps, which mostly show the modes."""
+SWEEPS_BETWEEN = 6
+"""After them it is tried each time that so many sweeps have passed."""
+MOST_ENUMERATED = 5
 """Contacts up to which all combinations of modes are tried if the iteration goes round in circles: 243."""
 
 
@@ -90,7 +91,7 @@ def coulomb_error(contacts: ContactSet, friction: float, y: FloatArray) -> float
 @kernel
 def allowed_error(terms: float, y: FloatArray) -> float:
     """Return which violation of the law, as a velocity, is rounding."""
-    return OBEYS * max(length(y, 6), ROUNDING * terms)
+    return VIOLATION_OF_COULOMB * max(length(y, 6), LEAST_SPEED_OF_LAW * terms)
 
 
 @kernel
@@ -99,7 +100,7 @@ def obeys(contacts: ContactSet, friction: float, terms: float, y: FloatArray) ->
 
     The law takes power from the load, so that no motion is longer than that: one that is was made by Newton's method.
     """
-    if length(y, WRENCH) > LONGEST * terms:
+    if length(y, WRENCH) > LONGEST_MOTION * terms:
         return False
     return coulomb_error(contacts, friction, y) <= allowed_error(terms, y)
 
@@ -128,7 +129,7 @@ def solves_with_any_modes(
     for i in range(contacts.used[0]):
         if contacts.states[i].counts:
             n_chosen += 1
-    if n_chosen > ENUMERATED:
+    if n_chosen > MOST_ENUMERATED:
         return False
     for combination in range(3**n_chosen):
         read_cone(contacts, friction, b, cone, y)
@@ -180,17 +181,17 @@ def coulomb_onset(
     terms, states = cone.passive.terms, contacts.states
     for i in range(contacts.used[0]):
         states[i].slip_speed = 0.0
-    for turn in range(1, ROUNDS + 1):
+    for turn in range(1, SWEEPS_OF_ALL + 1):
         read_cone(contacts, friction, b, cone, y)
         if obeys(contacts, friction, terms, y):
             return True
-        if turn <= FIRST_ROUNDS or turn % ROUNDS_BETWEEN == 0:
-            slow = SLOW if turn % (2 * ROUNDS_BETWEEN) != 0 else SLOWEST
+        if turn <= FIRST_SWEEPS or turn % SWEEPS_BETWEEN == 0:
+            slow = SLIP_TRIED_STICKING if turn % (2 * SWEEPS_BETWEEN) != 0 else SLIP_TRIED_LAST
             read_modes(contacts, slow * length(y, 6), y, newton)
             if solves_with_modes(contacts, friction, b, terms, y, newton):
                 return True
             read_cone(contacts, friction, b, cone, y)
-        share = 1.0 if turn <= ROUNDS_UNDAMPED else DAMPED
+        share = 1.0 if turn <= SWEEPS_UNDAMPED else DAMPING_FACTOR
         for i in range(contacts.used[0]):
             slip = steepest_tangent(contacts.rows[i], y)[0] if states[i].counts else 0.0
             states[i].slip_speed += share * (slip - states[i].slip_speed)
@@ -200,4 +201,4 @@ def coulomb_onset(
     if solves_with_any_modes(contacts, friction, b, cone, y, newton):
         return True
     read_cone(contacts, friction, b, cone, y)
-    return coulomb_error(contacts, friction, y) <= LAST_RESORT * terms
+    return coulomb_error(contacts, friction, y) <= VIOLATION_IN_LOADS * terms

@@ -13,15 +13,14 @@ from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.contact.cone import steepest_tangent
 from cagepose.kernels.contact.contact_set import ContactSet, is_smooth
+from cagepose.kernels.contact.tolerances import LAST_CHANGE
 from cagepose.kernels.native.kernel import kernel
 
 STICKING_LIMIT = 12
 """More contacts than this that stick (or half as many again that slip): left to the sweeps."""
 UNKNOWNS = 6 + 3 * STICKING_LIMIT
 CARRYING_LIMIT = UNKNOWNS - 6
-NEWTON_STEPS = 8
-STILL = 1e-14
-"""In lengths of the load: after so small a change the next one is rounding, since the digits double."""
+MOST_NEWTON_STEPS = 8
 
 OPENS, STICKS, SLIPS, SLIDES = 0, 1, 2, 3
 """Codes of what a contact does; one without friction slides."""
@@ -169,10 +168,10 @@ def newton_on_modes(
     n = number_unknowns(contacts, y, newton)
     if n < 0:
         return
-    for _ in range(NEWTON_STEPS):
+    for _ in range(MOST_NEWTON_STEPS):
         write_system(contacts, friction, b, y, n, newton)
         eliminate(newton.matrix, newton.order, newton.greatest_of, n)
-        if add_changes(contacts, friction, y, n, newton) <= STILL * length(b, 6):
+        if add_changes(contacts, friction, y, n, newton) <= LAST_CHANGE * length(b, 6):
             break
     let_open(contacts, newton)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from cagepose.kernels.algebra.dense import remove_span
 from cagepose.kernels.algebra.least_squares import append_column, clear, inner, length
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.contact.cone import BALANCED, HELD, clear_cone, cone_residual, write_forces
+from cagepose.kernels.contact.cone import clear_cone, cone_residual, write_forces
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.edges import (
     CHOICES_LIMIT,
@@ -21,15 +21,15 @@ from cagepose.kernels.contact.edges import (
     return_to_kept,
 )
 from cagepose.kernels.contact.metric import WRENCH, Frame
-from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims
+from cagepose.kernels.contact.on_rim import MOST_ADDED_POINTS, add_on_rims
 from cagepose.kernels.contact.self_stress import (
-    OPPOSED,
     begin_unlocked,
     carry_by_locked,
     forget_locked,
     take_out_stopped,
     write_residual,
 )
+from cagepose.kernels.contact.tolerances import RESIDUAL_AT_LIMIT, RESIDUAL_OF_LOAD, RESIDUAL_OF_SELF_STRESS
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
@@ -52,14 +52,14 @@ def least_residual(contacts: ContactSet, friction: float, b: FloatArray, terms: 
 
 @kernel
 def is_balance(contacts: ContactSet, left: float, friction: float, strictness: float, work: ContactWorkspace) -> bool:
-    """Whether a residual counts as zero: up to BALANCED, and where contacts slip up to HELD, in lengths of the load.
+    """Whether a residual counts as zero: up to RESIDUAL_OF_LOAD, and up to RESIDUAL_AT_LIMIT where contacts slip.
 
     The part of it that slips at no contact (a swing about one that sticks) has nothing to do with the limit of
     friction, and has all its digits.
     """
-    if left <= strictness * BALANCED:
+    if left <= strictness * RESIDUAL_OF_LOAD:
         return True
-    if friction == 0.0 or left > strictness * HELD:
+    if friction == 0.0 or left > strictness * RESIDUAL_AT_LIMIT:
         return False
     span, cone = work.span, work.cone
     clear(span, WRENCH, cone.passive.terms)
@@ -70,7 +70,7 @@ def is_balance(contacts: ContactSet, left: float, friction: float, strictness: f
     for k in range(6):
         span.target[k] = cone.passive.residual[k]
     remove_span(span.target, span)
-    return left * length(span.target, 6) <= strictness * BALANCED * whole
+    return left * length(span.target, 6) <= strictness * RESIDUAL_OF_LOAD * whole
 
 
 @kernel
@@ -79,14 +79,14 @@ def spare_friction(contacts: ContactSet, friction: float, b: FloatArray, terms: 
     that no contact looks as if it were about to slip. Return which.
     """
     left = least_residual(contacts, 0.0, b, terms, work)
-    if left <= BALANCED:
+    if left <= RESIDUAL_OF_LOAD:
         write_forces(work.cone, 0.0, contacts)
         work.residual = left
         return HELD_WITHOUT_FRICTION
     for share in SPARED:
         used = (1.0 - share) * friction
         left = least_residual(contacts, used, b, terms, work)
-        if left <= HELD:
+        if left <= RESIDUAL_AT_LIMIT:
             write_forces(work.cone, used, contacts)
             work.residual = left
             break
@@ -128,10 +128,13 @@ def needs_second_order(contacts: ContactSet, code: int, friction: float, work: C
     pushed, n_idle = 0.0, 0
     for i in range(contacts.used[0]):
         pushed += contacts.states[i].forces[0]
-        opens = inner(contacts.rows[i].columns[0], work.cone.passive.residual, WRENCH) < -OPPOSED * work.load_terms
+        opens = (
+            inner(contacts.rows[i].columns[0], work.cone.passive.residual, WRENCH)
+            < -RESIDUAL_OF_SELF_STRESS * work.load_terms
+        )
         if contacts.states[i].forces[0] == 0.0 and not opens:
             n_idle += 1
-    return pushed * OPPOSED > work.load_terms or (code == MOVES and (n_idle > 0 or friction > 0.0))
+    return pushed * RESIDUAL_OF_SELF_STRESS > work.load_terms or (code == MOVES and (n_idle > 0 or friction > 0.0))
 
 
 @kernel
@@ -173,7 +176,7 @@ def return_to_choice(
 def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness: float, work: ContactWorkspace) -> int:
     """As `equilibrium_of_listed`; where rims lie flat, with all their points that a motion would go in at."""
     code = equilibrium_of_listed(contacts, frame, friction, strictness, work)
-    for _ in range(MOST_ADDED):
+    for _ in range(MOST_ADDED_POINTS):
         if code != MOVES or not add_on_rims(contacts, frame, friction, work.cone.passive.residual, work.load_terms):
             break
         forget_locked(contacts, frame, work)
@@ -210,7 +213,7 @@ def equilibrium_of_listed(
         code = equilibrium_of_choice(contacts, frame, friction, strictness, work)
         if code == MOVES:
             return MOVES
-        if code > best_code or (code == best_code and work.residual > max(best_left, HELD)):
+        if code > best_code or (code == best_code and work.residual > max(best_left, RESIDUAL_AT_LIMIT)):
             best_code, best_left = code, work.residual
             keep_choice(contacts)
         if one_choice or not next_choice_unlocked(contacts, frame, ONLY_CARRYING, work):

@@ -7,10 +7,11 @@ import math
 from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, row, scaled, vector_from
 from cagepose.kernels.collision.contacts import face_normal, is_hidden, touches_face
 from cagepose.kernels.collision.geometry import Geometry, Placement, box_point
-from cagepose.kernels.contact.contact_set import SAME_NORMAL, ContactSet, choose, write_directions
+from cagepose.kernels.contact.contact_set import ContactSet, choose, write_directions
 from cagepose.kernels.contact.friction import Friction, friction_share
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.contact.seats import seat_rims
+from cagepose.kernels.contact.tolerances import SAME_NORMAL_RAD
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.bend import curvatures, write_bend, write_twin
 from cagepose.kernels.shapes.features import FACE, HOLE
@@ -25,7 +26,7 @@ def face_is_listed(contacts: ContactSet, first: int, point: int, normal: Vector)
     for i in range(first - 1, -1, -1):
         if contacts.rows[i].point != point:
             return False
-        if norm(minus(vector_from(contacts.rows[i].directions[0]), normal)) <= SAME_NORMAL:
+        if norm(minus(vector_from(contacts.rows[i].directions[0]), normal)) <= SAME_NORMAL_RAD:
             return True
     return False
 

@@ -12,6 +12,7 @@ from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.contact.cardan import cardan_at, cardan_moment, cardan_turns
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
+from cagepose.kernels.contact.tolerances import SHORTEST_SPRING
 from cagepose.kernels.native.kernel import kernel
 
 DEAD_FORCE, FOLLOWING_FORCE, DEAD_MOMENT, FOLLOWING_MOMENT, SPRING, CARDAN_MOMENT = 0, 1, 2, 3, 4, 5
@@ -21,8 +22,6 @@ STRAIGHT, WINDING, BENT, BOUND = 0, 1, 2, 3
 along one; along another way; or so that a spring pulls it back."""
 ARCS_PER_TURN = 5.0
 """Along a step the direction of a spring may change by so many times what the object may turn."""
-SHORTEST = 1e-12
-"""In sizes of the scene: a spring is taken to be no shorter, where its length limits a step."""
 
 
 class Action:
@@ -228,7 +227,7 @@ def longest_pull(
         length = norm(spring_vector(action, position, arm))
         longest = max(length, size_m)
         if action.tension_at_zero != 0.0:
-            longest = ARCS_PER_TURN * turn_step_rad * max(length, SHORTEST * size_m)
+            longest = ARCS_PER_TURN * turn_step_rad * max(length, SHORTEST_SPRING * size_m)
         if speed > 0.0:
             amount = min(amount, longest / speed)
     return amount

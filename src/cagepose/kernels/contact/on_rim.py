@@ -19,22 +19,15 @@ from cagepose.kernels.contact.cone import ConeWorkspace, steepest_tangent
 from cagepose.kernels.contact.contact_set import ContactSet, choose, stays_on_face, write_directions
 from cagepose.kernels.contact.edges import has_one_choice
 from cagepose.kernels.contact.metric import WRENCH, Frame, twist_of
+from cagepose.kernels.contact.tolerances import LAST_TURN_RAD, ROUNDING_OF_SPEED, SAME_CIRCLE, SAME_SIDE, SPEED_OF_ENTRY
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.bend import write_turned
 from cagepose.kernels.shapes.flat_rims import SAME_WAY
 
-SAME_RIM, SAME_BALL = 1e-6, 1e-2
-"""In radii: how near the centres of the rims of two contacts are if they are one rim; and the places that their normals
-lead through if they are on one side of it, as far as it may be tilted there.
-"""
-MOST_ADDED = 40
-"""Points of rims, for one question."""
-FOLLOWED, SAME_ANGLE = 30, 1e-9
-"""How often the slip is followed along a rim, and the change, in radians, that ends it."""
-ENTERS = 1e-10
-"""Of the motion: a point of a rim that goes in more slowly does not count."""
-ROUNDING = 3e-16
-"""Of the terms of the load: so much of a speed is their rounding."""
+MOST_ADDED_POINTS = 40
+"""So many points of circles are added for one question."""
+MOST_FOLLOWED = 30
+"""The slip is followed along a circle so many times at most."""
 
 
 @kernel
@@ -73,7 +66,7 @@ def is_of_same_rim(contacts: ContactSet, i: int, other: int) -> bool:
         return False
     between = norm(minus(center_of_rim(contacts, i), center_of_rim(contacts, other)))
     balls = norm(minus(vector_from(rim.ball), vector_from(around.ball)))
-    return between <= SAME_RIM * abs(rim.length) and balls <= SAME_BALL * abs(rim.length)
+    return between <= SAME_CIRCLE * abs(rim.length) and balls <= SAME_SIDE * abs(rim.length)
 
 
 @kernel
@@ -148,7 +141,7 @@ def angle_of_deepest(
     axis, outward = vector_from(rim.axis), vector_from(rim.outward)
     share = friction * norm(vector_from(row.directions[1]))
     angle = start
-    for _ in range(FOLLOWED if share > 0.0 else 1):
+    for _ in range(MOST_FOLLOWED if share > 0.0 else 1):
         arm, normal = on_rim(contacts, i, angle)
         way = plus(velocity, cross(spin, arm))
         slip = minus(way, scaled(normal, dot(normal, way)))
@@ -161,7 +154,7 @@ def angle_of_deepest(
             along = cross(plus(normal, rubs), spin)
         along, before = scaled(along, rim.length), angle
         angle = math.atan2(dot(along, cross(axis, outward)), dot(along, outward))
-        if abs(angle - before) <= SAME_ANGLE:
+        if abs(angle - before) <= LAST_TURN_RAD:
             break
     return angle
 
@@ -229,7 +222,7 @@ def add_on_rims(contacts: ContactSet, frame: Frame, friction: float, y: FloatArr
     if len(contacts.bends) == 0:
         return False
     velocity, spin = twist_of(y, frame)
-    n_listed, fastest, least = contacts.used[0], -1, max(ENTERS * length(y, WRENCH), ROUNDING * terms)
+    n_listed, fastest, least = contacts.used[0], -1, max(SPEED_OF_ENTRY * length(y, WRENCH), ROUNDING_OF_SPEED * terms)
     at_fastest = 0.0
     for i in range(n_listed):
         rim = contacts.bends[i].on_rim
@@ -240,7 +233,7 @@ def add_on_rims(contacts: ContactSet, frame: Frame, friction: float, y: FloatArr
             angle = deepest
             if friction > 0.0:
                 angle = angle_of_deepest(contacts, i, friction, velocity, spin, deepest if k == 0 else 0.0)
-            if angle == 0.0 or abs(angle) > (1.0 + ENTERS) * (rim.after if angle > 0.0 else rim.before):
+            if angle == 0.0 or abs(angle) > (1.0 + SPEED_OF_ENTRY) * (rim.after if angle > 0.0 else rim.before):
                 continue
             write_point(contacts, i, angle, frame)
             new = contacts.rows[n_listed]

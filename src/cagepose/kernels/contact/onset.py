@@ -21,14 +21,12 @@ from cagepose.kernels.contact.equilibrium import (
     return_to_choice,
 )
 from cagepose.kernels.contact.metric import Frame, twist_of
-from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims, drop_idle, keeps_on_rim
+from cagepose.kernels.contact.on_rim import MOST_ADDED_POINTS, add_on_rims, drop_idle, keeps_on_rim
 from cagepose.kernels.contact.self_stress import carry_by_locked, forget_locked
 from cagepose.kernels.contact.tip import tips_on_rim
+from cagepose.kernels.contact.tolerances import FASTER_MOTION
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
-
-FASTER = 1.0 + 1e-9
-"""Times another motion: faster by less, it is the same."""
 
 
 @kernel
@@ -52,7 +50,7 @@ def freest_motion(contacts: ContactSet, frame: Frame, friction: float, work: Con
         if code == MOVES:
             solved = motion_with_faces(contacts, friction, work.load, work.trial, work)
             speed = length(work.trial, 6) if solved else 0.0
-            if speed > fastest * FASTER:
+            if speed > fastest * FASTER_MOTION:
                 fastest, left = speed, work.residual
                 for k in range(6):
                     work.y[k] = work.trial[k] if solved else 0.0
@@ -81,7 +79,7 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
     code = equilibrium(contacts, frame, friction, AT_REST, work)
     if code == MOVES:
         code = freest_motion(contacts, frame, friction, work)
-        for _ in range(MOST_ADDED):
+        for _ in range(MOST_ADDED_POINTS):
             if code != MOVES or friction == 0.0 or not add_on_rims(contacts, frame, 0.0, work.y, work.load_terms):
                 break
             forget_locked(contacts, frame, work)

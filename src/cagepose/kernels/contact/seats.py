@@ -15,7 +15,8 @@ from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scal
 from cagepose.kernels.collision.geometry import Geometry, Placement
 from cagepose.kernels.contact.contact_set import ContactSet, choose, write_directions
 from cagepose.kernels.contact.metric import Frame
-from cagepose.kernels.contact.on_rim import SAME_RIM, is_of_same_rim
+from cagepose.kernels.contact.on_rim import is_of_same_rim
+from cagepose.kernels.contact.tolerances import SAME_CIRCLE
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.bend import NOTHING, Curvatures, across, write_bend
 from cagepose.kernels.shapes.features import EDGE, RIM
@@ -56,7 +57,7 @@ def leave_out_vertices(geometry: Geometry, placement: Placement, contacts: Conta
         arc, wall = (row.cage_feature, row.feature) if rim.is_of_cage else (row.feature, row.cage_feature)
         is_same = walls.features[wall].kind == EDGE and walls.features[wall].taper == taper
         away = norm(minus(vector_from(arcs.features[arc].point), center))
-        is_off = is_off or (is_same and arcs.features[arc].kind == RIM and away <= SAME_RIM * abs(rim.length))
+        is_off = is_off or (is_same and arcs.features[arc].kind == RIM and away <= SAME_CIRCLE * abs(rim.length))
     for other in range(contacts.used[0] if is_off else 0):
         around = contacts.bends[other].on_rim
         if is_of_same_rim(contacts, i, other) and max(around.before, around.after) == 0.0:

@@ -20,24 +20,19 @@ from cagepose.kernels.contact.cone import N_ROWS, ConeWorkspace, clear_cone, con
 from cagepose.kernels.contact.contact_set import ContactSet, count_chosen
 from cagepose.kernels.contact.curvature import add_face_curvature, clear_matrix
 from cagepose.kernels.contact.metric import WRENCH, Frame, write_scaled_wrench
+from cagepose.kernels.contact.tolerances import (
+    CARRIED_ALONG_LOCKED,
+    LEAST_CURVATURE,
+    LEAST_PLAY,
+    RESIDUAL_OF_SELF_STRESS,
+    SHARE_IN_SELF_STRESS,
+)
 from cagepose.kernels.contact.workspace import STRESS_LIMIT, ContactWorkspace, SelfStressWorkspace
 from cagepose.kernels.native.kernel import kernel
 
-OPPOSED = 1e-5
-"""In lengths of the wrenches: what may be left of forces that cancel. A plate that touches on both sides, within the
-touch tolerance, can be tilted by up to the root of that tolerance; and its forces would be 1e5 loads and more."""
-BELONGS = 1e-4
-"""In lengths of the wrenches: what a contact of a self-stress carries in it is more, of forces that add up to one."""
-STOPS = 1e-6
-"""In the greatest second derivative: a smaller one is rounding."""
-PLAY = 1e-10
-"""In radii of gyration: a contact with a wider gap, though it touches, has play. A fork that turns around two opposite
-points opens by the square of its turn."""
-MOMENTS = 1e-3
-"""What a moment counts for beside a force where locked contacts cannot balance both: forces without bound, on levers of
-no length, carry the moment that is left."""
-CARRIES = 1e-6
-"""In lengths of the load: so much along the motions that are stopped is more than rounding."""
+WEIGHT_OF_MOMENTS = 1e-3
+"""A moment counts for so much beside a force where locked contacts cannot balance both. Forces without bound, on levers
+of no length, carry the moment that is left."""
 
 
 @kernel
@@ -56,12 +51,12 @@ def self_stress(contacts: ContactSet, friction: float, stress: SelfStressWorkspa
 def clear_self_stress(contacts: ContactSet, stress: SelfStressWorkspace) -> bool:
     """Find a self-stress of contacts that count to which all of them belong; False: there is none.
 
-    A contact that carries so little in it that it only makes up for what the others leave, within OPPOSED, does not
-    belong to it: its second derivative would count for what no force of it means.
+    A contact may carry so little that it only makes up for the residual of the others, within RESIDUAL_OF_SELF_STRESS.
+    It does not belong to the self-stress, since its second derivative would count for what no force of it means.
     """
     left = self_stress(contacts, 0.0, stress)
     for _ in range(N_ROWS):
-        if left > OPPOSED:
+        if left > RESIDUAL_OF_SELF_STRESS:
             return False
         passive, belongs_all = stress.cone.passive, True
         for i in range(contacts.used[0]):
@@ -69,7 +64,7 @@ def clear_self_stress(contacts: ContactSet, stress: SelfStressWorkspace) -> bool
         for k in range(passive.used):
             i = stress.cone.contacts[passive.labels[k]]
             size = length(contacts.rows[i].columns[0], WRENCH)
-            contacts.states[i].counts = size == 0.0 or passive.x[k] * size > BELONGS
+            contacts.states[i].counts = size == 0.0 or passive.x[k] * size > SHARE_IN_SELF_STRESS
             belongs_all = belongs_all and contacts.states[i].counts
         if belongs_all:
             return True
@@ -97,7 +92,7 @@ def balance_by_locked(contacts: ContactSet, wrench: FloatArray, frame: Frame, wo
         for place in range(work.locked.used):
             stress.twist[k] += inner(work.locked.basis[place], wrench, WRENCH) * work.locked.basis[place, k]
     for k in range(3, WRENCH):
-        stress.twist[k] *= MOMENTS
+        stress.twist[k] *= WEIGHT_OF_MOMENTS
     for i in range(contacts.used[0]):
         state, column = contacts.states[i], contacts.rows[i].columns[0]
         state.counts = state.is_locked
@@ -105,7 +100,7 @@ def balance_by_locked(contacts: ContactSet, wrench: FloatArray, frame: Frame, wo
             write_wrench(contacts, i, 0, frame, work.trial)
             write_outside(stress.pressed, work.trial, 0.0, column)
             for k in range(WRENCH):
-                column[k] = (MOMENTS if k >= 3 else 1.0) * (work.trial[k] - column[k])
+                column[k] = (WEIGHT_OF_MOMENTS if k >= 3 else 1.0) * (work.trial[k] - column[k])
     clear_cone(stress.reaction, stress.twist, WRENCH, length(stress.twist, WRENCH))
     cone_residual(contacts, 0.0, stress.reaction)
     for i in range(contacts.used[0]):
@@ -130,7 +125,7 @@ def stop(curvature: FloatArray, work: ContactWorkspace) -> None:
     n_free = write_complement(work.locked, stress.free)
     write_reduced(curvature, stress.free, n_free, stress.reduced)
     symmetric_eigen(stress.reduced, stress.vectors, n_free)
-    least = STOPS * frobenius_norm(curvature)
+    least = LEAST_CURVATURE * frobenius_norm(curvature)
     for e in range(n_free):
         if stress.reduced[e, e] < -least:
             return
@@ -140,8 +135,8 @@ def stop(curvature: FloatArray, work: ContactWorkspace) -> None:
                 stress.twist[k] = 0.0
                 for i in range(n_free):
                     stress.twist[k] += stress.vectors[i, e] * stress.free[i, k]
-            extend(work.stopped, stress.twist, OPPOSED)
-            extend(work.locked, stress.twist, OPPOSED)
+            extend(work.stopped, stress.twist, RESIDUAL_OF_SELF_STRESS)
+            extend(work.locked, stress.twist, RESIDUAL_OF_SELF_STRESS)
 
 
 @kernel
@@ -165,8 +160,8 @@ def lock(contacts: ContactSet, frame: Frame, n_stresses: int, work: ContactWorks
     for k in range(passive.used):
         i = stress.cone.contacts[passive.labels[k]]
         contacts.states[i].is_locked = True
-        extend(stress.pressed, contacts.rows[i].columns[0], OPPOSED)
-        extend(work.locked, contacts.rows[i].columns[0], OPPOSED)
+        extend(stress.pressed, contacts.rows[i].columns[0], RESIDUAL_OF_SELF_STRESS)
+        extend(work.locked, contacts.rows[i].columns[0], RESIDUAL_OF_SELF_STRESS)
 
 
 @kernel
@@ -187,7 +182,7 @@ def take_out_locked(contacts: ContactSet, work: ContactWorkspace) -> None:
     """Take what is locked out of the normals' wrenches; what hardly anything is left of has no part outside."""
     for i in range(contacts.used[0]):
         column = contacts.rows[i].columns[0]
-        write_outside(work.locked, column, OPPOSED, work.stress.twist)
+        write_outside(work.locked, column, RESIDUAL_OF_SELF_STRESS, work.stress.twist)
         for k in range(WRENCH):
             column[k] = work.stress.twist[k]
 
@@ -213,7 +208,7 @@ def find_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> N
     while n_stresses < STRESS_LIMIT:
         for i in range(contacts.used[0]):
             state = contacts.states[i]
-            is_closed = contacts.rows[i].gap <= PLAY * max(frame.radii[0], frame.radii[1], frame.radii[2])
+            is_closed = contacts.rows[i].gap <= LEAST_PLAY * max(frame.radii[0], frame.radii[1], frame.radii[2])
             state.counts = state.chosen and is_closed and not state.is_locked
         if clear_self_stress(contacts, work.stress):
             lock(contacts, frame, n_stresses, work)
@@ -310,13 +305,13 @@ def take_out(contacts: ContactSet, i: int, work: ContactWorkspace) -> None:
     of the locked ones is put into it.
     """
     row, outside = contacts.rows[i], work.stress.twist
-    if not write_outside(work.stopped, row.columns[0], OPPOSED, outside):
+    if not write_outside(work.stopped, row.columns[0], RESIDUAL_OF_SELF_STRESS, outside):
         contacts.states[i].counts = False  # it stops nothing that is not stopped already
         return
     for j in range(3):
         remove_span(row.columns[j], work.stopped)
     write_outside(work.stress.pressed, row.columns[0], 0.0, outside)
-    if length(outside, WRENCH) <= OPPOSED * length(row.columns[0], WRENCH):
+    if length(outside, WRENCH) <= RESIDUAL_OF_SELF_STRESS * length(row.columns[0], WRENCH):
         for k in range(WRENCH):
             row.columns[0, k] -= outside[k]
 
@@ -345,7 +340,7 @@ def write_residual(work: ContactWorkspace) -> None:
     left = work.stress.imbalance
     work.residual = length(left, WRENCH) / work.load_terms
     remove_span(left, work.stopped)
-    if work.residual - length(left, WRENCH) / work.load_terms > CARRIES:
+    if work.residual - length(left, WRENCH) / work.load_terms > CARRIED_ALONG_LOCKED:
         work.is_second_order = True
 
 

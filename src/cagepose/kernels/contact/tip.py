@@ -15,15 +15,14 @@ from cagepose.kernels.contact.contact_set import ContactSet, count_chosen
 from cagepose.kernels.contact.coulomb import coulomb_onset, obeys
 from cagepose.kernels.contact.metric import WRENCH, Frame, ScaledVector, twist_of
 from cagepose.kernels.contact.on_rim import add_on_rims, add_point, angle_of_deepest
+from cagepose.kernels.contact.tolerances import PARALLEL_COSINE, SAME_PLACE_RAD
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
-AT_PLACE = 1e-7
-"""Radians. A rim goes in less than the square of this between a point and its deepest one, if they are nearer."""
-TRIALS, WIDEST = 40, 0.5
-"""Places that are tried, and how far they may be apart, radians, until the place is between two of them."""
-PARALLEL = 1.0 - 1e-12
-"""Cosine of the angle between normals of one face, or axes of one rim."""
+MOST_TRIALS = 40
+"""So many places are tried."""
+WIDEST_TRIAL_RAD = 0.5
+"""Radians. The places that are tried are no farther apart until the deepest place is between two of them."""
 
 
 @kernel
@@ -67,7 +66,7 @@ def has_one_normal_each(contacts: ContactSet) -> bool:
         first = contacts.rows[i].group
         if first >= 0:
             turned = dot(vector_from(contacts.rows[first].directions[0]), vector_from(contacts.rows[i].directions[0]))
-            one = one and turned > PARALLEL
+            one = one and turned > PARALLEL_COSINE
     return one
 
 
@@ -84,7 +83,7 @@ def is_of_same_rim(contacts: ContactSet, i: int, j: int) -> bool:
     one, other = contacts.rows[i], contacts.rows[j]
     if other.feature < 0 or one.box != other.box or one.point != other.point:
         return False
-    return dot(vector_from(one.directions[0]), vector_from(other.directions[0])) > PARALLEL
+    return dot(vector_from(one.directions[0]), vector_from(other.directions[0])) > PARALLEL_COSINE
 
 
 @kernel
@@ -140,13 +139,13 @@ def angle_of_tip(
     """
     low, at_low, angle, last_side = start, 0.0, start, 0.0
     high, at_high = math.inf, 0.0
-    for trial in range(TRIALS):
+    for trial in range(MOST_TRIALS):
         away = way_from_tip(contacts, n_before, i, angle, frame, friction, work)
-        if abs(away) <= AT_PLACE or away == math.inf:
+        if abs(away) <= SAME_PLACE_RAD or away == math.inf:
             return angle if away != math.inf else math.inf
         if trial == 0 or (high == math.inf and (away > 0.0) == (at_low > 0.0)):
             low, at_low = angle, away
-            angle += min(max(away, -WIDEST), WIDEST)
+            angle += min(max(away, -WIDEST_TRIAL_RAD), WIDEST_TRIAL_RAD)
             continue
         if high == math.inf:
             high, at_high = angle, away
@@ -193,6 +192,6 @@ def row_on_rim_at(contacts: ContactSet, n_before: int, i: int, angle: float) -> 
         there = vector_from(other.outward)
         away = angle - math.atan2(dot(aside, there), dot(outward, there))
         away = math.atan2(math.sin(away), math.cos(away))
-        if -other.before - AT_PLACE <= away <= other.after + AT_PLACE:
+        if -other.before - SAME_PLACE_RAD <= away <= other.after + SAME_PLACE_RAD:
             return j, away
     return -1, 0.0

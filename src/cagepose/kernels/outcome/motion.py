@@ -10,11 +10,11 @@ from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plu
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import NONE, SCREW, TRAVEL, TURN
 
-HARDLY_TURNS_RAD = 1e-12
-"""A smaller turn between two poses is rounding."""
-HARDLY = 1e-9
-"""A travel along the axis, or what a turn moves over the object's size, is rounding below this fraction of the way.
-Also the turning of a twist, over the radius of gyration: Newton's method leaves 1e-11 of it."""
+ROUNDING_OF_TURN_RAD = 1e-12
+"""Radians. A smaller turn between two poses is rounding."""
+ROUNDING_OF_WAY = 1e-9
+"""Fraction of the way. A smaller travel along the axis is rounding, and so is what a turn moves over the object's size.
+It also holds for the turning of a twist, over the radius of gyration: Newton's method leaves 1e-11 of it."""
 
 
 class ScrewMotion(NamedTuple):
@@ -80,7 +80,7 @@ def motion_between(
     sine = norm(vector)
     angle = 2.0 * math.atan2(sine, abs(turn[0]))
     distance = norm(way)
-    if angle <= HARDLY_TURNS_RAD or angle * size_m <= HARDLY * distance:
+    if angle <= ROUNDING_OF_TURN_RAD or angle * size_m <= ROUNDING_OF_WAY * distance:
         if distance == 0.0:
             return ScrewMotion(NONE, zero, zero, 0.0, 0.0)
         return ScrewMotion(TRAVEL, scaled(way, 1.0 / distance), zero, distance, 0.0)
@@ -92,7 +92,7 @@ def motion_between(
     across = minus(way, scaled(axis, rise))
     lever = scaled(cross(axis, across), 0.5 / math.tan(0.5 * angle))
     through = plus(plus(start, scaled(across, 0.5)), lever)
-    if abs(rise) <= HARDLY * distance:
+    if abs(rise) <= ROUNDING_OF_WAY * distance:
         return ScrewMotion(TURN, axis, through, 0.0, angle)
     return ScrewMotion(SCREW, axis, through, rise, angle)
 
@@ -101,12 +101,12 @@ def motion_between(
 def motion_of_twist(velocity: Vector, spin: Vector, center: Vector, radius_m: float) -> ScrewMotion:
     """Return the motion that begins with a twist of the point ``center``; ``radius_m`` compares turns with travels."""
     rate, speed = norm(spin), norm(velocity)
-    if rate * radius_m <= HARDLY * speed:
+    if rate * radius_m <= ROUNDING_OF_WAY * speed:
         return ScrewMotion(TRAVEL, scaled(velocity, 1.0 / speed), (0.0, 0.0, 0.0), 0.0, 0.0)
     axis = scaled(spin, 1.0 / rate)
     rise = dot(axis, velocity)
     lever = cross(axis, minus(velocity, scaled(axis, rise)))
     through = plus(center, scaled(lever, 1.0 / rate))
-    if abs(rise) <= HARDLY * max(speed, rate * radius_m):
+    if abs(rise) <= ROUNDING_OF_WAY * max(speed, rate * radius_m):
         return ScrewMotion(TURN, axis, through, 0.0, 1.0)
     return ScrewMotion(SCREW, axis, through, rise / rate, 1.0)

@@ -18,20 +18,18 @@ from cagepose.kernels.algebra.vector import Vector, cross, norm, row, scaled, ve
 from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.goal import PITCH, SHIFT, YAW, Goal, write_slope
-from cagepose.kernels.play.polytope import START, PlayWorkspace, write_start
+from cagepose.kernels.play.polytope import START_MOTION, PlayWorkspace, write_start
 from cagepose.kernels.play.remainder import gap_left_out, spread, turning_left_out
-from cagepose.kernels.play.tolerances import ROUNDING
+from cagepose.kernels.play.tolerances import MOST_MISSING, ROUNDING_OF_TERMS
 
 CAGED, FREE, RAN_OFF, TOO_LARGE, UNSOLVED = range(5)
 KEPT, OFF_EDGE, THROUGH = range(3)
 """Status of a row: kept, or given up, as its point may run off the face sideways, or come out behind the box."""
-ROUNDS = 60
-"""Each moves the rows out once; some five are usual, and what has not closed by then grows without end."""
-SPARE = 1.02
+MOST_ROUNDS = 60
+"""Each round moves the rows out once. Some five are usual, and what has not closed by then grows without end."""
+SPARE_FACTOR = 1.02
 """Rows are moved out by this much more than they must be, so that the next round closes."""
-MOST_MISSING = 0.01
-"""Of an objective: programs whose multipliers miss it by more have no proof."""
-LARGEST_TURN = 1.0
+LARGEST_TURN_RAD = 1.0
 """Radians. The bounds hold up to pi, but are of no use beyond this."""
 
 
@@ -205,7 +203,7 @@ def move_out(geometry: Geometry, work: PlayWorkspace, proof: CertificateWorkspac
         if above + certificate.slack >= proof.moved_out[pair]:
             if above - proof.moved_out[pair] > most:
                 most, certificate.worst = above - proof.moved_out[pair], pair
-            proof.moved_out[pair] = SPARE * above + 2.0 * certificate.slack
+            proof.moved_out[pair] = SPARE_FACTOR * above + 2.0 * certificate.slack
             is_closed = False
     return is_closed
 
@@ -224,7 +222,7 @@ def tightest_given_up(proof: CertificateWorkspace) -> int:
 def close_polytope(geometry: Geometry, work: PlayWorkspace, proof: CertificateWorkspace) -> int:
     """Move the rows out until what linearising leaves out is less (7.7)."""
     certificate = proof.certificate
-    for _ in range(ROUNDS):
+    for _ in range(MOST_ROUNDS):
         for pair in range(len(proof.gaps)):
             is_kept = proof.status[pair] == KEPT
             work.bounds[pair] = proof.gaps[pair] + proof.moved_out[pair] if is_kept else math.inf
@@ -234,7 +232,7 @@ def close_polytope(geometry: Geometry, work: PlayWorkspace, proof: CertificateWo
             return FREE if certificate.worst < 0 else RAN_OFF
         if outcome != OPTIMAL:
             return UNSOLVED
-        if norm(vector_from(certificate.turn)) > LARGEST_TURN:
+        if norm(vector_from(certificate.turn)) > LARGEST_TURN_RAD:
             return TOO_LARGE
         if move_out(geometry, work, proof):
             return CAGED
@@ -248,7 +246,7 @@ def angle_bound(goal: Goal, certificate: Certificate) -> float:
     k = 5 - goal.kind  # components of w: roll about x, pitch about y, yaw about z
     one, other = (k + 1) % 3, (k + 2) % 3
     bound = certificate.greatest[k] if goal.sign > 0.0 else -certificate.least[k]
-    sine = max(bound, 0.0) + 0.5 * turn[one] * turn[other] + ROUNDING
+    sine = max(bound, 0.0) + 0.5 * turn[one] * turn[other] + ROUNDING_OF_TERMS
     if goal.kind == PITCH:
         return math.asin(min(sine, 1.0))
     cosine = 1.0 - 0.5 * (turn[1] ** 2 + (turn[2] ** 2 if goal.kind == YAW else turn[0] ** 2))
@@ -258,12 +256,12 @@ def angle_bound(goal: Goal, certificate: Certificate) -> float:
 @kernel
 def shift_bound(goal: Goal, work: PlayWorkspace, certificate: Certificate) -> float:
     """Bound how far points go, its sign applied: by a program, and by (7.8) for what it leaves out."""
-    factor = write_slope(goal, START, work.program.objective)
+    factor = write_slope(goal, START_MOTION, work.program.objective)
     above = 0.0
     for i in range(2):
         direction = scaled(row(goal.directions, i), goal.sign)
         above += turning_left_out(direction, row(goal.starts, i), vector_from(certificate.turn))[0]
-    return factor * bound_program(work, certificate) + above + ROUNDING
+    return factor * bound_program(work, certificate) + above + ROUNDING_OF_TERMS
 
 
 @entry
@@ -297,7 +295,7 @@ def certify(
         proof.status[pair] = KEPT
     certificate = proof.certificate
     certificate.worst = -1
-    certificate.slack = touch + ROUNDING
+    certificate.slack = touch + ROUNDING_OF_TERMS
     certificate.outcome = close_polytope(geometry, work, proof)
     if certificate.outcome == CAGED:
         for i in range(len(goals)):

@@ -18,18 +18,18 @@ from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.extreme import Extreme
 from cagepose.kernels.play.goal import Goal, write_slope
 from cagepose.kernels.play.polytope import (
-    START,
+    START_MOTION,
     PlayWorkspace,
     gap_beyond,
     place,
     write_farthest_faces,
     write_touching_rows,
 )
-from cagepose.kernels.play.tolerances import PRICELESS, SAME_ROW
+from cagepose.kernels.play.tolerances import LEAST_PRICE, SAME_ROW
 
-REACH = 1e3
-"""How far the programs may go for a bound of one: what the slope lacks of the rows, a price of 1e-9, errs so much
-more."""
+REACH_OF_PROGRAM = 1e3
+"""The programs may go so far for a bound of one. What the slope lacks of the rows, a price of 1e-9, errs so much more.
+"""
 
 
 class LimitingGap:
@@ -105,19 +105,19 @@ def find_limiting_gaps(
     q = extreme.quaternion
     motion = (vector_from(extreme.position), (q[0], q[1], q[2], q[3]))
     write_farthest_faces(geometry, motion, work)
-    write_touching_rows(geometry, motion, REACH, work)
+    write_touching_rows(geometry, motion, REACH_OF_PROGRAM, work)
     factor = write_slope(goal, motion, work.program.objective)
     n_found = 0
     for pair in range(len(work.faces)):
         if not stands_for_gap(pair, work):
             continue
         closing = gain_of(pair, -1.0, work)
-        if closing > REACH * PRICELESS:
+        if closing > REACH_OF_PROGRAM * LEAST_PRICE:
             gap = found[n_found]
             gap.pair, gap.closing = pair, factor * closing
             gap.opening = factor * max(gain_of(pair, 1.0, work), 0.0)
             n_found += 1
-    place(geometry, START, work)
+    place(geometry, START_MOTION, work)
     for i in range(n_found):
         found[i].gap = gap_beyond(geometry, found[i].pair, work.faces[found[i].pair], work)
     return n_found

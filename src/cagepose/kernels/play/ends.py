@@ -14,7 +14,7 @@ from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.play.extreme import OPEN, UNFINISHED, Extreme
 from cagepose.kernels.play.goal import Goal, value_at, write_slope
 from cagepose.kernels.play.polytope import (
-    START,
+    START_MOTION,
     Motion,
     PlayWorkspace,
     farthest_face,
@@ -26,10 +26,16 @@ from cagepose.kernels.play.polytope import (
     write_touching_rows,
     write_trust_region,
 )
-from cagepose.kernels.play.tolerances import FIRST_RADIUS, PRICELESS, ROUNDING, STATIONARY, TOUCHES
+from cagepose.kernels.play.tolerances import (
+    FIRST_RADIUS,
+    GAP_OF_TOUCH,
+    LEAST_PRICE,
+    RESIDUAL_OF_SLOPE,
+    ROUNDING_OF_TERMS,
+)
 
-RESTORING = 3
-"""Newton steps at the end that bring the limiting points onto their faces."""
+RESTORING_STEPS = 3
+"""So many Newton steps at the end bring the limiting points onto their faces."""
 
 
 @kernel
@@ -46,7 +52,7 @@ def moved(motion: Motion, step: FloatArray) -> Motion:
 @kernel
 def put_on_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> Motion:
     """Take the last steps, which are of the size of rounding, so that no limiting point is left inside."""
-    for _ in range(RESTORING):
+    for _ in range(RESTORING_STEPS):
         inside = write_rows(geometry, motion, work)
         write_trust_region(work, 100.0 * inside)
         if inside == 0.0 or solve_program(work.rows, work.bounds, work.program) != OPTIMAL:
@@ -80,7 +86,7 @@ def change_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> boo
     for pair in range(len(work.faces)):
         best = farthest_face(geometry, pair, work)
         gap = gap_at(geometry, pair, work)
-        if gap >= -ROUNDING and gap_beyond(geometry, pair, best, work) + work.spare[pair] > gap + TOUCHES:
+        if gap >= -ROUNDING_OF_TERMS and gap_beyond(geometry, pair, best, work) + work.spare[pair] > gap + GAP_OF_TOUCH:
             work.faces[pair] = best
             changed = True
     return changed
@@ -92,7 +98,7 @@ def face_around_edge(geometry: Geometry, pair: int, work: PlayWorkspace) -> int:
     if work.is_turned[pair]:
         return -1
     for face in range(6):
-        if face != work.faces[pair] and gap_beyond(geometry, pair, face, work) > -TOUCHES:
+        if face != work.faces[pair] and gap_beyond(geometry, pair, face, work) > -GAP_OF_TOUCH:
             return face
     return -1
 
@@ -109,7 +115,7 @@ def turn_around_edges(geometry: Geometry, goal: Goal, motion: Motion, work: Play
     for turn in range(len(work.faces)):
         face, turns = -1, -1
         for k in range(passive.used):
-            if face < 0 and passive.labels[k] < len(work.faces) and passive.x[k] > PRICELESS:
+            if face < 0 and passive.labels[k] < len(work.faces) and passive.x[k] > LEAST_PRICE:
                 turns = passive.labels[k]
                 face = face_around_edge(geometry, turns, work)
         if face < 0:
@@ -119,7 +125,7 @@ def turn_around_edges(geometry: Geometry, goal: Goal, motion: Motion, work: Play
             break
         work.faces[turns], work.is_turned[turns] = face, True
         _, rate = find_prices(geometry, goal, motion, work)
-        if rate > STATIONARY:
+        if rate > RESIDUAL_OF_SLOPE:
             return True
     return False
 
@@ -128,7 +134,7 @@ def turn_around_edges(geometry: Geometry, goal: Goal, motion: Motion, work: Play
 def note_extreme(goal: Goal, motion: Motion, outcome: int, extreme: Extreme) -> bool:
     """Write down a pose beyond all points and whether it is an end, REACHED or UNFINISHED; False: one is farther."""
     value, farthest = value_at(goal, motion), goal.sign * extreme.value
-    if value < farthest - ROUNDING or (outcome == UNFINISHED and value <= farthest):
+    if value < farthest - ROUNDING_OF_TERMS or (outcome == UNFINISHED and value <= farthest):
         return False
     extreme.outcome = outcome
     extreme.value = goal.sign * max(value, farthest)
@@ -147,13 +153,13 @@ def note_open(goal: Goal, extreme: Extreme) -> None:
 @kernel
 def start_beyond_others(geometry: Geometry, extreme: Extreme, work: PlayWorkspace) -> bool:
     """Let the points that limit an extreme start beyond other faces than there; False: each starts beyond one alone."""
-    place(geometry, START, work)
+    place(geometry, START_MOTION, work)
     limits, changed = extreme.limits, False
     for pair in range(len(work.faces)):
         last, work.faces[pair] = work.faces[pair], work.start_faces[pair]
         for i in range(limits.n_pairs):
             for face in range(6):
-                if limits.pairs[i] == pair and face != last and gap_beyond(geometry, pair, face, work) > -TOUCHES:
+                if limits.pairs[i] == pair and face != last and gap_beyond(geometry, pair, face, work) > -GAP_OF_TOUCH:
                     work.faces[pair] = face
                     changed = True
     return changed

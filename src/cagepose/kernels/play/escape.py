@@ -18,8 +18,8 @@ from cagepose.kernels.native.kernel import entry, kernel
 
 N_RANDOM = 12
 """Random numbers for each motion that is tried."""
-OUT = 4.0
-"""Lengths of the scene: how far the way out is followed."""
+LENGTH_OF_WAY_OUT = 4.0
+"""Lengths of the scene. The way out is followed so far."""
 
 
 class Station:
@@ -122,7 +122,7 @@ def grow_tree(
         if sample[7] < 0.5:
             free, _, _ = first_contact_travel(geometry, placement, along, -math.inf, tolerances)
             is_out = free == math.inf
-            distance = OUT if is_out else free * sample[8]
+            distance = LENGTH_OF_WAY_OUT if is_out else free * sample[8]
         else:
             through = scaled(row(geometry.points_world, int(sample[9] * len(geometry.points_world))), 1.5 * sample[10])
             key, _ = first_contact_turn(geometry, placement, through, along, tolerances)

@@ -10,8 +10,8 @@ from cagepose.kernels.algebra.linear_program import OPTIMAL, UNBOUNDED, Program,
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.goal import Goal, write_slope
-from cagepose.kernels.play.polytope import N_TRUST, START, PlayWorkspace
-from cagepose.kernels.play.tolerances import PRICELESS
+from cagepose.kernels.play.polytope import N_TRUST, START_MOTION, PlayWorkspace
+from cagepose.kernels.play.tolerances import LEAST_PRICE
 
 REACHED, OPEN, NOT_FOUND, UNFINISHED = range(4)
 
@@ -53,7 +53,7 @@ def write_limits(passive: PassiveSet, n_pairs: int, factor: float, limits: Limit
     """Write the rows in use that limit an end; ``factor`` was taken out of the slope that they hold."""
     limits.n_pairs = 0
     for k in range(passive.used):
-        if passive.labels[k] < n_pairs and passive.x[k] > PRICELESS:
+        if passive.labels[k] < n_pairs and passive.x[k] > LEAST_PRICE:
             limits.pairs[limits.n_pairs] = passive.labels[k]
             limits.prices[limits.n_pairs] = factor * passive.x[k]
             limits.n_pairs += 1
@@ -62,7 +62,7 @@ def write_limits(passive: PassiveSet, n_pairs: int, factor: float, limits: Limit
 @kernel
 def find_linear(goal: Goal, rows: FloatArray, bounds: FloatArray, program: Program, extreme: Extreme) -> None:
     """Find the greatest value over the polytope (7.1) of the start."""
-    factor = write_slope(goal, START, program.objective)
+    factor = write_slope(goal, START_MOTION, program.objective)
     program.passive.used = 0
     outcome = solve_program(rows, bounds, program)
     extreme.linear, extreme.linear_outcome = goal.sign * math.inf, OPEN
@@ -93,4 +93,4 @@ def travels_without_end(work: PlayWorkspace) -> bool:
     system = System(work.rows, objective, work.lengths, work.is_rejected)
     rest = nonnegative_least_squares(system, len(work.faces), passive)
     passive.used = 0
-    return rest > PRICELESS
+    return rest > LEAST_PRICE

@@ -24,7 +24,7 @@ from cagepose.kernels.algebra.linear_program import Program, write_corner
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import norm
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.play.tolerances import FLAT, ROUNDING, SAME_ROW
+from cagepose.kernels.play.tolerances import ADDED_CURVATURE, ROUNDING_OF_TERMS, SAME_ROW
 
 
 class NewtonStep:
@@ -80,7 +80,7 @@ def write_free_curvature(newton: NewtonStep) -> None:
         for k in range(6):
             newton.factor[j, k] = -newton.curvature[j, k]
     size = frobenius_norm(newton.curvature)
-    shift = FLAT * confine(newton.factor, newton.held) + ROUNDING * size
+    shift = ADDED_CURVATURE * confine(newton.factor, newton.held) + ROUNDING_OF_TERMS * size
     add_across(newton.factor, newton.held, size)
     for j in range(6):
         newton.factor[j, j] += shift
@@ -140,7 +140,7 @@ def join_steps(
             gap -= rows[pair, k] * newton.onto[k]
             speed += rows[pair, k] * newton.along[k]
         gap = max(gap, 0.0)
-        if speed > ROUNDING * size and gap < share * speed and not label_is_passive(newton.held, pair):
+        if speed > ROUNDING_OF_TERMS * size and gap < share * speed and not label_is_passive(newton.held, pair):
             share, blocks = gap / speed, pair
     for k in range(6):
         newton.step[k] = newton.onto[k] + share * newton.along[k]

@@ -19,11 +19,12 @@ from cagepose.kernels.algebra.vector import Vector, cross, minus, row
 from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement, place_object
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.newton import NewtonStep
-from cagepose.kernels.play.tolerances import GAP_ROUNDING, ROUNDING, TOUCHES
+from cagepose.kernels.play.tolerances import GAP_OF_TOUCH, ROUNDING_OF_GAP, ROUNDING_OF_TERMS
 
 Motion = tuple[Vector, Quaternion]
 """Of the object as it stands at the start: travel t and turn R, x -> R x + t."""
-START = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
+START_MOTION = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
+"""The object as it stands at the start: travel t and turn R, x -> R x + t."""
 N_TRUST = 12
 """Rows |xi_k| <= radius of the trust region."""
 
@@ -152,7 +153,7 @@ def write_farthest_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace
 @kernel
 def is_beyond(geometry: Geometry, pair: int, face: int, work: PlayWorkspace) -> bool:
     """Whether the point is beyond that face by more than one that touches it can be by rounding."""
-    return gap_beyond(geometry, pair, face, work) > TOUCHES
+    return gap_beyond(geometry, pair, face, work) > GAP_OF_TOUCH
 
 
 @kernel
@@ -199,7 +200,7 @@ def write_touching_rows(geometry: Geometry, motion: Motion, radius: float, work:
     """Write the rows of the pairs that touch, with bounds of zero, and a trust region; the others do not count."""
     write_rows(geometry, motion, work)
     for pair in range(len(work.faces)):
-        work.bounds[pair] = 0.0 if work.bounds[pair] < TOUCHES else math.inf
+        work.bounds[pair] = 0.0 if work.bounds[pair] < GAP_OF_TOUCH else math.inf
     write_trust_region(work, radius)
 
 
@@ -219,7 +220,7 @@ def gap_at_worst(pair: int, work: PlayWorkspace) -> float:
     gap: float = work.bounds[pair]
     for k in range(6):
         a = work.rows[pair, k]
-        if abs(a) > ROUNDING:  # else it reaches for no end, even where there is none
+        if abs(a) > ROUNDING_OF_TERMS:  # else it reaches for no end, even where there is none
             gap -= a * (work.greatest[k] if a > 0.0 else work.least[k])
     return gap
 
@@ -231,8 +232,8 @@ def choose_faces(geometry: Geometry, work: PlayWorkspace) -> None:
     Where a point is beyond several faces of a box, it is enough that it stays beyond one. Of these the face is best
     that the point cannot reach anyhow, by the rows of the points that have no choice.
     """
-    write_farthest_faces(geometry, START, work)
-    write_rows(geometry, START, work)
+    write_farthest_faces(geometry, START_MOTION, work)
+    write_rows(geometry, START_MOTION, work)
     write_trust_region(work, math.inf)
     n_choices = 0
     for pair in range(len(work.faces)):
@@ -249,7 +250,7 @@ def choose_faces(geometry: Geometry, work: PlayWorkspace) -> None:
         for face in range(6):
             if is_beyond(geometry, pair, face, work):
                 work.faces[pair] = face
-                write_row(geometry, START, pair, work)
+                write_row(geometry, START_MOTION, pair, work)
                 gap = gap_at_worst(pair, work)
                 if gap > most:
                     most, best = gap, face
@@ -271,8 +272,8 @@ def write_start(geometry: Geometry, work: PlayWorkspace) -> None:
     for pair in range(len(work.faces)):
         work.spare[pair] = 0.0
     choose_faces(geometry, work)
-    write_rows(geometry, START, work)
+    write_rows(geometry, START_MOTION, work)
     for pair in range(len(work.faces)):
         work.start_faces[pair] = work.faces[pair]
-        work.spare[pair] = max(0.0, GAP_ROUNDING - work.bounds[pair])
+        work.spare[pair] = max(0.0, ROUNDING_OF_GAP - work.bounds[pair])
         work.bounds[pair] += work.spare[pair]

@@ -39,7 +39,7 @@ from cagepose.kernels.play.extreme import (
 from cagepose.kernels.play.goal import SHIFT, Goal, value_at, write_curvature, write_slope
 from cagepose.kernels.play.newton import hold_limits, hold_row, join_steps, size_of_step, write_steps
 from cagepose.kernels.play.polytope import (
-    START,
+    START_MOTION,
     Motion,
     PlayWorkspace,
     gap_at,
@@ -51,18 +51,18 @@ from cagepose.kernels.play.polytope import (
     write_trust_region,
 )
 from cagepose.kernels.play.tolerances import (
-    EPSILON,
-    FARTHEST,
+    DISTANCE_OF_ESCAPE,
     FIRST_RADIUS,
-    GAP_ROUNDING,
+    GAP_OF_TOUCH,
+    GREATEST_PITCH_RAD,
+    LAST_NEWTON_STEP,
     LAST_RADIUS,
-    LAST_STEP,
-    PRICELESS,
-    ROUNDING,
-    SHORTEST,
-    STATIONARY,
-    STEEPEST,
-    TOUCHES,
+    LEAST_PRICE,
+    RESIDUAL_OF_SLOPE,
+    ROUNDING_OF_GAP,
+    ROUNDING_OF_SUM,
+    ROUNDING_OF_TERMS,
+    SHORTEST_STEP,
 )
 
 MOST_PROGRAMS = 200
@@ -80,9 +80,9 @@ def is_out(goal: Goal, motion: Motion) -> bool:
     """Whether a search has left the range in which there is an extreme to find."""
     value = abs(value_at(goal, motion))
     if goal.kind == SHIFT:
-        return value > FARTHEST
+        return value > DISTANCE_OF_ESCAPE
     pitch = euler_zyx_from_quaternion(motion[1])[1]
-    return abs(pitch) > STEEPEST or value > 0.9 * math.pi
+    return abs(pitch) > GREATEST_PITCH_RAD or value > 0.9 * math.pi
 
 
 @kernel
@@ -166,19 +166,19 @@ def climb(geometry: Geometry, goal: Goal, start: Motion, work: PlayWorkspace, ex
         size = size_of(motion)
 
         # Here the search ends, unless points that limit the value here may go around edges: there it goes on, once.
-        if has_arrived or radius < max(LAST_RADIUS * size, SHORTEST):
+        if has_arrived or radius < max(LAST_RADIUS * size, SHORTEST_STEP):
             motion = put_on_faces(geometry, motion, work)
             changed = change_faces(geometry, motion, work)
             factor, rate = find_prices(geometry, goal, motion, work)
-            if least_gap(geometry, work) < -ROUNDING:
+            if least_gap(geometry, work) < -ROUNDING_OF_TERMS:
                 break
             note_extreme(goal, motion, UNFINISHED, extreme)
-            if rate <= STATIONARY and not turn_around_edges(geometry, goal, motion, work):
+            if rate <= RESIDUAL_OF_SLOPE and not turn_around_edges(geometry, goal, motion, work):
                 if note_extreme(goal, motion, REACHED, extreme):
                     write_limits(program.passive, len(work.faces), factor, extreme.limits)
                 break
             value = value_at(goal, motion)
-            if (rate > STATIONARY and not changed) or value <= turned_at + ROUNDING:
+            if (rate > RESIDUAL_OF_SLOPE and not changed) or value <= turned_at + ROUNDING_OF_TERMS:
                 break
             turned_at = value
             radius = longest = FIRST_RADIUS
@@ -190,7 +190,7 @@ def climb(geometry: Geometry, goal: Goal, start: Motion, work: PlayWorkspace, ex
         factor = write_slope(goal, motion, program.objective)
         if inside == 0.0:
             note_extreme(goal, motion, UNFINISHED, extreme)
-        if inside <= TOUCHES and (is_out(goal, motion) or (size > 1.0 and travels_without_end(work))):
+        if inside <= GAP_OF_TOUCH and (is_out(goal, motion) or (size > 1.0 and travels_without_end(work))):
             note_open(goal, extreme)
             break
         write_trust_region(work, radius)
@@ -209,9 +209,9 @@ def climb(geometry: Geometry, goal: Goal, start: Motion, work: PlayWorkspace, ex
         newton_motion = moved_along_faces(geometry, motion, work)
         newton_gain = merit_at(geometry, goal, newton_motion, penalty, work) - merit
         newton_size = size_of_step(newton.step)
-        noise = ROUNDING * abs(value) + EPSILON
-        is_limited = inside <= GAP_ROUNDING and least_target(newton.held) >= -PRICELESS
-        is_last = is_top and is_limited and newton_size < min(LAST_STEP * size, 0.5 * longest)
+        noise = ROUNDING_OF_TERMS * abs(value) + ROUNDING_OF_SUM
+        is_limited = inside <= ROUNDING_OF_GAP and least_target(newton.held) >= -LEAST_PRICE
+        is_last = is_top and is_limited and newton_size < min(LAST_NEWTON_STEP * size, 0.5 * longest)
         has_arrived = is_last or max(promised, newton_gain) <= noise
         if has_arrived:
             motion = newton_motion if newton_gain > 0.0 else motion
@@ -258,17 +258,17 @@ def find_play(geometry: Geometry, goals: Rows[Goal], extremes: Rows[Extreme], wo
     for i in range(len(goals)):
         goal, extreme = goals[i], extremes[i]
         copy_faces(work.start_faces, work.faces)
-        write_rows(geometry, START, work)
+        write_rows(geometry, START_MOTION, work)
         write_trust_region(work, math.inf)
         find_linear(goal, work.rows, work.bounds, work.program, extreme)
         extreme.outcome, extreme.value = NOT_FOUND, -goal.sign * math.inf
-        note_extreme(goal, START, UNFINISHED, extreme)
+        note_extreme(goal, START_MOTION, UNFINISHED, extreme)
         if extreme.linear_outcome == OPEN and travels_without_end(work):
             note_open(goal, extreme)
             continue
-        climb(geometry, goal, START, work, extreme)
+        climb(geometry, goal, START_MOTION, work, extreme)
         if extreme.outcome == REACHED and start_beyond_others(geometry, extreme, work):
-            climb(geometry, goal, START, work, extreme)
+            climb(geometry, goal, START_MOTION, work, extreme)
 
 
 @entry
@@ -293,13 +293,13 @@ def find_play_from(
         goal, extreme = goals[i], extremes[i]
         if extreme.outcome == OPEN:
             continue
-        best, farthest = START, goal.sign * extreme.value + TOUCHES
+        best, farthest = START_MOTION, goal.sign * extreme.value + GAP_OF_TOUCH
         for k in range(len(positions)):
             q = quaternions[k]
             motion = vector_from(positions[k]), (q[0], q[1], q[2], q[3])
             value = value_at(goal, motion)
             if value > farthest:
                 best, farthest = motion, value
-        if farthest > goal.sign * extreme.value + TOUCHES:
+        if farthest > goal.sign * extreme.value + GAP_OF_TOUCH:
             write_farthest_faces(geometry, best, work)
             climb(geometry, goal, best, work, extreme)

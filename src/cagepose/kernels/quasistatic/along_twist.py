@@ -47,9 +47,8 @@ from cagepose.kernels.shapes.motion import motion_of
 from cagepose.kernels.shapes.rims import is_rim_on_wall
 
 MAY_SLIP = 0.01
-"""Of the way of a step: what sticks in two places may slip by as much, where it cannot turn without, as in a V. That is
-of second order in the step, by which its path is wrong anyway.
-"""
+"""Share of the way of a step. What sticks in two places may slip by as much, where it cannot turn without, as in a V.
+That is of second order in the step, by which its path is wrong anyway."""
 HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
 ROUNDING = 1e-15

@@ -25,7 +25,7 @@ MERGED = 0.99995
 together: neither is at an edge.
 """
 HALVINGS = 50
-"""Of a motion, to find where a contact of two shapes ends."""
+"""A motion is halved so many times to find where a contact of two shapes ends."""
 
 
 @kernel

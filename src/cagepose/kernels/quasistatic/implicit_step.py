@@ -24,7 +24,8 @@ from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
 LEVEL = 1e-9
-"""Of the step: a rim of which no point goes farther out or in stays flat; nor one whose points go by rounding."""
+"""Fraction of the step. A circle stays flat if no point of it goes farther out or in by more: what its points go by
+less is rounding."""
 LEAST_RHO = 1e-9
 """In curvatures: freedoms without curvature (a block that slides on a plane) keep the matrix regular by this."""
 

@@ -55,7 +55,7 @@ DEPENDENT = 1e-5
 """Constraints that depend on others, but for such a part of their wrench, follow from them: faces of a plate without
 play can be tilted by the root of rounding, and to make up for that would take long ways."""
 LEAST_SLIP = 1e-10
-"""Of a slip squared: a motion beside that lets nothing slip is not made."""
+"""Fraction of a slip squared. A motion beside that lets nothing slip is not made."""
 
 GAP, ALONG, FLAT = 0, 1, 3
 """Which number of two features a constraint is about: their gap; (1 and 2) the way along each tangent; the gap of a

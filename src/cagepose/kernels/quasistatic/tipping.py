@@ -18,9 +18,9 @@ from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
 TIPS = 1e-3
-"""Of the speed: where the object's ends turn faster across a normal that carried, it travels no more."""
+"""Fraction of the speed. Where the object's ends turn faster across a normal that carried, it travels no more."""
 HALVINGS = 24
-"""Of a travel, to where the object begins to tip."""
+"""A travel is halved so many times to find where the object begins to tip."""
 BEFORE_END = 4.0
 """In touch tolerances: so far before its end a travel is asked, where what it reaches does not touch yet, and what it
 runs off does.

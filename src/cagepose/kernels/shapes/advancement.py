@@ -31,11 +31,12 @@ from cagepose.kernels.shapes.rims import distance_at, middle_of_arc, reach_of_ar
 ADVANCES = 6000
 """Steps for one pair of features; only where they graze each other more than some tens are taken."""
 VISIT = 4
-"""Of these, after which another pair may be the one that can touch first."""
+"""After so many of these steps another pair may be the one that can touch first."""
 NEWTON = 12
 """Steps of Newton's method at most."""
 ROUNDING, CONVERGES = 1e-3, 0.5
-"""Of the touch tolerance: a gap that is less is a root; and of such a gap: a step that leaves more no longer helps."""
+"""Fraction of the touch tolerance, below which a gap is a root; and fraction of such a gap, of which a step that leaves
+more no longer helps."""
 
 
 class Approach(NamedTuple):

@@ -32,8 +32,8 @@ from cagepose.kernels.shapes.motion import Motion, moved_point, turned, turned_b
 from cagepose.kernels.shapes.rims import middle_of_arc, reach_of_arc
 
 EVALUATIONS = 400
-"""Of F, for one pair of features. A contact that grazes may need them all: then it counts where the search has come, if
-the features reach there."""
+"""F is evaluated at most so many times for one pair of features. A contact that grazes may need them all. Then it
+counts where the search has come, if the features reach there."""
 LEAST_STEP = 1e-15
 """In amounts of the whole motion: a shorter step is no progress."""
 BEHIND, FARTHER = 1e-9, 8.0
@@ -44,8 +44,8 @@ NEAR_ROOT = 1e-12
 a step by how far apart they are, as where the lines of edges that were parallel cross.
 """
 GRAZING = 1e-14
-"""Of the square of the slope: less of a discriminant may be rounding, as where a small radius makes two roots one. The
-step then ends before them."""
+"""Fraction of the square of the slope. A smaller discriminant may be rounding, as where a small radius makes two roots
+one. The step then ends before them."""
 NARROWER = 4.0
 """Bounds over the rest of the motion are too wide where only a small part of it is stepped over: they are asked again
 over so many times that part, and over ever more while all of it is stepped over."""

@@ -45,7 +45,7 @@ from cagepose.kernels.shapes.rims import outward_at
 FLAT = 1e-9
 """Sine between a rim's axis and the normal: less, it is straight as an edge along its tangent."""
 RANK_ONE = 1e-13
-"""Of the square of radii of curvature."""
+"""Fraction of the square of radii of curvature."""
 NOTHING: Matrix = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 

@@ -19,10 +19,11 @@ FLAT = 1e-13
 UPRIGHT = 1e-12
 """Sine: what is less along a rim's plane is across it."""
 SECTIONS = 6
-"""Of an arc, that are searched for a foot each: two rims in nearly the same plane have several."""
+"""So many sections of an arc are searched for a nearest point each. Two circles in nearly the same plane have several.
+"""
 ASIDE = 1e-3
-"""Of a section: so far beside an arc's middle, and beside what is farthest between two feet, a section ends. In the
-place itself the distance would not change, but for rounding, as in parts that are drawn in line."""
+"""Fraction of a section. A section ends so far beside an arc's middle, and beside what is farthest between two nearest
+points. In the place itself the distance would not change, but for rounding, as in parts that are drawn in line."""
 ENDS = tuple(
     SEARCHED * (2.0 * (section - (ASIDE if 0 < section < SECTIONS else 0.0)) / SECTIONS - 1.0)
     for section in range(SECTIONS + 1)
@@ -31,9 +32,9 @@ BESIDE = ASIDE * 2.0 * SEARCHED / SECTIONS
 COSINES = tuple(math.cos(end) for end in ENDS)
 SINES = tuple(math.sin(end) for end in ENDS)
 EXTREME_STEPS = 12
-"""Of the search for where the way to the nearest point has most of a part along the tangent."""
+"""Steps of the search for where the way to the nearest point has most of a part along the tangent."""
 ITERATIONS, ROUNDING = 60, 2e-16
-"""Of the search for a foot, radians."""
+"""The search for a nearest point takes at most so many steps, and a step of fewer radians ends it."""
 
 
 @kernel

@@ -21,14 +21,16 @@ SAME_PLACE = 4.0
 PARALLEL = 1e-7
 """Sine: edges that make a smaller angle lie side by side, and meet at their ends."""
 SHARP = 1e-6
-"""Of the length of edges: those of a smaller radius, if any, are told by their faces which way is out, as cores may be
-into each other by the touch tolerance; those of a greater one by where they are."""
+"""Fraction of the length of edges. Edges of a smaller radius, if any, are told by their faces which way is out, as
+cores may be into each other by the touch tolerance. Edges of a greater one are told by where they are."""
 TIP = 1e-9
-"""Of the radius of a rim that touches the side of a cone: where this has a smaller one, it is at its tip."""
+"""Fraction of the radius of a circle that touches the side of a cone. Where the cone has a smaller radius, the circle
+is at its tip."""
 CENTRED = 1e-10
-"""Of radii: nearer to the axis of a slanted wall, a ball touches it all around, in the middle of each sector."""
+"""Fraction of radii. Nearer to the axis of a slanted wall, a ball touches it all around, in the middle of each sector.
+"""
 ROUNDING = 1e-13
-"""Of the radius of a rim: what is nearer to it is told by its fences which way is out."""
+"""Fraction of the radius of a circle. What is nearer to it is told by the bounds of its features which way is out."""
 
 
 class Meeting(NamedTuple):

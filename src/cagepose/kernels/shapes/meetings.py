@@ -64,7 +64,8 @@ from cagepose.kernels.shapes.touching import (
 )
 
 DEEPEST = 0.05
-"""Of the shortest edge or least radius: features of parts with holes that are deeper in each other do not touch."""
+"""Fraction of the shortest edge or least radius. Features of parts with holes that are deeper in each other do not
+touch."""
 
 
 @kernel

@@ -13,7 +13,7 @@ from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.features import EDGE, RIM, VERTEX, Feature
 
 ARCS = 8
-"""Of one rim."""
+"""One circle has so many arcs."""
 HALF_ARC = math.pi / ARCS
 SEARCHED = 1.05 * HALF_ARC
 """To each side of an arc's middle: a little beyond its ends."""
@@ -21,7 +21,7 @@ EQUALLY_FAR = 0.5
 """In touch tolerances: where distances along an arc differ by more, its vertices may not have the normal that it
 has."""
 REACH = 2.0 * math.sin(0.5 * SEARCHED)
-"""Of an arc from its middle, in radii."""
+"""Distance of the farthest point of an arc from its middle, in radii."""
 
 
 class Foot(NamedTuple):

@@ -9,26 +9,25 @@ from it.
 from __future__ import annotations
 
 from cagepose.kernels.algebra.least_squares import inner, length
-from cagepose.kernels.contact.cone import HELD
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.equilibrium import least_residual
 from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.contact.onset import motion_with_faces
 from cagepose.kernels.contact.self_stress import self_stress
+from cagepose.kernels.contact.tolerances import RESIDUAL_AT_LIMIT
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.stability.tolerances import SPEED_OF_OPENING
 
-ASKED = 24
-"""Contacts up to which this is asked, as many as those of which another onset is ruled out."""
-OPENS = 1e-9
-"""In lengths of the motion: a contact that it leaves more slowly stays where it is."""
+MOST_ASKED = 24
+"""This is asked of at most so many contacts, as many as those of which another impending motion is ruled out."""
 
 
 @kernel
 def is_balanced_without(contacts: ContactSet, i: int, friction: float, work: ContactWorkspace) -> bool:
     """Leave a contact out; return whether the load is balanced then."""
     contacts.states[i].counts = False
-    return least_residual(contacts, friction, work.load, work.load_terms, work) <= HELD
+    return least_residual(contacts, friction, work.load, work.load_terms, work) <= RESIDUAL_AT_LIMIT
 
 
 @kernel
@@ -55,9 +54,9 @@ def hangs_on_a_clamp(contacts: ContactSet, friction: float, work: ContactWorkspa
         Given: the load. The forces in its cones are lost.
     """
     left_out, hangs = 0, False
-    if contacts.used[0] > ASKED:
+    if contacts.used[0] > MOST_ASKED:
         return hangs
-    while not hangs and self_stress(contacts, friction, work.stress) <= HELD:
+    while not hangs and self_stress(contacts, friction, work.stress) <= RESIDUAL_AT_LIMIT:
         i = leave_one_out(contacts, friction, work)
         hangs = i < 0
         if not hangs:
@@ -74,7 +73,7 @@ def parts_for_good(contacts: ContactSet, friction: float, work: ContactWorkspace
     of the contacts are lost, too.
     """
     parts = False
-    if contacts.used[0] > ASKED:
+    if contacts.used[0] > MOST_ASKED:
         return parts
     for i in range(contacts.used[0]):
         state, column, y = contacts.states[i], contacts.rows[i].columns[0], work.trial
@@ -83,6 +82,6 @@ def parts_for_good(contacts: ContactSet, friction: float, work: ContactWorkspace
         if not is_balanced_without(contacts, i, friction, work):
             parts = True
             if motion_with_faces(contacts, friction, work.load, y, work):
-                parts = inner(column, y, WRENCH) < -OPENS * length(column, WRENCH) * length(y, WRENCH)
+                parts = inner(column, y, WRENCH) < -SPEED_OF_OPENING * length(column, WRENCH) * length(y, WRENCH)
         state.counts = True
     return parts

@@ -5,21 +5,21 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.least_squares import length
-from cagepose.kernels.contact.cone import BALANCED, HELD, steepest_tangent, write_forces
+from cagepose.kernels.contact.cone import steepest_tangent, write_forces
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.edges import CHOICES_LIMIT, ONLY_CARRYING, first_choice, next_choice
 from cagepose.kernels.contact.equilibrium import least_residual
 from cagepose.kernels.contact.metric import Frame
-from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims
+from cagepose.kernels.contact.on_rim import MOST_ADDED_POINTS, add_on_rims
+from cagepose.kernels.contact.tolerances import RESIDUAL_AT_LIMIT, RESIDUAL_OF_LOAD
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.proof import ProofWorkspace
+from cagepose.kernels.stability.tolerances import RESIDUAL_WITH_DIGITS
 
 FRICTION_GREATEST = 1e4
 """A coefficient above which a balance counts as none."""
-BISECTIONS = 100
-SURE = 1e-6
-"""In lengths of the terms: a residual small enough for one last step, and large enough to have its digits."""
+MOST_BISECTIONS = 100
 
 
 @kernel
@@ -41,8 +41,10 @@ def left_of_load(contacts: ContactSet, n_listed: int, frame: Frame, friction: fl
     """Return what the listed contacts, and those points of flat rims that count at this friction, leave of the load."""
     contacts.used[0] = n_listed
     left = least_residual(contacts, friction, work.load, work.load_terms, work)
-    for _ in range(MOST_ADDED):
-        if left <= HELD or not add_on_rims(contacts, frame, friction, work.cone.passive.residual, work.load_terms):
+    for _ in range(MOST_ADDED_POINTS):
+        if left <= RESIDUAL_AT_LIMIT or not add_on_rims(
+            contacts, frame, friction, work.cone.passive.residual, work.load_terms
+        ):
             break
         left = least_residual(contacts, friction, work.load, work.load_terms, work)
     return left
@@ -56,26 +58,26 @@ def least_friction(contacts: ContactSet, n_listed: int, frame: Frame, work: Cont
     residual that is still large enough to be sure of its digits.
     """
     low, high = 0.0, 1.0
-    if left_of_load(contacts, n_listed, frame, low, work) <= BALANCED:
+    if left_of_load(contacts, n_listed, frame, low, work) <= RESIDUAL_OF_LOAD:
         return 0.0
-    while left_of_load(contacts, n_listed, frame, high, work) > HELD:
+    while left_of_load(contacts, n_listed, frame, high, work) > RESIDUAL_AT_LIMIT:
         low, high = high, 4.0 * high
         if high > FRICTION_GREATEST:
             return math.inf
-    for _ in range(BISECTIONS):
+    for _ in range(MOST_BISECTIONS):
         left = left_of_load(contacts, n_listed, frame, low, work)
         write_forces(work.cone, low, contacts)
         following = low + step_to_balance(contacts, work)
-        if left <= SURE:
+        if left <= RESIDUAL_WITH_DIGITS:
             return min(following, high)
         if not low < following < high:
             following = 0.5 * (low + high)
         if following in (low, high):
             break
-        if left_of_load(contacts, n_listed, frame, following, work) <= HELD:
+        if left_of_load(contacts, n_listed, frame, following, work) <= RESIDUAL_AT_LIMIT:
             high = following
             following = 0.5 * (low + high)
-            if left_of_load(contacts, n_listed, frame, following, work) <= HELD:
+            if left_of_load(contacts, n_listed, frame, following, work) <= RESIDUAL_AT_LIMIT:
                 high = following
                 continue
         low = following

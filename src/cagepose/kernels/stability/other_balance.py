@@ -25,11 +25,11 @@ from cagepose.kernels.contact.curvature import (
 from cagepose.kernels.contact.metric import Frame, ScaledVector
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.contact_status import ContactStatus
+from cagepose.kernels.stability.tolerances import RESIDUAL_OF_ROW
 
 MOST_FORCES = 96
-"""In one program; of a contact that sticks three: its normal force, and those along its face."""
-LACKING = 1e-9
-"""Of a row's size: what it lacks by less is rounding."""
+"""One program has at most so many forces. A contact that sticks has three: its normal force, and those along its face.
+"""
 
 
 class OtherBalance:
@@ -106,7 +106,7 @@ def add_lacking(
     work: OtherBalance,
 ) -> int:
     """Add the row that the program's z violates most; return how many there are then, the same number if none does."""
-    worst, contact, force, way = LACKING, -1, 0, 1.0
+    worst, contact, force, way = RESIDUAL_OF_ROW, -1, 0, 1.0
     for i in range(contacts.used[0]):
         if not statuses[i].is_equality:
             continue

@@ -6,7 +6,6 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.collision.geometry import Geometry
-from cagepose.kernels.contact.cone import HELD
 from cagepose.kernels.contact.edges import CHOICES_LIMIT, EVERY, first_choice, has_one_choice, keep_choice
 from cagepose.kernels.contact.equilibrium import (
     AT_REST,
@@ -23,6 +22,7 @@ from cagepose.kernels.contact.loads import PhaseLoad
 from cagepose.kernels.contact.metric import Body, Frame, frame_at
 from cagepose.kernels.contact.onset import freest_motion
 from cagepose.kernels.contact.self_stress import forget_locked, self_stress
+from cagepose.kernels.contact.tolerances import RESIDUAL_AT_LIMIT
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.stability.clamp import parts_for_good
 from cagepose.kernels.stability.proof import (
@@ -125,7 +125,7 @@ def search_onsets(friction: float, frame: Frame, at: ProofWorkspace) -> int:
     work.n_asked, contacts.used[0] = contacts.used[0], n_listed
     return_to_choice(contacts, frame, friction, AT_REST, work.solver)
     work.solver.residual = left
-    work.wedged = proof != PROVEN_UNIQUE and self_stress(contacts, friction, work.solver.stress) <= HELD
+    work.wedged = proof != PROVEN_UNIQUE and self_stress(contacts, friction, work.solver.stress) <= RESIDUAL_AT_LIMIT
     return proof
 
 

@@ -30,6 +30,16 @@ from cagepose.kernels.contact.contact_set import ContactSet, is_smooth
 from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS
 from cagepose.kernels.contact.metric import WRENCH, ScaledVector
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.stability.tolerances import (
+    DEPENDENT_FORCE,
+    POWER_OF_PROOF,
+    POWER_OF_TWIST,
+    POWER_WITHOUT_HELP,
+    RESIDUAL_WITHOUT_CUT,
+    ROUNDING_OF_RESIDUAL,
+    SINE_AT_REST,
+    WIDER_CONES,
+)
 
 CONTACT_LIMIT = 24
 """More contacts than this: not asked."""
@@ -37,36 +47,18 @@ UNDECIDED, CLOSED = -1, 4
 """Codes beside those of what a contact does. Whether it opens (OPENS, CLOSED) and whether it slips (STICKS, SLIPS) are
 decided each by itself: feet on a floor slip one way, however many of them carry."""
 CUT_LIMIT = 96
-"""Twists that no force drives, of one node and of those above it."""
+"""A node and those above it have at most so many twists that no force drives."""
 VELOCITY_LIMIT = 6 * CONTACT_LIMIT
 N_COLUMNS = VELOCITY_LIMIT + CUT_LIMIT
-VELOCITIES = 8
-"""Velocities at one contact that may not be allowed, each with a number of its own."""
+N_VELOCITIES = 8
+"""A contact has so many velocities that may not be allowed, each with a number of its own."""
 INTO, AWAY, ANY_WAY, BEFORE, BEHIND = 0, 1, 2, 6, 7
 """Their numbers: into the other one, away from it, each of four ways along it, and before and behind a sector."""
-QUARTERS = (1.0, 0.0, -1.0, 0.0, 1.0)
+QUARTER_TURNS = (1.0, 0.0, -1.0, 0.0, 1.0)
 """Entry k and the next one: the tangents of each of four ways along a contact."""
-ROUNDS = 12
-"""Twists that are looked for at one node; then it is divided, which tells more."""
+TWISTS_OF_NODE = 12
+"""So many twists are looked for at one node; then it is divided, which tells more."""
 MOST_GENERATORS = 80
-
-STANDS_STILL = 5e-7
-"""Sine of the angle that no motion has above those across the load: rest. One of v loads has at least v."""
-ROUNDING = 1e-15
-"""In lengths of the terms of the residual."""
-WIDER = 1e-6
-"""A twist is looked for that no force inside cones wider by this part drives, so that few generators are enough."""
-DEPENDENT = 1e-13
-"""Forces that depend on each other by less make no twist."""
-DRIVEN = 1e-14
-"""Of a twist and a wrench of unit length: less power is rounding."""
-HARDLY_DRIVEN = 1e-10
-"""The same where no generator helps any more, since they nearly depend on each other: what the proof makes of such a
-twist may still be small enough."""
-PROVEN = 5e-13
-"""The same of z of the proof: with STANDS_STILL it leaves no motion above 1e-6 loads where forces add up to a load."""
-NO_CUT = 1e-6
-"""In lengths of the motion: what forces miss of it by less, they make."""
 
 
 class Relaxation:
@@ -93,8 +85,8 @@ class Relaxation:
     generator, aimed
         One generator, and the motion turned round.
     n_velocities, ways, n_cuts, cuts
-        How many columns are velocities, which they are, VELOCITIES times the place and a number, and the columns behind
-        them.
+        How many columns are velocities, which they are (N_VELOCITIES times the place, and a number), and the columns
+        behind them.
     twist
         z of the proof.
     normal_forces, tangential_forces
@@ -203,7 +195,7 @@ def add_velocity(
 ) -> int:
     """Add a velocity at a contact that is not allowed; return the number of columns."""
     wrenches, column = work.wrenches[place], system.columns[n]
-    work.ways[n] = VELOCITIES * place + which
+    work.ways[n] = N_VELOCITIES * place + which
     for k in range(6):
         column[k] = normal * wrenches[0, k] + one * wrenches[1, k] + two * wrenches[2, k]
     return n + 1
@@ -219,7 +211,9 @@ def write_velocities(work: Relaxation, system: System) -> None:
             n = add_velocity(place, AWAY, -1.0, 0.0, 0.0, n, work, system)
         if work.slips[place] == STICKS:
             for turn in range(4):
-                n = add_velocity(place, ANY_WAY + turn, 0.0, QUARTERS[turn], QUARTERS[turn + 1], n, work, system)
+                n = add_velocity(
+                    place, ANY_WAY + turn, 0.0, QUARTER_TURNS[turn], QUARTER_TURNS[turn + 1], n, work, system
+                )
         elif work.slips[place] == SLIPS:
             first, last = work.edges[place, 0], work.edges[place, 1]
             n = add_velocity(place, BEFORE, 0.0, first[1], -first[0], n, work, system)
@@ -250,7 +244,7 @@ def add_generator(friction: float, number: int, work: Relaxation) -> int:
         if work.openings[place] == OPENS:
             continue
         along = steepest_friction(place, passive.residual, work)[0]
-        used = (1.0 + WIDER) * friction if along > 0.0 else friction
+        used = (1.0 + WIDER_CONES) * friction if along > 0.0 else friction
         along = inner(work.wrenches[place, 0], passive.residual, WRENCH) + used * along
         if along > most:
             best, most = place, along
@@ -261,7 +255,7 @@ def add_generator(friction: float, number: int, work: Relaxation) -> int:
         work.generator[k] = -work.load[k]
     if best >= 0:
         along, one, two = steepest_friction(best, passive.residual, work)
-        used = (1.0 + WIDER) * friction if along > 0.0 else friction
+        used = (1.0 + WIDER_CONES) * friction if along > 0.0 else friction
         work.directions[number, 0], work.directions[number, 1] = used * one, used * two
         wrenches = work.wrenches[best]
         for k in range(6):
@@ -290,12 +284,12 @@ def find_cut(friction: float, work: Relaxation) -> bool:
     number = WRENCH
     while number >= 0:
         left = length(passive.residual, WRENCH)
-        if left <= NO_CUT:
+        if left <= RESIDUAL_WITHOUT_CUT:
             return False
-        if most_driven(friction, passive.residual, work) <= DRIVEN * left:
+        if most_driven(friction, passive.residual, work) <= POWER_OF_TWIST * left:
             return True
         number = add_generator(friction, number, work)
-    return most_driven(friction, passive.residual, work) <= HARDLY_DRIVEN * length(passive.residual, WRENCH)
+    return most_driven(friction, passive.residual, work) <= POWER_WITHOUT_HELP * length(passive.residual, WRENCH)
 
 
 @kernel
@@ -328,7 +322,7 @@ def is_proven(friction: float, work: Relaxation) -> bool:
             for k in range(6):
                 work.twist[k] += passive.x[j] * work.cuts[cut, k]
                 work.aimed[k] -= passive.x[j] * work.cuts[cut, k]
-    return most_driven(friction, work.aimed, work) <= PROVEN
+    return most_driven(friction, work.aimed, work) <= POWER_OF_PROOF
 
 
 @kernel
@@ -347,7 +341,7 @@ def write_shares(work: Relaxation, ways: IntArray, shares: FloatArray) -> None:
 
 @kernel
 def drop_cuts(n_before: int, work: Relaxation) -> None:
-    """Of the twists found at this node, keep those in use."""
+    """Keep those of this node's twists that are in use."""
     n_kept = n_before
     for cut in range(n_before, work.n_cuts):
         if label_is_passive(work.motion, work.n_velocities + cut):
@@ -399,12 +393,12 @@ def is_impossible(friction: float, work: Relaxation, system: System) -> bool:
     """
     n_before = work.n_cuts
     clear(work.forces, WRENCH, 1.0)
-    work.forces.dependent = DEPENDENT
+    work.forces.dependent = DEPENDENT_FORCE
     for k in range(6):
         system.right_side[k] = work.load[k]
-    for _ in range(ROUNDS):
+    for _ in range(TWISTS_OF_NODE):
         left = nonnegative_least_squares(system, work.n_velocities + work.n_cuts, work.motion)
-        if left + ROUNDING * rounding_scale(work.motion) <= STANDS_STILL:
+        if left + ROUNDING_OF_RESIDUAL * rounding_scale(work.motion) <= SINE_AT_REST:
             if is_proven(friction, work):
                 return True
             break

@@ -28,6 +28,13 @@ from cagepose.kernels.contact.metric import WRENCH, Frame, ScaledVector
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.contact_status import ContactStatus
 from cagepose.kernels.stability.other_balance import OtherBalance, may_be_stopped
+from cagepose.kernels.stability.tolerances import (
+    CLOSING_OF_TWIST,
+    FLAT_CURVATURE,
+    LIMIT_OF_FRICTION,
+    OPENING_OF_TWIST,
+    PART_OUTSIDE_SPAN,
+)
 
 STABLE_REST, MARGINAL, UNSTABLE, STABILITY_NOT_SHOWN = 0, 1, 2, 3
 """Codes of stability: the index into `STABILITY_NAMES`."""
@@ -38,19 +45,10 @@ STABILITY_NAMES: tuple[Literal["stable", "marginal", "unstable", "not shown"], .
     "not shown",
 )
 
-AT_LIMIT = 1e-4
-"""A tangential force this near to its cone (relative) is at the limit of friction, which nobody knows as well."""
-IN_SPAN = 1e-9
-"""A wrench whose part outside a span is smaller than this fraction of it lies in it."""
-FLAT = 1e-9
-"""In greatest curvatures (or loads for each size of the scene): a smaller one is rounding."""
-SEPARATES, OPENS = 1e-11, 1e-6
-"""In lengths of wrench and twist: a twist that closes every contact by less than the one opens those that it opens by
-more than the other, and no forces on the rest stand against that but such of a hundred thousand times their size."""
-FEW = 32
-"""Contacts that are asked first whether another one lies in their cone."""
+FEW_CONTACTS = 32
+"""So many contacts are asked first whether another one lies in their cone."""
 ONE_SIDED_LIMIT = 10
-"""Contacts that may open, of which all sets are asked for; with more, a rest is called marginal at best."""
+"""So many contacts may open if all sets of them are asked; with more, a rest is called marginal at best."""
 
 
 class StabilityWorkspace:
@@ -79,7 +77,7 @@ class StabilityWorkspace:
     held: PassiveSet
     free: Annotated[FloatArray, 6, 6]
     one_sided: Annotated[IntArray, ONE_SIDED_LIMIT]
-    few: Annotated[IntArray, FEW]
+    few: Annotated[IntArray, FEW_CONTACTS]
     n_few: int
     rest: ScaledVector
     curvature: Annotated[FloatArray, 6, 6]
@@ -107,7 +105,7 @@ def find_held(
     at_limit = False
     clear(work.held, WRENCH, 1.0)
     for place in range(locked.used):
-        extend(work.held, locked.basis[place], IN_SPAN)
+        extend(work.held, locked.basis[place], PART_OUTSIDE_SPAN)
     n = contacts.used[0]
     for i in range(n):
         state, status = contacts.states[i], statuses[i]
@@ -115,15 +113,15 @@ def find_held(
         status.is_equality = state.counts and carried > 0.0
         status.is_implied = status.opens = state.is_sticking = False
         if status.is_equality:
-            extend(work.held, contacts.rows[i].columns[0], IN_SPAN)
+            extend(work.held, contacts.rows[i].columns[0], PART_OUTSIDE_SPAN)
             if friction > 0.0 and not is_smooth(contacts.rows[i]):
                 tangential = math.sqrt(one * one + two * two)
-                state.is_sticking = tangential < (1.0 - AT_LIMIT) * friction * carried
+                state.is_sticking = tangential < (1.0 - LIMIT_OF_FRICTION) * friction * carried
                 at_limit = at_limit or not state.is_sticking
     for i in range(n):
         if contacts.states[i].is_sticking:
-            extend(work.held, contacts.rows[i].columns[1], IN_SPAN)
-            extend(work.held, contacts.rows[i].columns[2], IN_SPAN)
+            extend(work.held, contacts.rows[i].columns[1], PART_OUTSIDE_SPAN)
+            extend(work.held, contacts.rows[i].columns[2], PART_OUTSIDE_SPAN)
     found = True
     while found:
         found = False
@@ -133,7 +131,7 @@ def find_held(
             if lies_in_cone(contacts, statuses, i, -1.0, work, system):
                 statuses[i].is_equality = True
                 for which in range(3 if friction > 0.0 else 1):  # that balance may leave all of its friction to spare
-                    extend(work.held, contacts.rows[i].columns[which], IN_SPAN)
+                    extend(work.held, contacts.rows[i].columns[which], PART_OUTSIDE_SPAN)
                 found = True
             else:
                 note_opened(contacts, statuses, work.scratch.residual)
@@ -154,11 +152,11 @@ def note_opened(contacts: ContactSet, statuses: Rows[ContactStatus], twist: Floa
     size = length(twist, WRENCH)
     for i in range(contacts.used[0]):
         column = contacts.rows[i].columns[0]
-        if may_open(contacts, statuses, i) and inner(column, twist, 6) > SEPARATES * size * length(column, 6):
+        if may_open(contacts, statuses, i) and inner(column, twist, 6) > CLOSING_OF_TWIST * size * length(column, 6):
             return
     for i in range(contacts.used[0]):
         column = contacts.rows[i].columns[0]
-        if inner(column, twist, 6) < -OPENS * size * length(column, 6):
+        if inner(column, twist, 6) < -OPENING_OF_TWIST * size * length(column, 6):
             statuses[i].opens = True
 
 
@@ -176,18 +174,18 @@ def lies_in_cone(
 
     With -1 no free twist opens it; with +1 no free twist that the others allow closes it.
     """
-    if not write_outside(work.held, contacts.rows[i].columns[0], IN_SPAN, system.right_side):
+    if not write_outside(work.held, contacts.rows[i].columns[0], PART_OUTSIDE_SPAN, system.right_side):
         return True
     n_others = 0
     for k in range(contacts.used[0]):
         if k != i and may_open(contacts, statuses, k) and not statuses[k].is_implied:
-            write_outside(work.held, contacts.rows[k].columns[0], IN_SPAN, system.columns[n_others])
+            write_outside(work.held, contacts.rows[k].columns[0], PART_OUTSIDE_SPAN, system.columns[n_others])
             n_others += 1
     for k in range(6):
         system.right_side[k] *= sign
     size = length(system.right_side, 6)
     clear(work.scratch, WRENCH, size)
-    return nonnegative_least_squares(system, n_others, work.scratch) <= IN_SPAN * size
+    return nonnegative_least_squares(system, n_others, work.scratch) <= PART_OUTSIDE_SPAN * size
 
 
 @kernel
@@ -199,23 +197,23 @@ def lies_in_cone_of_few(
     What is outside of their cone points to the contact that widens it most, which joins them: most of thousands of
     contacts are then told by the few at the outline.
     """
-    if not write_outside(work.held, contacts.rows[i].columns[0], IN_SPAN, system.right_side):
+    if not write_outside(work.held, contacts.rows[i].columns[0], PART_OUTSIDE_SPAN, system.right_side):
         return True
     size = length(system.right_side, 6)
-    for _ in range(FEW):
+    for _ in range(FEW_CONTACTS):
         n_others, vacant = 0, work.n_few
         for place in range(work.n_few):
             k = work.few[place]
             if statuses[k].is_implied:
                 vacant = place
             elif k != i:
-                write_outside(work.held, contacts.rows[k].columns[0], IN_SPAN, system.columns[n_others])
+                write_outside(work.held, contacts.rows[k].columns[0], PART_OUTSIDE_SPAN, system.columns[n_others])
                 n_others += 1
         clear(work.scratch, WRENCH, size)
-        if nonnegative_least_squares(system, n_others, work.scratch) <= IN_SPAN * size:
+        if nonnegative_least_squares(system, n_others, work.scratch) <= PART_OUTSIDE_SPAN * size:
             return True
         widest = farthest_along(contacts, statuses, i, work.scratch.residual)
-        if widest < 0 or vacant == FEW:
+        if widest < 0 or vacant == FEW_CONTACTS:
             return False
         work.few[vacant] = widest
         work.n_few = max(work.n_few, vacant + 1)
@@ -225,7 +223,7 @@ def lies_in_cone_of_few(
 @kernel
 def farthest_along(contacts: ContactSet, statuses: Rows[ContactStatus], i: int, twist: FloatArray) -> int:
     """Return which of the other contacts that may open points most along a twist; -1: none does."""
-    farthest, most = -1, IN_SPAN * length(twist, WRENCH)
+    farthest, most = -1, PART_OUTSIDE_SPAN * length(twist, WRENCH)
     for k in range(contacts.used[0]):
         if k != i and may_open(contacts, statuses, k) and not statuses[k].is_implied:
             column = contacts.rows[k].columns[0]
@@ -261,7 +259,7 @@ def is_same_face(contacts: ContactSet, i: int, k: int) -> bool:
     """Whether two rows are one, or flush faces of two boxes over one point."""
     one, other = contacts.rows[i], contacts.rows[k]
     is_one_point = one.point == other.point and one.feature < 0 and other.feature < 0
-    return i == k or (is_one_point and inner(one.directions[0], other.directions[0], 3) > 1.0 - IN_SPAN)
+    return i == k or (is_one_point and inner(one.directions[0], other.directions[0], 3) > 1.0 - PART_OUTSIDE_SPAN)
 
 
 @kernel
@@ -273,14 +271,14 @@ def extend_by_equalities(contacts: ContactSet, statuses: Rows[ContactStatus], wi
     clear(span, WRENCH, 1.0)
     for i in range(contacts.used[0]):
         if contacts.states[i].is_sticking:
-            extend(span, rows[i].columns[1], IN_SPAN)
-            extend(span, rows[i].columns[2], IN_SPAN)
+            extend(span, rows[i].columns[1], PART_OUTSIDE_SPAN)
+            extend(span, rows[i].columns[2], PART_OUTSIDE_SPAN)
     for place in range(span.used):
         span.labels[place] = -1
     for i in range(contacts.used[0]):
         if statuses[i].is_equality and not (without >= 0 and is_same_face(contacts, i, without)):
             span.labels[span.used] = i
-            extend(span, rows[i].columns[0], IN_SPAN)
+            extend(span, rows[i].columns[0], PART_OUTSIDE_SPAN)
 
 
 @kernel
@@ -303,7 +301,7 @@ def find_shared(contacts: ContactSet, statuses: Rows[ContactStatus], work: Stabi
         if adds:
             span = work.held
             extend_by_equalities(contacts, statuses, i, span)
-        statuses[i].is_shared = not write_outside(span, rows[i].columns[0], IN_SPAN, work.rest)
+        statuses[i].is_shared = not write_outside(span, rows[i].columns[0], PART_OUTSIDE_SPAN, work.rest)
 
 
 @kernel
@@ -313,7 +311,7 @@ def is_feasible(
     """Whether a scaled twist closes none of the contacts that may open."""
     for k in range(n_one_sided):
         column = contacts.rows[work.one_sided[k]].columns[0]
-        if sign * inner(column, twist, 6) > IN_SPAN * length(column, 6):
+        if sign * inner(column, twist, 6) > PART_OUTSIDE_SPAN * length(column, 6):
             return False
     return True
 
@@ -324,7 +322,7 @@ def hold_some(contacts: ContactSet, n_one_sided: int, chosen: int, work: Stabili
     for k in range(n_one_sided):
         if (chosen >> k) & 1:
             column = contacts.rows[work.one_sided[k]].columns[0]
-            if not write_outside(work.held, column, IN_SPAN, work.rest):
+            if not write_outside(work.held, column, PART_OUTSIDE_SPAN, work.rest):
                 return False
             append_column(work.held, column, k, 0.0)
     return True
@@ -371,7 +369,7 @@ def stability(
         told, work.ways.used = code, n_ways
         code = MARGINAL if at_limit or n_one_sided < 0 else STABLE_REST
         write_curvature(contacts, load, position, quaternion, frame, curved == 1, work.curvature)
-        flat = FLAT * max(frobenius_norm(work.curvature), terms / size_m)
+        flat = FLAT_CURVATURE * max(frobenius_norm(work.curvature), terms / size_m)
         for chosen in range(1 << max(n_one_sided, 0)):
             work.held.used = n_held
             if hold_some(contacts, n_one_sided, chosen, work):

@@ -18,7 +18,7 @@ from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.coulomb import coulomb_error, motion_left
 from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS, NewtonWorkspace, add_carrying, newton_on_modes
 from cagepose.kernels.contact.metric import WRENCH, Frame, ScaledVector
-from cagepose.kernels.contact.on_rim import MOST_ADDED, add_on_rims
+from cagepose.kernels.contact.on_rim import MOST_ADDED_POINTS, add_on_rims
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.relaxation import (
     CLOSED,
@@ -32,22 +32,16 @@ from cagepose.kernels.stability.relaxation import (
     write_edges,
     write_shares,
 )
+from cagepose.kernels.stability.tolerances import LEAST_MOTION, NARROWEST_SECTOR_RAD, SLIP_AT_REST, VIOLATION_TRIED
 
 UNIQUE, OTHER_FOUND, NOT_SHOWN = 0, 1, 2
 """Codes of the answer."""
 NODE_LIMIT = 20000
 """Sets of modes after which the search is given up."""
-SECTORS = 4
-BESIDE = 0.4
-"""Of a sector: how far from its edge the slip lies that is seen first, so that halving does not put an edge there."""
-NARROWEST_RAD = 1e-4
-"""A sector that is narrower is not halved again."""
-MOVES_AT_ALL = 1e-6
-"""In lengths of the load: a slower motion is not told from rest."""
-NEARLY = 0.2
-"""Of the load's power: a motion that violates Coulomb's law by less power is tried by Newton's method."""
-SLOW = 1e-6
-"""In lengths of the motion: a contact that moves more slowly stands still."""
+FIRST_SECTORS = 4
+SHARE_OF_SECTOR = 0.4
+"""Share of a sector. The slip that is seen first lies so far from its edge, so that halving does not put an edge there.
+"""
 
 
 class ModeTree:
@@ -141,7 +135,7 @@ def worst_contact(friction: float, work: Relaxation) -> tuple[int, bool]:
             worst, is_opening, most = place, True, power
         power = slipping_power(friction, place, work)
         slips = work.slips[place]
-        if power > most and (slips == UNDECIDED or (slips == SLIPS and work.widths[place] > NARROWEST_RAD)):
+        if power > most and (slips == UNDECIDED or (slips == SLIPS and work.widths[place] > NARROWEST_SECTOR_RAD)):
             worst, is_opening, most = place, False, power
     return worst, is_opening
 
@@ -170,10 +164,10 @@ def divide(node: int, place: int, is_opening: bool, n_waiting: int, tree: ModeTr
         n_waiting = add_node(node, place, SLIPS, start, half, n_waiting, tree)
         return add_node(node, place, SLIPS, start + half, half, n_waiting, tree)
     one, two = slip_along(place, work.motion.residual, work)
-    sector = 2.0 * math.pi / SECTORS
-    start = math.atan2(two, one) - BESIDE * sector
+    sector = 2.0 * math.pi / FIRST_SECTORS
+    start = math.atan2(two, one) - SHARE_OF_SECTOR * sector
     n_waiting = add_node(node, place, STICKS, 0.0, 0.0, n_waiting, tree)
-    for m in range(SECTORS, 0, -1):
+    for m in range(FIRST_SECTORS, 0, -1):
         n_waiting = add_node(node, place, SLIPS, start + m * sector, sector, n_waiting, tree)
     return n_waiting
 
@@ -181,12 +175,12 @@ def divide(node: int, place: int, is_opening: bool, n_waiting: int, tree: ModeTr
 @kernel
 def is_near(friction: float, work: Relaxation) -> bool:
     """Whether the motion of the convex problem nearly obeys Coulomb's law, and forces nearly make it."""
-    if work.scale <= 0.0 or length(work.forces.residual, WRENCH) > NEARLY:
+    if work.scale <= 0.0 or length(work.forces.residual, WRENCH) > VIOLATION_TRIED:
         return False
     total = 0.0
     for place in range(work.n_places):
         total += opening_power(place, work) + slipping_power(friction, place, work)
-    return total <= NEARLY * work.scale * inner(work.load, work.motion.residual, WRENCH)
+    return total <= VIOLATION_TRIED * work.scale * inner(work.load, work.motion.residual, WRENCH)
 
 
 @kernel
@@ -200,7 +194,7 @@ def is_witnessed(contacts: ContactSet, friction: float, b: FloatArray, tree: Mod
         for j in range(3):
             contacts.states[i].forces[j] = 0.0
     y, size = work.motion.residual, length(b, WRENCH)
-    slow = SLOW * length(y, WRENCH)
+    slow = SLIP_AT_REST * length(y, WRENCH)
     newton.n_carrying = 0
     for place in range(work.n_places):
         if work.normal_forces[place] <= 0.0:
@@ -215,9 +209,9 @@ def is_witnessed(contacts: ContactSet, friction: float, b: FloatArray, tree: Mod
     motion_left(contacts, b, tree.y)
     newton_on_modes(contacts, friction, b, tree.y, newton)
     motion_left(contacts, b, tree.y)
-    if coulomb_error(contacts, friction, tree.y) > MOVES_AT_ALL * MOVES_AT_ALL * size:
+    if coulomb_error(contacts, friction, tree.y) > LEAST_MOTION * LEAST_MOTION * size:
         return False
-    return length(tree.y, WRENCH) > MOVES_AT_ALL * size
+    return length(tree.y, WRENCH) > LEAST_MOTION * size
 
 
 @kernel
@@ -251,7 +245,7 @@ def other_onset(
         if is_near(friction, work) and is_witnessed(contacts, friction, b, tree, newton):
             return OTHER_FOUND
         place, is_opening = worst_contact(friction, work)
-        if place < 0 or tree.n_nodes > NODE_LIMIT - SECTORS - 1:
+        if place < 0 or tree.n_nodes > NODE_LIMIT - FIRST_SECTORS - 1:
             return NOT_SHOWN
         n_waiting = divide(node, place, is_opening, n_waiting, tree)
     return UNIQUE
@@ -271,7 +265,7 @@ def other_onset_on_rims(
     """As `other_onset`, but no motion that goes into a rim that lies flat, between the points of it that are listed:
     the point where it does is appended.
     """
-    for _ in range(MOST_ADDED):
+    for _ in range(MOST_ADDED_POINTS):
         answer = other_onset(contacts, friction, b, tree, newton, system)
         if answer != OTHER_FOUND or contacts.used[0] == len(contacts.rows):
             return answer if answer != OTHER_FOUND else NOT_SHOWN
