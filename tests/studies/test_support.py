@@ -16,7 +16,8 @@ from cagepose.model.shapes import Capsule, Cylinder
 from cagepose.paper.cases import sample_scene
 from cagepose.runs.judge import judge_pose
 from cagepose.studies.support import convex_hull, load_view
-from cagepose.studies.support_region import TRUE, support_region
+from cagepose.studies.support_region import support_region
+from cagepose.studies.tolerances import DISTANCE_OF_CORNER
 
 
 def test_gravity_along_minus_z_is_seen_from_above():
@@ -124,7 +125,7 @@ def test_corners_of_a_region_without_end_are_as_near_to_it_as_is_told(monkeypatc
     corners = found.corners - view.load_point
     near = corners[np.linalg.norm(corners, axis=1) < 5.0]
     outside = ((near[:, None] - finer) * outward).sum(axis=2).max(axis=1)
-    assert (outside < TRUE * np.maximum(np.linalg.norm(near, axis=1), 0.04)).all()
+    assert (outside < DISTANCE_OF_CORNER * np.maximum(np.linalg.norm(near, axis=1), 0.04)).all()
     assert len(near) > 50
 
 

@@ -13,13 +13,10 @@ from cagepose.model.nearest import core_of, nearest_points
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Convex, Shape, Turned
 from cagepose.model.surface import shape_mesh
+from cagepose.model.tolerances import OVERLAP_OF_TOUCH, PARALLEL_SINE, SHARE_SHRUNK
 
-WITHIN = 1e-12
-"""Shapes that overlap by no more than this share of their reach only touch: rounding."""
-SAMPLED, SHRUNK = 64, 1e-6
-"""Chords of a circle that samples lie on, and the share by which a part is shrunk so that it does not touch."""
-PARALLEL = 1e-9
-"""Directions with a sine below this give no third one across both."""
+CHORDS_OF_SAMPLES = 64
+"""Samples lie on so many chords of a circle."""
 
 
 def are_apart(one: Shape, other: Shape) -> bool:
@@ -41,11 +38,11 @@ def are_apart(one: Shape, other: Shape) -> bool:
         np.cross(np.cross(both, offset), both),
     ]
     directions = np.concatenate([_directions(vectors) for vectors in candidates])
-    if _largest_gap(one, other, np.concatenate([directions, -directions])) >= -WITHIN * reach:
+    if _largest_gap(one, other, np.concatenate([directions, -directions])) >= -OVERLAP_OF_TOUCH * reach:
         return True
     cores = (core_of(shape, Pose())._replace(radius_m=0.0) for shape in (one, other))
     foot, place = nearest_points(*cores)
-    return _largest_gap(one, other, _directions((place - foot)[None])) >= -WITHIN * reach
+    return _largest_gap(one, other, _directions((place - foot)[None])) >= -OVERLAP_OF_TOUCH * reach
 
 
 def _largest_gap(one: Shape, other: Shape, directions: FloatArray) -> float:
@@ -64,10 +61,10 @@ def are_in_each_other(
 
 
 def _is_in(one: Shape, other: Shape, pose_other_one: Pose, holes: Sequence[Hole], other_holes: Sequence[Hole]) -> bool:
-    mesh = shape_mesh(one, SAMPLED)
+    mesh = shape_mesh(one, CHORDS_OF_SAMPLES)
     points = np.concatenate([mesh.vertices_m, mesh.vertices_m[mesh.triangles].mean(axis=1)])
     middle = points.mean(axis=0)
-    points = middle + (1.0 - SHRUNK) * (points - middle)
+    points = middle + (1.0 - SHARE_SHRUNK) * (points - middle)
     seen = pose_other_one.transform(points)
     held = other.holds(seen)
     for hole in holes:
@@ -80,7 +77,7 @@ def _is_in(one: Shape, other: Shape, pose_other_one: Pose, holes: Sequence[Hole]
 def _directions(vectors: FloatArray) -> FloatArray:
     """Return vectors (n, 3) scaled to length one, without those that are short beside the others or beside one."""
     lengths = np.linalg.norm(vectors, axis=1)
-    long_enough = lengths > PARALLEL * lengths.max(initial=0.0)
+    long_enough = lengths > PARALLEL_SINE * lengths.max(initial=0.0)
     return unit_rows(vectors[long_enough]) if long_enough.any() else np.zeros((0, 3))
 
 

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from cagepose.errors import Key
 from cagepose.model.checks import FloatArray, ProblemList, finite_array
 from cagepose.model.pose import Pose
-from cagepose.model.shapes import WITHIN, Shape
+from cagepose.model.shapes import Shape
+from cagepose.model.tolerances import DISTANCE_OUTSIDE
 from cagepose.model.volume import BOX_SIGNS
 
 
@@ -67,7 +68,9 @@ class Box(Shape):
 
     def holds(self, points_body: FloatArray) -> NDArray[np.bool_]:
         local = self.pose_body_shape.inverse_transform(points_body)
-        within: NDArray[np.bool_] = (np.abs(local) <= self.size_m / 2.0 + WITHIN * self.size_m.max()).all(axis=1)
+        within: NDArray[np.bool_] = (np.abs(local) <= self.size_m / 2.0 + DISTANCE_OUTSIDE * self.size_m.max()).all(
+            axis=1
+        )
         return within
 
     def thickness(self) -> list[tuple[tuple[Key, ...], float]]:

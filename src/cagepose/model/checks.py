@@ -15,7 +15,7 @@ from cagepose.kernels.algebra.vector import Vector
 
 FloatArray = NDArray[np.float64]
 """As a field of a class: three numbers, unless it is annotated with another shape, as `finite_array` takes it."""
-SHOWN = 64
+MOST_NUMBERS_SHOWN = 64
 """An error shows an array of so many numbers whole; of a longer one it names the first place that is wrong."""
 
 
@@ -38,7 +38,7 @@ def finite_array(value: ArrayLike, shape: tuple[int, ...], key: str) -> FloatArr
     if not fits:
         raise SceneError([Problem((key,), f"has shape {array.shape}; give {_numbers(shape)}")])
     if not np.isfinite(array).all():
-        if array.size <= SHOWN:
+        if array.size <= MOST_NUMBERS_SHOWN:
             raise SceneError([Problem((key,), f"holds a number that is not finite: {array.tolist()}")])
         at = [int(index) for index in np.argwhere(~np.isfinite(array))[0]]
         raise SceneError([Problem((key, *at), f"is {array[tuple(at)]}; give a finite number")])

@@ -15,17 +15,16 @@ from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kin
 from cagepose.model.near_pairs import near_pairs
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Shape, Turned, set_lengths
+from cagepose.model.tolerances import DISTANCE_OF_FACE
 
-AROUND = 64
-"""Corners of the polygon around a rim that stands for it where a hole is looked for within a part."""
-RINGS = (0.0, 0.5, 1.0)
-"""Of the radius: circles of points throughout a hole."""
-STEPS = 16
-"""Heights between two ends of parts, or rims, at which it is asked what ends in a hole."""
-INNER = 0.999
-"""Of the radius: what ends on the wall of a hole is not in it."""
-ON_FACE = 1e-6
-"""A mouth this close to a face, as a fraction of the hole's reach, is on it."""
+CORNERS_OF_CIRCLE = 64
+"""Corners of the polygon around a circle that stands for it where a hole is looked for within a part."""
+RADII_OF_SAMPLES = (0.0, 0.5, 1.0)
+"""In radii of the hole. Circles of points lie throughout a hole at these."""
+HEIGHTS_BETWEEN = 16
+"""Heights between two ends of parts, or circles, at which it is asked what ends in a hole."""
+SHARE_OF_RADIUS = 0.999
+"""Share of the radius. What ends on the wall of a hole, farther out, is not in it."""
 
 
 @dataclass(frozen=True)
@@ -118,7 +117,10 @@ class Hole(Turned):
         """
         axis, mouth = self.pose_body_shape.rotation[:, 2], self.pose_body_shape.position_m
         height, slack = float((point_body - mouth) @ axis), self._slack_m
-        if float(np.linalg.norm(np.cross(axis, normal_body))) > ON_FACE or not -self.depth_m - slack <= height <= slack:
+        if (
+            float(np.linalg.norm(np.cross(axis, normal_body))) > DISTANCE_OF_FACE
+            or not -self.depth_m - slack <= height <= slack
+        ):
             return None
         heights, radii = zip(*self.rims, strict=True)
         return mouth + height * axis, float(np.interp(height, heights, radii))
@@ -152,10 +154,10 @@ class Hole(Turned):
         ends = [height for height, _ in self.rims]
         for way in (axis, -axis):
             ends += [float(way @ axis) * float(part.heights_m(way[None])[0]) - float(mouth @ axis) for part in parts]
-        shares = (np.arange(STEPS) + 1.0 / math.sqrt(5.0)) / STEPS
+        shares = (np.arange(HEIGHTS_BETWEEN) + 1.0 / math.sqrt(5.0)) / HEIGHTS_BETWEEN
         levels = pairwise(np.unique(np.clip(ends, -depth, 0.0)))
         steps = np.concatenate([low + shares * (high - low) for low, high in levels if high - low > self._slack_m])
-        inside = self._filled(steps, INNER)
+        inside = self._filled(steps, SHARE_OF_RADIUS)
         asked = [part for part in parts if not _is_bar_across(part, axis)]
         held = [part.holds(inside).reshape(len(steps), -1) for part in asked]
         return [part for part, of in zip(asked, held, strict=True) if (of.any(axis=1) & ~of.all(axis=1)).any()]
@@ -167,8 +169,8 @@ class Hole(Turned):
         axis, mouth = self.pose_body_shape.rotation[:, 2], self.pose_body_shape.position_m
         between, along = other.pose_body_shape.position_m - mouth, other.pose_body_shape.rotation[:, 2]
         depths, slack = [hole.run_through(parts)[0] for hole in (self, other)], self._slack_m
-        if float(np.linalg.norm(np.cross(axis, along))) > ON_FACE:
-            even = np.linspace(-1.0, 0.0, AROUND)
+        if float(np.linalg.norm(np.cross(axis, along))) > DISTANCE_OF_FACE:
+            even = np.linspace(-1.0, 0.0, CORNERS_OF_CIRCLE)
             filled, of_other = self._filled(even * depths[0]), other._filled(even * depths[1])
             return bool(other.holds(filled).any() or self.holds(of_other).any())
         start, sense = float(between @ axis), math.copysign(1.0, float(along @ axis))
@@ -186,11 +188,13 @@ class Hole(Turned):
         """Points of the body's frame throughout the hole at these heights, so much of the way to its wall."""
         heights, radii = np.array(self.rims).T
         wide = share * np.interp(steps, heights, radii)
-        return np.concatenate([self._ring(h, part * r) for h, r in zip(steps, wide, strict=True) for part in RINGS])
+        return np.concatenate(
+            [self._ring(h, part * r) for h, r in zip(steps, wide, strict=True) for part in RADII_OF_SAMPLES]
+        )
 
     @property
     def _slack_m(self) -> float:
-        return ON_FACE * math.hypot(self.radius_m, self.depth_m)
+        return DISTANCE_OF_FACE * math.hypot(self.radius_m, self.depth_m)
 
     def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
         found: list[tuple[tuple[Key, ...], float]] = [(("radius",), 2.0 * self.radius_m), (("depth",), self.depth_m)]
@@ -198,14 +202,14 @@ class Hole(Turned):
 
     def is_within(self, part: Shape) -> bool:
         """Return whether all that the hole takes away lies in one part; close to its surface the answer may be no."""
-        rims = [self._ring(height, radius / math.cos(math.pi / AROUND)) for height, radius in self.rims]
+        rims = [self._ring(height, radius / math.cos(math.pi / CORNERS_OF_CIRCLE)) for height, radius in self.rims]
         return bool(part.holds(np.concatenate(rims)).all())
 
     def check_mouth(self, parts: Sequence[Shape], path: tuple[Key, ...], problems: ProblemList) -> None:
         """Note where the mouth is not on a face of the parts that the hole is cut out of."""
         _, radius = self.rims[-1]
         mouth = np.concatenate([self._ring(0.0, radius), self._ring(0.0, 0.0)])
-        step = ON_FACE * math.hypot(radius, self.depth_m) * self.pose_body_shape.rotation[:, 2]
+        step = DISTANCE_OF_FACE * math.hypot(radius, self.depth_m) * self.pose_body_shape.rotation[:, 2]
         below = np.any([part.holds(mouth - step) for part in parts], axis=0)
         above = np.any([part.holds(mouth + step) for part in parts], axis=0)
         if not below.all():
@@ -216,13 +220,13 @@ class Hole(Turned):
             problems.add(path, f"{found}; move it to the face (its axis z points out of the part)")
 
     def _ring(self, height: float, radius: float) -> FloatArray:
-        angles = 2.0 * math.pi * np.arange(AROUND) / AROUND
-        ring = np.stack([radius * np.cos(angles), radius * np.sin(angles), np.full(AROUND, height)], axis=1)
+        angles = 2.0 * math.pi * np.arange(CORNERS_OF_CIRCLE) / CORNERS_OF_CIRCLE
+        ring = np.stack([radius * np.cos(angles), radius * np.sin(angles), np.full(CORNERS_OF_CIRCLE, height)], axis=1)
         return self.pose_body_shape.transform(ring)
 
 
 def _is_bar_across(part: Shape, axis: FloatArray) -> bool:
-    return isinstance(part, Turned) and abs(float(part.pose_body_shape.rotation[:, 2] @ axis)) <= ON_FACE
+    return isinstance(part, Turned) and abs(float(part.pose_body_shape.rotation[:, 2] @ axis)) <= DISTANCE_OF_FACE
 
 
 def check_holes(

@@ -19,10 +19,9 @@ from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Rounded, Shape, Turned
+from cagepose.model.tolerances import LAST_GAIN
 
 MOST_STEPS = 60
-CLOSE = 1e-12
-"""Steps end where the next one would bring the distance nearer to its least by this fraction of it."""
 
 
 class Core(NamedTuple):
@@ -89,7 +88,7 @@ def nearest_points(one: Core, other: Core) -> tuple[FloatArray, FloatArray]:
     for _ in range(MOST_STEPS):
         square = dot(between, between)
         pair = _farthest_pair(one, other, -np.array(between))
-        if square == 0.0 or square - dot(between, pair.apart) <= CLOSE * square:
+        if square == 0.0 or square - dot(between, pair.apart) <= LAST_GAIN * square:
             break
         chosen, found, nearer = _nearest_subset([*pairs, pair])
         if dot(nearer, nearer) >= square:

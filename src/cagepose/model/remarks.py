@@ -9,22 +9,23 @@ import numpy as np
 from cagepose.model.geometry import body_limits, object_size
 from cagepose.model.scene import Scene, millimetres
 from cagepose.model.shapes import Capsule, Cylinder, Sphere
+from cagepose.model.tolerances import LEAST_CLEARANCE
 from cagepose.model.wording import few
 
 GREATEST_FRICTION = 2.0
 """Rubber on dry concrete has about 1."""
-APART = 0.1
+DISTANCE_OF_PARTS = 0.1
 """In sizes of the smaller of two parts: what joins parts that are nearer is often left out of a model on purpose."""
-OUTSIDE = 1.0
+DISTANCE_OF_CENTRE = 1.0
 """In sizes of the object: a centre of gravity that is farther from it is hardly meant."""
 SMALLEST_M, LARGEST_M = 1e-4, 10.0
 """Scenes beyond these sizes are mostly given in another unit than was meant."""
 SMALL_ENOUGH_M = 3.0
 """An object of this size may stand on a floor of any, as those of robots do."""
-EXACT = 1e-6
-"""Of a hole's radius: less clearance is none."""
-GREATEST_GRAVITY, EARTH = 300.0, 9.81
-"""m/s². Beyond what machines shake parts with; 386 in/s² and 9810 mm/s² are."""
+GREATEST_GRAVITY = 300.0
+"""m/s². Machines shake parts with less; 386 in/s² and 9810 mm/s² are more."""
+EARTH_M_S2 = 9.81
+"""m/s²."""
 
 
 def remarks(scene: Scene) -> Iterator[str]:
@@ -66,7 +67,7 @@ def _pieces(scene: Scene) -> Iterator[str]:
     while reached:
         part = reached.pop()
         gaps = np.linalg.norm(np.maximum(np.maximum(low - high[part], low[part] - high), 0.0), axis=1)
-        near = ~is_joined & (gaps <= APART * np.minimum(sizes, sizes[part]))
+        near = ~is_joined & (gaps <= DISTANCE_OF_PARTS * np.minimum(sizes, sizes[part]))
         is_joined |= near
         reached += np.flatnonzero(near).tolist()
     if not is_joined.all():
@@ -80,7 +81,7 @@ def _center(scene: Scene) -> Iterator[str]:
     low, high = body_limits((*held.parts, *held.holes))
     center = held.center_of_gravity_m
     outside = float(np.linalg.norm(center - np.clip(center, low, high)))
-    if outside > OUTSIDE * object_size(held):
+    if outside > DISTANCE_OF_CENTRE * object_size(held):
         yield (
             f"the centre of gravity lies {millimetres(outside)} outside the object; check center_of_gravity, which is"
             " given in the object's frame"
@@ -94,10 +95,13 @@ def _gravity(scene: Scene) -> Iterator[str]:
     for load in scene.loads:
         strength = 0.0 if load.gravity_world is None else float(np.linalg.norm(load.gravity_world))
         if strength > GREATEST_GRAVITY:
-            loads.setdefault(f"{strength:.6g} m/s² is {strength / EARTH:.0f} times the Earth's", []).append(load.name)
+            loads.setdefault(f"{strength:.6g} m/s² is {strength / EARTH_M_S2:.0f} times the Earth's", []).append(
+                load.name
+            )
     for found, names in loads.items():
         yield (
-            f"{few(names)}: a gravity of {found}; it is given in m/s², whatever the unit of length ({EARTH} on Earth)"
+            f"{few(names)}: a gravity of {found}; it is given in m/s², whatever the unit of length"
+            f" ({EARTH_M_S2} on Earth)"
         )
 
 
@@ -107,7 +111,7 @@ def _fits(scene: Scene) -> Iterator[str]:
     for parts, holes in ((held.parts, cage.holes), (cage.shapes, held.holes)):
         round_ones = [part for part in parts if isinstance(part, Cylinder | Capsule | Sphere)]
         for hole in holes:
-            exact = EXACT * hole.radius_m
+            exact = LEAST_CLEARANCE * hole.radius_m
             names = [str(part.name) for part in round_ones if abs(part.radius_m - hole.radius_m) <= exact]
             if names:
                 yield (

@@ -20,9 +20,7 @@ from cagepose.errors import Key
 from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_text, finite_array, is_finite, number_found
 from cagepose.model.hull import Hull, hull_of
 from cagepose.model.pose import Pose
-
-WITHIN = 1e-9
-"""A point this far out, as a fraction of the shape's size, is still in it."""
+from cagepose.model.tolerances import DISTANCE_OUTSIDE
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -135,7 +133,7 @@ class Rounded(Shape):
         span = core[-1] - core[0]
         share = np.clip(points @ span / max(float(span @ span), np.finfo(float).tiny), 0.0, 1.0)
         distances = np.linalg.norm(points - share[:, None] * span, axis=1)
-        within: NDArray[np.bool_] = distances <= self.radius_m * (1.0 + WITHIN)
+        within: NDArray[np.bool_] = distances <= self.radius_m * (1.0 + DISTANCE_OUTSIDE)
         return within
 
     def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
@@ -168,7 +166,7 @@ class Turned(Shape):
     def holds(self, points_body: FloatArray) -> NDArray[np.bool_]:
         x, y, z = self.pose_body_shape.inverse_transform(points_body).T
         heights, radii = np.array(self.rims).T
-        slack = WITHIN * (heights[-1] - heights[0] + radii.max())
+        slack = DISTANCE_OUTSIDE * (heights[-1] - heights[0] + radii.max())
         is_beside = np.hypot(x, y) <= np.interp(z, heights, radii) + slack
         within: NDArray[np.bool_] = is_beside & (z >= heights[0] - slack) & (z <= heights[-1] + slack)
         return within
@@ -297,7 +295,7 @@ class Convex(Rounded):
         if hull.dimension < 2:
             return super().holds(points_body)
         points = self.pose_body_shape.inverse_transform(points_body)
-        slack = WITHIN * float(np.ptp(hull.vertices_m, axis=0).max())
+        slack = DISTANCE_OUTSIDE * float(np.ptp(hull.vertices_m, axis=0).max())
         on_faces = hull.vertices_m[[loop[0] for loop in hull.faces]]
         heights = hull.normals @ points.T - np.einsum("ij,ij->i", hull.normals, on_faces)[:, None]
         within: NDArray[np.bool_] = heights.max(axis=0) <= slack

@@ -1,4 +1,4 @@
-"""The tolerances a user may set, each with its unit and reason."""
+"""The tolerances a user may set, each with its unit and reason, and those of the model itself."""
 
 from __future__ import annotations
 
@@ -12,6 +12,25 @@ TOUCH_DEFAULT = 1e-9
 TOUCH_LEAST = 1e-11
 TOUCH_GREATEST = 1e-4
 GRAZING_BAND_DEFAULT_RAD = float(np.radians(1.0))
+
+OVERLAP_OF_TOUCH = 1e-12
+"""Share of their reach. Shapes that overlap by no more only touch: that is rounding."""
+SHARE_SHRUNK = 1e-6
+"""Share of its size. A part is shrunk by this so that it does not touch."""
+PARALLEL_SINE = 1e-9
+"""Sine between two directions. With a smaller one they give no third direction across both."""
+DISTANCE_OF_FACE = 1e-6
+"""Fraction of a hole's reach. A hole's edge this close to a face is on it."""
+LAST_GAIN = 1e-12
+"""Fraction of the distance to its least. Steps end where the next one would bring it nearer by less."""
+LEAST_CLEARANCE = 1e-6
+"""Fraction of a hole's radius. A smaller clearance is none."""
+DISTANCE_OUTSIDE = 1e-9
+"""Fraction of a shape's size. A point that is no farther out is still in it."""
+LEAST_VOLUME_LEFT = 1e-6
+"""Share of a body's volume. Holes that leave less leave rounding."""
+SHOWN_AS_ZERO = 1e-12
+"""Fraction of the greatest of some numbers. A smaller number is shown as 0."""
 
 
 @dataclass(frozen=True)

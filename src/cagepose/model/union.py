@@ -20,13 +20,12 @@ from cagepose.model.near_pairs import near_pairs
 from cagepose.model.shape_moments import NOTHING, Sums, shape_moments, sums_of
 from cagepose.model.shapes import Shape
 from cagepose.model.surface import Mesh, shape_mesh
+from cagepose.model.tolerances import LEAST_VOLUME_LEFT
 from cagepose.model.volume import VolumeMoments, union_moments
 
-SEGMENTS = 128
+CHORDS_OF_CIRCLE = 128
 """Chords of a circle in the coarser of two meshes. The overlap of balls, bars, cones and boxes then comes out to a few
 parts in 1e7, and in a second at most."""
-NEARLY_NOTHING = 1e-6
-"""What holes leave of a body that is less than this share of it is rounding."""
 
 
 def box_moments(boxes: Sequence[Box]) -> VolumeMoments:
@@ -60,7 +59,7 @@ def body_moments(parts: Sequence[Shape], holes: Sequence[Hole] = ()) -> VolumeMo
     material = [*boxes, *(part for part, _ in solid)]
     origin = np.mean([part.nodes_body().mean(axis=0) for part in material], axis=0)
     total = sums_of(box_moments(boxes), origin) if boxes else NOTHING
-    least = NEARLY_NOTHING * sum(shape_moments(part).volume_m3 for part in material)
+    least = LEAST_VOLUME_LEFT * sum(shape_moments(part).volume_m3 for part in material)
     for _, moments in solid:
         total += sums_of(moments, origin)
     every = [*material, *holes]
@@ -125,7 +124,7 @@ def _too_much(group: Sequence[Shape], holes: Sequence[Hole], origin: FloatArray,
         ) from error
 
     def solid(shape: Shape) -> manifold3d.Manifold:
-        mesh = shape_mesh(shape, SEGMENTS, halved=halved)
+        mesh = shape_mesh(shape, CHORDS_OF_CIRCLE, halved=halved)
         return manifold3d.Manifold(
             manifold3d.Mesh64((mesh.vertices_m - origin) / unit_m, mesh.triangles.astype(np.uint64))
         )

@@ -8,9 +8,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from cagepose.model.checks import FloatArray
-
-ROUNDING = 1e-12
-"""Of the greatest of some numbers: what is less is shown as 0."""
+from cagepose.model.tolerances import SHOWN_AS_ZERO
 
 
 def short(value: float, digits: int, noise: float) -> str:
@@ -60,7 +58,7 @@ def coordinates(values: FloatArray, digits: int = 6) -> str:
     >>> coordinates(np.array([0.26, -0.0, 1e-19]))
     '(0.26, 0, 0)'
     """
-    noise = ROUNDING * float(np.abs(values).max(initial=0.0)) or ROUNDING
+    noise = SHOWN_AS_ZERO * float(np.abs(values).max(initial=0.0)) or SHOWN_AS_ZERO
     return f"({', '.join(short(value, digits, noise) for value in values.tolist())})"
 
 

@@ -23,9 +23,7 @@ from cagepose.model.load import Load, Spring
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.load_scaling import one_force, scaled_load
-
-HARDLY_TENSE = 1e-12
-"""In the terms of a spring's tension: a smaller one at length zero is rounding. The spring's force is then linear."""
+from cagepose.runs.tolerances import TENSION_AT_ZERO
 
 
 class Wrench(NamedTuple):
@@ -108,7 +106,7 @@ def tensions_at_zero(spring: Spring, positions_m: FloatArray, quaternions: Float
     ways = [spring.to_world_m[axis] - (positions_m[:, axis] + turned[axis]) for axis in range(3)]
     pulls = spring.stiffness_n_per_m * np.sqrt(ways[0] * ways[0] + ways[1] * ways[1] + ways[2] * ways[2])
     tensions = spring.preload_n - pulls
-    is_rounding = np.abs(tensions) <= HARDLY_TENSE * (abs(spring.preload_n) + pulls)
+    is_rounding = np.abs(tensions) <= TENSION_AT_ZERO * (abs(spring.preload_n) + pulls)
     kept: FloatArray = np.where(is_rounding, 0.0, tensions)
     return kept
 

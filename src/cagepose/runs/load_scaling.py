@@ -9,12 +9,11 @@ import numpy as np
 from cagepose.model.checks import FloatArray, unit_vector
 from cagepose.model.load import Force, Load
 from cagepose.model.scene import Scene
+from cagepose.runs.tolerances import MOMENT_ABOUT_POINT
 
 WEIGHT_BESIDE_FORCE = 1e-6
 """Weight of an object beside a force, as a fraction of it, where mass or magnitude is not given: the force dominates,
 and gravity settles only what the force leaves open."""
-ONE_POINT = 1e-12
-"""In forces times their distances from each other: forces whose moments agree so well act through one point."""
 
 
 class ScaledLoad(NamedTuple):
@@ -85,10 +84,10 @@ def one_force(forces: FloatArray, points: FloatArray) -> tuple[FloatArray, Float
     moments = (points - middle).T @ forces
     size = float(np.linalg.norm(points - middle, axis=1) @ np.linalg.norm(forces, axis=1))
     square = float(total @ total)
-    if square <= (ONE_POINT * float(np.linalg.norm(forces, axis=1).sum())) ** 2:
+    if square <= (MOMENT_ABOUT_POINT * float(np.linalg.norm(forces, axis=1).sum())) ** 2:
         return None
     point = moments @ total / square
-    if np.linalg.norm(moments - np.outer(point, total)) > ONE_POINT * size:
+    if np.linalg.norm(moments - np.outer(point, total)) > MOMENT_ABOUT_POINT * size:
         return None
     return total, middle + point
 

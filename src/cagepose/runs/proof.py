@@ -101,7 +101,7 @@ class Proof:
 
     @property
     def uniqueness(self) -> Uniqueness | None:
-        """Of rest as an onset, in the words of Pang and Trinkle (2000): None where the object moves.
+        """Whether rest is the only onset of motion (Pang and Trinkle, 2000); None where the object moves.
 
         "strong" stability ("rests"): rest is the only onset that Coulomb's law allows. "weak" ("may rest"): rest is
         one, and `motion` is another. "not shown" ("may rest"): rest is one, and whether there is another is open.

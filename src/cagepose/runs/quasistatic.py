@@ -26,8 +26,10 @@ STEP_LIMIT = 3000
 """Steps in a phase after which a run is named "limit"."""
 
 
-REMEDY = "change the friction coefficient by a hundredth, or move a point or the start by a millionth of the size"
-"""Of a run that failed: most hang on contacts that fit exactly."""
+FAILURE_REMEDY = (
+    "change the friction coefficient by a hundredth, or move a point or the start by a millionth of the size"
+)
+"""What may help a run that failed. Most fail on contacts that fit exactly."""
 
 
 def quasistatic_rules(_scene: Scene) -> QuasistaticRules:
@@ -60,11 +62,11 @@ def _failure_warnings(phase: PhaseRun, load: Load) -> Iterator[str]:
             " follow, can drive an object round for ever; give it a stop or a spring"
         )
     elif phase.verdict == "limit":
-        yield f"{phase.name}: it still moved after {STEP_LIMIT} steps, touching {touching}; {REMEDY}"
+        yield f"{phase.name}: it still moved after {STEP_LIMIT} steps, touching {touching}; {FAILURE_REMEDY}"
     elif phase.verdict == "stalled" and phase.events and phase.events[-1].rule == RULE_NAMES[STUCK]:
         yield (
             f"{phase.name}: touching {touching}, no motion that obeys Coulomb's law was found, nor a rest"
-            f" ({phase.proof.reason}); {REMEDY}"
+            f" ({phase.proof.reason}); {FAILURE_REMEDY}"
         )
     elif phase.verdict == "stalled":
-        yield f"{phase.name}: no step got on that keeps the contacts of {touching}; {REMEDY}"
+        yield f"{phase.name}: no step got on that keeps the contacts of {touching}; {FAILURE_REMEDY}"

@@ -25,6 +25,7 @@ from cagepose.model.scene import Scene
 from cagepose.runs.actions import load_size
 from cagepose.runs.cases import body_of
 from cagepose.runs.proof import FreeMotion, Proof
+from cagepose.runs.tolerances import SINE_TO_SPAN
 
 REASONS = {
     PROVEN_WITHOUT_FRICTION: "the contacts balance the load without friction",
@@ -47,8 +48,6 @@ NUMBERS = [
 ]
 """Fields of a phase's record that are one number."""
 ONES = np.ones(3)
-IN_SPAN = 1e-6
-"""Sine of the angle below which a freedom lies in the span of the undetermined ones."""
 
 
 def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Sequence[Sequence[str]]) -> list[Proof]:
@@ -146,10 +145,10 @@ def _freedoms(scene: Scene, pose: Pose, undetermined: FloatArray) -> tuple[str, 
     basis = np.linalg.svd(rows, full_matrices=False)[2]
     found = [name for k, name in enumerate(("x", "y", "z")) if _is_in_span(basis, np.eye(6)[k])]
     turning = np.linalg.svd(basis[:, 3:], full_matrices=False)
-    turns = turning[2][turning[1] > IN_SPAN]
+    turns = turning[2][turning[1] > SINE_TO_SPAN]
     found += [name for k, name in enumerate(("roll", "pitch", "yaw")) if _is_in_span(turns, np.eye(3)[k])]
     return tuple(found) if len(found) >= len(rows) else (*found, "and others" if found else "others")
 
 
 def _is_in_span(basis: FloatArray, vector: FloatArray) -> bool:
-    return bool(np.linalg.norm(vector - basis.T @ (basis @ vector)) < IN_SPAN) if len(basis) else False
+    return bool(np.linalg.norm(vector - basis.T @ (basis @ vector)) < SINE_TO_SPAN) if len(basis) else False

@@ -62,7 +62,7 @@ class _Workspace(NamedTuple):
 
 
 class _Workspaces(threading.local):
-    """Of one thread, the last used at the end."""
+    """The workspaces of one thread, with the one that was used last at the end."""
 
     def __init__(self) -> None:
         self.by_size: OrderedDict[tuple[object, ...], _Workspace] = OrderedDict()

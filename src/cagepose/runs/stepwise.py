@@ -12,16 +12,11 @@ from cagepose.kernels.stepwise.support import SupportRules
 from cagepose.model.remarks import remarks
 from cagepose.model.scene import Scene
 from cagepose.runs.run import Note, PhaseRun
+from cagepose.runs.tolerances import EQUAL_DISTANCE_OF_SIZE, LEAST_MOMENT, PARALLEL_SINE
 from cagepose.runs.warnings_of_runs import edge_warnings, proof_warnings, seam_warnings, unrun_warnings
 
 BLOCKED_ANGLE_RAD = math.pi / 10000.0
 """A turn that ends within 0.018 deg is blocked (R3)."""
-LEAST_MOMENT = 1e-3
-"""Least moment, as a fraction of force times distance, that drives a turn (R3)."""
-EQUAL_DISTANCE_OF_SIZE = 1e-6
-"""Distances closer than this fraction of the scene's size are equal (R3, R6)."""
-PARALLEL_SINE = 1e-6
-"""Normals closer than this angle (radians) are one direction."""
 EVENT_LIMIT = 1000
 """Events in a phase after which a run is named "limit". A rail's push takes 9; 1 of 20,000 random scenes gets here."""
 NOTES: dict[Note, str] = {

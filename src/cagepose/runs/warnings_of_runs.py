@@ -11,9 +11,7 @@ from cagepose.model.scene import Scene
 from cagepose.runs.actions import tensions_at_zero
 from cagepose.runs.load_scaling import WEIGHT_BESIDE_FORCE, scaled_load
 from cagepose.runs.run import FAILURES, PhaseRun
-
-MET = 1e-6
-"""In sizes of the scene: the ends of a shorter spring count as one point."""
+from cagepose.runs.tolerances import LENGTH_OF_NO_SPRING
 
 
 def seam_warnings(scene: Scene) -> Iterator[str]:
@@ -56,7 +54,7 @@ def spring_warnings(scene: Scene, phase: PhaseRun) -> Iterator[str]:
     springs = next(load.springs for load in scene.loads if load.name == phase.name)
     for number, spring in enumerate(springs, start=1):
         length_m = float(np.linalg.norm(spring.to_world_m - phase.pose.transform(spring.at_object_m)))
-        if length_m <= MET * scene.size_m and tensions_at_zero(
+        if length_m <= LENGTH_OF_NO_SPRING * scene.size_m and tensions_at_zero(
             spring, start.position_m[None], start.quaternion_wxyz[None]
         ):
             yield (

@@ -15,10 +15,12 @@ from cagepose.runs.load_scaling import scaled_load
 
 LEAST_SHOWN = 0.01
 """A force below this fraction of the greatest of its phase is not shown; its arrow would be a dot."""
-COILS, COIL_POINTS = 7, 8
-"""Of a drawn spring, and points on each."""
+COILS = 7
+"""A drawn spring has so many coils."""
+COIL_POINTS = 8
+"""A coil is drawn with so many points."""
 STRAIGHT_ENDS = 0.15
-"""Of a drawn spring's length, at each end."""
+"""Share of a drawn spring's length that is straight at each end."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,13 +23,13 @@ from cagepose.studies.play_frame import PlayFrame, motion_after
 
 Caged = Literal["caged", "not certified", "escapes"]
 MOST_STATIONS = 100_000
-BATCH = 500
+MOTIONS_OF_BATCH = 500
 """Motions that are tried between two looks at the clock: some milliseconds."""
-SEED = 20250101
+RANDOM_SEED = 20250101
 STAND_INS_ARE_FREE = (
     "the proof takes points within the cage's shapes and boxes within the object, and the points leave the boxes free"
 )
-"""Of shapes that are not boxes and points themselves, where pushes come to an end in every direction."""
+"""This is said of shapes that are not boxes and points themselves, where pushes come to an end in every direction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,17 +149,17 @@ def search_way_out(
     n_stations, n_tried, is_out = 1, 0, False
     placement = empty_placement(frame.geometry)
     tolerances = kernel_tolerances(scene.size_m / frame.length_m, scene.tolerances.touch)
-    random = np.random.default_rng(SEED)
+    random = np.random.default_rng(RANDOM_SEED)
     started = perf_counter()
-    while not is_out and n_stations + BATCH <= MOST_STATIONS:
+    while not is_out and n_stations + MOTIONS_OF_BATCH <= MOST_STATIONS:
         share = (perf_counter() - started) / search_s if search_s > 0.0 else 1.0
         if progress is not None:
             progress(min(share, 1.0))
         if share >= 1.0:
             break
-        samples = random.random((BATCH, N_RANDOM))
+        samples = random.random((MOTIONS_OF_BATCH, N_RANDOM))
         n_stations, is_out = grow_tree(frame.geometry, samples, stations, n_stations, placement, tolerances)
-        n_tried += BATCH
+        n_tried += MOTIONS_OF_BATCH
     return stations, n_stations, is_out, n_tried
 
 

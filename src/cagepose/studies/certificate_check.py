@@ -19,26 +19,19 @@ from cagepose.runs.proof import Uniqueness
 from cagepose.runs.run import Run
 from cagepose.studies.certificate import Certificate, ChosenFaces, Decision, ModeTree, OtherOnset
 from cagepose.studies.contact_problem import ContactProblem, contact_problem
+from cagepose.studies.tolerances import (
+    FORCE_OUTSIDE_CONE,
+    GAP_OF_SECTORS_RAD,
+    LEAST_MOTION,
+    POWER_OF_NONE,
+    RESIDUAL_OF_BALANCE,
+    RESIDUAL_OF_LEAF,
+    ROUNDING_OF_FORCES,
+    SAME_PLACE_OF_SIZE,
+    VIOLATION_OF_COULOMB,
+)
 
-BALANCED, ROUNDING = 1e-8, 2.3e-16
-"""Of the load: what forces may leave of it; and of the forces, which may be millions of loads, what rounding does."""
-SAME_PLACE = 1e-9
-"""Of the scene's size, and radians: contacts are where the certificate says."""
 OTHER_PHASE = "is it the certificate of another phase, or another scene?"
-OUTSIDE = 1e-12
-"""Of load and forces: how far a force may be outside of its friction cone."""
-DRIVEN = 1e-11
-"""Of load and unit forces: the power along a leaf's twist that counts as none. The search asks for a twentieth of it;
-the rest is for the rounding of arms, where the centre of gravity is far from the contacts.
-"""
-LEFT = 1e-6
-"""Of the load: what velocities that a leaf does not allow may leave of (b - z). The search asks for half of it."""
-GAPLESS_RAD = 1e-12
-"""Sectors that are so far apart meet."""
-OBEYS = 1e-11
-"""Of the load: by so much, as a velocity, may another onset violate Coulomb's law. The search allows a tenth of it."""
-MOVES = 0.99e-6
-"""In loads: a motion, and not rest. The search asks for 1e-6."""
 
 
 @dataclass(frozen=True)
@@ -147,11 +140,11 @@ def _check_geometry(certificate: Certificate, problem: ContactProblem, found: li
         if told.shape != own.shape:
             raise CertificateError(f"{what} has {len(told)} entries for {len(own)} contacts")
         apart = np.abs(told - own).reshape(len(own), -1).max(axis=1, initial=0.0)
-        for number in np.nonzero(~(apart <= SAME_PLACE * unit))[0][:1]:
+        for number in np.nonzero(~(apart <= SAME_PLACE_OF_SIZE * unit))[0][:1]:
             face = certificate.contacts[number]
             raise CertificateError(
                 f"{what} of {face} is {apart[number]:.1e} {name} off from the scene's at this pose, and at most"
-                f" {SAME_PLACE * unit:.1e} counts as the same; {OTHER_PHASE}"
+                f" {SAME_PLACE_OF_SIZE * unit:.1e} counts as the same; {OTHER_PHASE}"
             )
 
 
@@ -214,9 +207,9 @@ class _Choice:
         wrench = np.einsum("ij,ijk->k", choice.forces, self.wrenches)
         left = float(np.linalg.norm(self.problem.scaled(self.problem.load - wrench)))
         outside = float((beyond * self.sizes).max(initial=0.0))
-        if outside > OUTSIDE * (1.0 + float(np.abs(choice.forces).max(initial=0.0))):
+        if outside > FORCE_OUTSIDE_CONE * (1.0 + float(np.abs(choice.forces).max(initial=0.0))):
             raise self._refuse(".forces", f"leave their friction cones by {outside:.1e} loads")
-        most = BALANCED + ROUNDING * float(np.abs(choice.forces).sum())
+        most = RESIDUAL_OF_BALANCE + ROUNDING_OF_FORCES * float(np.abs(choice.forces).sum())
         if left > most:
             raise self._refuse(".forces", f"leave {left:.1e} of the load, and at most {most:.1e} is a balance")
         return left
@@ -234,10 +227,10 @@ class _Choice:
             modes = [self._modes(tree, leaf, contact) for contact in range(len(self.places))]
             where = f".tree, leaf {number} (node {leaf}):"
             power = self._driven(tree.twists[number], modes)
-            if not power <= DRIVEN:
+            if not power <= POWER_OF_NONE:
                 raise self._refuse(where, f"the load or a contact force drives its twist by {power:.1e}")
             rest = self._left(tree.twists[number], tree.pressures[number], modes)
-            if not rest <= LEFT:
+            if not rest <= RESIDUAL_OF_LEAF:
                 raise self._refuse(where, f"its twist leaves motions that begin, as {rest:.1e} of the load drives them")
             driven, left = max(driven, power), max(left, rest)
         return 0.5 * left + float(np.sqrt(0.25 * left * left + 2.0 * driven))  # v^2 <= left v + driven (1 + 1)
@@ -286,15 +279,15 @@ class _Choice:
             raise self._refuse(where, f"its parts ({', '.join(decisions)}) are not all that a contact may do")
         origin = above.start if above.slipping == "slips" or not slips else float(tree.starts_rad[slips[0]])
         sectors = [
-            (float((tree.starts_rad[part] - origin + GAPLESS_RAD) % (2.0 * pi)), float(tree.widths_rad[part]))
+            (float((tree.starts_rad[part] - origin + GAP_OF_SECTORS_RAD) % (2.0 * pi)), float(tree.widths_rad[part]))
             for part in slips
         ]
         reached = 0.0
         for start, width in sorted(sectors):
-            if start > reached + 2.0 * GAPLESS_RAD:
+            if start > reached + 2.0 * GAP_OF_SECTORS_RAD:
                 break
             reached = max(reached, start + width)
-        if reached < above.width - GAPLESS_RAD:
+        if reached < above.width - GAP_OF_SECTORS_RAD:
             raise self._refuse(where, f"its sectors leave out {above.width - reached:.1e} rad of the slips in it")
 
     def _driven(self, twist: FloatArray, modes: list[_Modes]) -> float:
@@ -334,7 +327,7 @@ class _Choice:
         load, wrenches = self.problem.scaled(self.problem.load), self.problem.scaled(self.wrenches)
         motion = load - np.einsum("ij,ijk->k", onset.forces, wrenches)
         speed, power = float(np.linalg.norm(motion)), float(load @ motion)
-        if speed < MOVES or power <= 0.0:
+        if speed < LEAST_MOTION or power <= 0.0:
             raise self._refuse("", f"is no motion that the load drives: {speed:.1e} loads fast")
         rates = (wrenches @ motion) / self.sizes[:, None]
         forces = onset.forces * self.sizes[:, None]
@@ -345,9 +338,11 @@ class _Choice:
             -forces[:, 0],  # pulls
             np.minimum(-rates[:, 0], forces[:, 0]),  # carries, and opens
             friction - self.friction * forces[:, 0],  # is outside its cone
-            np.minimum(slips, missing / np.maximum(slips, OBEYS)),  # slips, friction not full or not against it
+            np.minimum(
+                slips, missing / np.maximum(slips, VIOLATION_OF_COULOMB)
+            ),  # slips, friction not full or not against it
         ]
         worst = float(np.max(violated, initial=0.0))
-        if not worst <= OBEYS * (1.0 + float(np.abs(forces).max(initial=0.0))):
+        if not worst <= VIOLATION_OF_COULOMB * (1.0 + float(np.abs(forces).max(initial=0.0))):
             raise self._refuse("", f"violates Coulomb's law by {worst:.1e} loads")
         return speed

@@ -27,6 +27,7 @@ from cagepose.runs.proof import Uniqueness
 from cagepose.runs.run import Run
 from cagepose.studies.certificate import Certificate, ChosenFaces, Decision, ModeTree, OtherOnset
 from cagepose.studies.contact_problem import ContactProblem, contact_problem
+from cagepose.studies.tolerances import SAME_LOAD
 
 DECISIONS: dict[int, Decision] = {
     relaxation.UNDECIDED: "none",
@@ -35,8 +36,6 @@ DECISIONS: dict[int, Decision] = {
     coulomb_newton.STICKS: "sticks",
     coulomb_newton.SLIPS: "slips",
 }
-SAME = 1e-9
-"""Of the load, and of a unit wrench: contacts and load of the kernel are those of the scene but for rounding."""
 
 
 def certificate(run: Run, phase: int = -1) -> Certificate | None:
@@ -121,7 +120,7 @@ class _Search:
         if found.shape != columns.shape:
             return False
         apart = np.linalg.norm(found - columns, axis=2) / np.linalg.norm(self.columns, axis=2)
-        if apart.max() > SAME or np.linalg.norm(load / self.size - whole) > SAME:
+        if apart.max() > SAME_LOAD or np.linalg.norm(load / self.size - whole) > SAME_LOAD:
             return False
         if is_strong:
             rows["columns"][self.used] = columns

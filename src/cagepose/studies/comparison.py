@@ -17,9 +17,8 @@ from cagepose.model.scope import check_boxes_and_points
 from cagepose.model.wording import components, counted
 from cagepose.runs.run import AT_REST, Event, Motion, PhaseRun, Run, Verdict
 from cagepose.runs.solve import run
+from cagepose.studies.tolerances import SAME_POSE_OF_SIZE
 
-SAME_POSE_OF_SIZE = 1e-6
-"""Two poses are one where nothing of the object is farther apart than this fraction of the scene's size."""
 GROUNDS = {
     "free": "nothing holds it back",
     "escapes": "nothing is ahead",

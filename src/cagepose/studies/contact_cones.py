@@ -19,9 +19,10 @@ from cagepose.model.checks import FloatArray
 
 Contacts = int | NDArray[np.int64]
 FIRST_RAYS = 8
-"""Of each cone, evenly spread: cuts bring the others."""
+"""Each cone starts with so many rays, evenly spread, and cuts bring the others."""
 MOST_ROUNDS = 40
-"""Of cuts for one program; two in the median of 98 random blocks. After the last the rays lie in the cones, too."""
+"""One program has so many rounds of cuts at most. Two is the median of 98 random blocks. After the last the rays lie in
+the cones, too."""
 
 
 class ContactCones(NamedTuple):

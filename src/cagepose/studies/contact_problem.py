@@ -18,11 +18,9 @@ from cagepose.runs.actions import wrench_at
 from cagepose.runs.cases import contact_friction
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import Run
+from cagepose.studies.tolerances import LEAST_RADIUS_OF_GYRATION
 from cagepose.studies.touched_faces import ContactFace, touched_faces
 from cagepose.studies.touched_shapes import touched_shapes
-
-NEEDLE = 1e-9
-"""In lengths of the object: no radius of gyration is less."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +97,7 @@ def _scale(scene: Scene, pose: Pose) -> FloatArray:
     else:
         squares, axes = np.linalg.eigh(gyration)
     scale = np.eye(6)
-    least = (NEEDLE * scene.object.reach_m) ** 2
+    least = (LEAST_RADIUS_OF_GYRATION * scene.object.reach_m) ** 2
     scale[3:, 3:] = (pose.rotation @ axes).T / np.sqrt(np.maximum(squares, least))[:, None]
     return scale
 

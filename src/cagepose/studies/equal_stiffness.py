@@ -6,22 +6,18 @@ import numpy as np
 
 from cagepose.model.checks import FloatArray
 from cagepose.studies.contact_cones import ContactCones
+from cagepose.studies.tolerances import LEAST_DAMPING, RESIDUAL_SOLVED, SHORTEST_PART
 
 MOST_STEPS = 200
-"""Of Newton's method: more are needed the nearer the load lies to what the contacts cannot balance."""
-SOLVED = 1e-14
-"""Of the load: so little of it may be left. Rounding ends most searches first."""
-DAMPING = 0.1
-"""Stiffness in all directions, in parts of what is left of the load: it keeps a step short in which a contact comes to
-carry or stops to, and fades away as fast as the rest of the load does."""
-EASED = 0.25
-"""Factor of the damping after a step that is taken whole; one over it after another."""
-LEAST_DAMPING = 1e-13
-"""For directions in which the contacts have no stiffness."""
-OVERSHOOT = 0.1
+"""Newton's method takes so many steps at most. It needs more the nearer the load lies to what the contacts cannot
+balance."""
+FIRST_DAMPING = 0.1
+"""Stiffness in all directions, in parts of the residual of the load. It keeps a step short in which a contact comes to
+carry or stops to, and fades away as fast as the residual does."""
+DAMPING_FACTOR = 0.25
+"""Factor of the damping after a step that is taken whole. After another step it is one over this."""
+SHARE_OF_SLOPE = 0.1
 """A step may pass the best place along it by so much of the slope at its start: slopes keep digits that values lose."""
-SHORTEST = 1e-12
-"""Part of a step that is tried."""
 
 
 def equally_stiff_forces(cones: ContactCones, load: FloatArray) -> FloatArray:
@@ -32,24 +28,24 @@ def equally_stiff_forces(cones: ContactCones, load: FloatArray) -> FloatArray:
     method. Where no forces balance the load, those returned do not: ask `ContactCones.wrench`.
     """
     motion, columns = np.zeros(6), cones.columns
-    size, damping = float(np.linalg.norm(load)), DAMPING
+    size, damping = float(np.linalg.norm(load)), FIRST_DAMPING
     for _ in range(MOST_STEPS):
         forces, stiffness = _projected(columns @ motion, cones.friction)
         left = load - cones.wrench(forces)
         missing = float(np.linalg.norm(left)) / size
-        if missing <= SOLVED:
+        if missing <= RESIDUAL_SOLVED:
             break
         hessian = np.einsum("iak,iab,ibl->kl", columns, stiffness, columns)
         hessian[np.diag_indices(6)] += max(damping * missing, LEAST_DAMPING)
         step = np.linalg.solve(hessian, left)
         slope, length = float(left @ step), 1.0
-        while length > SHORTEST:
+        while length > SHORTEST_PART:
             ahead = _projected(columns @ (motion + length * step), cones.friction)[0]
-            if (load - cones.wrench(ahead)) @ step >= -OVERSHOOT * slope:
+            if (load - cones.wrench(ahead)) @ step >= -SHARE_OF_SLOPE * slope:
                 break
             length *= 0.5
         motion = motion + length * step
-        damping *= EASED if length == 1.0 else 1.0 / EASED
+        damping *= DAMPING_FACTOR if length == 1.0 else 1.0 / DAMPING_FACTOR
     return forces
 
 

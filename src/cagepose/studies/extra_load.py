@@ -19,15 +19,11 @@ from numpy.typing import NDArray
 from cagepose.kernels.algebra.linear_program import OPTIMAL
 from cagepose.model.checks import FloatArray
 from cagepose.studies.contact_cones import ConeProgram
+from cagepose.studies.tolerances import GAP_OF_BOUNDS, GREATEST_FORCE, LEAST_EXTRA_LOAD
 
-TIGHT = 1e-3
-"""Of the distance: the bounds from below and above may differ by so much."""
 MOST_PLANES = 400
 """Then the bound from below is certain, but less tight. Blocks among random points took at most 13, and a connector on
 a level floor, which slides alike all ways around, 116."""
-NOTHING, WITHOUT_BOUND = 1e-8, 1e5
-"""In lengths of the load: less than the one is nothing, for that much is left by forces that balance; forces of more
-than the other come of surfaces that are parallel but for rounding (`RESIDUAL_OF_SELF_STRESS` of the kernels)."""
 
 
 class ExtraLoad(NamedTuple):
@@ -77,15 +73,17 @@ def least_extra_load(
         distances = np.linalg.norm(places, axis=1)
         farthest = int(distances.argmax())
         distance = distances[farthest]
-        if distance * WITHOUT_BOUND <= 1.0:
+        if distance * GREATEST_FORCE <= 1.0:
             return ExtraLoad(np.inf, np.inf, np.zeros(3))
-        if distance <= (1.0 + TIGHT) * polar.reached or distance * enough < 1.0:
+        if distance <= (1.0 + GAP_OF_BOUNDS) * polar.reached or distance * enough < 1.0:
             break
         normal = places[farthest] / distance
         height = polar.height(normal)
         places, corners = _cut_off(places, corners, normal, height, plane)
-    certain, found = 1.0 / float(distance), 1.0 / max(polar.reached, 1.0 / WITHOUT_BOUND)
-    return ExtraLoad(certain if certain > NOTHING else 0.0, found if found > NOTHING else 0.0, polar.direction)
+    certain, found = 1.0 / float(distance), 1.0 / max(polar.reached, 1.0 / GREATEST_FORCE)
+    return ExtraLoad(
+        certain if certain > LEAST_EXTRA_LOAD else 0.0, found if found > LEAST_EXTRA_LOAD else 0.0, polar.direction
+    )
 
 
 class _Polar:

@@ -23,15 +23,15 @@ from cagepose.model.scene import Scene
 from cagepose.model.shapes import Convex, Rounded, Shape, Turned
 from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
 from cagepose.model.volume import BOX_SIGNS
+from cagepose.studies.tolerances import SAME_PLACE_IN_TOUCHES
 
-INWARDS = (0.98, 0.9, 0.7)
-"""Of a face's half edges: points are taken over so much of it. The widest hold best, but may run off it."""
-SIDES = 16
-"""Of what is turned about an axis, an edge between two of them toward the face."""
-LEANING = 0.1
-"""Of a way along the face: so much farther off may a point be for it, so that both ends of what leans are taken."""
-ONE_PLACE = 2.0
-"""In touch tolerances: points that are nearer to each other are one."""
+SHARES_OF_FACE = (0.98, 0.9, 0.7)
+"""Shares of a face's half edges. Points are taken over so much of it. The widest hold best, but may run off it."""
+SIDES_OF_ROUND = 16
+"""So many sides stand for what is turned about an axis, with an edge between two of them toward the face."""
+SHARE_OF_LEANING = 0.1
+"""Share of a way along the face. A point may be so much farther off for it, so that both ends of what leans are taken.
+"""
 
 
 class _Core(NamedTuple):
@@ -59,7 +59,7 @@ def inner_scene(scene: Scene) -> Scene | None:
         free_names = (name for n in count(1) if (name := f"{shape.name} {n}") not in scene.cage.names)
         for box in boxes:
             for point in points_over(box, pose_cage_object @ box.pose_object_box, shape, scene.touch_m):
-                if (np.linalg.norm(points - point, axis=1) > ONE_PLACE * scene.touch_m).all():
+                if (np.linalg.norm(points - point, axis=1) > SAME_PLACE_IN_TOUCHES * scene.touch_m).all():
                     points = np.vstack([points, point])
                     names.append(next(free_names))
     if not boxes or not names:
@@ -85,14 +85,14 @@ def points_over(box: Box, pose_cage_box: Pose, shape: Shape, touch_m: float) -> 
             continue
         core = _core_toward(shape, -normal)
         along = rotation[:, [k for k in range(3) if k != axis]]
-        for share in INWARDS:
+        for share in SHARES_OF_FACE:
             reach = share * np.delete(half, axis)
             found = _within(core, pose_cage_box.position_m, normal, along, reach)
             if len(found) == 0:
                 continue
             heights, ways = found @ normal, (found - pose_cage_box.position_m) @ along
             for toward in product((-1.0, 1.0), repeat=2):
-                best = int(np.argmin(heights + LEANING * ways @ np.array(toward)))
+                best = int(np.argmin(heights + SHARE_OF_LEANING * ways @ np.array(toward)))
                 yield found[best] - core.radius_m * normal
 
 
@@ -101,7 +101,7 @@ def _core_toward(shape: Shape, direction: FloatArray) -> _Core:
     pose = shape.pose_body_shape
     if isinstance(shape, Turned):
         x, y, _ = (pose.rotation.T @ direction).tolist()
-        angles = math.atan2(y, x) + 2.0 * math.pi * np.arange(SIDES) / SIDES
+        angles = math.atan2(y, x) + 2.0 * math.pi * np.arange(SIDES_OF_ROUND) / SIDES_OF_ROUND
         around = np.stack([np.cos(angles), np.sin(angles)], axis=1)
         rings = [pose.transform(np.insert(radius * around, 2, z, axis=1)) for z, radius in shape.rims]
         segments = [np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings]
@@ -146,7 +146,7 @@ def _over_face(points: FloatArray, normal: FloatArray, face: FloatArray) -> Floa
     across = np.cross(face - face[0], ahead).sum(axis=0)
     across /= np.linalg.norm(across)
     slope = float(normal @ across)
-    if abs(slope) < LEANING:
+    if abs(slope) < SHARE_OF_LEANING:
         return np.zeros((0, 3))
     found = points + ((face[0] - points) @ across / slope)[:, None] * normal
     turned = np.einsum("ijk,k->ij", np.cross(ahead, found[:, None] - face), across)

@@ -26,7 +26,14 @@ from cagepose.studies.contact_cones import (
     least_normal_force,
 )
 from cagepose.studies.equal_stiffness import equally_stiff_forces
-from cagepose.studies.extra_load import NOTHING, WITHOUT_BOUND, ExtraLoad, least_extra_load
+from cagepose.studies.extra_load import ExtraLoad, least_extra_load
+from cagepose.studies.tolerances import (
+    GREATEST_FORCE,
+    LEAST_EXTRA_LOAD,
+    RESIDUAL_OF_NONE,
+    VIOLATION_FOR_BOUNDS,
+    VIOLATION_FOR_RANGES,
+)
 from cagepose.studies.whole_rims import more_places
 
 NEVER = -1
@@ -36,7 +43,7 @@ UNBALANCED = 1e-7
 CUT_FOR_BOUNDS, CUT_FOR_RANGES = 1e-6, 1e-9
 """How closely rays follow the cones: bounds are certain however they do, and need three digits; ranges need more."""
 FORCES, MOMENTS = slice(0, 3), slice(3, 6)
-"""Of a wrench."""
+"""Places of the forces and of the moments of a wrench."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,7 +225,7 @@ class _Choices:
         self.load, self.counts = load, counts
         forces = [self._forces(of_choice) for of_choice in counts]
         self.balanced = [self.cones.wrench(of_choice) for of_choice in forces]
-        self.are_balanced = all(float(np.linalg.norm(load - given)) <= UNBALANCED for given in self.balanced)
+        self.are_balanced = all(float(np.linalg.norm(load - given)) <= RESIDUAL_OF_NONE for given in self.balanced)
         self.shares = np.mean(forces, axis=0)
 
     def _forces(self, counts: FloatArray) -> FloatArray:
@@ -233,7 +240,7 @@ class _Choices:
         return np.asarray(np.einsum("ij,ijk->ik", self.shares[:, 1:], self.cones.columns[:, 1:, :3]))
 
     def least_extra_load(self, axes: slice) -> ExtraLoad:
-        program = ConeProgram(self.all_cones, CUT_FOR_BOUNDS)
+        program = ConeProgram(self.all_cones, VIOLATION_FOR_BOUNDS)
         least = ExtraLoad(math.inf, math.inf, np.zeros(3))
         for counts, load in zip(self.counts, self.balanced, strict=True):
             all_counts = np.append(counts, np.zeros(len(self.all_cones.columns) - len(counts)))
@@ -243,7 +250,7 @@ class _Choices:
 
     def ranges(self) -> Iterator[tuple[float, float]]:
         """Yield the least and greatest normal force of each contact, over the choices in which it counts."""
-        program = ConeProgram(self.cones, CUT_FOR_RANGES)
+        program = ConeProgram(self.cones, VIOLATION_FOR_RANGES)
         for contact in range(len(self.cones.columns)):
             asked = [
                 (load, counts)
@@ -252,4 +259,4 @@ class _Choices:
             ]
             least = min(least_normal_force(program, *given, contact) for given in asked)
             greatest = max(greatest_normal_force(program, *given, contact) for given in asked)
-            yield least if least > NOTHING else 0.0, greatest if greatest < WITHOUT_BOUND else math.inf
+            yield least if least > LEAST_EXTRA_LOAD else 0.0, greatest if greatest < GREATEST_FORCE else math.inf

@@ -21,10 +21,9 @@ from cagepose.studies.polytope_play import MOST_STARTS, PolytopePlay
 from cagepose.studies.pushed_play import PushedPlay
 from cagepose.studies.pushes import unseated
 from cagepose.studies.seat import seated as seated_pushes
+from cagepose.studies.tolerances import PROVEN_WITHIN
 
 NO_INNER_CAGE = "bounds are known of the object's boxes alone, among points and solid shapes over their faces"
-PROVEN_WITHIN = 0.01
-"""Of an end: one that no motion can pass by more is proven. Certified bounds include more than the end itself."""
 SEARCH_S = 2.0
 """Seconds that the search for a way out may take, if the object is not proven to be caged."""
 

@@ -17,7 +17,7 @@ from cagepose.model.scene import Scene
 
 FREEDOMS = ("x", "y", "z", "roll", "pitch", "yaw")
 """Displacement of the object's origin and ZYX angles, both from the start, in the cage's axes."""
-LENGTHS = 3
+N_LENGTHS = 3
 """So many of them are lengths."""
 
 
@@ -84,12 +84,12 @@ def range_goals(frame: PlayFrame, shifts: Sequence[tuple[FloatArray, FloatArray]
     """Return two goals, the least and the greatest value, for each freedom and each further shift: a point of the
     object and a direction in the cage.
     """
-    lengths = [(np.zeros(3), axis) for axis in np.eye(LENGTHS)]
+    lengths = [(np.zeros(3), axis) for axis in np.eye(N_LENGTHS)]
     angles = [(np.zeros(3), np.zeros(3))] * 3
     points, directions = zip(*lengths, *angles, *shifts, strict=True)
     made = empty_rows(Goal, 2 * len(points))
     columns = np.asarray(made)
-    columns["kind"] = np.repeat([*[SHIFT] * LENGTHS, ROLL, PITCH, YAW, *[SHIFT] * len(shifts)], 2)
+    columns["kind"] = np.repeat([*[SHIFT] * N_LENGTHS, ROLL, PITCH, YAW, *[SHIFT] * len(shifts)], 2)
     columns["sign"] = np.tile([-1.0, 1.0], len(points))
     columns["starts"][:, 0] = np.repeat(frame.from_object(points), 2, axis=0)
     columns["directions"][:, 0] = np.repeat(directions, 2, axis=0)

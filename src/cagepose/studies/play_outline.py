@@ -11,15 +11,16 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.scene import Scene
 from cagepose.studies.play import play
 from cagepose.studies.play_result import PointPlay
-from cagepose.studies.support import PARALLEL, polygon_within
+from cagepose.studies.support import polygon_within
+from cagepose.studies.tolerances import PARALLEL_SINE
 
 PLANES = (("x", "y"), ("x", "z"), ("y", "z"))
 N_DIRECTIONS = 24
 """In each plane, 15 deg apart."""
 
 
-SHOWN = 1.3
-"""Of the farthest end: so far goes a picture in which some directions have no end."""
+EXTENT_OF_PICTURE = 1.3
+"""In distances of the farthest end. A picture in which some directions have no end goes so far."""
 CUT_OFF = 4.0
 """In halves of such a picture: there an outline without end is cut off, so that the cut is not seen."""
 
@@ -81,9 +82,9 @@ def _outline(axes: tuple[str, str], units: FloatArray, points: tuple[PointPlay, 
     heights = np.concatenate([linear, exact])
     has_end = np.isfinite(heights)
     farthest_m = float(np.abs(heights[has_end]).max(initial=0.0)) or 0.5 * size_m
-    shown_m = None if has_end.all() else SHOWN * farthest_m
+    shown_m = None if has_end.all() else EXTENT_OF_PICTURE * farthest_m
     is_open, bounding = np.isnan(exact), normals[~np.isnan(exact)]
-    goes_on = is_open & (normals @ bounding.T <= PARALLEL).all(axis=1)
+    goes_on = is_open & (normals @ bounding.T <= PARALLEL_SINE).all(axis=1)
     unsure = np.array([end.status == "not converged" for end in ends]) & ~is_open
     return PointOutline(
         axes,

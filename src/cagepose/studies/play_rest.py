@@ -24,12 +24,8 @@ from cagepose.model.scene import Scene
 from cagepose.model.scope import check_boxes_and_points
 from cagepose.runs.actions import acting_pushes, is_one_force
 from cagepose.runs.load_scaling import scaled_load
-from cagepose.studies.play_frame import FREEDOMS, LENGTHS, PlayFrame, motion_after, range_goals
-
-LEFT_OPEN = 1e-7
-"""Lengths of the scene, or radians. A freedom with a smaller range at rest is determined."""
-FLAT = 1e-12
-"""Lengths of the scene: how exactly the touching points stay at their faces while ranges are asked."""
+from cagepose.studies.play_frame import FREEDOMS, N_LENGTHS, PlayFrame, motion_after, range_goals
+from cagepose.studies.tolerances import GAP_AT_FACES, RANGE_OF_FREEDOM
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,7 +155,7 @@ def _face(work: PlayWorkspace, kept: IntArray) -> tuple[FloatArray, FloatArray]:
     """Return the part of the polytope in which the points of some rows stay at their faces."""
     rows, bounds, n_pairs = work.rows.copy(), work.bounds.copy(), len(work.faces)
     rows[n_pairs : n_pairs + len(kept)] = -rows[kept]
-    bounds[n_pairs : n_pairs + len(kept)] = FLAT - bounds[kept]
+    bounds[n_pairs : n_pairs + len(kept)] = GAP_AT_FACES - bounds[kept]
     return rows, bounds
 
 
@@ -167,8 +163,8 @@ def _open_freedoms(ends: np.ndarray, length_m: float) -> list[OpenFreedom]:
     found = []
     values = np.where(ends["linear_outcome"] == REACHED, ends["linear"], np.nan).reshape(-1, 2)
     for place, (low, high) in enumerate(values.tolist()):
-        if not high - low <= LEFT_OPEN:
-            unit = length_m if place < LENGTHS else 1.0
+        if not high - low <= RANGE_OF_FREEDOM:
+            unit = length_m if place < N_LENGTHS else 1.0
             found.append(
                 OpenFreedom(FREEDOMS[place], *(None if math.isnan(end) else unit * end for end in (low, high)))
             )

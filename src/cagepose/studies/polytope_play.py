@@ -23,7 +23,7 @@ from cagepose.studies.play_result import EndStatus, PlayEnd
 MOST_STARTS = 2000
 """Poses of the search for a way out that ends are looked for from: a millisecond, and as many on any machine."""
 MOST_ROUNDS = 5
-"""Of searches from the ends of others. One round that finds nothing is usual."""
+"""So many rounds of searches start from the ends of others. One round that finds nothing is usual."""
 STATUS: dict[int, EndStatus] = {REACHED: "local", OPEN: "open", UNFINISHED: "not converged"}
 
 

@@ -16,20 +16,20 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.run import Motion, motion_between
 from cagepose.studies.cage_verdict import CageVerdict, PathStep
-from cagepose.studies.play_frame import FREEDOMS, LENGTHS
+from cagepose.studies.play_frame import FREEDOMS, N_LENGTHS
 from cagepose.studies.play_limits import Clearance, pressed_clearances
 from cagepose.studies.play_result import EndStatus, PlayEnd
 from cagepose.studies.pushes import PITCH, ROLL, YAW, Freedom, Pushed, Pushes
+from cagepose.studies.tolerances import FARTHER_END
 
 MOST_ROUNDS = 5
-"""Of pushes from the ends of others. One round that finds nothing is usual."""
+"""So many rounds of pushes start from the ends of others. One round that finds nothing is usual."""
 MOST_STEPS = 5_000
-"""Of all pushes from ends of others, as many on any machine: a second or two, where shapes are many."""
-FARTHER = 1e-9
-"""In sizes of the scene, or radians: an end that lies farther by less is the same."""
-AHEAD = (0.01, 0.03, 0.1, 0.3, 1.0)
+"""All pushes from the ends of others take so many steps at most, as many on any machine. That is a second or two, where
+shapes are many."""
+WAYS_AHEAD = (0.01, 0.03, 0.1, 0.3, 1.0)
 """In sizes of the scene: how far ahead of an escape it is asked whether the way is free."""
-SEED = 20250101
+RANDOM_SEED = 20250101
 
 Chain = tuple[Pushed, ...]
 """Pushes one after the other, from the start; none: the start itself."""
@@ -53,7 +53,7 @@ class PushedPlay:
 
     def __init__(self, scene: Scene, pushes: Pushes, shifts: Sequence[tuple[FloatArray, FloatArray]]) -> None:
         self.scene, self._pushes = scene, pushes
-        lengths = [Freedom(np.zeros(3), axis) for axis in np.eye(LENGTHS)]
+        lengths = [Freedom(np.zeros(3), axis) for axis in np.eye(N_LENGTHS)]
         angles = [Freedom(np.zeros(3), np.zeros(3), angle) for angle in (ROLL, PITCH, YAW)]
         self._freedoms = [*lengths, *angles, *(Freedom(*shift) for shift in shifts)]
         self._found = dict[tuple[int, float], _Found]()
@@ -89,7 +89,7 @@ class PushedPlay:
         catch on what it would pass straight.
         """
         center = self.scene.object.center_of_gravity_m
-        for place in range(LENGTHS if center.any() else 0):
+        for place in range(N_LENGTHS if center.any() else 0):
             for sign in (-1.0, 1.0):
                 freedom = replace(self._freedoms[place], at_object_m=center)
                 pushed = self._pushed_from((), freedom, sign, _words(place, sign))
@@ -122,7 +122,7 @@ class PushedPlay:
         value = math.inf if pushed.goes_on else sign * self._pushes.value(freedom, (*chain, pushed))
         before = self._found.get((place, sign))
         unit = self.scene.size_m if freedom.angle is None else 1.0
-        if before is None or value > before.value + FARTHER * unit:
+        if before is None or value > before.value + FARTHER_END * unit:
             self._found[place, sign] = _Found(value, pushed, chain)
 
     def _pushed_from(self, chain: Chain, freedom: Freedom, sign: float, by: str) -> Pushed:
@@ -144,7 +144,7 @@ class PushedPlay:
         places = [pushed.pose.position_m]
         if pushed.verdict == "escapes" and freedom.angle is None:
             way = sign * self.scene.size_m * (self.scene.cage.pose_world_cage.rotation @ freedom.direction_cage)
-            places += [pushed.pose.position_m + share * way for share in AHEAD]
+            places += [pushed.pose.position_m + share * way for share in WAYS_AHEAD]
         if all(self._is_free(place, pushed.pose) for place in places):
             return pushed
         return replace(pushed, poses=pushed.poses[:0], verdict="stalled", passes_pole=False)
@@ -190,7 +190,7 @@ class PushedPlay:
 
         ``why_not`` and ``leaves_at`` say why there is no proof that none does.
         """
-        rng, started, n_tried = np.random.default_rng(SEED), perf_counter(), 0
+        rng, started, n_tried = np.random.default_rng(RANDOM_SEED), perf_counter(), 0
         chains = [(), *self._chains(range(len(FREEDOMS)))]
         reach, center = self.scene.object.reach_m, self.scene.object.center_of_gravity_m
         while self.escape is None:
@@ -236,7 +236,7 @@ def _n_steps(chain: Chain) -> int:
 
 def _words(place: int, sign: float) -> str:
     """``along -x``, ``in +yaw``."""
-    return f"{'along' if place < LENGTHS else 'in'} {'+' if sign > 0.0 else '-'}{FREEDOMS[place]}"
+    return f"{'along' if place < N_LENGTHS else 'in'} {'+' if sign > 0.0 else '-'}{FREEDOMS[place]}"
 
 
 def _is_idle(motion: Motion, scene: Scene) -> bool:

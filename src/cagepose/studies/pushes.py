@@ -23,7 +23,8 @@ from cagepose.runs.methods import REGISTRY
 from cagepose.runs.quasistatic import TURN_STEP_RAD
 
 STEP_LIMIT = 60
-"""Of one push: forty are many for one that comes to rest. What still turns then goes on."""
+"""One push takes so many steps at most. Forty are many for one that comes to rest, and what still turns then goes on.
+"""
 TURNS_ON = 0.5
 """Radians, in so many steps."""
 STEEPEST, TURN = 1.55, 2.0 * np.pi

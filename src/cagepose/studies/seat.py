@@ -11,7 +11,7 @@ from cagepose.runs.solve import run
 from cagepose.studies.pushes import Pushes
 
 SHARE_OF_LOAD = 1e-4
-"""Of a push beside what seats the object: on a flat seat it goes as far as by any smaller push."""
+"""Size of a push beside the load that seats the object. On a flat seat it goes as far as by any smaller push."""
 
 
 def seated(scene: Scene, phase: str) -> Pushes:

@@ -10,12 +10,8 @@ import numpy as np
 from cagepose.model.checks import FloatArray, unit_vector
 from cagepose.runs.actions import wrench_at
 from cagepose.runs.run import Run
+from cagepose.studies.tolerances import PARALLEL_SINE, ROUNDING_OF_CORNER
 from cagepose.studies.whole_rims import more_places
-
-PARALLEL = 1e-6
-"""Sine of the angle between two lines that do not cross."""
-ROUNDING = 1e-9
-"""Of the largest distance: a crossing that a line cuts off by less is a corner."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,12 +118,12 @@ def polygon_within(normals: FloatArray, heights: FloatArray) -> FloatArray:
     [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]
     """
     first, second = np.triu_indices(len(normals), 1)
-    is_crossing = np.abs(_cross(normals[first], normals[second])) > PARALLEL
+    is_crossing = np.abs(_cross(normals[first], normals[second])) > PARALLEL_SINE
     first, second = first[is_crossing], second[is_crossing]
     pairs = np.stack([normals[first], normals[second]], axis=1)
     crossings = np.linalg.solve(pairs, np.stack([heights[first], heights[second]], axis=1)[:, :, None])[:, :, 0]
-    within = (crossings @ normals.T <= heights + ROUNDING * np.abs(heights).max()).all(axis=1)
-    return without_doubles(convex_hull(crossings[within] + 0.0), 10.0 * ROUNDING * np.abs(heights).max())
+    within = (crossings @ normals.T <= heights + ROUNDING_OF_CORNER * np.abs(heights).max()).all(axis=1)
+    return without_doubles(convex_hull(crossings[within] + 0.0), 10.0 * ROUNDING_OF_CORNER * np.abs(heights).max())
 
 
 def without_doubles(corners: FloatArray, distance: float) -> FloatArray:

@@ -31,23 +31,22 @@ from cagepose.runs.cases import contact_friction
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import Run
 from cagepose.studies.contact_problem import ContactProblem, contact_problem
-from cagepose.studies.support import PARALLEL, ROUNDING, LoadView, convex_hull, polygon_within, without_doubles
+from cagepose.studies.support import LoadView, convex_hull, polygon_within, without_doubles
+from cagepose.studies.tolerances import DISTANCE_OF_CORNER, PARALLEL_SINE, ROUNDING_OF_CORNER, VIOLATION_OF_CONE
 from cagepose.studies.whole_rims import more_places
 
 N_DIRECTIONS = 120
 """3 deg apart; and across each side of the contacts' polygon, so that a polygon comes out exactly."""
-FIRST_RAYS, MOST_ROUNDS = 8, 40
-"""Of each friction cone, evenly spread; and how often others come in."""
-CUT_FROM = 1e-9
-"""In lengths of a twist: one that is violated by less is left as it is."""
-HALVINGS = 30
-"""Of the angle between a direction in which a region ends and one in which it does not."""
-TRUE = 1e-3
-"""Of its distance from the centre of gravity, or of the farthest contact's: a corner is no farther outside."""
-FAR = 1e3
+FIRST_RAYS = 8
+"""Each friction cone starts with so many rays, evenly spread."""
+MOST_ROUNDS = 40
+"""Other rays come in so many times."""
+HALVINGS_OF_ANGLE = 30
+"""The angle between a direction in which a region ends and one in which it does not is halved so many times."""
+WAY_WITHOUT_END = 1e3
 """In distances of ends: what has no end is followed so far."""
 MOST_CHOICES = 27
-"""Of faces at edges: three points on corners."""
+"""So many choices of faces at edges are asked: three points on corners."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,10 +90,10 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
         return None
     normals, heights, points = found
     margin_m = float(heights.min())
-    if margin_m == -math.inf or _is_empty(normals, heights + ROUNDING * reach_m):
+    if margin_m == -math.inf or _is_empty(normals, heights + ROUNDING_OF_CORNER * reach_m):
         return SupportRegion(np.zeros((0, 2)), -math.inf)
     if len(choices) == 1 and heights.max() < reach_m:  # between its farthest points there is next to nothing
-        shown = without_doubles(convex_hull(points), ROUNDING * reach_m)
+        shown = without_doubles(convex_hull(points), ROUNDING_OF_CORNER * reach_m)
     else:
         shown = polygon_within(normals, np.minimum(heights, reach_m))
     return SupportRegion(view.load_point + shown, margin_m)
@@ -118,7 +117,7 @@ def _is_empty(normals: FloatArray, heights: FloatArray) -> bool:
     """Whether no point is within these distances of the origin along unit vectors: regions that do not overlap."""
     if heights.min() >= 0.0:
         return False
-    farthest = FAR * np.abs(heights[np.isfinite(heights)]).max()
+    farthest = WAY_WITHOUT_END * np.abs(heights[np.isfinite(heights)]).max()
     return len(polygon_within(normals, np.minimum(heights, farthest))) == 0
 
 
@@ -227,7 +226,7 @@ def _farthest(region: _Region, normals: FloatArray) -> _Bounds | None:
 def _direction_between(one: _End, other: _End, length_m: float) -> FloatArray | None:
     """Return the direction across the way between two ends; None: their corner is as near to the region as is told."""
     turned = float(one[0][0] * other[0][1] - one[0][1] * other[0][0])
-    if turned < PARALLEL or float(one[0] @ other[0]) < 0.0:
+    if turned < PARALLEL_SINE or float(one[0] @ other[0]) < 0.0:
         return None  # no corner, or one beyond what has no end
     corner = np.linalg.solve(np.stack([one[0], other[0]]), [one[1], other[1]])
     chord = other[2] - one[2]
@@ -235,7 +234,7 @@ def _direction_between(one: _End, other: _End, length_m: float) -> FloatArray | 
     if size == 0.0:
         return None
     off = float(outward @ (corner - one[2])) / size
-    return outward / size if off > TRUE * max(float(np.linalg.norm(corner)), length_m) else None
+    return outward / size if off > DISTANCE_OF_CORNER * max(float(np.linalg.norm(corner)), length_m) else None
 
 
 def _last_ends(
@@ -243,7 +242,7 @@ def _last_ends(
 ) -> list[tuple[FloatArray, tuple[float, FloatArray]]]:
     """Return directions ever nearer to an endless one in which the region still ends, and where."""
     found = []
-    for _ in range(HALVINGS):
+    for _ in range(HALVINGS_OF_ANGLE):
         between = bounded + endless
         between /= np.linalg.norm(between)
         end = region.reach(between)
@@ -296,6 +295,6 @@ class _Rays:
         along = self.wrenches @ twist
         slips = np.linalg.norm(along[:, 1:], axis=1)
         size = np.linalg.norm(twist * [1.0, 1.0, 1.0, *3 * [self.length_m]])
-        cut = np.nonzero((along[:, 0] + self.friction * slips > CUT_FROM * size) & (slips > 0.0))[0]
+        cut = np.nonzero((along[:, 0] + self.friction * slips > VIOLATION_OF_CONE * size) & (slips > 0.0))[0]
         self._add(cut, along[cut, 1:] / slips[cut, None])
         return len(cut) > 0

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from cagepose.kernels.contact.tolerances import SAME_NORMAL_RAD
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -17,8 +18,6 @@ from cagepose.model.scene import Scene
 PROBE, PROBE_MARGIN = 3.0, 1.5
 """In touch tolerances, of (2.7): a face is hidden where a point that far outside of it, and that far from its edge,
 lies so deep in another box."""
-SAME_NORMAL = 1e-9
-"""Flush faces of two boxes give one contact."""
 
 
 @dataclass(frozen=True, order=True)
@@ -84,7 +83,7 @@ def touched_faces(scene: Scene, pose: Pose) -> list[Touch]:
                 if not _is_hidden(box, axis, place, gaps, touch_m, half_sizes, rotations, middles)
             ]  # fmt: skip
             outward = [np.copysign(1.0, place[axis]) * rotations[box][:, axis] for axis in found]
-            if all(any(np.linalg.norm(one - other) <= SAME_NORMAL for other in normals) for one in outward):
+            if all(any(np.linalg.norm(one - other) <= SAME_NORMAL_RAD for other in normals) for one in outward):
                 continue  # flush faces of another box say nothing new
             for axis, normal in zip(found, outward, strict=True):
                 side = ("+" if place[axis] > 0.0 else "-") + "xyz"[axis]

@@ -18,13 +18,10 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.model.shapes import Turned
 from cagepose.runs.run import Contact, PhaseRun
+from cagepose.studies.tolerances import DEPTH_OF_PROBE, SAME_NORMAL_SINE
 
-PLACES = 128
-"""Of a circle: a polygon of so many corners is 0.03 % within it."""
-PROBE = 10.0
-"""In touch tolerances: so far into either part it is asked whether there is material."""
-SAME_WAY = 1e-6
-"""Sine of the angle between normals that are one."""
+PLACES_OF_CIRCLE = 128
+"""A circle has so many places. A polygon of so many corners is 0.03 % within it."""
 WIDEST = 0.51 * np.pi
 """Angle between places that are listed, at most, of what touches all around."""
 
@@ -57,7 +54,7 @@ def more_places(scene: Scene, ended: PhaseRun) -> list[Contact]:
         for axis in _axes(sides):
             circles = list(_circles(contacts, axis, scene.touch_m))
             for circle in circles:
-                found += _places(sides, circle[0], axis, PROBE * scene.touch_m)
+                found += _places(sides, circle[0], axis, DEPTH_OF_PROBE * scene.touch_m)
             if circles:
                 break
     return found
@@ -117,7 +114,9 @@ def _circles(contacts: Sequence[Contact], axis: _Axis, touch_m: float) -> Iterat
         first, same, others = left[0][1], list[tuple[Contact, _About]](), list[tuple[Contact, _About]]()
         for contact, about in left:
             apart_m = max(abs(about.height - first.height), abs(about.radius - first.radius))
-            is_same = apart_m <= SAME_PLACE * touch_m and np.linalg.norm(about.normal - first.normal) <= SAME_WAY
+            is_same = (
+                apart_m <= SAME_PLACE * touch_m and np.linalg.norm(about.normal - first.normal) <= SAME_NORMAL_SINE
+            )
             (same if is_same else others).append((contact, about))
         angles = np.sort([about.angle for _, about in same])
         gaps = np.diff(angles, append=angles[0] + 2.0 * np.pi)
@@ -131,10 +130,10 @@ def _places(sides: Sequence[_Side], listed: Contact, axis: _Axis, probe_m: float
     between two places that are listed.
     """
     height, radius, _, normal = _about(listed, axis)
-    around = _around(2.0 * np.pi * np.arange(PLACES) / PLACES)
+    around = _around(2.0 * np.pi * np.arange(PLACES_OF_CIRCLE) / PLACES_OF_CIRCLE)
     places = axis.pose.transform(np.array((radius, 0.0, height)) @ around)
     normals = normal @ around @ axis.pose.rotation.T
-    is_held = np.ones(PLACES, np.bool_)
+    is_held = np.ones(PLACES_OF_CIRCLE, np.bool_)
     for body, name, pose, sign in sides:
         probes = pose.inverse_transform(places + sign * probe_m * normals)
         of = next((hole.in_ for hole in body.holes if hole.name == name), (name,))

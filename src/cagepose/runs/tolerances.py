@@ -1,0 +1,17 @@
+"""The tolerances of runs: what counts as equal, parallel or zero before and after the kernels."""
+
+TENSION_AT_ZERO = 1e-12
+"""In the terms of a spring's tension. A smaller tension at length zero is rounding, and the spring's force is then
+linear."""
+MOMENT_ABOUT_POINT = 1e-12
+"""In forces times their distances from each other. Forces whose moments agree so well act through one point."""
+SINE_TO_SPAN = 1e-6
+"""Sine of an angle. A freedom at a smaller angle to the undetermined ones lies in their span."""
+EQUAL_DISTANCE_OF_SIZE = 1e-6
+"""Fraction of the scene's size. Distances that differ by less are equal (R3, R6)."""
+PARALLEL_SINE = 1e-6
+"""Sine between normals. Normals at a smaller angle are one direction."""
+LEAST_MOMENT = 1e-3
+"""Fraction of force times distance. A smaller moment drives no turn (R3)."""
+LENGTH_OF_NO_SPRING = 1e-6
+"""In sizes of the scene. The ends of a shorter spring count as one point."""
