@@ -31,7 +31,7 @@ from cagepose import (
 )
 from cagepose.exchange.export import exported
 from cagepose.exchange.mjcf import mjcf_text
-from cagepose.exchange.pierced import AROUND
+from cagepose.exchange.pierced import SIDES_OF_ROUND
 from cagepose.exchange.solids import POINT_OF_SIZE, assembly_of
 from cagepose.exchange.stl import stl_text
 from cagepose.model.shape_moments import shape_moments
@@ -65,7 +65,7 @@ def sagitta(scene: Scene) -> float:
     """How far the flat sides of what is round may be off, metres: of holes and frustums."""
     turned = [*scene.object.holes, *scene.cage.holes, *scene.object.shapes]
     radii = [radius for shape in turned if hasattr(shape, "rims") for _, radius in shape.rims]
-    return max(radii, default=0.0) * (1.0 / np.cos(np.pi / AROUND) - 1.0)
+    return max(radii, default=0.0) * (1.0 / np.cos(np.pi / SIDES_OF_ROUND) - 1.0)
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
@@ -224,7 +224,7 @@ def test_wedges_around_a_hole_leave_it_open_and_nothing_else(chamfer, depth):
     away = np.hypot(*hole.pose_body_shape.inverse_transform(points)[:, :2].T)
     heights = hole.pose_body_shape.inverse_transform(points)[:, 2]
     walls = np.interp(heights, *np.array(hole.rims).T)
-    off = np.maximum(walls, 0.01) * (1.0 / np.cos(np.pi / AROUND) - 1.0) + 1e-9
+    off = np.maximum(walls, 0.01) * (1.0 / np.cos(np.pi / SIDES_OF_ROUND) - 1.0) + 1e-9
     is_solid = (away > walls + off) | (heights < -depth - 1e-9)
     is_open = (away < walls - 1e-9) & (heights > -depth + 1e-9)
     assert in_pieces[is_solid].all()

@@ -154,7 +154,7 @@ def test_a_great_rounding_stays(read):
 
 def test_too_many_fillets_stay(read, monkeypatch):
     """Open CASCADE would take minutes, and the file be refused."""
-    monkeypatch.setattr(step_fillets, "MOST", 0)
+    monkeypatch.setattr(step_fillets, "MOST_FACES", 0)
     scene, notes = read(bracket())
     assert len(scene.object.parts) > 10
     assert not any("hollow rounding" in note for note in notes)

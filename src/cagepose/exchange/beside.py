@@ -12,7 +12,7 @@ from cagepose.files.scene_document import scene_document
 from cagepose.model.scene import Scene
 from cagepose.model.wording import few
 
-VERSION = 1
+NOTE_VERSION = 1
 KEPT = ("name", "loads", "method", "metric", "tolerances")
 """Keys of the scene file that stand in the note as they are."""
 
@@ -20,7 +20,7 @@ KEPT = ("name", "loads", "method", "metric", "tolerances")
 def beside_text(scene: Scene, *, with_friction: bool = False) -> str:
     """Return the note; ``with_friction``: that of the scene too, where the format has none."""
     document = scene_document(scene, "m")
-    note: dict[str, Any] = {"version": VERSION, **{key: document[key] for key in KEPT if key in document}}
+    note: dict[str, Any] = {"version": NOTE_VERSION, **{key: document[key] for key in KEPT if key in document}}
     if with_friction:
         note["friction"] = {"coefficient": scene.friction_coefficient, "of": scene.friction_of}
     note["points"] = list(scene.cage.names)
@@ -46,7 +46,7 @@ def read_beside(text: str) -> dict[str, Any] | None:
         found = json.loads(text)
     except (ValueError, RecursionError):
         return None
-    if not isinstance(found, dict) or found.get("version") != VERSION:
+    if not isinstance(found, dict) or found.get("version") != NOTE_VERSION:
         return None
     friction = found.get("friction", {"of": {}, "coefficient": None})
     is_whole = isinstance(friction, dict) and "coefficient" in friction and isinstance(friction.get("of"), dict)

@@ -16,7 +16,7 @@ from cagepose.errors import FileProblem, SceneError, SceneFileError
 from cagepose.files.own_process import answer, ask
 
 CPU_SECONDS, WALL_SECONDS = 8, 60.0
-"""Of the process."""
+"""Limits of the process."""
 SURFACES = ("plane", "sphere", "capsule", "cylinder", "box", "mesh")
 """Kinds of geoms that are passed on; others only by name."""
 

@@ -21,11 +21,11 @@ from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, PhaseRun, Run
 from cagepose.runs.solve import run
 
-ALLOWED = 20.0
+ALLOWED_DISTANCE = 20.0
 """Poses agree if no point is farther apart than so many times MuJoCo's penetration and the exported shapes' error: what
 contacts give near each other, a long part shows many times as large at its end."""
-SEGMENTS = 16
-"""Of the circles on which points of round parts are looked at."""
+CHORDS_OF_CIRCLE = 16
+"""Chords of the circles on which points of round parts are looked at."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +105,7 @@ def crosscheck(done: Run) -> Crosscheck:
 
 def surface_points(held: Object) -> FloatArray:
     """Return points of the object that tell how far a pose is from another, (n, 3), in its frame, metres."""
-    return np.concatenate([shape_mesh(part, SEGMENTS).vertices_m for part in held.parts])
+    return np.concatenate([shape_mesh(part, CHORDS_OF_CIRCLE).vertices_m for part in held.parts])
 
 
 def _checked(
@@ -115,7 +115,7 @@ def _checked(
     there = mujoco.settle(index, start)
     distance_m = apart_m(points, there.pose, phase.pose)
     angle_rad = _angle(there.pose, phase.pose)
-    allowed_m = ALLOWED * (there.penetration_m + assembly.error_m)
+    allowed_m = ALLOWED_DISTANCE * (there.penetration_m + assembly.error_m)
     escapes = phase.verdict == "escapes" and not there.settled.is_quiet and distance_m > scene.size_m
     if escapes or (phase.verdict in AT_REST and there.settled.is_quiet and distance_m <= allowed_m):
         return PhaseCheck(phase, there, distance_m, angle_rad, allowed_m, None, None, ())

@@ -9,8 +9,8 @@ from cagepose.exchange.crosscheck import Crosscheck, PhaseCheck
 from cagepose.files.document import pose_document
 from cagepose.files.units import LengthUnit, from_metres
 
-VERSION = 1
-"""Of the document. Counts up when a reader of the old form would misread the new one."""
+DOCUMENT_VERSION = 1
+"""Version of the document. It counts up when a reader of the old form would misread the new one."""
 
 
 def crosscheck_document(found: Crosscheck, length_unit: LengthUnit) -> dict[str, Any]:
@@ -41,7 +41,7 @@ def crosscheck_document(found: Crosscheck, length_unit: LengthUnit) -> dict[str,
         }
 
     return {
-        "version": VERSION,
+        "version": DOCUMENT_VERSION,
         "scene": found.run.scene.name,
         "engine": "mujoco",
         "units": {"length": length_unit},

@@ -14,10 +14,11 @@ from cagepose.errors import FileProblem, SceneFileError
 from cagepose.exchange.beside import read_beside, spoilt
 from cagepose.exchange.compile_model import compiled
 from cagepose.exchange.extra import mujoco
-from cagepose.exchange.model_bodies import WORLD, ModelBodies
+from cagepose.exchange.model_bodies import WORLD_BODY, ModelBodies
 from cagepose.exchange.model_friction import scene_friction
 from cagepose.exchange.model_text import ModelText, read_model_text
 from cagepose.exchange.solids_document import METRES, SOLIDS, kept_friction, solids_document
+from cagepose.exchange.tolerances import VOLUME_NOT_CONVEX
 from cagepose.files.meshes.pieces import MOST_CORNERS
 from cagepose.files.scene_file import SceneText
 from cagepose.files.yaml_source import YamlSource
@@ -30,8 +31,6 @@ from cagepose.model.wording import few
 Data = dict[str, Any]
 """Of a geom, or of a part of a scene file."""
 
-NOT_CONVEX = 1e-3
-"""Of a hull's volume: a mesh that is less by more is not convex."""
 PLANE_OF_REACH = 20.0
 """Width of the box that stands for a plane, in distances of the object's farthest point: no plane of MuJoCo ends."""
 
@@ -105,7 +104,7 @@ class _Reader:
         bodies, beside = self.bodies, self.beside
         held = bodies.free() if object_name is None else bodies.named(object_name)
         of_object = bodies.below([held])
-        of_cage = bodies.below([bodies.named(name) for name in cage_names] or [WORLD]) - of_object
+        of_cage = bodies.below([bodies.named(name) for name in cage_names] or [WORLD_BODY]) - of_object
         for what, names in (
             ("joints stay where the model has them, of", bodies.jointed((of_object | of_cage) - {held})),
             ("bodies left out:", bodies.others(of_object | of_cage)),
@@ -115,7 +114,7 @@ class _Reader:
         parts, walls = self.geoms(of_object), self.geoms(of_cage)
         name_them([*parts, *walls])
         with_geoms = {geom["body"] for geom in walls}
-        frame = with_geoms.pop() if len(with_geoms) == 1 else WORLD
+        frame = with_geoms.pop() if len(with_geoms) == 1 else WORLD_BODY
         shapes = [self.shape(geom, held, held, 0.0) for geom in parts]
         reach_m = max((_reach_m(shape) for shape in shapes if shape), default=0.0)
         points = {
@@ -175,7 +174,7 @@ class _Reader:
             self.notes.append(f"left out: the mesh {label!r}, as its hull {found}; simplify it")
             return {}
         full_m3, volume_m3 = shape_moments(Convex(geom["vertices"])).volume_m3, abs(geom["volume"])
-        if volume_m3 < (1.0 - NOT_CONVEX) * full_m3:
+        if volume_m3 < (1.0 - VOLUME_NOT_CONVEX) * full_m3:
             share = 1.0 - volume_m3 / full_m3
             self.notes.append(f"the mesh {label!r} is not convex: here, its hull, {share:.1%} of which is too much")
         return {"convex": {"vertices": geom["vertices"]}}

@@ -26,11 +26,12 @@ from cagepose.runs.run import PhaseRun
 
 NOTE = "cagepose"
 """Name of the text in which our note stands."""
-EARTH = 9.81
+EARTH_GRAVITY = 9.81
 """m/s^2, where a scene gives gravity a direction alone."""
 KINDS = {"box": "box", "sphere": "sphere", "capsule": "capsule", "cylinder": "cylinder", "convex": "mesh"}
 OWN_PRIORITY = {"cage": 2, "object": 1}
-"""Of geoms with a friction of their own: that of the cage's counts, else that of the object's, as in a scene."""
+"""Priorities of geoms with a friction of their own. That of the cage's counts, else that of the object's, as in a
+scene."""
 
 
 def mjcf_text(assembly: Assembly, phases: Sequence[PhaseRun] = ()) -> str:
@@ -108,7 +109,7 @@ def gravity_m_s2(scene: Scene, load: Load) -> ArrayLike:
     assert load.gravity_world is not None
     if scene.object.mass_kg is not None:
         return load.gravity_world
-    return EARTH * load.gravity_world / float(np.linalg.norm(load.gravity_world))
+    return EARTH_GRAVITY * load.gravity_world / float(np.linalg.norm(load.gravity_world))
 
 
 def _place(pose: Pose) -> dict[str, str]:

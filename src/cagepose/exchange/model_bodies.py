@@ -12,7 +12,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.wording import few
 
-WORLD = 0
+WORLD_BODY = 0
 """The body that all others stand in."""
 
 
@@ -82,7 +82,7 @@ class ModelBodies:
 
     def others(self, bodies: set[int]) -> list[str]:
         """Return the names of all other bodies but the world."""
-        return [name for number, name in enumerate(self._names) if number not in bodies | {WORLD}]
+        return [name for number, name in enumerate(self._names) if number not in bodies | {WORLD_BODY}]
 
     def pose(self, body: int) -> Pose:
         """Return where a body is in the world."""

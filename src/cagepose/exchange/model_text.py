@@ -12,7 +12,7 @@ from cagepose.errors import FileProblem, SceneFileError
 from cagepose.files.read import MAX_FILE_BYTES, read_text
 
 MAX_MESH_BYTES = 64 * 1024 * 1024
-"""Of all files together that a model names."""
+"""All files that a model names have at most so many bytes together."""
 SUFFIXES = (".xml", ".urdf")
 FOLDERS = ("meshdir", "texturedir", "assetdir")
 """Attributes that name a folder."""

@@ -19,6 +19,7 @@ from cagepose.exchange.mjcf import mjcf_text
 from cagepose.exchange.mujoco_settings import MujocoSettings
 from cagepose.exchange.settle import Settled, windows_until_quiet
 from cagepose.exchange.solids import Assembly
+from cagepose.exchange.tolerances import QUIET_OF_SIZE
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.runs.actions import load_size, wrench_at
@@ -29,10 +30,8 @@ FALL_OF_SIZE = 1.0 / 3.0
 """Size of the load as an acceleration, in sizes of the scene for each second squared: the rail's in the benchmark."""
 SPEED_OF_SIZE = 1.0 / 15.0
 """At this speed, in sizes for each second, drag is as large as the load."""
-QUIET_OF_SIZE = 3e-7
-"""A window is quiet if no point moved by more, in sizes of the scene."""
 WINDOW_LIMIT = 600
-RAMP = 7
+RAMP_WINDOWS = 7
 """Windows in which the load grows, to double in each: contacts that first have to give would slip under all of it."""
 MEMORY_BYTES = 1 << 28
 """For contacts: holes are hundreds of parts, and MuJoCo's own guess is too small for them."""
@@ -110,8 +109,8 @@ class MujocoScene:
             return self._pose().transform(self._points)
 
         try:
-            for window in range(RAMP):
-                places = advance(whole * 0.5 ** (RAMP - window))
+            for window in range(RAMP_WINDOWS):
+                places = advance(whole * 0.5 ** (RAMP_WINDOWS - window))
             settled = windows_until_quiet(advance, places, QUIET_OF_SIZE * scene.size_m, WINDOW_LIMIT)
         except self._failure as error:
             raise CageposeError(f"MuJoCo gave up: {error}") from error

@@ -14,17 +14,16 @@ from typing import Any
 import numpy as np
 
 from cagepose.exchange.bodies import Scale
+from cagepose.files.meshes.tolerances import LEAST_PIECE
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.hole import Hole
 from cagepose.model.shapes import Convex, Shape
 from cagepose.model.surface import shape_mesh
 
-AROUND = 128
+SIDES_OF_ROUND = 128
 """Flat sides that stand for something round."""
-OUTSIDE = 512
+SIDES_AROUND_HOLES = 512
 """Flat sides of a round part with holes: each wedge has few of them."""
-NOTHING = 1e-9
-"""A piece that is less than this share of its part's volume is rounding."""
 
 
 def pierced_pieces(part: Shape, holes: Sequence[Hole]) -> list[Convex]:
@@ -36,7 +35,7 @@ def pierced_pieces(part: Shape, holes: Sequence[Hole]) -> list[Convex]:
         manifold3d is not installed.
     """
     scale = Scale.of(part)
-    whole = scale.body(shape_mesh(part, OUTSIDE))
+    whole = scale.body(shape_mesh(part, SIDES_AROUND_HOLES))
     pieces = []
     for hole in holes:
         cell = whole
@@ -47,7 +46,7 @@ def pierced_pieces(part: Shape, holes: Sequence[Hole]) -> list[Convex]:
                 across = (one - two) - ((one - two) @ axis) * axis
                 cell = scale.above(cell, unit_rows(across[None])[0], (one + two) / 2.0)
         pieces += _around(cell, hole, scale.above)
-    least = NOTHING * whole.volume()
+    least = LEAST_PIECE * whole.volume()
     return [Convex(scale.mesh(piece).vertices_m) for piece in pieces if piece.volume() > least]
 
 
@@ -56,8 +55,8 @@ def _around(cell: Any, hole: Hole, cut: Callable[[Any, FloatArray, FloatArray], 
     place, turn = hole.pose_body_shape, hole.pose_body_shape.rotation
     axis = turn[:, 2]
     pieces = [cut(cell, -axis, place.transform((0.0, 0.0, hole.rims[0][0])))]
-    for side in range(AROUND):
-        angle, half = 2.0 * math.pi * side / AROUND, math.pi / AROUND
+    for side in range(SIDES_OF_ROUND):
+        angle, half = 2.0 * math.pi * side / SIDES_OF_ROUND, math.pi / SIDES_OF_ROUND
         wedge = cell
         for along, sign in ((angle - half, 1.0), (angle + half, -1.0)):
             beside = turn @ (-sign * math.sin(along), sign * math.cos(along), 0.0)

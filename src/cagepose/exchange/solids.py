@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cagepose.errors import Problem, SceneError
-from cagepose.exchange.pierced import AROUND, OUTSIDE, pierced_pieces
+from cagepose.exchange.pierced import SIDES_AROUND_HOLES, SIDES_OF_ROUND, pierced_pieces
 from cagepose.model.box import Box
 from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose, turn_from_z
@@ -155,12 +155,12 @@ class _Body:
 
     def pieces(self, shape: Shape) -> Iterator[Primitive]:
         if isinstance(shape, Cone):
-            within_m = _sagitta_m(shape, AROUND)
+            within_m = _sagitta_m(shape, SIDES_OF_ROUND)
             self.errors_m.append(within_m)
             self.notes.append(
-                f"{shape.name!r} is a frustum; here it has {AROUND} sides, up to {within_m:.3g} m within it"
+                f"{shape.name!r} is a frustum; here it has {SIDES_OF_ROUND} sides, up to {within_m:.3g} m within it"
             )
-            yield Convex(shape_mesh(shape, AROUND).vertices_m)
+            yield Convex(shape_mesh(shape, SIDES_OF_ROUND).vertices_m)
         elif isinstance(shape, Convex) and shape.radius_m > 0.0:
             yield from rounded_pieces(shape)
         elif isinstance(shape, Box | Sphere | Capsule | Cylinder | Convex):
@@ -179,16 +179,16 @@ class _Body:
             self.problems.append(Problem((self.name, name), f"{message}; make them parts of their own"))
             return []
         radius_m = max(radius for hole in holes for _, radius in hole.rims)
-        around_m = radius_m * (1.0 / math.cos(math.pi / AROUND) - 1.0)
-        within_m = _sagitta_m(part, OUTSIDE) if isinstance(part, Turned) else 0.0
+        around_m = radius_m * (1.0 / math.cos(math.pi / SIDES_OF_ROUND) - 1.0)
+        within_m = _sagitta_m(part, SIDES_AROUND_HOLES) if isinstance(part, Turned) else 0.0
         self.errors_m.extend((around_m, within_m))
         self.notes.append(
-            f"{name!r} has holes; here it is made of wedges around them, so that a hole has {AROUND} flat sides, up to"
-            f" {around_m:.3g} m outside of it"
+            f"{name!r} has holes; here it is made of wedges around them, so that a hole has {SIDES_OF_ROUND} flat"
+            f" sides, up to {around_m:.3g} m outside of it"
             + (
                 ""
                 if isinstance(part, Box | Convex)
-                else f", and the part {OUTSIDE} sides, up to {within_m:.3g} m within it"
+                else f", and the part {SIDES_AROUND_HOLES} sides, up to {within_m:.3g} m within it"
             )
         )
         rough = [str(hole.name) for hole in holes if hole.name in self.friction_of and hole.name != name]

@@ -12,7 +12,8 @@ import numpy as np
 from cagepose.errors import FileProblem, SceneError, SceneFileError
 from cagepose.exchange.solids_note import SHOWN, read_solids_note
 from cagepose.exchange.step_solids import read_step
-from cagepose.exchange.stl import MM
+from cagepose.exchange.stl import MM_PER_M
+from cagepose.exchange.tolerances import SAME_END, SAME_VOLUME
 from cagepose.files.meshes import mesh_file
 from cagepose.files.meshes.decomposed import kept_beside
 from cagepose.files.meshes.manifolds import Triangles
@@ -34,12 +35,8 @@ SOLIDS = (*STEP, *mesh_file.SUFFIXES)
 MAX_STEP_BYTES = 32 * 1024 * 1024
 METRES = SceneWriter("m")
 ALONE = "has no solid but the object; give that as a `mesh` in a scene file with its cage"
-SAME_VOLUME = 1e-7
-"""Of itself: shapes that have it are the solid, and its triangles alone are off."""
-MOST_OFF = 0.05
-"""Of the size: hollow roundings whose loss is more are kept, as many flat faces."""
-SAME_MOUTH = 1e-6
-"""Of a hole's radius: ends that are this near are one."""
+LOSS_OF_ROUNDINGS = 0.05
+"""Fraction of the size. Hollow roundings whose loss is more are kept, as many flat faces."""
 
 
 def solids_document(source: str, object_name: str | None, cage_names: Sequence[str]) -> tuple[Data, list[str]]:
@@ -128,7 +125,7 @@ def _of_mesh(path: Path, is_ours: bool, notes: list[str]) -> dict[str, Data]:
     if not (is_glb or is_ours):
         notes.append("the file does not say its unit: here, millimetres")
     found = mesh_file.read_solids(path)
-    scale = MM if is_glb else 1.0
+    scale = MM_PER_M if is_glb else 1.0
     return {
         name.partition(", made by")[0]: {"vertices": scale * mesh.vertices, "faces": mesh.faces}
         for name, mesh in found.items()
@@ -164,7 +161,7 @@ def _short(name: str, names: Sequence[str]) -> str:
 
 def _middle(solid: Data) -> FloatArray:
     corners = np.asarray(solid["core"] if "core" in solid else solid["vertices"])
-    middle: FloatArray = (corners.max(axis=0) + corners.min(axis=0)) / 2.0 / MM
+    middle: FloatArray = (corners.max(axis=0) + corners.min(axis=0)) / 2.0 / MM_PER_M
     return middle
 
 
@@ -182,7 +179,7 @@ def _shapes(path: Path, name: str, solid: Data, frame: Pose, notes: list[str]) -
             if solid.get("off", 0.0) > found.error:
                 notes.append(f"{name!r} has flat sides where it is round there, up to {solid['off']:.2g} mm off")
         shapes = found.shapes
-    metres = [mesh_file.scaled(shape, 1.0 / MM) for shape in shapes]
+    metres = [mesh_file.scaled(shape, 1.0 / MM_PER_M) for shape in shapes]
     return [shape.moved(frame @ shape.pose_body_shape) for shape in metres]
 
 
@@ -197,7 +194,7 @@ def _sharp(solid: Data, mesh: Triangles, name: str, notes: list[str]) -> tuple[D
     except SceneError:  # Open CASCADE left it open or crossing itself
         return solid, mesh
     off = max(farthest_from(mesh, sharp), farthest_from(sharp, mesh))
-    if off > MOST_OFF * mesh.size:
+    if off > LOSS_OF_ROUNDINGS * mesh.size:
         return solid, mesh
     roundings = counted((solid["n_fillets"], "hollow rounding", "hollow roundings"))
     notes.append(
@@ -212,7 +209,7 @@ def _named(shape: Shape, mouths: Data) -> Shape:
     if isinstance(shape, Hole):
         ends = shape.nodes_body()[[0, -1]]
         for name, mouth in mouths.items():
-            if np.linalg.norm(ends - mouth, axis=1).min() <= SAME_MOUTH * shape.radius_m:
+            if np.linalg.norm(ends - mouth, axis=1).min() <= SAME_END * shape.radius_m:
                 del mouths[name]
                 return shape.renamed(name)
     return shape

@@ -11,7 +11,7 @@ import numpy as np
 
 from cagepose.exchange.solids import rounded_pieces
 from cagepose.exchange.step_solids import write_step
-from cagepose.exchange.stl import MM
+from cagepose.exchange.stl import MM_PER_M
 from cagepose.exchange.world_parts import world_parts
 from cagepose.model.box import Box
 from cagepose.model.hole import Hole
@@ -54,13 +54,16 @@ def step_solid(name: str, shape: Shape, holes: list[Hole], pose: Pose) -> dict[s
 
 def _primitive(shape: Shape, pose: Pose) -> dict[str, Any]:
     place = pose @ shape.pose_body_shape
-    found: dict[str, Any] = {"rotation": place.rotation.tolist(), "position": (MM * place.position_m).tolist()}
+    found: dict[str, Any] = {"rotation": place.rotation.tolist(), "position": (MM_PER_M * place.position_m).tolist()}
     if isinstance(shape, Box):
-        return {**found, **_flat(hull_of(MM * BOX_SIGNS * shape.size_m / 2.0))}
+        return {**found, **_flat(hull_of(MM_PER_M * BOX_SIGNS * shape.size_m / 2.0))}
     if isinstance(shape, Convex):
-        return {**found, **_flat(hull_of(MM * shape.vertices_m))}
+        return {**found, **_flat(hull_of(MM_PER_M * shape.vertices_m))}
     if isinstance(shape, Sphere | Capsule):
-        return {**found, "profile": _round_ended(MM * shape.radius_m, MM * getattr(shape, "length_m", 0.0) / 2.0)}
+        return {
+            **found,
+            "profile": _round_ended(MM_PER_M * shape.radius_m, MM_PER_M * getattr(shape, "length_m", 0.0) / 2.0),
+        }
     assert isinstance(shape, Turned)
     return {**found, "profile": _lathe(shape)}
 
@@ -80,7 +83,7 @@ def _round_ended(radius: float, half: float) -> list[list[float]]:
 
 def _lathe(shape: Turned) -> list[list[float]]:
     """Return the outline of a turned shape: from the axis along its rims and back."""
-    rims = [(MM * radius, MM * height) for height, radius in shape.rims]
+    rims = [(MM_PER_M * radius, MM_PER_M * height) for height, radius in shape.rims]
     points = [(0.0, rims[0][1]), *rims, (0.0, rims[-1][1])]
     distinct = [point for index, point in enumerate(points) if index == 0 or point != points[index - 1]]
     return [[*one, *other] for one, other in pairwise(distinct)]

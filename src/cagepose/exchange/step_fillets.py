@@ -7,16 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cagepose.exchange.tolerances import LEAST_TAKEN, TANGENT_RAD
+
 WIDEST = 0.97 * np.pi
 """Angle around a fillet: what is rounder joins walls that do not meet, as the end of a slot does."""
-TANGENT = 1e-4
-"""Angle between the faces at an edge, radians: so little is none."""
-
-LEAST = 1e-9
-"""Of the volume: what is less is nothing that was taken away."""
 
 
-MOST = 100
+MOST_FACES = 100
 """Faces of one solid: 72 take 0.4 s, 288 take 7 s."""
 
 
@@ -30,15 +27,15 @@ class Sharp(NamedTuple):
 
 def without_fillets(solid: Any, faces: list[Any], most: int) -> Sharp | None:
     """Return a solid whose walls go on to where they meet in their hollow corners; None: it has no fillets there, has
-    more than ``most`` or `MOST` faces of them, or Open CASCADE cannot take them away.
+    more than ``most`` or `MOST_FACES` faces of them, or Open CASCADE cannot take them away.
     """
     from OCP.BRepAlgoAPI import BRepAlgoAPI_Defeaturing
     from OCP.BRepCheck import BRepCheck_Analyzer
     from OCP.BRepLib import BRepLib
 
-    BRepLib.EncodeRegularity_s(solid, TANGENT)
+    BRepLib.EncodeRegularity_s(solid, TANGENT_RAD)
     fillets = [(face, radius) for face in faces if (radius := _hollow_radius(face)) and _joins_smoothly(face)]
-    if not 0 < len(fillets) <= min(most, MOST):
+    if not 0 < len(fillets) <= min(most, MOST_FACES):
         return None
     work = BRepAlgoAPI_Defeaturing()
     work.SetShape(solid)
@@ -51,7 +48,7 @@ def without_fillets(solid: Any, faces: list[Any], most: int) -> Sharp | None:
     if found is None or not BRepCheck_Analyzer(found).IsValid():
         return None
     after, before = (abs(moments_of(one).Mass()) for one in (found, solid))
-    if after > (1.0 - LEAST) * before:  # some that meet are left as they are
+    if after > (1.0 - LEAST_TAKEN) * before:  # some that meet are left as they are
         return None
     return Sharp(found, len(fillets), max(radius for _, radius in fillets))
 

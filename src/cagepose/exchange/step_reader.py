@@ -8,19 +8,18 @@ from typing import Any
 import numpy as np
 
 from cagepose.exchange.step_fillets import each, moments_of, without_fillets
+from cagepose.exchange.tolerances import SAME_OF_SIZE
 from cagepose.model.shape_moments import shape_moments
 from cagepose.model.shapes import Convex
 
 Data = dict[str, Any]
 
-AROUND = 64
+CHORDS_OF_CIRCLE = 64
 """Chords of a full circle at least."""
 CHORD_OF_SIZE = 1e-2
-"""How far triangles may be from the surface, where that is less than `AROUND` gives."""
+"""How far triangles may be from the surface, where that is less than `CHORDS_OF_CIRCLE` gives."""
 MOST_FILLETS = 300
 """Faces of them in one file that are left out, which takes seconds."""
-SAME = 1e-7
-"""Of the size: places and moments that are this near are one."""
 
 
 def empty_document() -> tuple[Any, Any]:
@@ -135,19 +134,19 @@ def _rounded(faces: list[Any], mass: Any) -> Data | None:
             return None
     if len(centers) == len(faces) == 1:  # as of points far away, whose moments are but rounding
         return {"core": centers, "radius": radii[0]}
-    if not centers or np.ptp(radii) > SAME * radii[0]:
+    if not centers or np.ptp(radii) > SAME_OF_SIZE * radii[0]:
         return None
     size = float(np.ptp(centers, axis=0).max()) + radii[0]
-    _, corners = np.unique(np.round(np.array(centers) / (SAME * size)), axis=0, return_index=True)
+    _, corners = np.unique(np.round(np.array(centers) / (SAME_OF_SIZE * size)), axis=0, return_index=True)
     core = np.array(centers)[corners]
     found = shape_moments(Convex(core, radii[0]))
     second = mass.MatrixOfInertia()
     inertia = np.array([[second.Value(row, column) for column in (1, 2, 3)] for row in (1, 2, 3)]) / mass.Mass()
     of_core = np.trace(found.second_moment_m2) * np.eye(3) - found.second_moment_m2
     is_it = (
-        abs(found.volume_m3 - mass.Mass()) <= SAME * found.volume_m3
-        and np.abs(found.centroid_m - _xyz(mass.CentreOfMass())).max() <= SAME * size
-        and np.abs(of_core - inertia).max() <= SAME * size**2
+        abs(found.volume_m3 - mass.Mass()) <= SAME_OF_SIZE * found.volume_m3
+        and np.abs(found.centroid_m - _xyz(mass.CentreOfMass())).max() <= SAME_OF_SIZE * size
+        and np.abs(of_core - inertia).max() <= SAME_OF_SIZE * size**2
     )
     return {"core": core.tolist(), "radius": radii[0]} if is_it else None
 
@@ -174,7 +173,7 @@ def _off(face: Any) -> float:
         radii = surface.Torus().MajorRadius() + 2.0 * surface.Torus().MinorRadius()
     else:
         return float(BRep_Tool.Triangulation_s(face, TopLoc_Location()).Deflection())
-    return float(radii * (1.0 - np.cos(np.pi / AROUND)))
+    return float(radii * (1.0 - np.cos(np.pi / CHORDS_OF_CIRCLE)))
 
 
 def _xyz(point: Any) -> list[float]:
@@ -201,7 +200,7 @@ def _triangles(solid: Any, faces: list[Any]) -> Data:
     BRepBndLib.Add_s(solid, box)
     size = float(np.sqrt(box.SquareExtent()))
     wanted = IMeshTools_Parameters()
-    wanted.Deflection, wanted.Angle = CHORD_OF_SIZE * size, 0.999 * 2.0 * np.pi / AROUND
+    wanted.Deflection, wanted.Angle = CHORD_OF_SIZE * size, 0.999 * 2.0 * np.pi / CHORDS_OF_CIRCLE
     wanted.InternalVerticesMode = any(_is_ball(face) for face in faces)  # a cylinder needs none between its ends
     wanted.ControlSurfaceDeflection = wanted.InternalVerticesMode
     BRepMesh_IncrementalMesh(solid, wanted)

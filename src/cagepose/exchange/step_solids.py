@@ -14,7 +14,7 @@ from cagepose.files.own_process import answer, ask
 Data = dict[str, Any]
 
 CPU_SECONDS, WALL_SECONDS = 8, 60.0
-"""Of the process; the start of Open CASCADE is one second of it."""
+"""Limits of the process; the start of Open CASCADE is one second of it."""
 
 
 def read_step(path: Path) -> Data:

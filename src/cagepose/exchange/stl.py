@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from cagepose.exchange.bodies import Scale
+from cagepose.exchange.tolerances import PAST_FACE
 from cagepose.exchange.world_parts import world_parts
 from cagepose.files.meshes.manifolds import manifold3d
 from cagepose.files.write import MADE_BY
@@ -18,13 +19,11 @@ from cagepose.model.scene import Scene
 from cagepose.model.shapes import Rounded, Shape, Turned
 from cagepose.model.surface import Mesh, shape_mesh
 
-SEGMENTS = 64
+CHORDS_OF_CIRCLE = 64
 """Chords of a full circle."""
 POINT_SEGMENTS = 4
-"""Of the ball that stands for a cage point."""
-PAST_FACE = 1e-11
-"""Of a part's size: so far holes go on beyond their ends."""
-MM = 1e3
+"""Chords of a full circle of the ball that stands for a cage point."""
+MM_PER_M = 1e3
 """Millimetres of a metre."""
 NOTE_BESIDE = "loads, mass, friction and the start pose are in the note for cagepose alone"
 
@@ -42,13 +41,13 @@ def stl_text(scene: Scene, pose_world_object: Pose) -> tuple[str, tuple[str, ...
     parts, notes = world_parts(scene, pose_world_object)
     lines = []
     for part in parts:
-        segments = POINT_SEGMENTS if part.is_point else SEGMENTS
+        segments = POINT_SEGMENTS if part.is_point else CHORDS_OF_CIRCLE
         mesh = _drilled(part.shape, part.holes) if part.holes else shape_mesh(part.shape, segments)
-        lines.append(_solid_text(part.name, Mesh(MM * part.pose.transform(mesh.vertices_m), mesh.triangles)))
+        lines.append(_solid_text(part.name, Mesh(MM_PER_M * part.pose.transform(mesh.vertices_m), mesh.triangles)))
     widest_m = max(_radius_m(shape) for part in parts if not part.is_point for shape in (part.shape, *part.holes))
     if widest_m > 0.0:
-        sagitta_m = widest_m * (1.0 - math.cos(math.pi / SEGMENTS))
-        notes.append(f"what is round has {SEGMENTS} chords, at most {sagitta_m:.3g} m within it")
+        sagitta_m = widest_m * (1.0 - math.cos(math.pi / CHORDS_OF_CIRCLE))
+        notes.append(f"what is round has {CHORDS_OF_CIRCLE} chords, at most {sagitta_m:.3g} m within it")
     return "".join(lines), ("lengths in millimetres, which an STL file cannot say", NOTE_BESIDE, *notes)
 
 
@@ -70,7 +69,8 @@ def _radius_m(shape: Shape) -> float:
 def _drilled(part: Shape, holes: Sequence[Hole]) -> Mesh:
     scale, library = Scale.of(part), manifold3d()
     bodies = [
-        scale.body(mesh) for mesh in (shape_mesh(part, SEGMENTS), *(_longer(hole, part, scale) for hole in holes))
+        scale.body(mesh)
+        for mesh in (shape_mesh(part, CHORDS_OF_CIRCLE), *(_longer(hole, part, scale) for hole in holes))
     ]
     return scale.mesh(library.Manifold.batch_boolean(bodies, library.OpType.Subtract))
 
@@ -79,7 +79,7 @@ def _longer(hole: Hole, part: Shape, scale: Scale) -> Mesh:
     """Return the surface of a hole whose open ends are moved out by nearly nothing: they lie in faces of the part,
     where rounding would leave films over them.
     """
-    mesh = shape_mesh(hole, SEGMENTS)
+    mesh = shape_mesh(hole, CHORDS_OF_CIRCLE)
     heights = hole.pose_body_shape.inverse_transform(mesh.vertices_m)[:, 2]
     is_end = np.abs(heights[:, None] - (0.0, -hole.depth_m)) < 1e-9 * hole.depth_m
     _, is_open = hole.run_through([part])

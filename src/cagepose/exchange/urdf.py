@@ -22,7 +22,7 @@ from cagepose.model.surface import shape_mesh
 NOTE = "cagepose"
 """The element in which our note stands; other readers pass over it."""
 NO_SEGMENTS = 3
-"""Of the mesh of a sharp hull, which has no circles."""
+"""Chords of a circle in the mesh of a sharp hull, which has none."""
 
 
 def urdf_notes(assembly: Assembly) -> tuple[str, ...]:

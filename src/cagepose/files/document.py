@@ -18,7 +18,7 @@ from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
 from cagepose.studies.margin import Margin
 
 FORMAT_VERSION = 2
-"""Of the document and of saved runs. Counts up when a reader of the old form would misread the new one."""
+"""Version of the document and of saved runs. It counts up when a reader of the old form would misread the new one."""
 
 
 def run_document(

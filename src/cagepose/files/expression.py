@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from simpleeval import FeatureNotAvailable, FunctionNotDefined, NameNotDefined, OperatorNotDefined, SimpleEval
 
-LONGEST = 1000
+LONGEST_FORMULA = 1000
 """Characters: what is longer is no formula of a person, and deep nesting would end Python's stack."""
 _ALLOWED = "write numbers, names, + - * / **, comparisons, and, or, not, abs, min, max"
 
@@ -41,8 +41,8 @@ class Expression:
 
     def __init__(self, text: str) -> None:
         self.text = text.strip()
-        if len(self.text) > LONGEST:
-            raise ValueError(f"has {len(self.text)} characters; write a formula of at most {LONGEST}")
+        if len(self.text) > LONGEST_FORMULA:
+            raise ValueError(f"has {len(self.text)} characters; write a formula of at most {LONGEST_FORMULA}")
         try:
             self._tree = ast.parse(self.text, mode="eval").body
         except (SyntaxError, ValueError, MemoryError, RecursionError):

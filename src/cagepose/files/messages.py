@@ -29,7 +29,7 @@ _FORMS = {
     "points": "a list of [x, y, z], a NAME: [x, y, z] for each point, or file: points.csv",
     "friction": "a coefficient, or coefficient: or angle_deg: with a number",
 }
-"""Of the keys that may be given in several forms."""
+"""The keys that may be given in several forms."""
 _LIMITS = {
     "greater_than": ("gt", "above {}"),
     "greater_than_equal": ("ge", "from {} upwards"),

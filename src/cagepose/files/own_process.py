@@ -11,7 +11,7 @@ from collections.abc import Callable
 from cagepose.errors import Problem, SceneError
 
 MEMORY_BYTES = 2 * 1024**3
-REFUSED = 2
+EXIT_REFUSED = 2
 """Exit code where the library refuses what it is given; its message is the last line of standard error."""
 
 
@@ -35,7 +35,7 @@ def ask(module: str, given: bytes, seconds: float, library: str) -> bytes:
     if done.returncode == 0:
         return done.stdout
     message = f"broke {library}, or asked it for too much time or memory; simplify or repair it"
-    if done.returncode == REFUSED:
+    if done.returncode == EXIT_REFUSED:
         message = done.stderr.decode(errors="replace").splitlines()[-1]
     raise SceneError([Problem((), message)])
 
@@ -50,7 +50,7 @@ def answer(work: Callable[[bytes], bytes], cpu_seconds: int | None = None) -> No
         found = work(sys.stdin.buffer.read())
     except (ValueError, RuntimeError) as error:
         sys.stderr.write("\n" + " ".join(str(error).split()))
-        sys.exit(REFUSED)
+        sys.exit(EXIT_REFUSED)
     with os.fdopen(answers, "wb") as stream:
         stream.write(found)
 

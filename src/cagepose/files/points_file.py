@@ -9,7 +9,7 @@ from pathlib import Path
 
 from cagepose.errors import FileProblem, SceneFileError
 from cagepose.files.read import read_text
-from cagepose.files.schema_base import LARGEST
+from cagepose.files.schema_base import LARGEST_NUMBER
 
 POINTS_KEY = ("cage", "points", "file")
 """Where a scene names its points file."""
@@ -76,8 +76,8 @@ def _row_message(cells: list[str], width: int) -> str | None:
             number = float(cell) if "_" not in cell else math.nan
         except ValueError:
             return f"holds {cell[:40]!r}, which is no number; give x, y and z with a decimal point"
-        if not abs(number) <= LARGEST:
-            return f"holds {cell[:40]!r}; give a finite number up to {LARGEST:g}"
+        if not abs(number) <= LARGEST_NUMBER:
+            return f"holds {cell[:40]!r}; give a finite number up to {LARGEST_NUMBER:g}"
     return None
 
 

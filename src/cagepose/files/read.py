@@ -13,10 +13,10 @@ MAX_FILE_BYTES = 4 * 1024 * 1024
 """The size limit of a scene file and of a points file: about 100,000 points, far above any cage we know of."""
 
 SCENE_SUFFIXES = (".yaml", ".yml", ".json")
-CLOSE = 0.75
-"""Of names: more alike than this are taken for a slip."""
+LIKE_NAMES = 0.75
+"""Likeness of names from 0 to 1. Names that are more alike are taken for a slip."""
 HEAD_BYTES = 100
-"""Of a file: within these a saved run shows that it is one."""
+"""A saved run shows within the first bytes of a file that it is one."""
 
 
 def read_text(path: Path, source: str, at: tuple[Key, ...] = ()) -> str:
@@ -82,7 +82,7 @@ def _meant(path: Path) -> str:
     except OSError:
         return ""
     same = [name for name in names if Path(name).stem == path.name]
-    close = same or difflib.get_close_matches(path.name, names, n=1, cutoff=CLOSE)
+    close = same or difflib.get_close_matches(path.name, names, n=1, cutoff=LIKE_NAMES)
     return f"did you mean {path.parent / close[0]}? Else " if close else ""
 
 

@@ -42,7 +42,7 @@ KEYS = {
     "Cage.shapes": "cage_shapes",
     "Cage.holes": "cage_holes",
 }
-"""Of the attributes (of one class alone) whose key is another than their name without its frame."""
+"""The attributes (some of one class alone) whose key is another than their name without its frame."""
 INFINITE: dict[str, str | None] = {"distance_m": None}
 """What stands for an infinite number, which JSON has not, in some attributes; in all others, `NO_NUMBER`."""
 NO_NUMBER = "none"

@@ -16,7 +16,7 @@ from cagepose.files.write import MADE_BY, check_can_write, is_made_by_us, write_
 from cagepose.model.checks import expect, expect_choice
 from cagepose.model.scene import Scene
 
-LINE = 110
+LINE_WIDTH = 110
 """Characters; a mapping that is shorter stands in one line."""
 
 
@@ -90,4 +90,4 @@ def _styled(value: object) -> object:
 
 
 def _is_short(value: object) -> bool:
-    return len(repr(value)) <= LINE
+    return len(repr(value)) <= LINE_WIDTH

@@ -26,9 +26,9 @@ from cagepose.model.shapes import Convex, Shape
 from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT
 
 FEWEST_DIGITS, MOST_DIGITS = 6, 17
-"""Of a number that is written; 17 tell any two doubles apart."""
+"""A number is written with so many digits; 17 tell any two doubles apart."""
 MOST_DECIMALS = 15
-"""Of an angle in degrees."""
+"""An angle in degrees is written with so many decimals."""
 
 FULL_TURNS = ((0.0, 0.0, 0.0), (360.0, 0.0, 0.0), (0.0, 0.0, 360.0), (360.0, 0.0, 360.0))
 """The same angles as people may have written them, 240 for -120 deg: sines and cosines differ in their last digits."""

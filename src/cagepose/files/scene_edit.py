@@ -14,7 +14,8 @@ from cagepose.files.scene_file import SceneText
 from cagepose.files.yaml_source import parse_yaml
 
 ANGLE_DECIMALS = 10
-"""Of degrees: an orientation that was a quaternion changes by far less than the touch tolerance, and reads well."""
+"""Degrees are written with so many decimals. An orientation that was a quaternion changes by far less than the touch
+tolerance, and reads well."""
 
 
 def setting(key: str, value: object) -> str:

@@ -8,9 +8,9 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstra
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import PydanticCustomError
 
-LARGEST = 1e12
+LARGEST_NUMBER = 1e12
 """Greatest number in a scene file. The fifth power of a length (a moment of inertia) must stay a finite double."""
-SMALLEST = 1e-12
+SMALLEST_NUMBER = 1e-12
 """Least size, mass and magnitude, for the same reason."""
 
 
@@ -25,8 +25,8 @@ def _not_zero(values: list[float]) -> list[float]:
 
 
 def _not_tiny(value: float) -> float:
-    if value < SMALLEST:
-        raise wrong(f"is {value:g}; give a number of at least {SMALLEST:g}, or another unit")
+    if value < SMALLEST_NUMBER:
+        raise wrong(f"is {value:g}; give a number of at least {SMALLEST_NUMBER:g}, or another unit")
     return value
 
 
@@ -36,9 +36,9 @@ def _printable(text: str) -> str:
     return text
 
 
-Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
-Positive = Annotated[float, Field(gt=0.0, le=LARGEST), AfterValidator(_not_tiny)]
-NotNegative = Annotated[float, Field(ge=0.0, le=LARGEST)]
+Number = Annotated[float, Field(ge=-LARGEST_NUMBER, le=LARGEST_NUMBER)]
+Positive = Annotated[float, Field(gt=0.0, le=LARGEST_NUMBER), AfterValidator(_not_tiny)]
+NotNegative = Annotated[float, Field(ge=0.0, le=LARGEST_NUMBER)]
 Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
 Direction = Annotated[Vector, AfterValidator(_not_zero)]
 Size = Annotated[list[Positive], Field(min_length=3, max_length=3)]

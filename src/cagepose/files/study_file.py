@@ -33,7 +33,7 @@ Model = TypeVar("Model", bound=RunsModel)
 
 ALL = "*"
 STUDY_NAME, SCENE_NAME = "study.yaml", "scene.yaml"
-"""Of the copies in a study's folder."""
+"""Names of the copies in a study's folder."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ class StudyFile:
 
     @property
     def units(self) -> dict[str, str]:
-        """Of each varied number, by its key; empty where there is none or it is not known."""
+        """The unit of each varied number, by its key; empty where there is none or it is not known."""
         return {one.key: unit_at(one.path, self.nominal.length_unit) for one in self.varied}
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.files.key_path import Path, value_at
-from cagepose.files.schema_base import LARGEST, SMALLEST
+from cagepose.files.schema_base import LARGEST_NUMBER, SMALLEST_NUMBER
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.checks import FloatArray
 from cagepose.runs.variation import Variation
@@ -47,13 +47,15 @@ class BatchColumns:
 
     def usable(self, columns: Columns) -> NDArray[np.bool_]:
         """Return which rows hold numbers that a scene file may, (n,); the others are for the scene's own checks."""
-        found: NDArray[np.bool_] = np.logical_and.reduce([np.abs(column) <= LARGEST for column in columns.values()])
+        found: NDArray[np.bool_] = np.logical_and.reduce(
+            [np.abs(column) <= LARGEST_NUMBER for column in columns.values()]
+        )
         if FRICTION in columns:
             found &= columns[FRICTION] >= 0.0
         if self._force is not None:
             magnitude = columns.get((*self._force, "magnitude"))
             if magnitude is not None:
-                found &= magnitude >= SMALLEST
+                found &= magnitude >= SMALLEST_NUMBER
             if any(path[: len(self._force) + 1] == (*self._force, "direction") for path in columns):
                 found &= np.any(self._rows((*self._force, "direction"), columns) != 0.0, axis=1)
         return found

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from cagepose.files.meshes.manifolds import SINGLE_PRECISION
+from cagepose.files.meshes.tolerances import SINGLE_PRECISION
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.pose import Pose

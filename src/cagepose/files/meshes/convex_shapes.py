@@ -12,18 +12,19 @@ from typing import NamedTuple
 import numpy as np
 
 from cagepose.files.meshes.box_corners import box_of_corners
-from cagepose.files.meshes.manifolds import SINGLE_PRECISION, Triangles, circle_through
+from cagepose.files.meshes.manifolds import Triangles, circle_through
 from cagepose.files.meshes.rounded_hulls import ball_through, rounded_hull
+from cagepose.files.meshes.tolerances import SINGLE_PRECISION
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose, turn_from_z
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Shape, Sphere
 
 FEWEST_SIDES = 16
 """What has fewer sides is a prism that was meant so."""
-DEEPEST = 1.5 * (1.0 - math.cos(math.pi / FEWEST_SIDES))
-"""Of the radius: faces of a ball that are farther within it are meant so."""
-STEPS = 30
-"""Of the fit of a capsule, which converges quadratically."""
+SAGITTA_OF_FEWEST = 1.5 * (1.0 - math.cos(math.pi / FEWEST_SIDES))
+"""Fraction of the radius. Faces of a ball that are farther within it are meant so."""
+STEPS_OF_FIT = 30
+"""The fit of a capsule takes so many steps at most; it converges quadratically."""
 
 
 class Recognised(NamedTuple):
@@ -85,7 +86,7 @@ def _turned(hull: Triangles, allowed: float) -> Recognised | None:
     if np.abs(depths(hull.vertices)).max() > 3.0 * allowed:
         return None
     error = max(low_off, high_off, float(depths(hull.face_points()).max()))
-    if error > 2.0 * DEEPEST * max(low_radius, high_radius):
+    if error > 2.0 * SAGITTA_OF_FEWEST * max(low_radius, high_radius):
         return None
     if abs(low_radius - high_radius) <= allowed:
         return Recognised(Cylinder((low_radius + high_radius) / 2.0, length, pose), error)
@@ -98,7 +99,7 @@ def _ball(hull: Triangles, allowed: float) -> Recognised | None:
         return None
     ball = ball_through(points)
     error = ball.radius - float(np.linalg.norm(hull.face_points() - ball.center, axis=1).min())
-    if ball.off > allowed or error > DEEPEST * ball.radius:
+    if ball.off > allowed or error > SAGITTA_OF_FEWEST * ball.radius:
         return None
     return Recognised(Sphere(ball.radius, Pose(ball.center)), error)
 
@@ -114,7 +115,7 @@ def _capsule(hull: Triangles, allowed: float) -> Recognised | None:
     radius = float(np.linalg.norm((points - middle) - np.outer(along, axis), axis=1).max())
     half = max(float(np.abs(along).max()) - radius, 0.1 * radius)
     ends = np.array([middle - half * axis, middle + half * axis])
-    for _ in range(STEPS):
+    for _ in range(STEPS_OF_FIT):
         share, out, away = _from_bar(points, ends)
         rows = np.column_stack([-(1.0 - share)[:, None] * out, -share[:, None] * out, -np.ones(len(points))])
         step = np.linalg.lstsq(rows, radius - away, rcond=None)[0]
@@ -124,7 +125,7 @@ def _capsule(hull: Triangles, allowed: float) -> Recognised | None:
     away = _from_bar(points, ends)[2]
     length = float(np.linalg.norm(ends[1] - ends[0]))
     error = radius - float(_from_bar(hull.face_points(), ends)[2].min())
-    if not np.abs(away - radius).max() <= allowed or error > DEEPEST * radius or length <= allowed:
+    if not np.abs(away - radius).max() <= allowed or error > SAGITTA_OF_FEWEST * radius or length <= allowed:
         return None
     span = ends[1] - ends[0]
     if span[int(np.abs(span).argmax())] < 0.0:
@@ -134,7 +135,7 @@ def _capsule(hull: Triangles, allowed: float) -> Recognised | None:
 
 def _rounded(hull: Triangles, allowed: float) -> Recognised | None:
     found = rounded_hull(hull, allowed)
-    if found is None or found.error > DEEPEST * found.radius:
+    if found is None or found.error > SAGITTA_OF_FEWEST * found.radius:
         return None
     return Recognised(Convex(found.core, found.radius), found.error)
 

@@ -8,16 +8,13 @@ import numpy as np
 
 from cagepose.files.meshes.cuts import separate
 from cagepose.files.meshes.manifolds import Triangles
+from cagepose.files.meshes.tolerances import DISTANCE_OUTSIDE, LEAST_PYRAMID
 from cagepose.model.checks import FloatArray
 
 ASKED = 2000
 """Triangles of each part; of more, so many of them in all places."""
-FEWER, LARGE = 500, 20_000
-"""Of parts with so many triangles, which take milliseconds each."""
-ABOVE = 1e-6
-"""Of the size: so far outside of a triangle there is nothing of the part."""
-FILM = 1e-12
-"""Of the cube of the size: a pyramid that is less is rounding."""
+ASKED_OF_LARGE, LARGE_PART = 500, 20_000
+"""Triangles that are asked of parts with so many, which take milliseconds each."""
 
 
 def crosses_itself(mesh: Triangles) -> bool:
@@ -31,10 +28,10 @@ def crosses_itself(mesh: Triangles) -> bool:
         far = 3.0 * mesh.size * np.array((0.519, 0.623, 0.585))
         if part.num_tri() == 0 or _is_star(found, part, far):
             continue
-        asked = FEWER if len(found.faces) > LARGE else ASKED
+        asked = ASKED_OF_LARGE if len(found.faces) > LARGE_PART else ASKED
         chosen = np.arange(0, len(found.faces), max(1, len(found.faces) // asked))
         middles = found.vertices[found.faces[chosen]].mean(axis=1)
-        starts = middles + ABOVE * mesh.size * found.normals[chosen]
+        starts = middles + DISTANCE_OUTSIDE * mesh.size * found.normals[chosen]
         for start in starts:
             hits = part.ray_cast(start.tolist(), (start + far).tolist())
             if sum(1 if float(np.dot(hit.normal, far)) > 0.0 else -1 for hit in hits) != 0:
@@ -48,5 +45,5 @@ def _is_star(found: Triangles, part: Any, far: FloatArray) -> bool:
     """
     middle = found.vertices.mean(axis=0)
     pyramids = np.einsum("ij,ij->i", found.areas, found.vertices[found.faces[:, 0]] - middle)
-    is_seen = pyramids >= -FILM * found.size**3
+    is_seen = pyramids >= -LEAST_PYRAMID * found.size**3
     return bool(is_seen.all()) and len(part.ray_cast(middle.tolist(), (middle + far).tolist())) == 1

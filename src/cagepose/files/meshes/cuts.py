@@ -11,26 +11,22 @@ from numpy.typing import NDArray
 
 from cagepose.files.meshes.edges import reflex_edges
 from cagepose.files.meshes.flat_sides import FlatSides
-from cagepose.files.meshes.manifolds import ROUNDING, SINGLE_PRECISION, Triangles, manifold3d
+from cagepose.files.meshes.manifolds import Triangles, manifold3d
+from cagepose.files.meshes.tolerances import HEIGHT_OF_CUT, LEAST_PIECE, ROUNDING_OF_MESH, SINE_ACROSS, SINGLE_PRECISION
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
 
 Piece = TypeVar("Piece")
 
-NOTHING = 1e-9
-"""Of the whole body's volume: a piece that is less is rounding."""
 MOST_PIECES = 60
 """What needs more is round where no shape of ours is."""
 MOST_TRIES = 8
-"""Of planes that cut nothing off, at an edge that rounding has tilted."""
-NEAR = 1.5 * SINGLE_PRECISION
-"""Of a body's size: what is as near to the plane of a cut is in it; more, as such a plane is rounded itself."""
-ABOVE = 1e-9
-"""Of a body's size: so far above a face it is cut."""
+"""So many planes may cut nothing off, at an edge that rounding has tilted."""
+DISTANCE_OF_CUT = 1.5 * SINGLE_PRECISION
+"""Fraction of a body's size. What is as near to the plane of a cut is in it. It is more than single precision, as such
+a plane is rounded itself."""
 MOST_EDGES = 2000
 """Hollow ones of a body that is cut."""
-ACROSS = 1e-4
-"""Sine of the angle between a hole's axis and the normal of a plane: with less, the plane is across the hole."""
 
 
 def cut_until(
@@ -49,8 +45,8 @@ def cut_until(
     holes
         Cuts run along as few of them as may be.
     """
-    least = NOTHING * sum(part.volume() for part in parts)
-    allowed = ROUNDING * max((Triangles.of(part).size for part in parts), default=0.0)
+    least = LEAST_PIECE * sum(part.volume() for part in parts)
+    allowed = ROUNDING_OF_MESH * max((Triangles.of(part).size for part in parts), default=0.0)
     pieces: list[Piece] = []
     waiting = [*parts]
     while waiting:
@@ -100,7 +96,7 @@ def _run_along(hole: Hole, normals: FloatArray, heights: FloatArray, allowed: fl
     off = centers @ normals.T - heights
     reach = np.outer([radius for _, radius in hole.rims], aslant)
     is_cut = ((off - reach).min(axis=0) < -allowed) & ((off + reach).max(axis=0) > allowed)
-    found: NDArray[np.bool_] = is_cut & (aslant > ACROSS)
+    found: NDArray[np.bool_] = is_cut & (aslant > SINE_ACROSS)
     return found
 
 
@@ -117,9 +113,9 @@ def cut_above(body: Any, normal: FloatArray, height: float) -> list[Any]:
         moved: FloatArray = points - np.outer(np.where(np.abs(off) <= distance, off, 0.0), normal)
         return moved
 
-    flat = body.warp_batch(partial(within, NEAR * size))
-    sides = flat.split_by_plane(normal.tolist(), height + ABOVE * size)
-    return [side.warp_batch(partial(within, 2.0 * ABOVE * size)) for side in sides]
+    flat = body.warp_batch(partial(within, DISTANCE_OF_CUT * size))
+    sides = flat.split_by_plane(normal.tolist(), height + HEIGHT_OF_CUT * size)
+    return [side.warp_batch(partial(within, 2.0 * HEIGHT_OF_CUT * size)) for side in sides]
 
 
 def tidy(bodies: Sequence[Any], allowed: float) -> list[Any]:

@@ -19,11 +19,12 @@ from cagepose.files.progress import tell
 from cagepose.files.write import MADE_BY, check_can_write, is_made_by_us, json_line, write_whole
 from cagepose.model.checks import FloatArray
 
-TRIANGLES = 2000
-"""Of what coacd is given: of twice as many it makes parts that are no nearer, in half as much time again."""
+MOST_TRIANGLES_GIVEN = 2000
+"""coacd is given at most so many triangles. Of twice as many it makes parts that are no nearer, in half as much time
+again."""
 MOST_KEPT = 8
 """Bodies of one mesh."""
-VERSION = 3
+KEPT_VERSION = 3
 
 
 class Decomposition(NamedTuple):
@@ -44,7 +45,8 @@ def decomposed(mesh: Triangles) -> Decomposition:
         coacd is not installed.
     """
     require("rtree", "a mesh that is not convex needs rtree", "files")  # which is asked for only after a minute
-    tell(f"coacd makes convex parts of {len(mesh.faces):,} triangles, which takes it {run_coacd.SECONDS:g} s at most")
+    most_s = run_coacd.MOST_SECONDS
+    tell(f"coacd makes convex parts of {len(mesh.faces):,} triangles, which takes it {most_s:g} s at most")
     found = run_coacd.convex_parts(_simplified(mesh))
     ends = np.cumsum([len(corners) for corners in found])
     parts = np.split(FlatSides.of(mesh).taking(np.concatenate(found)), ends[:-1])
@@ -60,7 +62,7 @@ def kept_beside(mesh_file: Path, mesh: Triangles) -> Decomposition:
 
     A folder that cannot be written keeps nothing.
     """
-    settings = f"{VERSION} {run_coacd.CONCAVITY}".encode()
+    settings = f"{KEPT_VERSION} {run_coacd.CONCAVITY}".encode()
     key = sha256(mesh.vertices.tobytes() + mesh.faces.tobytes() + settings).hexdigest()
     path = mesh_file.with_name(f"{mesh_file.name}.parts.json")
     kept = _kept(path)
@@ -93,7 +95,7 @@ def _kept(path: Path) -> dict[str, Any]:
 def _simplified(mesh: Triangles) -> Triangles:
     """Return a body of few triangles near a body of many."""
     body, tolerance = mesh.body(), 1e-4 * mesh.size
-    while body.num_tri() > TRIANGLES:
+    while body.num_tri() > MOST_TRIANGLES_GIVEN:
         body = body.simplify(tolerance)
         tolerance *= 1.5
     return Triangles.of(body)

@@ -8,12 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.files.meshes.manifolds import Triangles
+from cagepose.files.meshes.tolerances import VOLUME_NOT_CONVEX
 
 BLUNT, FLAT, SEVERAL = 0.9, 0.9997, 4
 """Cosines between the faces of an edge of a round (others are a little hollow by chance), and how many tell one."""
 
-NOT_CONVEX = 1e-5
-"""Of a hull's volume: a body that is less by more is not convex."""
 AT_ONCE = 1000
 """Points whose depths are found together: arrays of more take much memory."""
 
@@ -63,7 +62,7 @@ def hollow_depth(body: Any, allowed: float) -> float | None:
     It is, if the edges that are deeper than ``allowed`` are blunt, as between the facets of what is round.
     """
     hull = body.hull()
-    if hull.volume() - body.volume() > max(NOT_CONVEX * hull.volume(), allowed * hull.surface_area()):
+    if hull.volume() - body.volume() > max(VOLUME_NOT_CONVEX * hull.volume(), allowed * hull.surface_area()):
         return None
     mesh, around = Triangles.of(body), Triangles.of(hull)
     edges = reflex_edges(mesh, allowed)

@@ -8,15 +8,14 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.files.meshes.manifolds import SINGLE_PRECISION, Triangles
+from cagepose.files.meshes.manifolds import Triangles
+from cagepose.files.meshes.tolerances import LAST_MOVE, SINGLE_PRECISION
 from cagepose.model.checks import FloatArray
 
-LARGE = 1e-3
-"""Of the surface's area: what is less is no flat side that a part stands on."""
-PROJECTIONS = 20
+LARGE_SIDE = 1e-3
+"""Fraction of the surface's area. What is less is no flat side that a part stands on."""
+MOST_PROJECTIONS = 20
 """Onto all flat sides that a corner is near to; each halves at least what is left, where they are not nearly one."""
-DONE = 1e-16
-"""Of the size: moves that are less are the last."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,7 @@ class FlatSides:
         heights = np.einsum("ij,ij->i", normals, mesh.vertices[mesh.faces[order, 0]])
         planes = np.column_stack([normals, heights / mesh.size]).round(6)
         _, first, which = np.unique(planes, axis=0, return_index=True, return_inverse=True)
-        large = first[np.bincount(which.ravel(), areas) > LARGE * areas.sum()]
+        large = first[np.bincount(which.ravel(), areas) > LARGE_SIDE * areas.sum()]
         return cls(normals[large], heights[large], mesh.size)
 
     def taking(self, points: FloatArray) -> FloatArray:
@@ -52,12 +51,12 @@ class FlatSides:
         the last digits, and not within it.
         """
         found = points.copy()
-        for _ in range(PROJECTIONS):
+        for _ in range(MOST_PROJECTIONS):
             before = found.copy()
             for normal, height in zip(self.normals, self.heights, strict=True):
                 off = found @ normal - height
                 found -= np.outer(np.where(np.abs(off) <= SINGLE_PRECISION * self.size, off, 0.0), normal)
-            if np.abs(found - before).max() <= DONE * self.size:
+            if np.abs(found - before).max() <= LAST_MOVE * self.size:
                 break
         return found
 

@@ -11,14 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.files.extra import files_library
+from cagepose.files.meshes.tolerances import ROUNDING_OF_MESH
 from cagepose.model.checks import FloatArray
 
-ROUNDING = 3e-7
-"""Of a mesh's size: what stands out by less does not. Single precision is off by as much."""
-SINGLE_PRECISION = 1e-6
-"""Of a body's size: what is this near to a place or a plane is there, after single precision and some sums with it."""
-ENOUGH = 0.99
-"""Of the triangles: what leaves more of them was the last pass."""
+SHARE_LEFT = 0.99
+"""Share of the triangles. A pass that leaves more of them was the last."""
 
 
 def manifold3d() -> Any:
@@ -34,8 +31,8 @@ def manifold3d() -> Any:
 
 def without_rounding(body: Any) -> Any:
     """Return a body without corners within its faces and edges, but for rounding: one pass leaves a few of many."""
-    tolerance, n_before = ROUNDING * Triangles.of(body).size, math.inf
-    while body.num_tri() < ENOUGH * n_before:
+    tolerance, n_before = ROUNDING_OF_MESH * Triangles.of(body).size, math.inf
+    while body.num_tri() < SHARE_LEFT * n_before:
         n_before, body = body.num_tri(), body.simplify(tolerance)
     return body
 

@@ -14,6 +14,7 @@ from cagepose.files.meshes.decomposed import kept_beside
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes, tidied
 from cagepose.files.meshes.run_trimesh import is_text, surfaces
+from cagepose.files.meshes.tolerances import FLAT_OF_SIZE
 from cagepose.files.progress import tell
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.shapes import Shape
@@ -22,18 +23,16 @@ SUFFIXES = (".stl", ".obj", ".ply", ".glb")
 UNIT_OF_GLB: LengthUnit = "m"
 """By its standard; the other formats do not say theirs."""
 MAX_MESH_BYTES = 32 * 1024 * 1024
-"""Of one file: 650,000 triangles of a binary STL."""
+"""One file has at most so many: 650,000 triangles of a binary STL."""
 STL_HEADER_BYTES, STL_TRIANGLE_BYTES = 84, 50
-"""Of a binary STL file; the last four bytes of its header are the number of triangles."""
+"""The parts of a binary STL file. The last four bytes of its header are the number of triangles."""
 STL_LAST_LINE = 1024
-"""Of a text, bytes: it ends with a name."""
-FLAT = 1e-6
-"""Of its size: what is thinner is flat."""
-LONGEST, SHORTEST = 1e9, 1e-9
+"""Bytes at the end of a text STL file, which ends with a name."""
+LONGEST_SIZE, SHORTEST_SIZE = 1e9, 1e-9
 """In the unit of the file."""
 MOST_AWAY = 1e6
 """From the origin, in sizes: the corners of what is farther away have too few digits."""
-KEPT = 64
+MESHES_KEPT = 64
 """Meshes that are not read again for each scene of a study."""
 
 
@@ -70,7 +69,7 @@ def read_mesh(path: Path, given: LengthUnit | None, of_scene: LengthUnit, name: 
         tell("")
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=MESHES_KEPT)
 def _shapes(file: str, _changed: int, _n_bytes: int, unit: LengthUnit, name: str) -> MeshShapes:
     solids = read_solids(Path(file), split=False)
     found = mesh_shapes(checked(solids[""], ""), name, unit, partial(kept_beside, Path(file)))
@@ -135,16 +134,18 @@ def checked(mesh: Triangles, which: str) -> Triangles:
     if len(mesh.faces) == 0:
         raise refused(f"{which}holds no triangles with an area; export it again")
     farthest = float(np.abs(mesh.vertices).max())
-    if farthest > LONGEST:
-        raise refused(f"{which}has a corner at {farthest:.2g}, more than {LONGEST:g}; check its unit and its place")
+    if farthest > LONGEST_SIZE:
+        raise refused(
+            f"{which}has a corner at {farthest:.2g}, more than {LONGEST_SIZE:g}; check its unit and its place"
+        )
     size = mesh.size
-    if 0.0 < size < SHORTEST:
-        raise refused(f"{which}is {size:.2g} long, less than {SHORTEST:g}; check its unit")
+    if 0.0 < size < SHORTEST_SIZE:
+        raise refused(f"{which}is {size:.2g} long, less than {SHORTEST_SIZE:g}; check its unit")
     if farthest > MOST_AWAY * size > 0.0:
         raise refused(f"{which}is {farthest / size:.2g} times its size away from the origin; move both bodies there")
     centered = Triangles((mesh.vertices - mesh.vertices.mean(axis=0)) / (size or 1.0), mesh.faces)
     spread = np.linalg.svd(centered.vertices, compute_uv=False)
-    if size == 0.0 or len(spread) < 3 or spread[2] <= FLAT * spread[0]:
+    if size == 0.0 or len(spread) < 3 or spread[2] <= FLAT_OF_SIZE * spread[0]:
         raise refused(f"{which}encloses no volume: its points lie in one plane; give it a thickness")
     if not _is_closed(mesh) or centered.body().status() != manifold3d().Error.NoError:
         raise refused(

@@ -17,9 +17,10 @@ from cagepose.files.meshes.convex_shapes import Recognised
 from cagepose.files.meshes.cuts import separate
 from cagepose.files.meshes.decomposed import Decomposition
 from cagepose.files.meshes.edges import is_hollow_and_round
-from cagepose.files.meshes.manifolds import ROUNDING, Triangles, without_rounding
+from cagepose.files.meshes.manifolds import Triangles, without_rounding
 from cagepose.files.meshes.pieces import convex_pieces, parts_of, simplified
 from cagepose.files.meshes.round_holes import RoundHole, filled
+from cagepose.files.meshes.tolerances import ROUNDING_OF_MESH
 from cagepose.files.progress import tell
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray
@@ -27,8 +28,8 @@ from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Shape, Sphere
 
-DIGITS = 11
-"""Of the size that numbers are written with; what follows is the rounding of double precision."""
+DIGITS_OF_SIZE = 11
+"""Numbers are written with so many digits of the size. What follows is the rounding of double precision."""
 
 Decompose = Callable[[Triangles], Decomposition]
 
@@ -80,7 +81,7 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str, decompose: Decompose) -> 
             off = _words(scale * tolerance, unit)
             notes.append(f"{name!r} has too many triangles: here, simplified, up to {off} off")
         whole, of_part = filled(simple)
-        is_filleted |= is_hollow_and_round(Triangles.of(whole), ROUNDING * Triangles.of(whole).size)
+        is_filleted |= is_hollow_and_round(Triangles.of(whole), ROUNDING_OF_MESH * Triangles.of(whole).size)
         pieces = convex_pieces(whole, [one.hole for one in of_part])
         if pieces is not None:
             found += pieces.found
@@ -121,13 +122,13 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str, decompose: Decompose) -> 
 def tidied(shape: Shape, scale: float, origin: FloatArray) -> Shape:
     """Return a shape with its lengths times ``scale``, moved to ``origin``, and no digits that are rounding alone."""
     size = scale * shape.farthest_m(shape.nodes_body().mean(axis=0)) + float(np.abs(origin).max())
-    decimals = DIGITS - math.floor(math.log10(size))
+    decimals = DIGITS_OF_SIZE - math.floor(math.log10(size))
 
     def lengths(values: Any) -> Any:
         return np.round(scale * np.asarray(values), decimals) + 0.0
 
     place = shape.pose_body_shape
-    pose = Pose(lengths(place.position_m + origin / scale), np.round(place.quaternion_wxyz, DIGITS + 1))
+    pose = Pose(lengths(place.position_m + origin / scale), np.round(place.quaternion_wxyz, DIGITS_OF_SIZE + 1))
     if isinstance(shape, Box):
         return Box(lengths(shape.size_m), pose, shape.name)
     if isinstance(shape, Convex):

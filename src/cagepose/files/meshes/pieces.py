@@ -11,32 +11,33 @@ from cagepose.files.meshes.convex_shapes import Recognised, convex_shape
 from cagepose.files.meshes.cuts import cut_until
 from cagepose.files.meshes.edges import hollow_depth, reflex_edges
 from cagepose.files.meshes.flat_sides import FlatSides
-from cagepose.files.meshes.manifolds import ROUNDING, Triangles, manifold3d, without_rounding
+from cagepose.files.meshes.manifolds import Triangles, manifold3d, without_rounding
 from cagepose.files.meshes.surface_distance import farthest_from
+from cagepose.files.meshes.tolerances import LEAST_SHARED, ROUNDING_OF_MESH
 from cagepose.model.hole import Hole
 from cagepose.model.shapes import Convex, Shape
 from cagepose.model.surface import shape_mesh
 
 MOST_CORNERS = 300
-"""Of a convex shape: the time of runs grows with the square of it."""
+"""A convex shape has at most so many corners: the time of runs grows with the square of it."""
 MOST_TRIANGLES = 10_000
-"""Of a body that is not convex: more of them are simplified first."""
-FIRST = 1e-5
-"""Of the size: by how much corners are moved first where there are too many."""
-HALVINGS = 4
-"""Of the last such step, for a convex body: as many of its corners as may be should stay."""
-HOLLOW = 0.97
-"""Of its hull's volume: what is round has more."""
-COARSER = (0.0, *(1e-4 * 2.0**step for step in range(7)))
-"""Of the size: by how much corners of a body may be moved so that fewer cuts do. coacd is off by 0.01 to 0.04."""
+"""A body that is not convex has at most so many triangles; more of them are simplified first."""
+FIRST_STEP = 1e-5
+"""Fraction of the size. Corners are moved first by this where there are too many."""
+HALVINGS_OF_STEP = 4
+"""The last such step is halved so many times for a convex body: as many of its corners as may be should stay."""
+SHARE_OF_HULL = 0.97
+"""Share of its hull's volume. What is round has more."""
+COARSER_STEPS = (0.0, *(1e-4 * 2.0**step for step in range(7)))
+"""Fractions of the size. Corners of a body may be moved by these so that fewer cuts do. coacd is off by 0.01 to 0.04.
+"""
 MOST_HOLLOW = 300
 """Edges of a body that is made coarser: more are not cut by few planes."""
-DENT = 10.0 * ROUNDING
-"""Of the size: what is hollow by less is so by rounding, or as corners were left out that stood out by that."""
-SEGMENTS = 64
+DEPTH_OF_DENT = 10.0 * ROUNDING_OF_MESH
+"""Fraction of the size. What is hollow by less is so by rounding, or as corners were left out that stood out by that.
+"""
+CHORDS_OF_ROUND = 64
 """Chords of what is round, where it is asked whether a hole is in a piece."""
-LEAST_SHARED = 1e-6
-"""Of a hole's volume: what is less of a piece is rounding."""
 
 
 class Pieces(NamedTuple):
@@ -48,9 +49,9 @@ class Pieces(NamedTuple):
 
 def simplified(body: Any) -> tuple[Any, float]:
     """Return a body that is not convex with fewer triangles, where it has too many, and how far they are moved."""
-    if body.num_tri() <= MOST_TRIANGLES or hollow_depth(body, DENT) is not None:
+    if body.num_tri() <= MOST_TRIANGLES or hollow_depth(body, DEPTH_OF_DENT) is not None:
         return body, 0.0
-    tolerance, moved = FIRST, 0.0
+    tolerance, moved = FIRST_STEP, 0.0
     while body.num_tri() > MOST_TRIANGLES:
         body, moved = body.simplify(tolerance), moved + tolerance
         tolerance *= 2.0
@@ -73,10 +74,12 @@ def convex_pieces(body: Any, holes: Sequence[Hole]) -> Pieces | None:
     sides = FlatSides.of(Triangles.of(body))
     known = partial(_recognised, sides)
     n_triangles = 0
-    for tolerance in COARSER:
+    for tolerance in COARSER_STEPS:
         coarse = body.simplify(tolerance) if tolerance > 0.0 else body
         is_new = coarse.num_tri() != n_triangles
-        if not is_new or (tolerance > 0.0 and len(reflex_edges(Triangles.of(coarse), ROUNDING).corners) > MOST_HOLLOW):
+        if not is_new or (
+            tolerance > 0.0 and len(reflex_edges(Triangles.of(coarse), ROUNDING_OF_MESH).corners) > MOST_HOLLOW
+        ):
             continue
         n_triangles = coarse.num_tri()
         pieces = cut_until(cut_at_steps(coarse, holes), known, sides, holes)
@@ -106,11 +109,11 @@ def _recognised(sides: FlatSides, piece: Any) -> Recognised | None:
 
     Triangles between the corners of a cone may be a little hollow.
     """
-    depth = hollow_depth(piece, DENT)
+    depth = hollow_depth(piece, DEPTH_OF_DENT)
     if depth is None:
-        is_round = piece.volume() >= HOLLOW * piece.hull().volume()
+        is_round = piece.volume() >= SHARE_OF_HULL * piece.hull().volume()
         return convex_shape(Triangles.of(piece)) if is_round else None
-    error = depth if depth > DENT else 0.0
+    error = depth if depth > DEPTH_OF_DENT else 0.0
     surface = without_rounding(piece.hull())
     found = convex_shape(Triangles.of(surface))
     if found is not None:
@@ -126,12 +129,12 @@ def _recognised(sides: FlatSides, piece: Any) -> Recognised | None:
 
 def _with_fewer_corners(body: Any) -> Any:
     """Return a body with as many corners as are allowed, and not many fewer."""
-    found, tolerance = body.simplify(FIRST), FIRST
+    found, tolerance = body.simplify(FIRST_STEP), FIRST_STEP
     while found.num_vert() > MOST_CORNERS:
         body, tolerance = found, 2.0 * tolerance
         found = body.simplify(tolerance)
     few, many = tolerance, tolerance / 2.0
-    for _ in range(HALVINGS):
+    for _ in range(HALVINGS_OF_STEP):
         middle = (few + many) / 2.0
         simple = body.simplify(middle)
         if simple.num_vert() <= MOST_CORNERS:
@@ -142,5 +145,5 @@ def _with_fewer_corners(body: Any) -> Any:
 
 
 def _body(shape: Shape) -> Any:
-    mesh = shape_mesh(shape, SEGMENTS)
+    mesh = shape_mesh(shape, CHORDS_OF_ROUND)
     return Triangles(mesh.vertices_m, mesh.triangles).body()

@@ -9,19 +9,17 @@ import numpy as np
 
 from cagepose.files.meshes.convex_shapes import FEWEST_SIDES
 from cagepose.files.meshes.edges import edges_of, reflex_edges
-from cagepose.files.meshes.manifolds import ROUNDING, SINGLE_PRECISION, Triangles, circle_through, manifold3d
+from cagepose.files.meshes.manifolds import Triangles, circle_through, manifold3d
+from cagepose.files.meshes.tolerances import DISTANCE_BEYOND, PARALLEL_SINE, ROUNDING_OF_MESH, SINGLE_PRECISION
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.pose import Pose, turn_from_z
 
-PARALLEL = 1e-4
-"""Sine between edges of one wall at most."""
-SHARP = 0.99
-"""Cosine between the triangles of the wall and those of its flat ends, less."""
+COSINE_OF_END = 0.99
+"""Cosine between the triangles of the wall and those of its flat ends, which is less than this."""
 NEAR_WALL = 0.95
-"""Of the radius: there the ends are asked whether they are open, as in the middle there may be a narrower hole."""
-BESIDE = 1e-4
-"""Of a hole's radius: so far beyond its ends it is asked whether they are open."""
+"""Share of the radius. The ends are asked there whether they are open, as in the middle there may be a narrower hole.
+"""
 
 
 class RoundHole(NamedTuple):
@@ -46,17 +44,19 @@ def filled(body: Any) -> tuple[Any, list[RoundHole]]:
     if not plugs:
         return body, []
     whole = manifold3d().Manifold.batch_boolean([body, *plugs], manifold3d().OpType.Add)
-    return whole.as_original().simplify(ROUNDING * mesh.size), found
+    return whole.as_original().simplify(ROUNDING_OF_MESH * mesh.size), found
 
 
 def _walls(mesh: Triangles) -> list[FloatArray]:
     """Return the corners of each wall: those of hollow edges that are parallel, equally long and in a ring."""
-    allowed = ROUNDING * mesh.size
+    allowed = ROUNDING_OF_MESH * mesh.size
     edges = reflex_edges(mesh, allowed).corners
     links: dict[int, set[int]] = {}
     all_edges = edges_of(mesh)
     one_side, other_side = np.moveaxis(mesh.normals[all_edges.faces], 1, 0)
-    is_sharp = np.einsum("ij,ij->i", one_side, other_side) < SHARP  # two holes are joined by edges within flat ends
+    is_sharp = (
+        np.einsum("ij,ij->i", one_side, other_side) < COSINE_OF_END
+    )  # two holes are joined by edges within flat ends
     for one, other in all_edges.corners[is_sharp].tolist():
         links.setdefault(one, set()).add(other)
         links.setdefault(other, set()).add(one)
@@ -80,7 +80,7 @@ def _walls(mesh: Triangles) -> list[FloatArray]:
         axis = spans[seed] / lengths[seed]
         across = np.linalg.norm(np.cross(spans[rows], axis), axis=1)
         off = np.sort(mesh.vertices[edges[rows]] @ axis, axis=1) - np.sort(mesh.vertices[edges[seed]] @ axis)
-        rows = rows[(np.abs(off) < slack).all(axis=1) & (across <= PARALLEL * lengths[rows])]
+        rows = rows[(np.abs(off) < slack).all(axis=1) & (across <= PARALLEL_SINE * lengths[rows])]
         bottoms = np.where((spans[rows] @ axis > 0.0)[:, None], edges[rows], edges[rows][:, ::-1])
         row_of = {int(bottom): int(row) for row, bottom in zip(rows, bottoms[:, 0], strict=True)}
         start = int(edges[seed, 0])
@@ -109,7 +109,7 @@ def _hole(body: Any, wall: FloatArray) -> RoundHole | None:
     allowed = 3.0 * SINGLE_PRECISION * max(size, high - low)
     if circle is None or circle.n_sides < FEWEST_SIDES - 0.5 or circle.off > allowed:
         return None
-    step = BESIDE * circle.radius
+    step = DISTANCE_BEYOND * circle.radius
     near_wall = NEAR_WALL * wall[0] + (1.0 - NEAR_WALL) * circle.center
     near_wall = near_wall - (near_wall @ axis) * axis
     is_open = [not _holds(body, near_wall + height * axis) for height in (low - step, high + step)]
@@ -135,7 +135,7 @@ def _with_chamfer(mesh: Triangles, wall: FloatArray, found: RoundHole) -> tuple[
     while (ring := _ring_above(mesh, local, *rims[-1])) is not None:
         (radius, height), of_ring, off = ring
         angle = math.atan2(radius - hole.radius_m, height)
-        if len(rims) > 1 and abs(angle - math.atan2(rims[1][0] - hole.radius_m, rims[1][1])) > PARALLEL:
+        if len(rims) > 1 and abs(angle - math.atan2(rims[1][0] - hole.radius_m, rims[1][1])) > PARALLEL_SINE:
             break
         rims.append((radius, height))
         corners.append(of_ring)

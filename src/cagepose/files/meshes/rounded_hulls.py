@@ -13,15 +13,14 @@ from numpy.typing import NDArray
 
 from cagepose.files.meshes.edges import edges_of
 from cagepose.files.meshes.manifolds import Triangles
+from cagepose.files.meshes.tolerances import DISTANCE_OF_BALL
 from cagepose.model.checks import FloatArray
 from cagepose.model.hull import Hull, hull_of
 
-SEEDS = 1000
+MOST_SEEDS = 1000
 """Corners of a body that are asked for a ball at most."""
-FEWEST = 6
+FEWEST_POINTS = 6
 """Points that tell a ball: four lie on one always."""
-NEAR = 1e-3
-"""Of the radius: points that hang together and are as near to a ball are on it, before they tell it better."""
 
 
 class RoundedHull(NamedTuple):
@@ -59,11 +58,11 @@ def _balls(hull: Triangles, allowed: float) -> list[Ball]:
     points, beside = hull.vertices, _neighbours(hull)
     left = np.ones(len(points), bool)
     found = []
-    for seed in range(0, len(points), max(1, len(points) // SEEDS)):
+    for seed in range(0, len(points), max(1, len(points) // MOST_SEEDS)):
         if not left[seed]:
             continue
         patch = np.append(beside[seed], seed)
-        if len(patch) < FEWEST:
+        if len(patch) < FEWEST_POINTS:
             continue
         ball = ball_through(points[patch])
         if ball.off > allowed or ball.radius > hull.size:
@@ -86,7 +85,7 @@ def _neighbours(hull: Triangles) -> list[NDArray[np.int64]]:
 
 def _patch(points: FloatArray, beside: list[NDArray[np.int64]], seed: int, ball: Ball) -> NDArray[np.int64]:
     """Return the corners that are on a ball and hang together with one."""
-    is_on = np.abs(np.linalg.norm(points - ball.center, axis=1) - ball.radius) <= NEAR * ball.radius
+    is_on = np.abs(np.linalg.norm(points - ball.center, axis=1) - ball.radius) <= DISTANCE_OF_BALL * ball.radius
     patch, waiting = {seed}, [seed]
     while waiting:
         new = [corner for corner in beside[waiting.pop()].tolist() if is_on[corner] and corner not in patch]

@@ -12,14 +12,14 @@ from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.own_process import answer, ask
 from cagepose.model.checks import FloatArray
 
-SECONDS = 60.0
+MOST_SECONDS = 60.0
 CONCAVITY = 0.05
-"""Of parts, as coacd measures it."""
+"""Greatest concavity of parts, as coacd measures it."""
 CORNERS_OF_PART = 100
-ITERATIONS = 20
-"""Of its search for a cut. 60 take twice as long and are much nearer on one part of five: a wavy slab, a ring, a
-slotted plate and two trays are 0.025, 0.023, 0.020, 0.011 and 0.025 of the size off then, and 0.026, 0.022, 0.012,
-0.019 and 0.026 after these."""
+SEARCH_ITERATIONS = 20
+"""Iterations of its search for a cut. 60 take twice as long and are much nearer on one part of five. A wavy slab, a
+ring, a slotted plate and two trays are 0.025, 0.023, 0.020, 0.011 and 0.025 of the size off then, and 0.026, 0.022,
+0.012, 0.019 and 0.026 after these."""
 
 
 def convex_parts(mesh: Triangles) -> list[FloatArray]:
@@ -35,7 +35,7 @@ def convex_parts(mesh: Triangles) -> list[FloatArray]:
     require("coacd", "a mesh that is not convex needs coacd", "files")
     given = io.BytesIO()
     np.savez(given, vertices=mesh.vertices, faces=mesh.faces, concavity=CONCAVITY)
-    found = np.load(io.BytesIO(ask(__name__, given.getvalue(), SECONDS, "coacd")))
+    found = np.load(io.BytesIO(ask(__name__, given.getvalue(), MOST_SECONDS, "coacd")))
     return [found[key] for key in sorted(found.files, key=int)]
 
 
@@ -48,7 +48,7 @@ def _parts(mesh: bytes) -> bytes:
         coacd.Mesh(given["vertices"], given["faces"]),
         threshold=float(given["concavity"]),
         preprocess_mode="off",
-        mcts_iterations=ITERATIONS,
+        mcts_iterations=SEARCH_ITERATIONS,
         decimate=True,
         max_ch_vertex=CORNERS_OF_PART,
     )

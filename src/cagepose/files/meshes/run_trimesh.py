@@ -17,10 +17,10 @@ from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.own_process import answer, ask
 
 CPU_SECONDS, WALL_SECONDS = 7, 60.0
-"""Of the process; 32 MiB of text take four seconds."""
+"""Limits of the process; 32 MiB of text take four seconds."""
 MOST_SOLIDS = 1000
 SOLID_ENDS = re.compile(rb"endsolid[^\r\n]*\s*(solid[^\r\n]*)?", re.IGNORECASE)
-"""Of a text STL file: the end of a solid, and the head of the next one."""
+"""The end of a solid in a text STL file, and the head of the next one."""
 
 
 def surfaces(content: bytes, suffix: str, *, split: bool) -> dict[str, Triangles]:

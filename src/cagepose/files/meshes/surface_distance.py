@@ -7,7 +7,7 @@ import numpy as np
 from cagepose.files.extra import files_library
 from cagepose.files.meshes.manifolds import Triangles
 
-SAMPLES = 4000
+N_SAMPLES = 4000
 """Points of each surface that are asked how far they are from the other."""
 
 
@@ -20,9 +20,9 @@ def farthest_from(one: Triangles, other: Triangles, *, outside: bool = False) ->
     files_library("rtree", "a mesh that is not convex needs rtree")
     random = np.random.default_rng(0)
     doubled = np.linalg.norm(one.areas, axis=1)
-    chosen = one.vertices[one.faces[random.choice(len(one.faces), SAMPLES, p=doubled / doubled.sum())]]
-    inside = np.einsum("ij,ijk->ik", random.dirichlet(np.ones(3), SAMPLES), chosen)
-    corners = one.vertices[:: max(1, len(one.vertices) // SAMPLES)]
+    chosen = one.vertices[one.faces[random.choice(len(one.faces), N_SAMPLES, p=doubled / doubled.sum())]]
+    inside = np.einsum("ij,ijk->ik", random.dirichlet(np.ones(3), N_SAMPLES), chosen)
+    corners = one.vertices[:: max(1, len(one.vertices) // N_SAMPLES)]
     surface = trimesh.Trimesh(other.vertices, other.faces, process=False)
     points = np.concatenate([inside, corners])
     nearest, distances, faces = trimesh.proximity.closest_point(surface, points)
