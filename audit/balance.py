@@ -29,11 +29,11 @@ from cagepose import Contact, PhaseRun, Pose, Run, Scene
 
 AT_REST = ("rests", "may rest")
 N_SIDES = 64
-"""Of a pyramid: it differs from the round cone by 0.12 % of the friction."""
+"""A pyramid has so many sides: it differs from the round cone by 0.12 % of the friction."""
 FEW_SIDES = 12
-"""Of the one that is asked first: what it says settles most cases, at a fifth of the price."""
+"""The pyramid that is asked first has so many sides. What it says settles most cases, at a fifth of the price."""
 MOST_FORCE = 1e6
-"""Of one contact, in loads. A real part is flexible: a wedge that multiplies the load a million times yields."""
+"""In loads, for one contact. A real part is flexible: a wedge that multiplies the load a million times yields."""
 REST = 1e-8
 """What may be left of the load at a rest, in loads."""
 EXACT = 1e-13

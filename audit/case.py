@@ -15,7 +15,7 @@ Answer = list[str] | None
 """What an oracle finds wrong with a run, in words; None: the run holds nothing that it could ask about."""
 
 BY_FORCES = 1e-6
-"""Of the load: forces that balance it leave less."""
+"""Fraction of the load. Forces that balance it leave less."""
 
 
 @dataclass(frozen=True)

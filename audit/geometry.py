@@ -14,7 +14,7 @@ from cagepose import Contact, Load, Pose, Scene
 
 PROBE = 3.0
 PROBE_MARGIN = 1.5
-"""Of (2.7), in touch tolerances."""
+"""The margin of (2.7), in touch tolerances."""
 WEIGHT_BESIDE_FORCE = 1e-6
 """Where mass or magnitude is missing: docs/theory/mechanics, how loads are weighed."""
 

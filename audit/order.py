@@ -11,7 +11,8 @@ from cagepose import Cage, Force, Load, Object, Pose, Run, Runs, Scene, SceneErr
 SAME_POSE = 1e-6
 """In sizes of the scene."""
 MOST_SHIFT = 1e-4
-"""Of the cage in a row of a batch, in sizes: few points come inside, and the way is another one."""
+"""In sizes. The cage in a row of a batch is shifted by this at most: few points come inside, and the way is another
+one."""
 
 
 def renumbered(scene: Scene, rng: np.random.Generator) -> Scene:

@@ -21,14 +21,14 @@ from audit.geometry import Acting, acting, choices, corners, load_of, load_size,
 from cagepose import PhaseRun, Run, Scene
 
 RADII = (1e-4, 1e-5)
-"""Of the displacements, in sizes of the part."""
+"""Radii of the displacements, in sizes of the part."""
 N_STARTS, N_STEPS, N_CHOICES = 8, 4, 2
 SHRINK = 0.7
-"""Of the length of a step, from one to the next."""
+"""Factor of the length of a step, from one to the next."""
 LEAST_CURVATURE = 1e-4
-"""Of the potential, load by size: a fall of less than this times the squared radius is not counted."""
+"""Curvature of the potential, load by size. A fall of less than this times the squared radius is not counted."""
 ROUNDING = 2e-15
-"""Of a gap or of an arm, in sizes."""
+"""Rounding of a gap or of an arm, in sizes."""
 DEPTH_PRICE = 10.0
 """For a linear program: what a gap that cannot be kept open costs, in sums of the contact forces."""
 
@@ -96,7 +96,7 @@ class _Valley:
         self.rounding = ROUNDING * (1.0 + carried) * (1.0 + float(np.abs(self.arms).max()))
 
     def gaps(self, twist: FloatArray) -> FloatArray:
-        """Of the faces, after a displacement: the points are moved back into the part as it was."""
+        """Return the gaps of the faces after a displacement. The points are moved back into the part as it was."""
         back = _turned(np.array(self.places).reshape(-1, 3) - twist[:3], -twist[3:])
         found: FloatArray = (self.normals * back).sum(axis=1) - np.array(self.heights)
         return found

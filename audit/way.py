@@ -21,9 +21,9 @@ from audit.geometry import (
 from cagepose import Event, Pose, Run, Scene
 
 RISE = 1e-9
-"""Of load times size: what a pose of the way may lie higher than the one before."""
+"""In load times size. A pose of the way may lie so much higher than the one before."""
 DEEP_ON_THE_WAY = 5e-5
-"""Of the size: between the poses of a run a part moves on screws, whose points cut a bent way short."""
+"""Fraction of the size. Between the poses of a run a part moves on screws, whose points cut a bent way short."""
 LEAST_SAMPLES, MOST_SAMPLES = 8, 200
 
 

@@ -72,7 +72,7 @@ def word_of(node: ast.AST) -> str:
 
 
 def headings() -> Iterator[str]:
-    """Of all tables of all commands; a name that stands in a heading is left out."""
+    """Yield the headings of all tables of all commands; a name that stands in a heading is left out."""
     for path in sorted(COMMANDS.glob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] in (

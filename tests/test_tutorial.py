@@ -28,7 +28,7 @@ def timeless(text: str) -> list[str]:
 def test_each_command_prints_its_listing(
     number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Of a listing that is cut by dots, all of its lines."""
+    """All lines of a listing that is cut by dots are printed."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "110")
     (tmp_path / "fixture.yaml").write_text(FILES[number], encoding="utf-8")

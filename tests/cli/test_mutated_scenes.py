@@ -15,13 +15,14 @@ from pathlib import Path
 
 import pytest
 
-from cagepose.cli.app import BUG, INTERRUPTED, main
+from cagepose.cli.app import EXIT_INTERRUPTED, EXIT_OF_BUG, main
 from mutated_scenes import SHAPED, TEXTS, Mutant, mutant
 
 LONGEST_S = 5.0
 """On one of two cores that others share; nearly all take some milliseconds."""
 KNOWN_SLOW = {6372}
-"""Of more than are drawn by default. A rod of 400 km on points 0.24 m apart: 3,000 steps of 8 ms, up to their limit."""
+"""Those among more than are drawn by default. A rod of 400 km on points 0.24 m apart: 3,000 steps of 8 ms, up to their
+limit."""
 
 
 def ends(case: Mutant, path: Path) -> tuple[int, float, str]:
@@ -61,7 +62,7 @@ def test_mutated_scenes_end_soon_and_by_name(
         code, took_s, err = ends(case, tmp_path / "scene.yaml")
         codes[code] += 1
         slowest = max(slowest, (took_s, seed))
-        if seed in known and code in (1, INTERRUPTED):
+        if seed in known and code in (1, EXIT_INTERRUPTED):
             continue
         if code not in (0, 1, 2) or took_s > LONGEST_S:
             wrong.append(f"mutant {seed} ({' '.join(case.command)}): exit code {code}, {took_s:.1f} s {err[-300:]}")
@@ -79,9 +80,9 @@ def test_mutants_are_the_same_each_time_and_of_every_kind(tmp_path: Path) -> Non
     assert {ends(case, tmp_path / "scene.yaml")[0] for case in found} >= {0, 2}
 
 
-@pytest.mark.parametrize("code", [BUG, INTERRUPTED])
+@pytest.mark.parametrize("code", [EXIT_OF_BUG, EXIT_INTERRUPTED])
 def test_a_bug_or_a_late_end_would_be_seen(tmp_path: Path, code: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    error = ZeroDivisionError if code == BUG else KeyboardInterrupt
+    error = ZeroDivisionError if code == EXIT_OF_BUG else KeyboardInterrupt
 
     def broken(*_: object) -> None:
         raise error

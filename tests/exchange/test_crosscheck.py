@@ -33,7 +33,7 @@ def test_mujoco_ends_where_cagepose_ends(name):
 
 
 def test_a_roller_a_tenth_of_a_millimetre_off_is_seen(monkeypatch):
-    """Of 1200: a wrong answer of cagepose would be."""
+    """The rail is 1200 mm long. A wrong answer of cagepose would be seen as this is."""
     scene = load_scene(FILES["rail-pitch"])
     assert crosscheck(run(scene)).agrees
     off = assembly_of(scene.changed({f"cage.points[{index}][2]": 0.9e-3 for index in (1, 3)}))

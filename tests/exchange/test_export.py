@@ -42,7 +42,7 @@ from our_scenes import SCENES
 mujoco = pytest.importorskip("mujoco")
 
 OF_MESHES = 1e-6
-"""Of the scene's size: MuJoCo keeps the vertices of meshes in single precision."""
+"""Fraction of the scene's size. MuJoCo keeps the vertices of meshes in single precision."""
 
 
 def model_of(scene: Scene, phases=()):

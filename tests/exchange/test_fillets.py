@@ -16,7 +16,7 @@ from cagepose.exchange.imported import Import, imported
 pytest.importorskip("OCP")
 
 TOP = 8.0
-"""Of the base of a bracket, above the table."""
+"""Height of the base of a bracket above the table."""
 
 
 def block(low: tuple[float, float, float], high: tuple[float, float, float]) -> Any:

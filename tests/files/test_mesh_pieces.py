@@ -120,7 +120,7 @@ def test_a_flat_groove_is_not_lost():
 
 
 def test_a_furrow_with_blunt_edges_is_filled_and_told():
-    """Of what is round all over, a mesh is a little hollow between its facets; a shallow furrow is no more."""
+    """A mesh of what is round all over is a little hollow between its facets; a shallow furrow is no more."""
     corners = [(x, y, 50.05 - 0.05 * (2 - abs(x))) for x in (-1.0, 0.0, 1.0) for y in (-60.0, 60.0)]
     furrow = Convex([*corners, *((x, y, 51.0) for x in (-20.0, 20.0) for y in (-60.0, 60.0))])
     furrowed = body(Box((100, 100, 100)), without=(furrow,))

@@ -18,7 +18,7 @@ AREA = 1.5 * np.sqrt(3.0)
 
 
 def plate_volume(triangle, radius):
-    """Of a triangle blown up by a radius (Steiner)."""
+    """Return the volume of a triangle blown up by a radius (Steiner)."""
     sides = np.roll(triangle, -1, axis=0) - triangle
     area = np.linalg.norm(np.cross(sides[0], sides[1])) / 2.0
     around = np.linalg.norm(sides, axis=1).sum() * np.pi / 2.0

@@ -56,7 +56,7 @@ def test_what_overlaps_counts_once(parts, total, shared):
 
 @pytest.mark.parametrize("scale", [1e-6, 1.0, 1e3])
 def test_a_ball_cut_by_a_box_has_the_cap_s_centroid_and_second_moment(scale):
-    """Of a ball of radius 1 what lies above height h, by integrals of powers of z; below it lies a box."""
+    """The cap of a ball of radius 1 above height h, by integrals of powers of z; below it lies a box."""
     pose, h = Pose((7, 8, 9), (0.3, 0.1, -0.2, 0.9)), 0.3
     placed = lambda z: Pose(pose.transform((0, 0, z)) * scale, pose.quaternion_wxyz)  # noqa: E731
     found = body_moments([Sphere(scale, placed(0.0)), Box((4 * scale, 4 * scale, 4 * scale), placed(h - 2.0))])

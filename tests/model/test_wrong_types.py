@@ -39,7 +39,7 @@ RUN = cagepose.run(SCENE)
 TETRAHEDRON = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
 NOWHERE = "/nowhere/at/all"
 ANYTHING = ("file.yaml", 5, (1, 0), True, np.array([0.0, 0.0, 1.0]), {"a": 1}, float("nan"), object(), [["a"]], SCENE)
-"""Of these, each argument takes a few at most."""
+"""Each argument takes a few of these at most."""
 
 Call = tuple[Callable[..., object], Mapping[str, object]]
 CALLS: dict[str, Call] = {
@@ -92,7 +92,7 @@ TAKEN = {(call, "name"): ("file.yaml",) for call in ("Box", "Sphere", "Load", "S
     **{(call, "scene"): (SCENE,) for call in ("run", "play", "compare", "save_scene")},
 }
 KEYS = {"grazing_band_rad": "grazing_band_deg"}
-"""Of files, where they are called otherwise."""
+"""Keys of files, where they are called otherwise."""
 THREE = ("size_m", "position_m", "euler_zyx", "direction", "at_m", "to_m", "gravity")
 POSITIVE = ("radius_m", "length_m", "depth_m", "radius_bottom_m", "radius_top_m", "mass_kg", "magnitude_n")
 

@@ -21,7 +21,7 @@ from end_oracle import Start, missing
 
 MM = 1e-3
 STATIONARY = 1e-4
-"""Of the slope."""
+"""Fraction of the slope."""
 TRIES = 2000
 """Motions that a tree tries, as many on any machine."""
 FAMILIES = ("near-contact", "grid", "needle", "wedge", "twins", "block", "slot", "stopped-plate")

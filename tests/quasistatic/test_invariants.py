@@ -13,7 +13,7 @@ from quasistatic.random_runs import random_run
 from random_scenes import random_scenes
 
 RISE = 1e-12
-"""Of total force times size: what a potential may rise by, its rounding over some thousand metres of sums. A rest is
+"""In total force times size. A potential may rise by this, its rounding over some thousand metres of sums. A rest is
 put on its faces at last: out of them, where a point has sunk in by part of the touch tolerance, against the forces."""
 
 

@@ -55,9 +55,8 @@ def test_a_spring_that_carries_the_weight_leaves_the_floor_alone() -> None:
 
 
 def test_two_springs_along_a_line_hold_a_part_upright_or_do_not() -> None:
-    """Of two opposite springs with a tension, at points outside of the centre of gravity, every freedom but the turn
-    about their line is stable; pushed together they buckle.
-    """
+    """Two opposite springs with a tension act at points outside of the centre of gravity. Every freedom but the turn
+    about their line is stable; pushed together they buckle."""
 
     def held(preload_n: float) -> Run:
         springs = [Spring((side * 0.02, 0, 0), (side * 0.07, 0, 0), 100.0, preload_n) for side in (-1, 1)]

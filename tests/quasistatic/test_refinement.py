@@ -67,7 +67,7 @@ def test_isolated_rests_do_not_depend_on_the_steps(say, cases):
 
 
 SAME_REST = 1e-4
-"""Of the size: two rests farther apart are different ones."""
+"""Fraction of the size. Two rests farther apart are different ones."""
 
 
 def test_what_friction_leaves_to_the_path_depends_little_on_the_steps(say, cases):

@@ -15,7 +15,8 @@ from quasistatic.test_end_poses import came_back, is_isolated
 from sprung_scenes import cube, sprung
 
 UNBALANCED = 1e-7
-"""Of the load. A balance with friction leaves up to 1e-9 of its terms, and a spring's are more than its tension."""
+"""Fraction of the load. A balance with friction leaves up to 1e-9 of its terms, and a spring's are more than its
+tension."""
 
 
 def test_the_potential_never_rises_and_nothing_goes_in(say, cases):

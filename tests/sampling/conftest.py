@@ -32,9 +32,9 @@ def run_study(tmp_path: Path) -> RunStudy:
 @pytest.fixture
 def small_designs(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs beside the rows are few, where a test asks for something else of the report."""
-    monkeypatch.setattr(sensitivity, "BASE", 16)
+    monkeypatch.setattr(sensitivity, "BASE_ROWS", 16)
     monkeypatch.setattr(sensitivity, "BASE_ONE_BY_ONE", 16)
-    monkeypatch.setattr(capture_map, "COUNT", 8)
+    monkeypatch.setattr(capture_map, "CELLS_OF_SIDE", 8)
 
 
 @pytest.fixture

@@ -80,7 +80,7 @@ def test_a_refined_map_of_a_rail_is_its_whole_grid(
     study = parse_study(study_text(content))
     asked = Runner(study), RowColumns(study), [distribution_of(one) for one in study.varied]
     (refined,) = capture_maps(*asked)
-    monkeypatch.setattr(capture_map, "LINES", count)
+    monkeypatch.setattr(capture_map, "LINES_OF_SIDE", count)
     (whole,) = capture_maps(*asked)
     assert whole.n_runs == count**2
     assert refined.n_runs < count**2 / (10 if count == 1_000 else 2)

@@ -13,9 +13,9 @@ from quasistatic.paths import RESTS, VERDICTS, path_of, potential
 DEEP = 4.0
 """Touch tolerances."""
 POSES = 40
-"""Of a path, about so many are asked how deep parts are."""
+"""About so many poses of a path are asked how deep parts are."""
 UNDECIDED = 0.05
-"""Of runs, at most so many may end without an answer, by name."""
+"""At most this share of runs may end without an answer, by name."""
 
 
 def imbalance(scene: Scene, result: Run) -> float:

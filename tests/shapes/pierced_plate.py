@@ -19,7 +19,7 @@ from cagepose.model.shapes import Rounded, Shape, Turned
 
 N_GRID, N_BEST, N_CLOSER = 180, 4, 48
 FAR = 1e-3
-"""Of a plate: from so far the way to it is known."""
+"""In sizes of a plate. From so far the way to it is known."""
 CORNERS = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 EDGES = [(i, j) for i in range(8) for j in range(i) if np.count_nonzero(CORNERS[i] != CORNERS[j]) == 1]
 

@@ -14,9 +14,9 @@ from cagepose.runs.actions import load_size, wrench_at
 from cagepose.runs.run import Run
 
 GIVES, STAYS = 1e-6, 1e-4
-"""Of the scene's size: what a spring gives under all of the load, and what moves less is held."""
+"""Fractions of the scene's size: what a spring gives under all of the load, and what moves less is held."""
 BALANCED = 1e-6
-"""Of the load."""
+"""Fraction of the load."""
 RAMP, STEPS, MORE = 12_000, 200_000, 10
 """Steps of the load's growth, and of all; so many times more where the part has stayed and forces still change."""
 

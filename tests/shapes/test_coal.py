@@ -18,13 +18,13 @@ from shapes.test_first_meeting import motion_of
 coal = pytest.importorskip("coal")  # has no wheels for Windows
 
 ACCURACY, ON = 1e-6, 1e-4
-"""Of a size: of coal's distances; and so much farther sharp tips that glance off each other are apart still."""
+"""Fractions of a size: the accuracy of coal's distances, and how much farther sharp tips that glance off each other are
+apart still."""
 ASIDE = 1e-6
-"""Of a size: so much beside the line two sharp tips do not meet in a point."""
+"""Fraction of a size. So much beside the line two sharp tips do not meet in a point."""
 KNOWN_MISSED = 0.003
-"""Of pairs that are aimed at each other's nearest points. Known: sharp tips and rims that come to each other a
-millionth of a size beside a hit may be missed, most of them tips of cones.
-"""
+"""Share of the pairs that are aimed at each other's nearest points. Known: sharp tips and rims that come to each other
+a millionth of a size beside a hit may be missed, most of them tips of cones."""
 LOST = 1.0
 """Below minus so much, metres, coal tells no depth."""
 N_PARTS = 60

@@ -12,7 +12,7 @@ from cagepose.model.features import shapes_of
 from shapes.convex_bodies import Body, body_of, gap, nearest, placed_at, random_part, random_turn, separation
 
 TOUCH, RESOLUTION = 1e-9, 1e-12
-"""Of the greater body, as in runs."""
+"""Fractions of the size of the greater body, as in runs."""
 WITHIN = 8.0
 """Touch tolerances: what touches may be told to be nearer by so much, at corners of slender parts."""
 GAPS = np.array([0, 0, 0.5, -0.5, 0.9, -0.9, 1, -1, 3, -3, 100, -100, 1e4, -1e4, 1e6, -1e6, 1e8, 3e8])

@@ -15,7 +15,7 @@ from shapes.drawn_parts import DRAWN, MM, countersunk, screw_and_seat
 from shapes.sprung_contacts import BALANCED, on_springs
 
 UNDECIDED = 0.01
-"""Of runs, at most so many may end without an answer, by name."""
+"""At most this share of runs may end without an answer, by name."""
 SCREWS_UNDECIDED = 0.03
 """The same of countersunk screws in seats of other angles."""
 PUT_BACK = 1e-9

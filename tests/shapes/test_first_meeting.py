@@ -20,7 +20,7 @@ from shapes.test_distances import TOUCH, geometry_of, placed, random_offset
 TOLERANCE = 4.0
 """Touch tolerances: how deep parts may be where nothing was met, and how far apart where something was."""
 SHORTEST = 1e-4
-"""Of a motion: sampling that creeps along a contact goes on by this."""
+"""Fraction of a motion. Sampling that creeps along a contact goes on by this."""
 
 
 @pytest.fixture(scope="module")
@@ -209,7 +209,7 @@ def test_a_bar_turns_in_a_slot_until_its_corners_touch(first, play):
 
 
 def test_edges_that_begin_parallel_do_not_touch_where_their_lines_cross(first):
-    """Of two boxes that are in line with each other at first, and a thousandth of their size apart."""
+    """Two boxes are in line with each other at first, and a thousandth of their size apart."""
     part, cage_part = Box((0.000568673, 0.000213907, 0.0009823)), Box((0.00055105, 0.000914763, 0.000514868))
     pose = Pose((0.000767347, 0.0, -0.000365364), (0.5, 0.5, 0.5, 0.5))
     axis = np.array((-0.6828572797330864, -0.24960590801563143, 0.6865878139023598))

@@ -145,10 +145,9 @@ def test_a_ball_that_leans_on_a_round_seat_turns_in_it_as_its_weight_wills(
 def test_a_ball_touches_a_chamfer_all_around(
     friction: float, push_deg: float, chamfer_deg: float, is_ball_held: bool
 ) -> None:
-    """Of that circle a run lists four points. A push through the centre of a ball with weight 1 lifts it over the point
+    """A run lists four points of that circle. A push through the centre of a ball with weight 1 lifts it over the point
     ahead if it is above the cotangent of the angle of wall and axis; with friction, too, as the ball rolls. So it is
-    where the block is pulled up against the ball and pushed.
-    """
+    where the block is pulled up against the ball and pushed."""
     radius, angle = 10.0 * MM, math.radians(chamfer_deg)
     mouth = Hole(0.6 * radius, 2.0 * radius, Chamfer(0.38 * radius, angle), in_=["block"])
     block = Box((8.0 * radius, 8.0 * radius, 4.0 * radius), Pose((0.0, 0.0, -2.0 * radius)), name="block")
@@ -186,7 +185,7 @@ HEADS = [
 ]
 """Half angles of head and seat, degrees, and where it starts, mm."""
 RIM, SHANK, BORE, LOW, CENTER, PUSH_N = 6.0, 3.0, 3.2, 20.0, -6.0, 0.3
-"""Of a screw whose head has its rim at the origin, mm: the radii of rim, shank and bore, the length of the shank, its
+"""A screw whose head has its rim at the origin, mm: the radii of rim, shank and bore, the length of the shank, its
 centre of gravity; its weight is 1 N."""
 
 
@@ -228,7 +227,7 @@ class PushedScrew:
         return np.hypot(beside, across), z - along * math.sin(tilt) + height * math.cos(tilt)
 
     def gaps(self, pose: np.ndarray) -> np.ndarray:
-        """Of the rim in the seat, and of the lower end in the bore, mm."""
+        """Return the gaps of the rim in the seat, and of the lower end in the bore, mm."""
         away, height = self.circle(pose, RIM, 0.0)
         in_seat = (height - self.apex) * math.sin(self.half) - away * math.cos(self.half)
         return np.concatenate([in_seat, BORE - self.circle(pose, SHANK, self.low)[0]])

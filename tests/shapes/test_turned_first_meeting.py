@@ -31,7 +31,7 @@ from shapes.test_turned_distances import WIDE, random_peg, random_plate
 from shapes.turned_bodies import circles_of, gap, placed_at, random_turned
 
 SHORTEST = 2e-3
-"""Of a motion: sampling goes on by this where parts are near."""
+"""Fraction of a motion. Sampling goes on by this where parts are near."""
 
 
 @pytest.fixture(scope="module")

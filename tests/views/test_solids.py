@@ -8,7 +8,7 @@ import pytest
 from cagepose import Box, Chamfer, Hole, Pose
 from cagepose.model.shapes import AnyShape, Capsule, Cone, Convex, Cylinder, Disc, Sphere
 from cagepose.model.volume import BOX_SIGNS
-from cagepose.views.solids import SEGMENTS, cut_off, solid_of
+from cagepose.views.solids import CHORDS_OF_CIRCLE, cut_off, solid_of
 
 BLOCK = Box((0.04, 0.03, 0.02))
 ROUNDED = Convex(BOX_SIGNS * 0.01, 0.003)
@@ -25,8 +25,12 @@ def fronts(shape: Box | AnyShape, eye: tuple[float, float, float]) -> np.ndarray
         (BLOCK, (1.0, 2.0, 3.0), 9),  # of twelve edges three are behind
         (BLOCK, (0.0, 0.0, 1.0), 4),
         (Sphere(0.01), (0.3, -0.2, 0.9), None),
-        (Cylinder(0.01, 0.03), (0.0, 0.0, 1.0), SEGMENTS),
-        (Cylinder(0.01, 0.03), (1.0, 0.0, 1.0), 3 * SEGMENTS // 2 + 2),  # a rim, half of the other, and two sides
+        (Cylinder(0.01, 0.03), (0.0, 0.0, 1.0), CHORDS_OF_CIRCLE),
+        (
+            Cylinder(0.01, 0.03),
+            (1.0, 0.0, 1.0),
+            3 * CHORDS_OF_CIRCLE // 2 + 2,
+        ),  # a rim, half of the other, and two sides
     ],
 )
 def test_what_an_eye_sees_as_lines_is_edges_and_where_the_shape_ends(shape, eye, n_lines) -> None:

@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from cyclopts import App, CycloptsError
 
 BAD_INPUT = 2
-BUG = 3
-INTERRUPTED = 130  # 128 + SIGINT, as shells have it
+EXIT_OF_BUG = 3
+EXIT_INTERRUPTED = 130
 OBJECTS_BETWEEN_COLLECTIONS = 100_000
-SHOWN = 78
+COLUMNS_SHOWN = 78
 """Columns of what a command is doing."""
 BROKEN_PIPE = 141  # 128 + SIGPIPE
 STANDARD_INPUT = "/dev/stdin"
@@ -110,7 +110,7 @@ def _run(tokens: list[str]) -> int:
         return code
     except KeyboardInterrupt:
         sys.stderr.write("cagepose: stopped\n")
-        return INTERRUPTED
+        return EXIT_INTERRUPTED
     except BrokenPipeError:
         _abandon_output()  # whoever read it has left
         return BROKEN_PIPE
@@ -123,12 +123,12 @@ def _run(tokens: list[str]) -> int:
 
         traceback.print_exc()
         sys.stderr.write("cagepose: this is a bug of ours; please report it with the lines above and the scene file\n")
-        return BUG
+        return EXIT_OF_BUG
 
 
 def _show(doing: str) -> None:
     """Show on a terminal what is being done, in the place of what was before."""
-    sys.stderr.write(f"\r{doing[:SHOWN]:{SHOWN}}\r")
+    sys.stderr.write(f"\r{doing[:COLUMNS_SHOWN]:{COLUMNS_SHOWN}}\r")
     sys.stderr.flush()
 
 

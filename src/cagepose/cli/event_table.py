@@ -15,7 +15,7 @@ from cagepose.runs.changes import Change, changes_of
 from cagepose.runs.run import Run
 
 MOST_NAMES = 12
-"""Of points and shapes in a row; ``--verbose`` prints all."""
+"""A row names at most so many points and shapes; ``--verbose`` prints all."""
 
 
 def event_table(run: Run, words: LengthWords, width: int, *, is_verbose: bool) -> list[RenderableType]:

@@ -17,7 +17,7 @@ SUFFIXES = {
     "stl": (".stl",),
     "csv": (".csv",),
 }
-"""Of what is written; others that no kind has are nobody's business."""
+"""Suffixes of what is written. Others that no kind has are not looked at."""
 
 
 def export_command(

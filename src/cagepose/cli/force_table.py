@@ -10,14 +10,13 @@ from rich.text import Text
 
 from cagepose.cli.console import fits
 from cagepose.cli.styles import plain_table
+from cagepose.cli.tolerances import SIDEWAYS_OF_NORMAL
 from cagepose.files.words import LengthWords, names_of
 from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.run import Contact, PhaseRun, Run
 
-SIDEWAYS = 1e-9
-"""Of a normal force: less than that across it is rounding."""
 MOST_ROWS = 30
-"""Of contacts, those with the greatest forces; ``--verbose`` prints all."""
+"""A table has at most so many contacts, those with the greatest forces; ``--verbose`` prints all."""
 APART, NO_FORCE = "", "0"
 """What stands for a contact that is none at the end of a phase, and for one that bears nothing."""
 
@@ -99,5 +98,5 @@ def _force(contact: Contact) -> str:
     if contact.force_normal_n is None or not _bears(contact):
         return NO_FORCE
     across = 0.0 if contact.force_tangential_n is None else math.hypot(*contact.force_tangential_n)
-    beside = f" + {across:.4g} across" if across > SIDEWAYS * contact.force_normal_n else ""
+    beside = f" + {across:.4g} across" if across > SIDEWAYS_OF_NORMAL * contact.force_normal_n else ""
     return f"{contact.force_normal_n:.4g}{beside}"

@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 from collections import Counter
 
+from cagepose.cli.tolerances import SIDEWAYS_OF_NORMAL
 from cagepose.files.units import from_metres
 from cagepose.files.words import LengthWords
 from cagepose.model.checks import FloatArray
 from cagepose.model.wording import components
 from cagepose.studies.margin import ContactMargin, Margin
-
-SHOWN = 1e-9
-"""Of a normal force: less than that sideways is rounding."""
 
 
 def margin_lines(margin: Margin | None, words: LengthWords) -> list[tuple[str, str]]:
@@ -43,6 +41,6 @@ def _carries(contact: ContactMargin, words: LengthWords, *, is_one: bool) -> str
     place = contact.place_world
     at = "" if is_one or place is None else f" at ({words.lengths(place)})"
     sideways = math.hypot(*contact.equally_stiff_tangential_n)
-    beside = f"+ {sideways:.4g} sideways; " if sideways > SHOWN * contact.equally_stiff_n else ""
+    beside = f"+ {sideways:.4g} sideways; " if sideways > SIDEWAYS_OF_NORMAL * contact.equally_stiff_n else ""
     greatest = "any" if math.isinf(contact.greatest_n) else f"{contact.greatest_n:.4g}"
     return f"{contact.point}{at} {contact.equally_stiff_n:.4g} ({beside}{contact.least_n:.4g} to {greatest})"

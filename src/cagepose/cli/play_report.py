@@ -10,6 +10,7 @@ from rich.text import Text
 
 from cagepose.cli.console import fits, print_all, screen_width
 from cagepose.cli.styles import plain_table
+from cagepose.cli.tolerances import END_AT_START
 from cagepose.files.play_document import LENGTHS
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.files.words import LengthWords, line_of
@@ -19,11 +20,11 @@ from cagepose.studies.cage_verdict import CageVerdict, PathStep
 from cagepose.studies.play_rest import PlayRest
 from cagepose.studies.play_result import Play, PlayEnd
 
-DIGITS = (6, 5, 4)
-"""Of ranges: as many as fit the screen."""
+DIGITS_OF_RANGES = (6, 5, 4)
+"""Digits of ranges: as many as fit the screen."""
 MOST_CLEARANCES = 4
-"""Of those that limit an end, so many are printed; the document has all."""
-ALIKE = 0.99
+"""So many of the clearances that limit an end are printed; the document has all."""
+WORTH_OF_BEST = 0.99
 """Clearances worth this part of the best one are as good to close; slopes say no more of a whole gap."""
 MEANING = (
     "exact: no motion nearby goes farther (*: nor any inside the cage, by more than 1 % of it); past: so far, and"
@@ -36,9 +37,7 @@ HALVED = (
     " made smaller or larger; halved if closed by: one gap alone, made so much smaller, leaves half of the play"
 )
 MOST_MOTIONS = 6
-"""Of a way out, so many are printed; the document has all."""
-NO_PLAY = 1e-12
-"""Metres or radians: an end that is nearer is at the start but for rounding."""
+"""So many motions of a way out are printed; the document has all."""
 STYLES = {"caged": "bold green", "not certified": "bold yellow", "escapes": "bold red"}
 
 
@@ -47,7 +46,7 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
     rows = [(name, name in LENGTHS, ends.low, ends.high) for name, ends in play.freedoms.items()]
     rows += [(_point_name(place, play), True, point.low, point.high) for place, point in enumerate(play.points)]
     width = screen_width()
-    tables = [_ranges(rows, unit, digits) for digits in DIGITS]
+    tables = [_ranges(rows, unit, digits) for digits in DIGITS_OF_RANGES]
     table = next((table for table in tables if fits(table, width)), tables[-1])
     why = plain_table("end", "limited by", f"back per {unit} closed", f"on per {unit} opened", "halved if closed by")
     for name, is_length, low, high in rows:
@@ -189,11 +188,15 @@ def _halving(end: PlayEnd) -> tuple[float, list[str]]:
     of which each alone does it; none: no gap is so wide. Zero: there is nothing to halve.
     """
     usable = [gap for gap in end.clearances if 0.0 < gap.closing < math.inf and gap.gap_m is not None]
-    if end.exact is None or abs(end.exact) < NO_PLAY or not usable:
+    if end.exact is None or abs(end.exact) < END_AT_START or not usable:
         return 0.0, []
     best = max(clearance.closing for clearance in usable)
     by_m = 0.5 * abs(end.exact) / best
-    return by_m, [gap.point for gap in usable if gap.closing >= ALIKE * best and (gap.gap_m or 0.0) >= ALIKE * by_m]
+    return by_m, [
+        gap.point
+        for gap in usable
+        if gap.closing >= WORTH_OF_BEST * best and (gap.gap_m or 0.0) >= WORTH_OF_BEST * by_m
+    ]
 
 
 def _way_out(path: Sequence[PathStep], words: LengthWords) -> str:

@@ -14,6 +14,7 @@ from cagepose.cli.event_table import event_table, listed
 from cagepose.cli.force_table import force_table
 from cagepose.cli.margin_report import margin_lines
 from cagepose.cli.styles import STYLES
+from cagepose.cli.tolerances import LEAST_GAP_WORK
 from cagepose.errors import printable
 from cagepose.files.units import LengthUnit
 from cagepose.files.words import LengthWords
@@ -29,8 +30,8 @@ POSES = {
     **dict.fromkeys(FAILURES, "where the run stopped; it is no end"),
 }
 """Where the pose is taken from, if it is not that of a rest."""
-NO_GAP_WORK, LARGE_FORCE = 1e-12, 10.0
-"""Of the proof's numbers, those above these are told: more than rounding, and more than ten loads."""
+LARGE_FORCE_IN_LOADS = 10.0
+"""In loads. A greater force of the proof is told."""
 
 
 def print_report(
@@ -174,9 +175,9 @@ def _proof(phase: PhaseRun) -> str:
     if phase.verdict not in AT_REST:
         return ""
     sizes = [f"residual {proof.residual:.1e}"]
-    if proof.gap_work is not None and abs(proof.gap_work) > NO_GAP_WORK:
+    if proof.gap_work is not None and abs(proof.gap_work) > LEAST_GAP_WORK:
         sizes.append(f"gap work {proof.gap_work:.1e}")
-    if proof.largest_force is not None and proof.largest_force > LARGE_FORCE:
+    if proof.largest_force is not None and proof.largest_force > LARGE_FORCE_IN_LOADS:
         sizes.append(f"largest force {proof.largest_force:.3g} loads")
     return f"{proof.verdict}: {proof.reason} ({', '.join(sizes)})"
 

@@ -11,7 +11,7 @@ from cagepose.cli.styles import plain_table
 from cagepose.model.wording import number_or_dash, percent, range_or_dash
 
 MOST_ROWS = 8
-"""Of numbers that matter; the page shows more."""
+"""So many of the numbers that matter are printed; the page shows more."""
 
 
 def print_study(found: dict[str, Any]) -> None:

@@ -17,8 +17,8 @@ from cagepose.views.event_figure import event_figure
 from cagepose.views.pose_figure import pose_figure
 from cagepose.views.style import BLACK, BLUE, GREY, PAGE_WIDTH_IN, PALE, SKY, VERMILLION, Look, figure_bytes, styled
 
-ORDER: tuple[Angle, ...] = ("pitch", "yaw", "roll")
-"""Of pictures, rows and columns: the paper's."""
+ORDER_OF_ANGLES: tuple[Angle, ...] = ("pitch", "yaw", "roll")
+"""Order of pictures, rows and columns: the paper's."""
 PIN_LOOKS: tuple[Look, ...] = (
     {"color": BLUE, "linestyle": "-", "marker": "o"},
     {"color": VERMILLION, "linestyle": "--", "marker": "s"},
@@ -45,11 +45,14 @@ CASE_FIGURES: dict[str, dict[str, Callable[[CaseRuns], Figure]]] = {
         "sample-pose": lambda runs: pose_figure(runs.sample),
     },
     "pictures of the rail's events": {"rail-events": lambda runs: event_figure(runs.pitch)},
-    **{f"picture of the rail out of line in {angle}": {f"rail-{angle}": _misaligned(angle)} for angle in ORDER},
+    **{
+        f"picture of the rail out of line in {angle}": {f"rail-{angle}": _misaligned(angle)}
+        for angle in ORDER_OF_ANGLES
+    },
 }
 """What begins, then the names of the figures and how they are drawn."""
 FIGURES = (*(name for figures in CASE_FIGURES.values() for name in figures), "range")
-"""Of each method; in the names of files, the method's name stands before them."""
+"""The figures of each method. In the names of files, the method's name stands before them."""
 
 
 def draw_pictures(reproduction: Reproduction, methods: Sequence[str], progress: Progress) -> dict[str, Picture]:
@@ -78,9 +81,9 @@ def range_figure(studies: Sequence[RangeStudy]) -> Figure:
     with styled():
         figure = Figure(figsize=(PAGE_WIDTH_IN, 6.9), layout="constrained")
         panels = figure.subplots(3, 3, sharex=True, sharey=True)
-        for column, varied in enumerate(ORDER):
+        for column, varied in enumerate(ORDER_OF_ANGLES):
             chosen = [study for study in studies if study.misaligned == varied]
-            for row, shown in enumerate(ORDER):
+            for row, shown in enumerate(ORDER_OF_ANGLES):
                 panel = panels[row, column]
                 _draw(panel, chosen, ANGLES.index(shown), is_varied=shown == varied)
                 if row == 0:

@@ -15,7 +15,7 @@ from cagepose.runs.variation import Variation
 
 LEAST_CHANGE_RAD = float(np.radians(0.001))
 """A rail that only yaws changes its other ZYX angles by up to 0.0009 deg; what is less than this counts as none."""
-ROUNDING_RAD = 1e-9
+ZERO_ANGLE_RAD = 1e-9
 """An angle below this is zero."""
 
 
@@ -56,7 +56,9 @@ class RangeStudy:
     def passes_zero(self) -> np.ndarray:
         """Whether the push takes the angle that was varied from one side of zero to the other, (n,) of bool."""
         before, after = self._varied_angle()
-        passes: np.ndarray = (np.minimum(before, after) < -ROUNDING_RAD) & (np.maximum(before, after) > ROUNDING_RAD)
+        passes: np.ndarray = (np.minimum(before, after) < -ZERO_ANGLE_RAD) & (
+            np.maximum(before, after) > ZERO_ANGLE_RAD
+        )
         return passes & (np.abs(after - before) > LEAST_CHANGE_RAD)
 
     def _varied_angle(self) -> tuple[FloatArray, FloatArray]:

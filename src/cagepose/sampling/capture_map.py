@@ -15,14 +15,14 @@ from cagepose.sampling.outcome import Outcomes
 from cagepose.sampling.row_columns import RowColumns
 from cagepose.sampling.runner import Runner
 
-COUNT = 60
+CELLS_OF_SIDE = 60
 """Cells along each side, where the study does not say."""
-LINES = 60
+LINES_OF_SIDE = 60
 """At least so many lines of cells are run along each side, or all of them."""
 LAYERS, MOST_LAYERS = 4, 9
 """Values of a third number: so many, or those that the study lists, if they are not more than the latter."""
 CORNERS = ((0, 0), (0, 1), (1, 0), (1, 1))
-"""Of a block, down and right."""
+"""Corners of a block, down and right."""
 
 Indices = NDArray[np.int64]
 
@@ -75,7 +75,7 @@ def capture_maps(runner: Runner, columns: RowColumns, distributions: Sequence[Di
     chosen = [keys.index(key) for key in given.over] if given else moving[:2]
     if len(chosen) < 2:
         return ()
-    nominal, count = np.array([one.nominal for one in study.varied]), given.count if given else COUNT
+    nominal, count = np.array([one.nominal for one in study.varied]), given.count if given else CELLS_OF_SIDE
     axes = [np.linspace(distributions[one].low, distributions[one].high, count) for one in chosen[:2]]
     if len(chosen) == 2:
         return (_map(runner, columns, chosen, axes, nominal),)
@@ -139,7 +139,7 @@ def _map(
 
 def _first_stride(count: int) -> int:
     stride = 1
-    while count > 2 * stride * LINES:
+    while count > 2 * stride * LINES_OF_SIDE:
         stride *= 2
     return stride
 
@@ -154,8 +154,8 @@ def refined_map(count: int, kinds_of: Callable[[Indices, Indices], Indices]) -> 
     """Return what happens in each of count x count cells, (count, count), and how many of them were run.
 
     ``kinds_of`` runs cells by their rows and columns and says what happens there. A coarse lattice is run first, of
-    `LINES` lines at least. Blocks of it whose corners differ are halved, and so are their neighbours, into which the
-    boundary may bulge, until single cells are left. All other blocks are as their corners. What is narrower than a
+    `LINES_OF_SIDE` lines at least. Its blocks whose corners differ are halved, until single cells are left. So are
+    their neighbours, into which the boundary may bulge. All other blocks are as their corners. What is narrower than a
     block of the first lattice, and lies within one, can be missed.
     """
     cells = np.full((count, count), -1)

@@ -19,7 +19,7 @@ from cagepose.sampling.statistics import Statistics
 from cagepose.views.viewer.page import page
 from cagepose.views.viewer.playback import playback
 
-WORST = 3
+N_WORST = 3
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def chosen_runs(results: StudyResults, statistics: Statistics) -> list[ChosenRun
         ran = np.flatnonzero(part["verdict"] != REFUSED)
         order = ran[np.lexsort((part["run"][ran], -distances[ran], -ranks[ran]))]
         nearest = ran[np.lexsort((part["run"][ran], distances[ran], ranks[ran]))]
-        for chosen, rows, sign in ((worst, order[:WORST], -1), (typical, nearest[:1], 1)):
+        for chosen, rows, sign in ((worst, order[:N_WORST], -1), (typical, nearest[:1], 1)):
             for row in rows.tolist():
                 key = (sign * int(ranks[row]), sign * float(distances[row]), int(part["run"][row]))
                 values = np.array([part[name][row] for name in columns.varied])
@@ -78,7 +78,7 @@ def chosen_runs(results: StudyResults, statistics: Statistics) -> list[ChosenRun
                 chosen.append((key, ChosenRun("", "", "", key[2], verdict, accepted, abs(key[1]), values)))
         worst.sort(key=lambda item: item[0])
         typical.sort(key=lambda item: item[0])
-        del worst[WORST:], typical[1:]
+        del worst[N_WORST:], typical[1:]
     named = [(f"worst {number}", found) for number, (_, found) in enumerate(worst, 1)]
     named += [("typical", found) for _, found in typical]
     stems = [name.replace(" ", "-") for name, _ in named]

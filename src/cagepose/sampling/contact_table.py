@@ -15,7 +15,7 @@ from cagepose.sampling.runner import Runner
 from cagepose.sampling.statistics import Statistics
 
 MOST_RUNS = 1_000
-"""Of those whose forces are asked for once more, where the rows hold none."""
+"""The forces of at most so many runs are asked for once more, where the rows hold none."""
 
 
 @dataclass(frozen=True)

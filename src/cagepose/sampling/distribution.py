@@ -13,7 +13,7 @@ from cagepose.files.schema_study import DistributionModel
 from cagepose.files.study_file import VariedKey
 from cagepose.model.checks import FloatArray
 
-SIGMAS = 3.0
+WIDTH_IN_SIGMAS = 3.0
 """A normal distribution without a cut counts as this wide, where a width is asked for."""
 LEAST_SHARE = 2.0**-54
 """In the place of 0, at which a normal distribution is infinite."""
@@ -21,14 +21,14 @@ LEAST_SHARE = 2.0**-54
 
 @dataclass(frozen=True)
 class Distribution:
-    """Of one varied number, in the scene file's unit.
+    """The distribution of one varied number, in the scene file's unit.
 
     Attributes
     ----------
     kind
         "uniform", "normal", "triangular", or "listed" for values that are equally likely.
     low, high
-        The least and greatest value; for a normal distribution without a cut `SIGMAS` from its mean.
+        The least and greatest value; for a normal distribution without a cut `WIDTH_IN_SIGMAS` from its mean.
     mean, sigma
         Mean and standard deviation.
     numbers
@@ -73,7 +73,7 @@ def distribution_of(varied: VariedKey) -> Distribution:
     if model.normal is not None:
         mean = varied.nominal if model.normal.mean is None else model.normal.mean
         cut, sigma = model.normal.cut or math.inf, model.normal.sigma
-        reach = sigma * min(cut, SIGMAS if math.isinf(cut) else cut)
+        reach = sigma * min(cut, WIDTH_IN_SIGMAS if math.isinf(cut) else cut)
         spread = sigma if math.isinf(cut) else sigma * float(stats.truncnorm.std(-cut, cut))
         return Distribution("normal", mean - reach, mean + reach, mean, spread, (mean, sigma, cut))
     if model.triangular is not None:

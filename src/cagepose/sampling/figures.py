@@ -17,14 +17,14 @@ from cagepose.sampling.capture_map import CaptureMap
 from cagepose.sampling.distribution import Distribution
 from cagepose.sampling.findings import Findings
 from cagepose.sampling.sensitivity import ACCEPTED, Sensitivity
-from cagepose.sampling.statistics import BINS, Spread
+from cagepose.sampling.statistics import N_BINS, Spread
 from cagepose.sampling.tolerances import ToleranceRow
 from cagepose.views.style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE_WIDTH_IN, PALE, PURPLE, SKY, VERMILLION, styled
 
 MOST_BARS = 12
-"""Of numbers that matter: the first so many."""
+"""The first so many numbers that matter have a bar."""
 LEAST_HEIGHT_IN = 1.7
-"""Of a picture: room for a panel of one bar between its title and the legend."""
+"""Least height of a picture. It leaves room for a panel of one bar between its title and the legend."""
 VERDICT_COLOURS = {
     "stable": GREEN,
     "rests": GREEN,
@@ -131,7 +131,7 @@ def _tornado_figure(
 def _spread_figure(spreads: dict[str, Spread], units: Mapping[str, str]) -> Figure:
     figure, panels = _panels(len(spreads), 1.7, 3)
     for panel, (name, spread) in zip(panels, spreads.items(), strict=True):
-        counts = spread.counts.reshape(80, BINS // 80).sum(axis=1)
+        counts = spread.counts.reshape(80, N_BINS // 80).sum(axis=1)
         edges = np.linspace(spread.least, spread.greatest, 81)
         panel.stairs(counts / counts.max(), edges, fill=True, color=BLUE, alpha=0.7)
         panel.axvline(spread.mean, color=VERMILLION, linewidth=1.0)

@@ -53,7 +53,7 @@ class Outcomes:
 
     @property
     def verdict(self) -> NDArray[Any]:
-        """Of the last phase that was reached, (n,)."""
+        """The verdict of the last phase that was reached, (n,)."""
         found: NDArray[Any] = self.phase_verdicts[np.arange(len(self)), _last_reached(self.phase_verdicts)]
         return found
 

@@ -17,8 +17,10 @@ from cagepose.model.wording import few
 from cagepose.runs.run import FAILURES
 from cagepose.sampling.outcome import REFUSED, Outcomes, at_rest
 
-SAME, SAME_DEG = 1e-8, 1e-6
-"""Of lengths, as a fraction of the scene's size; and of angles."""
+SAME_LENGTH_OF_SIZE = 1e-8
+"""Fraction of the scene's size. Lengths that differ by less are the same."""
+SAME_DEG = 1e-6
+"""Degrees. Angles that differ by less are the same."""
 WITHOUT_ANSWER = [REFUSED, *sorted(FAILURES)]
 AXES, ANGLES = ("x", "y", "z"), ("yaw_deg", "pitch_deg", "roll_deg")
 
@@ -50,7 +52,7 @@ class RowColumns:
         elements = scene.cage.element_names
         self.varied = tuple(one.key for one in study.varied)
         self.watched = tuple(f"{name}_{axis}" for name in self._watched for axis in AXES)
-        lengths = float(from_metres(SAME * scene.size_m, study.nominal.length_unit))
+        lengths = float(from_metres(SAME_LENGTH_OF_SIZE * scene.size_m, study.nominal.length_unit))
         self.quantities = (*(f"position_{axis}" for axis in AXES), *ANGLES, *self.watched)
         self.resolution = {name: SAME_DEG if name in ANGLES else lengths for name in self.quantities}
         of_quantities = {name: "deg" if name in ANGLES else study.nominal.length_unit for name in self.quantities}
@@ -64,7 +66,7 @@ class RowColumns:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of all columns, in their order."""
+        """The names of all columns, in their order."""
         measured = (*self.verdicts, *self.quantities, *self.touching, *self.forces)
         return ("run", *self.varied, *measured, "accepted", "error", "solve_us")
 

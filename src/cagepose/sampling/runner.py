@@ -33,7 +33,7 @@ FEW_ROWS, ROWS_OF_A_TASK = 64, 16
 Told = Callable[[int], None]
 """Called with how many rows are done, while others are not."""
 Part = tuple[int, int]
-"""Of the rows: the first, and the one behind the last."""
+"""A part of the rows: the first, and the one behind the last."""
 RunPart = tuple[Part, FloatArray, Outcomes]
 """With its varied numbers, and where its runs ended."""
 
@@ -175,7 +175,7 @@ class Runner:
 
 
 _RUNNERS: list[Runner] = []
-"""Of a process that builds scenes: its one."""
+"""The one runner of a process that builds scenes."""
 
 
 def _begin_process(study: StudyFile) -> None:

@@ -16,11 +16,11 @@ from cagepose.sampling.row_columns import RowColumns
 from cagepose.sampling.runner import Runner
 
 ACCEPTED = "accepted"
-BASE = 1024
+BASE_ROWS = 1024
 """Rows of the design for each varied number, and two more."""
 BASE_ONE_BY_ONE = 256
-LEAST_WHOLE = 0.5
-"""Of the design's blocks: a block in which a run does not come to rest says nothing of poses, and is left out."""
+LEAST_WHOLE_BLOCKS = 0.5
+"""Share of the design's blocks. A block in which a run does not come to rest says nothing of poses, and is left out."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def sensitivities(
     """Return the indices of the yield and of each quantity (Saltelli et al. 2010, Jansen 1999; by SALib)."""
     n_varied = len(distributions)
     problem = {"num_vars": n_varied, "names": list(columns.varied), "bounds": [[0.0, 1.0]] * n_varied}
-    n_blocks = BASE if runner.is_batch else BASE_ONE_BY_ONE
+    n_blocks = BASE_ROWS if runner.is_batch else BASE_ONE_BY_ONE
     base = qmc.Sobol(2 * n_varied, rng=seed % 2**32).random(n_blocks)
     parts: list[dict[str, FloatArray]] = []
     n_at_once = max(runner.rows_of_a_part // (n_varied + 2), 1)
@@ -89,7 +89,7 @@ def _indices(name: str, measured: FloatArray, problem: dict[str, Any], seed: int
     blocks = measured.reshape(-1, problem["num_vars"] + 2)  # of runs that belong together
     whole = blocks[~np.isnan(blocks).any(axis=1)]
     measured = whole.ravel()
-    if len(whole) < LEAST_WHOLE * len(blocks):
+    if len(whole) < LEAST_WHOLE_BLOCKS * len(blocks):
         missing = "is not known, as too many runs of the design do not come to rest"
     elif np.ptp(whole[:, [0, -1]]) <= resolution:  # the variance of these is what the others are measured by
         missing = "is the same in all of them, or in nearly all"

@@ -12,10 +12,10 @@ from cagepose.model.checks import FloatArray
 from cagepose.sampling.outcome import at_rest
 from cagepose.sampling.results import StudyResults
 
-TAIL = 0.00135
+SHARE_OF_TAIL = 0.00135
 """Share of a normal distribution that lies more than three standard deviations above its mean."""
-BINS = 20_000
-"""Of the range of a quantity: its quantiles are exact to that."""
+N_BINS = 20_000
+"""The range of a quantity has so many bins. Its quantiles are exact to that."""
 
 
 @dataclass
@@ -29,7 +29,7 @@ class Spread:
     squares
         Sum of the squares of the distances from the mean.
     counts
-        Of runs in `BINS` equal parts of the range.
+        Of runs in `N_BINS` equal parts of the range.
     """
 
     n: int = 0
@@ -37,7 +37,7 @@ class Spread:
     least: float = math.inf
     greatest: float = -math.inf
     squares: float = 0.0
-    counts: FloatArray = field(default_factory=lambda: np.zeros(BINS))
+    counts: FloatArray = field(default_factory=lambda: np.zeros(N_BINS))
 
     def add(self, values: FloatArray) -> None:
         """Take in more runs: all but ``counts``, which needs the range first (Chan et al. 1983)."""
@@ -55,8 +55,8 @@ class Spread:
         """Count runs, all of which were taken in before, by equal parts of the range."""
         if len(values) == 0:
             return
-        places = (values - self.least) / max(self.greatest - self.least, 1e-300) * BINS
-        self.counts += np.bincount(np.minimum(places.astype(np.int64), BINS - 1), minlength=BINS)
+        places = (values - self.least) / max(self.greatest - self.least, 1e-300) * N_BINS
+        self.counts += np.bincount(np.minimum(places.astype(np.int64), N_BINS - 1), minlength=N_BINS)
 
     @property
     def sigma(self) -> float:
@@ -65,20 +65,20 @@ class Spread:
 
     @property
     def three_sigma(self) -> tuple[float, float]:
-        """Quantiles that `TAIL` of the runs lie below and above, as beyond three sigmas of a normal distribution; NaN:
-        of no runs.
+        """Quantiles that `SHARE_OF_TAIL` of the runs lie below and above, as beyond three sigmas of a normal
+        distribution; NaN: of no runs.
         """
-        return (self.quantile(TAIL), self.quantile(1.0 - TAIL)) if self.n else (math.nan, math.nan)
+        return (self.quantile(SHARE_OF_TAIL), self.quantile(1.0 - SHARE_OF_TAIL)) if self.n else (math.nan, math.nan)
 
     def quantile(self, share: float) -> float:
         """Return what a share of the runs lies below."""
         below = np.concatenate([[0.0], np.cumsum(self.counts)]) / max(self.n, 1)
-        return float(np.interp(share, below, np.linspace(self.least, self.greatest, BINS + 1)))
+        return float(np.interp(share, below, np.linspace(self.least, self.greatest, N_BINS + 1)))
 
 
 @dataclass
 class Statistics:
-    """Of all rows.
+    """The statistics of all rows.
 
     Attributes
     ----------

@@ -14,10 +14,10 @@ from cagepose.sampling.row_columns import RowColumns
 from cagepose.sampling.runner import Runner
 from cagepose.sampling.statistics import Spread
 
-STEP = 0.01
-"""Of a difference, in standard deviations: near enough to be a derivative, far above rounding."""
-JUMP = 0.75
-"""Of a change, if so much of it is left when the step is halved: half of it would be."""
+STEP_IN_SIGMAS = 0.01
+"""Step of a difference, in standard deviations. It is near enough to give a derivative, and far above rounding."""
+SHARE_OF_JUMP = 0.75
+"""Share of a change. A quantity jumps if more of its change is left when the step is halved; half of it would be."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def tolerance_rows(
     of 0, for one, no scene is.
     """
     nominal = np.array([one.nominal for one in runner.study.varied])
-    steps = np.array([STEP * one.sigma for one in distributions])
+    steps = np.array([STEP_IN_SIGMAS * one.sigma for one in distributions])
     low, high = np.array([(one.low, one.high) for one in distributions]).T
     steps_ahead, steps_back = np.where(nominal + steps > high, 0.0, steps), np.where(nominal - steps < low, 0.0, steps)
     ways = [way * np.diag(reach) for way in (1.0, 0.5) for reach in (steps_ahead, -steps_back)]
@@ -79,7 +79,7 @@ def tolerance_rows(
         whole, half = (ahead - behind for ahead, behind in found[1:].reshape(2, 2, n_varied))
         steps = (steps_ahead + steps_back) / 2.0
         derivatives = np.divide(half, steps, out=np.zeros(n_varied), where=steps > 0.0)
-        derivatives[np.abs(half) > np.maximum(JUMP * np.abs(whole), columns.resolution[name])] = np.nan
+        derivatives[np.abs(half) > np.maximum(SHARE_OF_JUMP * np.abs(whole), columns.resolution[name])] = np.nan
         ends = np.sort([derivatives * (low - nominal), derivatives * (high - nominal)], axis=0).sum(axis=1)
         middle = float(found[0] + ends.sum() / 2.0)
         reach = math.sqrt(float(((derivatives * (high - low) / 2.0) ** 2).sum()))

@@ -10,10 +10,10 @@ import numpy as np
 
 from cagepose.model.checks import FloatArray
 
-PARTS = 16
+PARTS_OF_RANGE = 16
 """Into which the range of the changed number is cut, at first, evenly."""
-HALVINGS = 6
-"""Of a part in which the wish is lost or won."""
+HALVINGS_OF_PART = 6
+"""A part in which the wish is lost or won is halved so many times."""
 
 
 @dataclass(frozen=True)
@@ -73,9 +73,9 @@ class TradeOff:
 def trade_off(measure: Measure, tight: float, loose: float, wish: float) -> TradeOff:
     """Search a number between two ends for the loosest value at which at least ``wish`` is reached.
 
-    Each value is measured once. The range is cut into `PARTS`; where the wish is lost or won within a part, it is
-    halved `HALVINGS` times, and of its two ends that one counts which keeps the wish (a root finder would return
-    either). What changes twice within a part is not seen.
+    Each value is measured once. The range is cut into `PARTS_OF_RANGE`. Where the wish is lost or won within a part,
+    the part is halved `HALVINGS_OF_PART` times. Of its two ends that one counts which keeps the wish; a root finder
+    would return either. What changes twice within a part is not seen.
     """
     points: dict[float, TradeOffPoint] = {}
 
@@ -84,7 +84,7 @@ def trade_off(measure: Measure, tight: float, loose: float, wish: float) -> Trad
             points[value] = measure(value)
         return points[value]
 
-    scan = np.linspace(tight, loose, PARTS + 1).tolist()
+    scan = np.linspace(tight, loose, PARTS_OF_RANGE + 1).tolist()
     for value in scan:
         at(value)
 
@@ -96,7 +96,7 @@ def trade_off(measure: Measure, tight: float, loose: float, wish: float) -> Trad
             if is_kept == keeps(at(other)):
                 continue
             good, bad = (one, other) if is_kept else (other, one)
-            for _ in range(HALVINGS):
+            for _ in range(HALVINGS_OF_PART):
                 middle = (good + bad) / 2.0
                 good, bad = (middle, bad) if keeps(at(middle)) else (good, middle)
             if is_kept:
@@ -114,7 +114,7 @@ def trade_off(measure: Measure, tight: float, loose: float, wish: float) -> Trad
         tuple(kept),
         _loosest(kept),
         (_loosest(surely), _loosest(perhaps)),
-        abs(loose - tight) / PARTS / 2**HALVINGS,
+        abs(loose - tight) / PARTS_OF_RANGE / 2**HALVINGS_OF_PART,
     )
 
 
@@ -122,14 +122,14 @@ def _loosest(ranges: Sequence[tuple[float, float]]) -> float | None:
     return ranges[-1][1] if ranges else None
 
 
-CUTS = 64
+RUNS_ON_WAY = 64
 """Runs on the way from the nominal value to an end, and again between the last good one and the next."""
 
 
 def captured_range(good: Callable[[FloatArray], FloatArray], nominal: float, low: float, high: float) -> float:
     """Return how wide the range about ``nominal``, within ``low`` and ``high``, is in which all runs are good.
 
-    ``good`` says of values, (n,), which of them are; each end is right to 1/`CUTS` squared of the way to it.
+    ``good`` says of values, (n,), which of them are; each end is right to 1/`RUNS_ON_WAY` squared of the way to it.
     """
     return _end(good, nominal, high) - _end(good, nominal, low)
 
@@ -137,7 +137,7 @@ def captured_range(good: Callable[[FloatArray], FloatArray], nominal: float, low
 def _end(good: Callable[[FloatArray], FloatArray], nominal: float, end: float) -> float:
     begin = nominal
     for _ in range(2):
-        values = np.linspace(begin, end, CUTS + 1)
+        values = np.linspace(begin, end, RUNS_ON_WAY + 1)
         is_good = good(values)
         if is_good.all():
             return end

@@ -36,12 +36,13 @@ from cagepose.views.style import (
     Look,
     styled,
 )
+from cagepose.views.tolerances import DISTANCE_OF_EDGE
 from cagepose.views.viewer.labels import laid_out
 from cagepose.views.viewer.picture import PictureMaker
 from cagepose.views.viewer.playback import playback
 from cagepose.views.viewer.stage import Stage
 
-COLUMNS = 2
+N_COLUMNS = 2
 PANEL_IN, PICTURE = 2.85, (560, 384)
 """Height of a panel, and the pixels of a snapshot in it."""
 HEAD_IN, FOOT_IN = 0.55, 0.6
@@ -50,12 +51,10 @@ MOST_SNAPSHOTS = 8
 SHOTS_PER_MOTION = 2
 """A longer run shows its start, its first events and its last one, and says how many it leaves out."""
 
-RIGHT_OVER = 1e-9
-"""The centre of gravity is on the edge of the support region within this fraction of the scene's size."""
-REACH = 10.0
+REACH_WITHOUT_END = 10.0
 """In sizes of the scene: a support region without end is drawn as far, which is out of the picture."""
-MARGIN = 0.06
-"""Of the extent of a view: room around it."""
+MARGIN_OF_VIEW = 0.06
+"""Share of the extent of a view that is left as room around it."""
 
 LONGEST_NAME = 12
 """Characters of a phase's name in a title."""
@@ -72,7 +71,7 @@ def event_figure(run: Run, length_unit: LengthUnit = "mm") -> Figure:
     shots, n_left_out = _snapshots(run, length_unit)
     weights = [index for index in range(len(run.phases)) if run.scene.loads[index].is_weight_alone]
     n_panels = len(shots) + len(weights)
-    rows = math.ceil(n_panels / COLUMNS)
+    rows = math.ceil(n_panels / N_COLUMNS)
     with styled():
         stage = Stage(playback(run, length_unit, SHOTS_PER_MOTION))
         grid = _Grid(rows)
@@ -106,10 +105,10 @@ class _Grid:
 
     def cell(self, place: int, part: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
         """Return left, bottom, width and height in the figure; ``part`` gives them within the panel's cell."""
-        row, column = divmod(place, COLUMNS)
+        row, column = divmod(place, N_COLUMNS)
         bottom_in = self.height_in - HEAD_IN - PANEL_IN * (row + 1 - part[1])
         height = part[3] * PANEL_IN / self.height_in
-        return (column + part[0]) / COLUMNS, bottom_in / self.height_in, part[2] / COLUMNS, height
+        return (column + part[0]) / N_COLUMNS, bottom_in / self.height_in, part[2] / N_COLUMNS, height
 
 
 def _snapshots(run: Run, length_unit: LengthUnit) -> tuple[list[tuple[int, str]], int]:
@@ -162,7 +161,7 @@ def _draw_view(panel: Axes, run: Run, phase_index: int, length_unit: LengthUnit)
         corners = part.corners_object() if isinstance(part, Box) else vertices_of([part])
         outline = from_metres(convex_hull(view.project(phase.pose.transform(corners))), length_unit)
         panel.fill(*outline.T, facecolor=SKY, edgecolor=BLUE, alpha=0.22, linewidth=0.6)
-    region = support_region(run, phase_index, view, REACH * run.scene.size_m)
+    region = support_region(run, phase_index, view, REACH_WITHOUT_END * run.scene.size_m)
     extent = from_metres(view.project(np.concatenate([points, outer, *shown_bodies])), length_unit)
     if region is not None:
         corners = from_metres(region.corners, length_unit)
@@ -181,7 +180,7 @@ def _draw_view(panel: Axes, run: Run, phase_index: int, length_unit: LengthUnit)
     low, high = extent.min(axis=0), extent.max(axis=0)
     if region is not None and len(corners) and np.abs(corners - 0.5 * (low + high)).max() < (high - low).max():
         low, high = np.minimum(low, corners.min(axis=0)), np.maximum(high, corners.max(axis=0))
-    room = MARGIN * (high - low).max()
+    room = MARGIN_OF_VIEW * (high - low).max()
     panel.set_xlim(low[0] - room, high[0] + room)
     panel.set_ylim(low[1] - room, high[1] + room)
     if (high - low).min() > 0.3 * (high - low).max():
@@ -217,7 +216,7 @@ def _position(region: SupportRegion | None, size_m: float, length_unit: LengthUn
         return "support not known"
     if math.isinf(region.margin_m):
         return "the contacts balance it nowhere" if region.margin_m < 0.0 else "the contacts balance it anywhere"
-    if abs(region.margin_m) < RIGHT_OVER * size_m:
+    if abs(region.margin_m) < DISTANCE_OF_EDGE * size_m:
         return "CoG on the edge of support"
     margin = float(from_metres(abs(region.margin_m), length_unit))
     return f"CoG {margin:.3g} {length_unit} {'inside' if region.margin_m > 0.0 else 'outside'} support"

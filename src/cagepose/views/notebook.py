@@ -24,7 +24,7 @@ WIDTH, HEIGHT, MARGIN = 360.0, 240.0, 16.0
 AZIMUTH, ELEVATION = math.radians(-56.0), math.radians(24.0)
 """As in pictures of the viewer."""
 INK = {"start": "#999999", "end": "#0072b2", "cage": "#5c4d33", "free": "#737373", "touching": "#e69f00"}
-ARROW = 40.0
+LONGEST_ARROW = 40.0
 """Length of the greatest force, pixels."""
 PAGE = '<div style="display:flex;gap:1em;align-items:flex-start">{picture}<pre style="margin:0">{text}</pre></div>'
 
@@ -40,7 +40,7 @@ def run_html(run: Run) -> str:
     for contact in pressing:
         assert contact.place_world is not None
         assert contact.force_normal_n is not None
-        length = ARROW * contact.force_normal_n / greatest
+        length = LONGEST_ARROW * contact.force_normal_n / greatest
         picture.draw_arrow(contact.place_world, -contact.normal_world, length)
     return PAGE.format(picture=picture.svg(), text=escape(str(run)))
 

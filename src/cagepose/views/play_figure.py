@@ -31,7 +31,7 @@ LINES: dict[str, Look] = {
 }
 ARROW: dict[str, Any] = {"arrowstyle": "-|>", "color": VERMILLION, "linewidth": 1.0, "shrinkA": 0.0, "shrinkB": 0.0}
 ARROW_FROM, ARROW_TO = 0.78, 0.97
-"""Of the way to the edge of a picture: arrows along which a point has no end."""
+"""Shares of the way to the edge of a picture. Arrows between them point along which a point has no end."""
 PERHAPS_FARTHER = "?: perhaps farther"
 WORDS = {"certified": "certified: cannot be passed", "exact": "exact", "linear": "linear"}
 

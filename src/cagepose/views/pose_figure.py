@@ -23,6 +23,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.runs.run import Event, Run
 from cagepose.studies.ending import ending
 from cagepose.views.style import BLACK, GREEN, GREY, PAGE_WIDTH_IN, PALE, PURPLE, SERIES, VERMILLION, Look, styled
+from cagepose.views.tolerances import LEAST_ANGLE_DEG, LEAST_LENGTH_OF_SIZE
 
 STEPS_PER_TURN = 10
 """As in the paper's figures."""
@@ -31,10 +32,6 @@ BANDS: Mapping[str, Look] = {
     "Slp-2": {"facecolor": GREEN, "hatch": "...."},
 }
 """The slides that the paper shades, by rule; all other rules get no band."""
-LEAST_ANGLE_DEG = 1e-3
-"""An axis of angles spans at least this, so that rounding does not fill it."""
-LEAST_LENGTH_OF_SIZE = 1e-6
-"""The same for lengths, as a fraction of the scene's size."""
 MOST_POINTS = 40
 """Points in the lowest panel; a run with more of them that touch shows those that touched first."""
 LABEL_WIDTH_IN = 0.15

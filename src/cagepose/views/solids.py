@@ -15,12 +15,12 @@ from cagepose.model.parts import Object
 from cagepose.model.shapes import Shape
 from cagepose.model.surface import Mesh, mesh_in_own_frame
 
-SEGMENTS = 32
-"""Of a full circle."""
+CHORDS_OF_CIRCLE = 32
+"""Chords of a full circle."""
 CREASE = math.cos(math.radians(25.0))
 """Triangles whose normals are farther apart meet at a sharp edge; chords of what is round make half of that."""
-WINDOW = 1.0
-"""Of the cage's bodies a picture holds what is within so many reaches of the object of all that must be seen."""
+REACHES_OF_VIEW = 1.0
+"""In reaches of the object around all that must be seen. A picture holds what lies within this of the cage's bodies."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +75,7 @@ class _Sized:
 
 @lru_cache(maxsize=256)
 def _shared(sized: _Sized) -> Solid:
-    mesh = mesh_in_own_frame(sized.shape, SEGMENTS)
+    mesh = mesh_in_own_frame(sized.shape, CHORDS_OF_CIRCLE)
     corners = mesh.vertices_m[mesh.triangles]
     areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals = unit_rows(areas)
@@ -127,6 +127,6 @@ def cut_off(bodies: FloatArray, needed: FloatArray, reach_m: float) -> FloatArra
 
     A picture need not show more of them: a ball on a large table would be a dot on a picture of the table.
     """
-    low, high = needed.min(axis=0) - WINDOW * reach_m, needed.max(axis=0) + WINDOW * reach_m
+    low, high = needed.min(axis=0) - REACHES_OF_VIEW * reach_m, needed.max(axis=0) + REACHES_OF_VIEW * reach_m
     cut: FloatArray = np.clip(bodies, low, high)
     return cut

@@ -20,7 +20,7 @@ BLACK, GREY, PALE = "#000000", "#6e6e6e", "#d9d9d9"
 BLUE, VERMILLION, GREEN = "#0072b2", "#d55e00", "#009e73"
 ORANGE, PURPLE, SKY = "#e69f00", "#cc79a7", "#56b4e9"
 SAND, BROWN = "#b8a88c", "#5c4d33"
-"""Of the cage's bodies; not of those colours, but told from them by their lightness, too."""
+"""Colours of the cage's bodies. They are none of those above, but are told from them by their lightness, too."""
 
 Look = Mapping[str, Any]
 """matplotlib's keywords for how something is drawn."""

@@ -6,31 +6,31 @@ import itertools
 
 import numpy as np
 
-from cagepose.views.viewer.labels import BESIDE, EDGE, laid_out
+from cagepose.views.viewer.labels import PIXELS_BESIDE, PIXELS_TO_EDGE, laid_out
 
 PICTURE = (200.0, 150.0)
 
 
 def test_a_name_at_the_edge_stays_in_the_picture_and_does_not_touch_its_edge():
     corners = laid_out([(195.0, 1.0), (2.0, 8.0)], [(60.0, 12.0)] * 2, PICTURE)
-    assert corners == [(200.0 - 60.0 - EDGE, EDGE), (2.0 + BESIDE, EDGE)]
+    assert corners == [(200.0 - 60.0 - PIXELS_TO_EDGE, PIXELS_TO_EDGE), (2.0 + PIXELS_BESIDE, PIXELS_TO_EDGE)]
 
 
 def test_a_name_alone_stands_to_the_right_and_above():
     [corner] = laid_out([(100.0, 50.0)], [(20.0, 12.0)], PICTURE)
-    assert corner == (100.0 + BESIDE, 50.0 - BESIDE / 2.0 - 12.0)
+    assert corner == (100.0 + PIXELS_BESIDE, 50.0 - PIXELS_BESIDE / 2.0 - 12.0)
 
 
 def test_of_two_names_at_one_place_the_second_goes_to_the_left():
     first, second = laid_out([(100.0, 50.0)] * 2, [(20.0, 12.0)] * 2, PICTURE)
     assert first is not None
-    assert second == (100.0 - BESIDE - 20.0, first[1])
+    assert second == (100.0 - PIXELS_BESIDE - 20.0, first[1])
 
 
 def test_a_name_keeps_off_the_place_of_another_where_it_can():
     """The second place lies just where the first name would stand."""
     first, _ = laid_out([(100.0, 50.0), (115.0, 40.0)], [(20.0, 12.0)] * 2, PICTURE)
-    assert first == (100.0 - BESIDE - 20.0, 50.0 - BESIDE / 2.0 - 12.0)
+    assert first == (100.0 - PIXELS_BESIDE - 20.0, 50.0 - PIXELS_BESIDE / 2.0 - 12.0)
 
 
 def test_names_of_a_crowd_never_cover_each_other_and_those_without_room_are_left_out():

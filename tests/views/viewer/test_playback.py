@@ -13,7 +13,7 @@ from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, load_scene, ru
 from cagepose.kernels.outcome.trace import STALLED
 from cagepose.views.viewer import playback as playback_module
 from cagepose.views.viewer.page_data import notes
-from cagepose.views.viewer.playback import ESCAPE, playback
+from cagepose.views.viewer.playback import SHOWN_OF_ESCAPE, playback
 from cagepose.views.viewer.stage import Look, Stage
 from cagepose.views.viewer.surface import nearest_on_object
 
@@ -91,7 +91,7 @@ def test_an_escape_leaves_the_cage_but_stays_near(method):
     assert escaping.verdict == "escapes"
     film = playback(escaping)
     way = film.shots[-1].pose_world_object.position_m - film.shots[0].pose_world_object.position_m
-    assert way == pytest.approx([0.0, 0.0, -ESCAPE * scene.size_m])
+    assert way == pytest.approx([0.0, 0.0, -SHOWN_OF_ESCAPE * scene.size_m])
 
 
 @pytest.mark.parametrize("exaggeration", [2, 5, 10])

@@ -15,7 +15,7 @@ from cagepose.views.viewer.look import PAPER
 from cagepose.views.viewer.playback import Film, Playback, Shot
 
 LOUD_INK, QUIET_INK = "#000000", "#777777"
-"""Of names: loads and contacts, and cage points that do not touch."""
+"""Inks of names: of loads and contacts, and of cage points that do not touch."""
 TITLE_INK, SOFT_INK, SCALE_INK = "#1a1a1a", "#5c5c5c", "#333333"
 VERDICT_INK: dict[Kind, str] = {"rest": "#00664a", "open": "#8a6100", "failure": "#a33b00", "elsewhere": "#a33b00"}
 MARK = "#e69f00"

@@ -16,21 +16,21 @@ from cagepose.model.methods import METHODS
 from cagepose.runs.methods import chosen_method
 from cagepose.views.viewer.surface import nearest_on_object
 
-PLAYS = 2.0
+PLAYS_OF_SLIDER = 2.0
 """The cage can be moved by this many times the play: the median gap at the start."""
 LEAST_PLAY = 1e-3
 """In sizes of the scene: what counts as play where most points touch at the start."""
 TURNS_PER_PLAY = 4.0
 """The cage can be turned so far that its ends, half a size from its middle, move twice as far as it can be moved."""
 MOST_TURN_DEG = 10.0
-REACH = 0.5
+REACH_OF_FORCE = 0.5
 """In sizes of the scene: where on the object a force can act."""
 AXES = ("x", "y", "z")
-LEAST, MOST = 0.1, 3.0
+LEAST_FACTOR, MOST_FACTOR = 0.1, 3.0
 """Times what is given: the ends of a slider of a moment, a stiffness or a preload."""
 MOST_FRICTION = 1.0
-STEPS = 400
-"""Of a slider from end to end."""
+STEPS_OF_SLIDER = 400
+"""A slider has so many steps from end to end."""
 
 
 @dataclass(frozen=True)
@@ -108,8 +108,8 @@ class _Maker:
         angles = value_at(self.data, ("cage", "pose", "euler_zyx_deg"))
         angles = angles or [math.degrees(angle) for angle in pose.euler_zyx]
         place = value_at(self.data, ("cage", "pose", "position")) or [0.0, 0.0, 0.0]
-        most = min(_rounded_up(math.degrees(TURNS_PER_PLAY * PLAYS * self.play / self.size)), MOST_TURN_DEG)
-        reach = _rounded_up(PLAYS * self.play)
+        most = min(_rounded_up(math.degrees(TURNS_PER_PLAY * PLAYS_OF_SLIDER * self.play / self.size)), MOST_TURN_DEG)
+        reach = _rounded_up(PLAYS_OF_SLIDER * self.play)
         return [
             *self._vector("cage", ("yaw", "pitch", "roll"), "deg", "cage.pose.euler_zyx_deg", angles, most),
             *self._vector("cage", ("x", "y", "z"), self.unit, "cage.pose.position", place, reach),
@@ -129,7 +129,9 @@ class _Maker:
             for number, moment in enumerate(given.get("moments") or []):
                 key, value = f"{here}.moments[{number}].magnitude", float(moment["magnitude"])
                 name, unit = f"moment {number + 1}", f"N {self.unit}"
-                made.append(self._slider(load.name, name, unit, key, None, value, LEAST * value, MOST * value))
+                made.append(
+                    self._slider(load.name, name, unit, key, None, value, LEAST_FACTOR * value, MOST_FACTOR * value)
+                )
             for number, spring in enumerate(given.get("springs") or []):
                 made += self._spring(load.name, f"spring {number + 1}", f"{here}.springs[{number}]", spring)
         return made
@@ -138,7 +140,7 @@ class _Maker:
         labels = tuple(f"{name}acts at {axis}" for axis in AXES)
         return [
             *self._directions(group, f"{name}direction", f"{key}.direction", given["direction"]),
-            *self._vector(group, labels, self.unit, f"{key}.at", given["at"], REACH * self.size),
+            *self._vector(group, labels, self.unit, f"{key}.at", given["at"], REACH_OF_FORCE * self.size),
         ]
 
     def _directions(self, group: str, name: str, key: str, given: list[float]) -> list[Control]:
@@ -149,9 +151,9 @@ class _Maker:
         """Its stiffness; of one without, its preload."""
         stiffness, preload = float(given["stiffness"]), float(given.get("preload") or 0.0)
         if stiffness > 0.0:
-            unit, most = f"N/{self.unit}", MOST * stiffness
+            unit, most = f"N/{self.unit}", MOST_FACTOR * stiffness
             return [self._slider(group, f"{name} stiffness", unit, f"{key}.stiffness", None, stiffness, 0.0, most)]
-        ends = sorted((LEAST * preload, MOST * preload))
+        ends = sorted((LEAST_FACTOR * preload, MOST_FACTOR * preload))
         return [self._slider(group, f"{name} preload", "N", f"{key}.preload", None, preload, *ends)]
 
     def _options(self) -> list[Control]:
@@ -184,7 +186,7 @@ class _Maker:
     def _slider(
         self, group: str, label: str, unit: str, key: str, index: int | None, value: float, low: float, high: float
     ) -> Control:
-        step = 10.0 ** math.floor(math.log10((high - low) / STEPS))  # a round number of decimals
+        step = 10.0 ** math.floor(math.log10((high - low) / STEPS_OF_SLIDER))  # a round number of decimals
         return Control(group, label, unit, key, index, float(value), low, high, step)
 
 

@@ -13,8 +13,8 @@ from cagepose.views.viewer.look import FIELD_DEG, MARGIN
 AZIMUTH, ELEVATION = math.radians(-56.0), math.radians(24.0)
 LEAST_HALF = 0.02
 """In radii of the scene: half the height of a picture."""
-ROUNDS = 6
-"""Of a fit: marks have their size in pixels, so that a fit changes what is fitted."""
+ROUNDS_OF_FIT = 6
+"""A fit takes so many rounds. Marks have their size in pixels, so that a fit changes what is fitted."""
 
 
 class Eye:
@@ -46,7 +46,7 @@ class Eye:
     def fit(self, radius: float, content: Callable[[], FloatArray]) -> None:
         """Bring all places (n, 3) that ``content`` returns into the picture; they may follow from where the eye is."""
         self.half = radius
-        for _ in range(ROUNDS):
+        for _ in range(ROUNDS_OF_FIT):
             seen = self.pixels(content())[:, :2]
             low, high = seen.min(axis=0), seen.max(axis=0)
             off = ((low + high) / 2.0 - self.size / 2.0) * self.pixel()

@@ -20,7 +20,7 @@ FILM_SIZE = (720, 480)
 """Pixels. At the size of a picture, the rail's 83 shots are 810 kB instead of 590 kB, and take a quarter longer."""
 N_FOR_PALETTE = 8
 QUALITY = "23"
-"""Of a video, on its encoder's scale: the rail's has 430 kB; with 18 it would have 670, and look as true."""
+"""Quality of a video, on its encoder's scale. The rail's has 430 kB; with 18 it would have 670, and look as true."""
 SHOT_MS, PAUSE_MS, END_MS = 80, 640, 2480
 """How long a shot stands, the last of an event, and the last of all; videos have a whole number of shots for each."""
 

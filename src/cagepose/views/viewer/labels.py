@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-BESIDE = 7.0
+PIXELS_BESIDE = 7.0
 """Pixels from a place to its name."""
-EDGE = 4.0
+PIXELS_TO_EDGE = 4.0
 """Pixels from the edge of the picture to a name."""
 
 Pair = tuple[float, float]
@@ -28,7 +28,7 @@ def laid_out(places: Sequence[Pair], sizes: Sequence[Pair], picture: Pair) -> li
         Width and height of the picture.
     """
     written: list[tuple[Pair, Pair]] = []
-    marks = [((x - BESIDE / 2.0, y - BESIDE / 2.0), (BESIDE, BESIDE)) for x, y in places]
+    marks = [((x - PIXELS_BESIDE / 2.0, y - PIXELS_BESIDE / 2.0), (PIXELS_BESIDE, PIXELS_BESIDE)) for x, y in places]
     corners: list[Pair | None] = []
     for which, (place, size) in enumerate(zip(places, sizes, strict=True)):
         inside = [_inside(corner, size, picture) for corner in _beside(place, size)]
@@ -45,13 +45,16 @@ def laid_out(places: Sequence[Pair], sizes: Sequence[Pair], picture: Pair) -> li
 def _beside(place: Pair, size: Pair) -> list[Pair]:
     """Return the corners that a name may have, the best one first."""
     (x, y), (width, height) = place, size
-    right, left = x + BESIDE, x - BESIDE - width
-    above, below, middle = y - BESIDE / 2.0 - height, y + BESIDE / 2.0, y - height / 2.0
+    right, left = x + PIXELS_BESIDE, x - PIXELS_BESIDE - width
+    above, below, middle = y - PIXELS_BESIDE / 2.0 - height, y + PIXELS_BESIDE / 2.0, y - height / 2.0
     return [(right, above), (left, above), (right, below), (left, below), (right, middle), (left, middle)]
 
 
 def _inside(corner: Pair, size: Pair, picture: Pair) -> Pair:
-    x, y = (max(EDGE, min(room - extent - EDGE, at)) for at, extent, room in zip(corner, size, picture, strict=True))
+    x, y = (
+        max(PIXELS_TO_EDGE, min(room - extent - PIXELS_TO_EDGE, at))
+        for at, extent, room in zip(corner, size, picture, strict=True)
+    )
     return x, y
 
 

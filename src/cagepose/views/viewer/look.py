@@ -12,12 +12,25 @@ from cagepose.model.checks import FloatArray
 
 PAPER = "#f6f7f9"
 PAINT = {
-    "object": "#6fb7e3", "objectEdge": "#0b4f79", "objectWall": "#4d90bb",
-    "cage": "#d2c6ae", "cageEdge": "#6a5a3c", "cageWall": "#b3a27f", "pin": "#8d8d8d", "ghost": "#a9a9a9",
-    "free": "#737373", "touching": "#e69f00", "reached": "#d55e00", "force": "#d55e00", "normal": "#4d4d4d",
-    "load": "#161616", "axis": "#cc79a7", "trace": "#0072b2", "grid": "#d3d8de",
-}  # fmt: skip
-"""Of the object and of what else is shown, in sRGB."""
+    "object": "#6fb7e3",
+    "objectEdge": "#0b4f79",
+    "objectWall": "#4d90bb",
+    "cage": "#d2c6ae",
+    "cageEdge": "#6a5a3c",
+    "cageWall": "#b3a27f",
+    "pin": "#8d8d8d",
+    "ghost": "#a9a9a9",
+    "free": "#737373",
+    "touching": "#e69f00",
+    "reached": "#d55e00",
+    "force": "#d55e00",
+    "normal": "#4d4d4d",
+    "load": "#161616",
+    "axis": "#cc79a7",
+    "trace": "#0072b2",
+    "grid": "#d3d8de",
+}
+"""Colours of the object and of what else is shown, in sRGB."""
 SKY, GROUND = 1.35, "#b9b2a6"
 """Light from above, and the colour of what comes back from below."""
 SUN, SUN_FROM = 1.9, (0.35, -0.55, 1.0)
@@ -26,7 +39,7 @@ LAMP, LAMP_FROM = 0.55, (-0.4, 0.5, 1.0)
 FIELD_DEG = 24.0
 """What a picture sees, from below to above."""
 MARGIN = 0.86
-"""Of a picture, that what must be seen is fitted to."""
+"""Share of a picture that what must be seen is fitted to."""
 GLASS, LARGE, SEEN_THROUGH = 0.3, 0.6, 0.35
 """How much of a body of the cage is painted that hides the object: one that reaches so many times as far; and of the
 object, when it is to be seen through.
@@ -46,11 +59,11 @@ PIN, PIN_OF_CAGE, PIN_SLOPE = 0.05, 0.12, 0.22
 GRID_LINES, BELOW = 12, 0.01
 """From the middle of the ground to one side; how far it lies below all else, in drawing units."""
 NEAR_CAGE, LEAST_NEAR = 0.3, 0.06
-"""Of the cage's extent, and in drawing units at least: what counts as near it."""
+"""What counts as near the cage: a share of its extent, and at least this in drawing units."""
 FAR_FROM_CAGE = 1.0
-"""Of the cage's extent: what reaches beyond this is cut to what is near."""
+"""In extents of the cage. What reaches beyond this is cut to what is near."""
 FEW_NAMES = 14
-"""Of more contacts than these, only those are named that press or were just reached."""
+"""If there are more contacts than these, only those are named that press or were just reached."""
 LEAST_FORCE = 1e-9
 """In parts of the greatest one; what is less is rounding."""
 

@@ -24,7 +24,7 @@ from cagepose.studies.ending import run_kind, verdict_kind
 from cagepose.views.solids import Solid, solid_of
 from cagepose.views.viewer import look
 from cagepose.views.viewer.playback import Playback, Row, Shot, Touches
-from cagepose.views.viewer.stage import EASE, EXAGGERATIONS, MOST_ADDED, Stage
+from cagepose.views.viewer.stage import EASED_SHARE, EXAGGERATIONS, MOST_ADDED, Stage
 
 AMOUNT_DIGITS = 4
 """A list beside a picture is for reading; saved runs have all digits."""
@@ -68,7 +68,7 @@ class _Writer:
             "mostAdded": MOST_ADDED,
             "look": look.document(),
             "exaggerations": list(EXAGGERATIONS),
-            "ease": EASE * self.shown.shots_per_motion,
+            "ease": EASED_SHARE * self.shown.shots_per_motion,
             "center": _numbers(held.center_of_gravity_m / stage.size_m),
             "reach": stage.reach_m / stage.size_m,
             "names": list(run.scene.cage.element_names),
@@ -120,7 +120,7 @@ class _Writer:
         return {**solids, "forms": [self._form(shape, solid) for solid, shape in forms.items()]}
 
     def _mouth(self, shape: Shape, is_object: bool) -> dict[str, Any]:
-        """Of a hole: whether it is open below, and the shape that it is cut out of, by its index, if that is one."""
+        """Say whether a hole is open below, and which shape it is cut out of, by its index, if that is one."""
         assert isinstance(shape, Hole)
         scene = self.run.scene
         all_parts = scene.object.parts if is_object else scene.cage.shapes

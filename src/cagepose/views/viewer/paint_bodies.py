@@ -18,8 +18,8 @@ from cagepose.views.viewer.look import ink, lit
 from cagepose.views.viewer.raster import Keep, Raster
 from cagepose.views.viewer.stage import Stage
 
-MOUTH = 1e-4
-"""Of a hole's depth, by which it is cut beyond the face that it is in."""
+DEPTH_BEYOND = 1e-4
+"""Fraction of a hole's depth. A hole is cut so far beyond the face that it is in."""
 
 
 class ShownHole(NamedTuple):
@@ -117,7 +117,7 @@ class BodyPainter:
             for hole, pose, widened in holes:
                 inside = pose.inverse_transform(places)
                 heights, radii = zip(*hole.rims, strict=True)
-                slack = MOUTH * hole.depth_m
+                slack = DEPTH_BEYOND * hole.depth_m
                 across = np.hypot(inside[:, 0], inside[:, 1])
                 in_depth = (inside[:, 2] > heights[0] - slack) & (inside[:, 2] < slack)
                 kept &= ~(in_depth & (across < widened * np.interp(inside[:, 2], heights, radii)))

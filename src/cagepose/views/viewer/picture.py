@@ -27,9 +27,9 @@ from cagepose.views.viewer.stage import Look, Stage
 
 SIZE = (900, 600)
 """Pixels across and down."""
-FINER = 2
+FINER_PIXELS = 2
 """How many times as many are drawn before they are put together."""
-FAR = 3.0
+DISTANCE_OF_EYE = 3.0
 """In radii of the scene: how far off the eye is that looks at what is near the cage."""
 
 
@@ -55,12 +55,12 @@ class PictureMaker:
         self.scene = self.shown.scene
         self.seen = (0, *(row.last_shot for row in self.shown.rows)) if seen is None else tuple(seen)
         self.is_near = is_near
-        self.eye = Eye(size, FAR * stage.radius if is_near else 0.0)
+        self.eye = Eye(size, DISTANCE_OF_EYE * stage.radius if is_near else 0.0)
         self.force_scale = look.FORCE / (self.shown.greatest_force or 1.0)
         self._measure_pins()
         self.eye.fit(stage.radius, self._content)
-        self.raster = Raster(self.width * FINER, self.height * FINER)
-        self.bodies = BodyPainter(stage, self.eye, self.raster, FINER)
+        self.raster = Raster(self.width * FINER_PIXELS, self.height * FINER_PIXELS)
+        self.bodies = BodyPainter(stage, self.eye, self.raster, FINER_PIXELS)
         self.marks = MarkPainter(self.bodies)
         self._draw_ground()
         units_per_pixel = float(from_metres(stage.size_m, self.shown.length_unit)) * self.eye.pixel()
@@ -80,7 +80,7 @@ class PictureMaker:
         self._draw_motion(shot, pose)
         self._draw_way(shot, pose)
         self._glaze_bodies()
-        image = self.raster.shrunk(FINER)
+        image = self.raster.shrunk(FINER_PIXELS)
         self.caption.write(image, shot if is_captioned else None, self.labels, self.now.factor)
         return image
 

@@ -23,8 +23,9 @@ from cagepose.views.viewer.surface import nearest_on_object
 SHOTS_PER_MOTION = 24
 """One second of film for each motion."""
 MOST_SHOTS = 4_800
-"""Of a run of thousands of motions each has fewer: a failed one of 3,000 took 29 MB and 6 s as a page."""
-ESCAPE = 0.6
+"""A run has at most so many shots, so that each of thousands of motions has fewer. A failed run of 3,000 took 29 MB and
+6 s as a page."""
+SHOWN_OF_ESCAPE = 0.6
 """How much of a travel without end is shown, in sizes of the scene; of a turn, in radians."""
 
 
@@ -136,7 +137,7 @@ class Film:
 
     @property
     def greatest_force(self) -> float:
-        """Of all contact forces in all shots, newtons or parts of the load; 0 where none is known."""
+        """The size of each contact force in all shots, newtons or parts of the load; 0 where none is known."""
         known = [shot.touches.forces_object for shot in self.shots if shot.touches.forces_object is not None]
         return max((float(np.linalg.norm(forces, axis=1).max()) for forces in known), default=0.0)
 
@@ -266,8 +267,12 @@ def _escape(phase: PhaseRun, size_m: float) -> Motion | None:
         return None
     onset = phase.proof.motion
     if onset is None or phase.events[-1].rule != "escapes":  # the paper's rules let it travel
-        return replace(motion, distance_m=ESCAPE * size_m)
-    way_m, angle = (ESCAPE * size_m, 0.0) if onset.kind == "travel" else (ESCAPE * onset.pitch_m, ESCAPE)
+        return replace(motion, distance_m=SHOWN_OF_ESCAPE * size_m)
+    way_m, angle = (
+        (SHOWN_OF_ESCAPE * size_m, 0.0)
+        if onset.kind == "travel"
+        else (SHOWN_OF_ESCAPE * onset.pitch_m, SHOWN_OF_ESCAPE)
+    )
     return Motion(onset.kind, onset.direction_world, onset.axis_world, onset.through_world, way_m, angle)
 
 

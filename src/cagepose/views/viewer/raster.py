@@ -16,7 +16,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.views.viewer.look import FAINT, PAPER, ink
 
 Keep = Callable[[FloatArray], NDArray[np.bool_]]
-LIFT = 1.0
+LIFT_OF_LINE = 1.0
 """How much nearer a line counts as than it is."""
 LARGE_FACE = 5000.0
 """Pixels: a flat face of more is filled by itself, which takes a tenth of the time for each pixel."""
@@ -124,7 +124,7 @@ class Raster:
         across, down = x.astype(int), y.astype(int)
         inside = (across >= 0) & (down >= 0) & (across < self.heights.shape[1] - 1) & (down < self.heights.shape[0] - 1)
         corners = (down * self.heights.shape[1] + across)[inside]
-        above = heights[inside].astype(np.float32) + LIFT  # before the face that it bounds
+        above = heights[inside].astype(np.float32) + LIFT_OF_LINE  # before the face that it bounds
         colors, covered = self.colors.reshape(-1, 3), self.heights.reshape(-1)
         for pixels in (corners, corners + 1, corners + self.heights.shape[1], corners + self.heights.shape[1] + 1):
             seen = above > covered[pixels]

@@ -27,7 +27,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Shape
-from cagepose.views.solids import WINDOW, cut_off, outer_points, vertices_of
+from cagepose.views.solids import REACHES_OF_VIEW, cut_off, outer_points, vertices_of
 from cagepose.views.viewer.playback import Film, Touches
 from cagepose.views.viewer.surface import nearest_on_object
 
@@ -44,14 +44,14 @@ is a long one, too, as where a screw falls into its seat: what touches then is n
 MOST_ADDED = 0.5
 """A cage point is moved away from the object by at most this many sizes: one that is far off must stay in the picture.
 """
-WHOLE = 1.5
+GREATEST_ENLARGEMENT = 1.5
 """A picture shows bodies of the cage as a whole if it need not be more than so many times as large for it."""
 SIZE_STEP = 1.25
 """The unit of drawing is the scene's size, less so many such steps as what is shown of it is smaller."""
-STILL = 1e-7
-"""Radians, and sizes of the scene: what moves less stands still but for rounding."""
-EASE = 0.25
-"""Of a motion: how long an exaggeration takes to pass into another."""
+MOTION_AT_REST = 1e-7
+"""Radians, and sizes of the scene. What moves less stands still but for rounding."""
+EASED_SHARE = 0.25
+"""Share of a motion that an exaggeration takes to pass into another."""
 
 
 class PhaseView(NamedTuple):
@@ -116,9 +116,9 @@ class Stage:
         bodies = [scene.cage.pose_world_cage.transform(vertices_of([shape])) for shape in scene.cage.shapes]
         whole = _extent([everything, *bodies])
         near = [cut_off(body, everything, held.reach_m) for body in bodies]
-        is_whole = whole <= WHOLE * _extent([everything, *near])
+        is_whole = whole <= GREATEST_ENLARGEMENT * _extent([everything, *near])
         self.bodies_world = tuple(bodies if is_whole else near)
-        self.reach_m = whole if is_whole else WINDOW * held.reach_m
+        self.reach_m = whole if is_whole else REACHES_OF_VIEW * held.reach_m
         everything = np.concatenate([everything, *self.bodies_world])
         mouths = [scene.cage.pose_world_cage.transform(hole.pose_body_shape.position_m) for hole in scene.cage.holes]
         self.middles_world = np.array([*(body.mean(axis=0) for body in self.bodies_world), *mouths]).reshape(-1, 3)
@@ -168,7 +168,7 @@ class Stage:
         return Look(phase.reference, factor)
 
     def _passing(self, factor: float, other: float, first: int, last: int, shot: int) -> float:
-        room = min(max(1.0, EASE * self.shown.shots_per_motion), last - first)
+        room = min(max(1.0, EASED_SHARE * self.shown.shots_per_motion), last - first)
         return factor + (other - factor) * (min(1.0, (shot - first) / room) if room else 1.0)
 
     def pose(self, pose_world_object: Pose, look: Look) -> Pose:
@@ -213,7 +213,7 @@ class Stage:
             return np.zeros((len(self.shown.scene.cage.element_names), 3))
         gaps = self.gaps_world(look.reference)
         lengths = np.linalg.norm(gaps, axis=1, keepdims=True)
-        most = MOST_ADDED * self.size_m / np.maximum(lengths, STILL * self.size_m)
+        most = MOST_ADDED * self.size_m / np.maximum(lengths, MOTION_AT_REST * self.size_m)
         moved: FloatArray = np.minimum(look.factor - 1.0, most) * gaps
         return moved
 
@@ -264,7 +264,7 @@ class Stage:
     def _proposed(self, reference: int, start: int, last: int) -> int:
         ends = [row.last_shot for row in self.shown.rows if start < row.last_shot <= last]
         moves = [self._moved(reference, shot) for shot in ends]
-        if all(turn < STILL and way < STILL * self.size_m for turn, way in moves):
+        if all(turn < MOTION_AT_REST and way < MOTION_AT_REST * self.size_m for turn, way in moves):
             return 1
         for k in reversed(EXAGGERATIONS):
             if all(self._fits(move, k) for move in moves) and all(

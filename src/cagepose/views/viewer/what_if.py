@@ -24,7 +24,7 @@ from cagepose.views.viewer.playback import playback
 START = "start"
 """What a page calls the way, (3,) in the scene's unit, by which somebody dragged the start."""
 LENGTH_DECIMALS = 12
-"""Of a start pose in the scene's unit."""
+"""Lengths of a start pose are written with so many decimals in the scene's unit."""
 SHOTS_PER_MOTION = 4
 """Fewer than in an exported page, whose maker need not wait for them; the page fills in what is between."""
 
