@@ -320,7 +320,7 @@ def test_what_is_seen_from_within_is_not_searched_for_crossings(monkeypatch):
     """What is round is a little hollow between its facets, as programs for CAD divide it."""
     mesh = trimesh.creation.icosphere(3)
     mesh.vertices *= 1.0 + 0.01 * np.random.default_rng(3).random((len(mesh.vertices), 1))
-    monkeypatch.setattr(crossings, "ASKED", None)
+    monkeypatch.setattr(crossings, "TRIANGLES_ASKED", None)
     assert not crossings.crosses_itself(Triangles(np.array(mesh.vertices), np.array(mesh.faces)))
 
 

@@ -176,7 +176,7 @@ def test_what_cannot_be_cut_is_decomposed_with_its_error_and_kept(tmp_path, monk
     """The error is at least what any point of the mesh is off, and the parts are found once."""
     pytest.importorskip("coacd")
     pytest.importorskip("rtree")
-    monkeypatch.setattr(run_coacd, "CONCAVITY", 0.2)
+    monkeypatch.setattr(run_coacd, "MOST_CONCAVITY", 0.2)
     calls = []
     plain = decomposed.decomposed
     monkeypatch.setattr(decomposed, "decomposed", lambda mesh: calls.append(1) or plain(mesh))

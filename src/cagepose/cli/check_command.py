@@ -6,6 +6,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from cagepose.cli.options import SceneArgument, SetOption
+from cagepose.model.tolerances import SHOWN_AS_ZERO
 
 if TYPE_CHECKING:
     from cagepose.files.units import LengthUnit
@@ -58,7 +59,7 @@ def _extent(limits_m: FloatArray, unit: LengthUnit) -> str:
     from cagepose.model.wording import short
 
     low, high = from_metres(limits_m, unit).tolist()
-    noise = 1e-12 * max(abs(value) for value in (*low, *high))
+    noise = SHOWN_AS_ZERO * max(abs(value) for value in (*low, *high))
     sides = [
         f"{axis} {short(one, 6, noise)} to {short(other, 6, noise)}"
         for axis, one, other in zip("xyz", low, high, strict=True)

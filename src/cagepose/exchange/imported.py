@@ -29,7 +29,7 @@ from cagepose.model.shapes import Convex
 from cagepose.model.wording import few
 
 Data = dict[str, Any]
-"""Of a geom, or of a part of a scene file."""
+"""What is known of a geom, or of a part of a scene file."""
 
 PLANE_OF_REACH = 20.0
 """Width of the box that stands for a plane, in distances of the object's farthest point: no plane of MuJoCo ends."""

@@ -196,6 +196,7 @@ def _triangles(solid: Any, faces: list[Any]) -> Data:
     from OCP.TopAbs import TopAbs_REVERSED
     from OCP.TopLoc import TopLoc_Location
 
+    # triangles as near to the surface as its size asks for
     box = Bnd_Box()
     BRepBndLib.Add_s(solid, box)
     size = float(np.sqrt(box.SquareExtent()))
@@ -204,6 +205,7 @@ def _triangles(solid: Any, faces: list[Any]) -> Data:
     wanted.InternalVerticesMode = any(_is_ball(face) for face in faces)  # a cylinder needs none between its ends
     wanted.ControlSurfaceDeflection = wanted.InternalVerticesMode
     BRepMesh_IncrementalMesh(solid, wanted)
+    # the corners of each face by themselves
     points: list[list[float]] = []
     triangles: list[list[int]] = []
     for face in faces:
@@ -218,6 +220,7 @@ def _triangles(solid: Any, faces: list[Any]) -> Data:
         for index in range(1, mesh.NbTriangles() + 1):
             triangle = mesh.Triangle(index)
             triangles.append([first + triangle.Value(corner) for corner in order])
+    # corners that faces share are one
     _, kept, same = np.unique(
         np.round(np.array(points) / (1e-8 * size)), axis=0, return_index=True, return_inverse=True
     )

@@ -18,6 +18,7 @@ from cagepose.model.naming import check_names, names_of, placed
 from cagepose.model.near_pairs import near_pairs
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import AnyShape, Disc, Shape
+from cagepose.model.tolerances import ROUNDING_OF_INERTIA
 from cagepose.model.union import body_moments
 from cagepose.model.volume import VolumeMoments
 from cagepose.model.wording import counted
@@ -185,11 +186,11 @@ def _checked_inertia(value: ArrayLike) -> FloatArray:
     inertia = finite_array(value, (3, 3), "inertia")
     problems = ProblemList()
     scale = float(np.abs(inertia).max())
-    if not np.allclose(inertia, inertia.T, rtol=0.0, atol=1e-9 * scale):
+    if not np.allclose(inertia, inertia.T, rtol=0.0, atol=ROUNDING_OF_INERTIA * scale):
         problems.add(("inertia",), "is not symmetric; give the same number on both sides of the diagonal")
     else:
         low, middle, high = np.linalg.eigvalsh(inertia).tolist()
-        if low <= 0.0 or high > (low + middle) * (1.0 + 1e-9):
+        if low <= 0.0 or high > (low + middle) * (1.0 + ROUNDING_OF_INERTIA):
             found = f"{low:.6g}, {middle:.6g}, {high:.6g}"
             problems.add(
                 ("inertia",),

@@ -27,6 +27,8 @@ LEAST_CLEARANCE = 1e-6
 """Fraction of a hole's radius. A smaller clearance is none."""
 DISTANCE_OUTSIDE = 1e-9
 """Fraction of a shape's size. A point that is no farther out is still in it."""
+ROUNDING_OF_INERTIA = 1e-9
+"""Fraction of the greatest entry, and of a sum of principal moments. An inertia is symmetric, and possible, to this."""
 LEAST_VOLUME_LEFT = 1e-6
 """Share of a body's volume. Holes that leave less leave rounding."""
 SHOWN_AS_ZERO = 1e-12

@@ -23,6 +23,7 @@ from cagepose.model.methods import DEFAULT_METRIC
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.actions import actions_of
+from cagepose.runs.tolerances import LEAST_RADIUS_OF_GYRATION
 
 
 def part_of(scene: Scene) -> Part:
@@ -50,7 +51,7 @@ def body_of(scene: Scene) -> Body:
     body = empty_record(Body)
     body.axes_object[:] = axes.T
     # A needle's inertia about its own axis may come out as zero: no body is thinner than a box may be.
-    body.radii[:] = np.sqrt(np.maximum(squares, (1e-9 * reach_m) ** 2))
+    body.radii[:] = np.sqrt(np.maximum(squares, (LEAST_RADIUS_OF_GYRATION * reach_m) ** 2))
     body.reach_m = reach_m
     return body
 

@@ -164,6 +164,7 @@ def refined_map(count: int, kinds_of: Callable[[Indices, Indices], Indices]) -> 
     is_active = np.ones((n_blocks, n_blocks), np.bool_)
     n_runs = 0
     while True:
+        # run the corners of the blocks that were halved
         lines = np.minimum(np.arange(len(is_active) + 1) * stride, count - 1)
         is_corner = np.zeros((len(lines), len(lines)), np.bool_)
         for down, right in CORNERS:
@@ -174,6 +175,7 @@ def refined_map(count: int, kinds_of: Callable[[Indices, Indices], Indices]) -> 
         cells[asked[0], asked[1]] = kinds_of(asked[0], asked[1])
         if stride == 1:
             return cells, n_runs
+        # find the blocks whose corners differ, and their neighbours
         corners = cells[np.ix_(lines, lines)]
         differs = is_active & (
             (corners[:-1, :-1] != corners[1:, :-1])
@@ -185,6 +187,7 @@ def refined_map(count: int, kinds_of: Callable[[Indices, Indices], Indices]) -> 
             [around[i : i + len(differs), j : j + len(differs)] for i in range(3) for j in range(3)]
         )
         is_halved = is_active & near
+        # fill all other blocks, and halve these
         for one, other in np.argwhere(is_active & ~is_halved).tolist():
             block = cells[lines[one] : lines[one + 1] + 1, lines[other] : lines[other + 1] + 1]
             block[block < 0] = cells[lines[one], lines[other]]

@@ -44,6 +44,7 @@ def run_on_cluster(
             client.wait_for_workers(1, timeout=WORKERS_S)
         except TimeoutError:
             raise _refused(f"{address}: has no workers; start some with: dask worker {address} --nthreads 1") from None
+        # each thread has a part that it runs and others that wait for it
         waiting = iter(parts)
         values = dict[str, tuple[Part, FloatArray]]()
         n_threads = sum(worker["nthreads"] for worker in client.scheduler_info(n_workers=-1)["workers"].values())

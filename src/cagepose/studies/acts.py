@@ -15,7 +15,7 @@ from cagepose.runs.load_scaling import scaled_load
 
 LEAST_SHOWN = 0.01
 """A force below this fraction of the greatest of its phase is not shown; its arrow would be a dot."""
-COILS = 7
+N_COILS = 7
 """A drawn spring has so many coils."""
 COIL_POINTS = 8
 """A coil is drawn with so many points."""
@@ -94,7 +94,7 @@ def coil(start: FloatArray, end: FloatArray, radius: float) -> FloatArray:
     aside = np.cross(axis / length, helper)
     aside /= np.linalg.norm(aside)
     up = np.cross(axis / length, aside)
-    turns = np.linspace(0.0, 2.0 * np.pi * COILS, COILS * COIL_POINTS + 1)[:, None]
+    turns = np.linspace(0.0, 2.0 * np.pi * N_COILS, N_COILS * COIL_POINTS + 1)[:, None]
     along = np.linspace(STRAIGHT_ENDS, 1.0 - STRAIGHT_ENDS, len(turns))[:, None]
     wound = start + along * axis + radius * (np.cos(turns) * aside + np.sin(turns) * up)
     return np.concatenate([start[None], start + STRAIGHT_ENDS * axis[None], wound, [end - STRAIGHT_ENDS * axis, end]])

@@ -18,7 +18,7 @@ from cagepose.runs.actions import wrench_at
 from cagepose.runs.cases import contact_friction
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import Run
-from cagepose.studies.tolerances import LEAST_RADIUS_OF_GYRATION
+from cagepose.runs.tolerances import LEAST_RADIUS_OF_GYRATION
 from cagepose.studies.touched_faces import ContactFace, touched_faces
 from cagepose.studies.touched_shapes import touched_shapes
 

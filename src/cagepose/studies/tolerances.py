@@ -26,8 +26,6 @@ SAME_LOAD = 1e-9
 rounding."""
 SAME_POSE_OF_SIZE = 1e-6
 """Fraction of the scene's size. Two poses are one where nothing of the object is farther apart."""
-LEAST_RADIUS_OF_GYRATION = 1e-9
-"""In lengths of the object. No radius of gyration is less."""
 RESIDUAL_SOLVED = 1e-14
 """In lengths of the load. A residual of so little is a solution. Rounding ends most searches first."""
 LEAST_DAMPING = 1e-13

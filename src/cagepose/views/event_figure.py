@@ -154,6 +154,7 @@ def _draw_view(panel: Axes, run: Run, phase_index: int, length_unit: LengthUnit)
     points, outer = cage.points_world(), phase.pose.transform(outer_points(held))
     bodies = [cage.pose_world_cage.transform(vertices_of([shape])) for shape in cage.shapes]
     shown_bodies = [cut_off(body, np.concatenate([points, outer]), held.reach_m) for body in bodies]
+    # the cage and the object, along the load
     for body in bodies:
         outline = from_metres(convex_hull(view.project(body)), length_unit)
         panel.fill(*outline.T, facecolor=SAND, edgecolor=BROWN, alpha=0.3, linewidth=0.6)
@@ -161,11 +162,13 @@ def _draw_view(panel: Axes, run: Run, phase_index: int, length_unit: LengthUnit)
         corners = part.corners_object() if isinstance(part, Box) else vertices_of([part])
         outline = from_metres(convex_hull(view.project(phase.pose.transform(corners))), length_unit)
         panel.fill(*outline.T, facecolor=SKY, edgecolor=BLUE, alpha=0.22, linewidth=0.6)
+    # the support region
     region = support_region(run, phase_index, view, REACH_WITHOUT_END * run.scene.size_m)
     extent = from_metres(view.project(np.concatenate([points, outer, *shown_bodies])), length_unit)
     if region is not None:
         corners = from_metres(region.corners, length_unit)
         panel.fill(*corners.T, facecolor="none", edgecolor=GREEN, hatch="//", linewidth=1.6)
+    # points of the cage, and places where shapes touch
     touching = {contact.point for contact in phase.contacts}
     marks = [(name, point, name in touching) for name, point in zip(cage.names, extent[: len(points)], strict=True)]
     for contact in phase.contacts:
@@ -175,6 +178,7 @@ def _draw_view(panel: Axes, run: Run, phase_index: int, length_unit: LengthUnit)
     for _, point, touches in marks:
         panel.plot(*point, "o", zorder=2.0 + touches, **POINT_LOOKS["touching" if touches else "free"])
     panel.plot(*from_metres(view.load_point, length_unit), marker="D", color=BLUE, markersize=5.0)
+    # what is said, and room for all that is drawn
     title = f"end of {_cut(phase.name)}, seen along it:\n{_position(region, run.scene.size_m, length_unit)}"
     panel.set_title(title, fontsize=8.5, pad=8.0)
     low, high = extent.min(axis=0), extent.max(axis=0)

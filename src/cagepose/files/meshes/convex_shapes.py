@@ -47,6 +47,7 @@ def convex_shape(hull: Triangles) -> Recognised | None:
 
 def _turned(hull: Triangles, allowed: float) -> Recognised | None:
     """A cylinder or cone: two flat ends, or one and a tip, that are round."""
+    # a flat end: the plane with the most triangles, and the axis across it
     _, planes, counts = np.unique(hull.normals.round(4), axis=0, return_inverse=True, return_counts=True)
     of_cap = np.flatnonzero(planes.ravel() == counts.argmax())  # no other plane has as many triangles
     normal = hull.normals[of_cap[np.linalg.norm(hull.areas[of_cap], axis=1).argmax()]]
@@ -58,6 +59,7 @@ def _turned(hull: Triangles, allowed: float) -> Recognised | None:
     axis = np.linalg.svd(flat)[2][2]
     if axis[int(np.abs(axis).argmax())] < 0.0:
         axis = -axis
+    # circles through both ends, one of which may be a tip
     along = hull.vertices @ axis
     ends = [along < along.min() + allowed, along > along.max() - allowed]
     rims = []

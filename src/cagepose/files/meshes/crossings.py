@@ -11,7 +11,7 @@ from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.meshes.tolerances import DISTANCE_OUTSIDE, LEAST_PYRAMID
 from cagepose.model.checks import FloatArray
 
-ASKED = 2000
+TRIANGLES_ASKED = 2000
 """Triangles of each part; of more, so many of them in all places."""
 ASKED_OF_LARGE, LARGE_PART = 500, 20_000
 """Triangles that are asked of parts with so many, which take milliseconds each."""
@@ -28,7 +28,7 @@ def crosses_itself(mesh: Triangles) -> bool:
         far = 3.0 * mesh.size * np.array((0.519, 0.623, 0.585))
         if part.num_tri() == 0 or _is_star(found, part, far):
             continue
-        asked = ASKED_OF_LARGE if len(found.faces) > LARGE_PART else ASKED
+        asked = ASKED_OF_LARGE if len(found.faces) > LARGE_PART else TRIANGLES_ASKED
         chosen = np.arange(0, len(found.faces), max(1, len(found.faces) // asked))
         middles = found.vertices[found.faces[chosen]].mean(axis=1)
         starts = middles + DISTANCE_OUTSIDE * mesh.size * found.normals[chosen]

@@ -62,7 +62,7 @@ def kept_beside(mesh_file: Path, mesh: Triangles) -> Decomposition:
 
     A folder that cannot be written keeps nothing.
     """
-    settings = f"{KEPT_VERSION} {run_coacd.CONCAVITY}".encode()
+    settings = f"{KEPT_VERSION} {run_coacd.MOST_CONCAVITY}".encode()
     key = sha256(mesh.vertices.tobytes() + mesh.faces.tobytes() + settings).hexdigest()
     path = mesh_file.with_name(f"{mesh_file.name}.parts.json")
     kept = _kept(path)

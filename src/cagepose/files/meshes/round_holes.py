@@ -51,18 +51,19 @@ def _walls(mesh: Triangles) -> list[FloatArray]:
     """Return the corners of each wall: those of hollow edges that are parallel, equally long and in a ring."""
     allowed = ROUNDING_OF_MESH * mesh.size
     edges = reflex_edges(mesh, allowed).corners
+    # corners that sharp edges join: they lie on one end of a hole
     links: dict[int, set[int]] = {}
     all_edges = edges_of(mesh)
     one_side, other_side = np.moveaxis(mesh.normals[all_edges.faces], 1, 0)
-    is_sharp = (
-        np.einsum("ij,ij->i", one_side, other_side) < COSINE_OF_END
-    )  # two holes are joined by edges within flat ends
+    # two holes are joined by edges within flat ends, which are not sharp
+    is_sharp = np.einsum("ij,ij->i", one_side, other_side) < COSINE_OF_END
     for one, other in all_edges.corners[is_sharp].tolist():
         links.setdefault(one, set()).add(other)
         links.setdefault(other, set()).add(one)
     edges = edges[np.isin(edges, all_edges.corners[is_sharp]).any(axis=1)]  # what is round all over has many others
     if len(edges) < FEWEST_SIDES:
         return []
+    # the longest edge that is left and those that are parallel and equally long
     spans = mesh.vertices[edges[:, 1]] - mesh.vertices[edges[:, 0]]
     lengths = np.linalg.norm(spans, axis=1)
     left, walls = np.ones(len(edges), bool), []
@@ -81,6 +82,7 @@ def _walls(mesh: Triangles) -> list[FloatArray]:
         across = np.linalg.norm(np.cross(spans[rows], axis), axis=1)
         off = np.sort(mesh.vertices[edges[rows]] @ axis, axis=1) - np.sort(mesh.vertices[edges[seed]] @ axis)
         rows = rows[(np.abs(off) < slack).all(axis=1) & (across <= PARALLEL_SINE * lengths[rows])]
+        # of these, those whose lower ends hang together in a ring
         bottoms = np.where((spans[rows] @ axis > 0.0)[:, None], edges[rows], edges[rows][:, ::-1])
         row_of = {int(bottom): int(row) for row, bottom in zip(rows, bottoms[:, 0], strict=True)}
         start = int(edges[seed, 0])

@@ -13,7 +13,7 @@ from cagepose.files.own_process import answer, ask
 from cagepose.model.checks import FloatArray
 
 MOST_SECONDS = 60.0
-CONCAVITY = 0.05
+MOST_CONCAVITY = 0.05
 """Greatest concavity of parts, as coacd measures it."""
 CORNERS_OF_PART = 100
 SEARCH_ITERATIONS = 20
@@ -34,7 +34,7 @@ def convex_parts(mesh: Triangles) -> list[FloatArray]:
     """
     require("coacd", "a mesh that is not convex needs coacd", "files")
     given = io.BytesIO()
-    np.savez(given, vertices=mesh.vertices, faces=mesh.faces, concavity=CONCAVITY)
+    np.savez(given, vertices=mesh.vertices, faces=mesh.faces, concavity=MOST_CONCAVITY)
     found = np.load(io.BytesIO(ask(__name__, given.getvalue(), MOST_SECONDS, "coacd")))
     return [found[key] for key in sorted(found.files, key=int)]
 

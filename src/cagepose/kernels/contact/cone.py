@@ -156,6 +156,7 @@ def add_generator(contacts: ContactSet, friction: float, number: int, cone: Cone
     passive, states = cone.passive, contacts.states
     scale = rounding_scale(passive)
     left = length(passive.residual, passive.n_rows)
+    # the contact whose generator lies most along the residual
     best, best_price = -1, 0.0
     for i in range(contacts.used[0]):
         if not states[i].counts or states[i].is_rejected:
@@ -171,6 +172,7 @@ def add_generator(contacts: ContactSet, friction: float, number: int, cone: Cone
             best, best_price = i, price / size
     if best < 0:
         return -1
+    # its steepest generator comes in, or takes the place of one that it depends on
     _, one, two = steepest_tangent(contacts.rows[best], passive.residual)
     if friction == 0.0:  # so that what follows with friction may go on from here
         one = two = 0.0

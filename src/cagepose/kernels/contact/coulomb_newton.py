@@ -98,9 +98,11 @@ def write_system(
     for i in range(n):
         for j in range(n + 1):
             m[i, j] = 0.0
+    # balance of y
     for k in range(6):
         m[k, k] = 1.0
         m[k, n] = b[k] - y[k]
+    # the unknowns of each contact that carries
     for place in range(newton.n_carrying):
         contact, first = contacts.rows[newton.contacts[place]], newton.first_unknowns[place]
         columns, forces = contact.columns, contacts.states[newton.contacts[place]].forces

@@ -81,6 +81,7 @@ def find_contacts(
                 continue
             first = contacts.used[0]
             n_new = 0
+            # each face of the box that the point touches is a choice of one group
             for axis in range(3):
                 if not touches_face(point_box, half_size, axis, touch_m):
                     continue
@@ -96,6 +97,7 @@ def find_contacts(
                 contact.group = first
                 choose(contacts, contacts.used[0], contacts.used[0] == first)
                 append_contact(contacts, placement, friction, point, box, axis, side, arm, frame)
+            # flush faces that other boxes have listed say nothing new
             if n_new == 0:
                 for i in range(first, contacts.used[0]):
                     contacts.rows[i].group = -1

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.native.interrupt import is_heard_here
-from cagepose.kernels.native.library import STOPPED, Library, Machine, kernel_library
+from cagepose.kernels.native.library import STATUS_STOPPED, Library, Machine, kernel_library
 from cagepose.kernels.native.slots import Slots
 
 F = TypeVar("F", bound=Callable[..., object])
@@ -77,7 +77,7 @@ class Entry(Generic[R]):
             status = self.library.call_until_interrupt(function, memory)
         else:
             status = function(memory, memory)
-        if status == STOPPED:
+        if status == STATUS_STOPPED:
             raise KeyboardInterrupt
         if status:
             raise RuntimeError(f"the kernel {self.name} failed: it raised an exception")

@@ -27,7 +27,7 @@ FILE_NAME = {"win32": "kernels.dll", "darwin": "kernels.dylib"}.get(sys.platform
 LIBRARY = Path(__file__).resolve().parent / FILE_NAME
 Machine = Callable[..., int]
 """Machine code of an entry: ``int32_t name(int64_t *slots, double *the_same)``."""
-STOPPED = -130
+STATUS_STOPPED = -130
 """Status of a call that was stopped, see ``build_kernels/interrupt.c``."""
 REMEDY = f"build it with `make setup` (`pip install` does too), or set {VARIABLE}={PLAIN_PYTHON} for slow plain Python"
 
@@ -45,7 +45,7 @@ class Library:
         Whose machine code is used.
     call_until, call_until_interrupt
         Call a function of `function` until a number in memory is not zero, or until Ctrl-C is pressed:
-        ``(address, function, slots)`` and ``(function, slots)``; either gives its status, or STOPPED.
+        ``(address, function, slots)`` and ``(function, slots)``; either gives its status, or STATUS_STOPPED.
 
     Raises
     ------

@@ -123,12 +123,14 @@ def start_of(case: int, part: Part, cases: Cases, cage: PlacedCage) -> Start:
     points_world, n_elements = cage.points_world, max(len(cage.points_world), len(cage.shapes.parts))
     points = cases.points_cage[row_of(len(cases.points_cage), case)]
     turned = quaternion_row(cases.cage_quaternions, row_of(len(cases.cage_quaternions), case))
+    # the origin of what follows is the middle of all elements of the cage
     middle = (0.0, 0.0, 0.0)
     for point in range(len(points)):
         middle = plus(middle, row(points, point))
     for which in range(len(points), n_elements):
         middle = plus(middle, vector_from(cases.shapes_cage.parts[which].middle))
     middle = scaled(middle, 1.0 / n_elements)
+    # points and shapes, turned about it
     for point in range(len(points)):
         placed = rotated(turned, minus(row(points, point), middle))
         for k in range(3):
@@ -139,6 +141,7 @@ def start_of(case: int, part: Part, cases: Cases, cage: PlacedCage) -> Start:
             for k in range(3):
                 cage.shapes.parts[point].middle[k] = points_world[point, k]
                 cage.shapes.features[cage.shapes.parts[point].first].point[k] = points_world[point, k]
+    # the object beside it
     cage_position = row(cases.cage_positions, row_of(len(cases.cage_positions), case))
     origin = plus(cage_position, rotated(turned, middle))
     position = row(cases.object_positions, row_of(len(cases.object_positions), case))

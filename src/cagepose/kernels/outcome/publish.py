@@ -105,6 +105,7 @@ def publish_events(
     first_step = outcome.counts[STEPS]
     before, turns = quaternion, (0.0, 0.0, 0.0)
     for step in range(n_steps):
+        # where the step ends, in the world
         record = trace.rows[step]
         end, turned = (
             vector_from(record.position),
@@ -117,6 +118,7 @@ def publish_events(
         )
         turns, before = plus(turns, rotation_vector(before, turned)), turned
         placed = object_position(start, part, end, turned)
+        # the step itself
         place = outcome.counts[STEPS]
         outcome.counts[STEPS] += 1
         outcome.steps[place] = record  # type: ignore[index]
@@ -125,6 +127,7 @@ def publish_events(
         for k in range(3):
             outcome.path[place, k] = placed[k]
         write_upright(turned, outcome.path[place, 3:])
+        # the event that it closes, with the motion of all of its steps
         if joins_steps and step + 1 < n_steps and goes_on(trace, step):
             continue
         event = outcome.events[outcome.counts[EVENTS]]

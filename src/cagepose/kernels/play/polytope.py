@@ -22,9 +22,9 @@ from cagepose.kernels.play.newton import NewtonStep
 from cagepose.kernels.play.tolerances import GAP_OF_TOUCH, ROUNDING_OF_GAP, ROUNDING_OF_TERMS
 
 Motion = tuple[Vector, Quaternion]
-"""Of the object as it stands at the start: travel t and turn R, x -> R x + t."""
+"""A motion of the object from where it stands at the start: travel t and turn R, x -> R x + t."""
 START_MOTION = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
-"""The object as it stands at the start: travel t and turn R, x -> R x + t."""
+"""No motion: the object stands where it did at the start."""
 N_TRUST = 12
 """Rows |xi_k| <= radius of the trust region."""
 

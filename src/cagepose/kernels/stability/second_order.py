@@ -107,6 +107,7 @@ def find_held(
     for place in range(locked.used):
         extend(work.held, locked.basis[place], PART_OUTSIDE_SPAN)
     n = contacts.used[0]
+    # contacts that carry hold along their normals, and those that stick along their faces, too
     for i in range(n):
         state, status = contacts.states[i], statuses[i]
         carried, one, two = state.forces
@@ -122,6 +123,7 @@ def find_held(
         if contacts.states[i].is_sticking:
             extend(work.held, contacts.rows[i].columns[1], PART_OUTSIDE_SPAN)
             extend(work.held, contacts.rows[i].columns[2], PART_OUTSIDE_SPAN)
+    # contacts without force that another balance loads; each that is found may load others
     found = True
     while found:
         found = False
