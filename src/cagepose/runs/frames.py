@@ -22,7 +22,7 @@ CONTACT_COLUMNS = (
     *(f"normal_{axis}" for axis in "xyz"), *POSITION, "gap_m", "near_edge", "group",
     "force_unit",
 )  # fmt: skip
-"""Of a run without contacts, too."""
+"""A run without contacts has these columns, too."""
 NOWHERE = np.full(3, np.nan)
 
 

@@ -36,12 +36,8 @@ from cagepose.studies.tolerances import (
 )
 from cagepose.studies.whole_rims import more_places
 
-NEVER = -1
+NEVER_COUNTS = -1
 """The group of a contact that does not count."""
-UNBALANCED = 1e-7
-"""Of the load: forces that leave more do not balance it to first order. A rest leaves at most 1e-8."""
-CUT_FOR_BOUNDS, CUT_FOR_RANGES = 1e-6, 1e-9
-"""How closely rays follow the cones: bounds are certain however they do, and need three digits; ranges need more."""
 FORCES, MOMENTS = slice(0, 3), slice(3, 6)
 """Places of the forces and of the moments of a wrench."""
 
@@ -181,7 +177,7 @@ def _counting_contacts(run: Run, phase: int) -> tuple[list[Contact], list[list[i
     if any(contact.group is None for contact in contacts):
         friction = chosen_method(run.scene, run.method).friction(run.scene)
         contacts = judge_pose(run.scene, run.phases[phase].pose, phase, friction)[1]
-    counting = [contact for contact in contacts if contact.group != NEVER]
+    counting = [contact for contact in contacts if contact.group != NEVER_COUNTS]
     groups = dict[int | None, list[int]]()
     for number, contact in enumerate(counting):
         groups.setdefault(contact.group, []).append(number)

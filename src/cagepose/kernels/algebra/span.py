@@ -59,7 +59,7 @@ def write_complement(basis: PassiveSet, free: FloatArray) -> int:
                 left -= basis.basis[k, axis] * basis.basis[k, axis]
             if left > best_size:
                 best, best_size = axis, left
-        for k in range(N):
+        for k in range(N_ROWS):
             basis.basis[place, k] = 1.0 if k == best else 0.0
         orthogonalise(basis, place)
         for k in range(N_ROWS):
