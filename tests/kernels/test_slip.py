@@ -42,6 +42,7 @@ def test_opposite_normals_are_one_direction_and_coplanar_ones_two(normals, count
 def test_a_hair_of_misalignment_is_no_new_direction():
     for sine, count in ((1e-7, 1), (1e-5, 2)):
         assert independent([(0, 0, 1), (0, sine, math.sqrt(1 - sine**2))])[0] == count
+        assert independent([(0, 0, 1), (0, 1, 0), (sine, 0, math.sqrt(1 - sine**2))])[0] == count + 1
 
 
 def test_the_direction_left_by_two_normals_is_across_both():

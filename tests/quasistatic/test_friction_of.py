@@ -36,6 +36,13 @@ def ladder(wall: float, floor: float) -> Scene:
     )  # fmt: skip
 
 
+@pytest.mark.parametrize("beyond", [-1e-8, 1e-8])
+def test_a_slope_is_held_up_to_a_hundred_millionth_of_its_limit(beyond):
+    """By Coulomb's law alone, tan t = mu: on four feet so low that nothing tips."""
+    found = run(on_a_slope(np.arctan(0.3 * (1.0 + beyond)), 0.3))
+    assert found.verdict == ("rests" if beyond < 0.0 else "escapes")
+
+
 @pytest.mark.parametrize("share", [0.999, 1.001])
 def test_two_smooth_feet_leave_all_friction_to_the_others(share):
     """With the centre of gravity at height h over feet 2a apart, the rear ones carry (1 - h/a tan t)/2 of it."""
