@@ -49,7 +49,7 @@ run: $(READY)  ## run the sample scene
 	@$(BIN)/cagepose run scenes/sample.yaml
 
 test: $(READY)  ## run all tests and the examples in docstrings (N=10000: with many random cases, see test-deep)
-	@echo "Running all tests, some six minutes ..."
+	@echo "Running all tests, some five minutes ..."
 	@$(BIN)/python -m pytest $(ON_ALL_CORES) $(if $(filter file,$(origin N)),,--scenes $(N))
 
 test-deep: $(READY)  ## run the tests that draw random cases with many of them, minutes (N=20000: scenes of the largest)

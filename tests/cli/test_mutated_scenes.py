@@ -45,7 +45,7 @@ def ends(case: Mutant, path: Path) -> tuple[int, float, str]:
     return code, time.perf_counter() - began, err.getvalue()
 
 
-@pytest.mark.parametrize(("texts", "few", "many", "known"), [(TEXTS, 150, 6000, KNOWN_SLOW), (SHAPED, 60, 1000, set())])
+@pytest.mark.parametrize(("texts", "few", "many", "known"), [(TEXTS, 60, 6000, KNOWN_SLOW), (SHAPED, 30, 1000, set())])
 def test_mutated_scenes_end_soon_and_by_name(
     texts: list[str],
     few: int,

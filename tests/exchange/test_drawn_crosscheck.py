@@ -35,7 +35,7 @@ def end_of(check: PhaseCheck, size_m: float) -> str:
 
 def test_what_is_proven_to_rest_stays_in_mujoco(cases, say):
     rng, ends, left = np.random.default_rng(71), Counter(), list[str]()
-    for number in range(cases(20, 100)):
+    for number in range(cases(12, 100)):
         draw = WITHOUT_HOLES[number % len(WITHOUT_HOLES)]
         try:
             scene = draw(rng)

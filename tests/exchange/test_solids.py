@@ -32,6 +32,7 @@ from cagepose.exchange.imported import imported
 from cagepose.exchange.solids_note import file_beside, read_solids_note, solids_note
 from cagepose.exchange.step import step_solid
 from cagepose.exchange.step_solids import write_step
+from cagepose.exchange.step_writer import write_here
 from exchange.poses_apart import apart
 from our_scenes import SCENES
 
@@ -44,6 +45,7 @@ def there_and_back(scene: Scene, name: str, folder: Path):
     return imported(str(folder / name))
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("name", ["rollers", "peg-in-hole", "plate-on-pins", "v-groove", "phone-dock"])
 def test_step_gives_the_same_final_pose(name, tmp_path):
     """Balls, bars, pins, points, holes through and blind, a part with round edges: to a billionth of the size."""
@@ -65,6 +67,7 @@ def parts(body: Object | Cage):
     return body.parts if isinstance(body, Object) else body.shapes
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize(("to", "n_notes"), [("step", 0), ("stl", 2)])
 def test_a_taper_and_a_chamfer_come_back(to, n_notes, tmp_path):
     """Their numbers; the pin may turn about its axis as it likes, so that its final poses are no measure."""
@@ -80,6 +83,7 @@ def test_a_taper_and_a_chamfer_come_back(to, n_notes, tmp_path):
     assert len(found.notes) == n_notes
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("name", ["rollers", "rail-pitch", "v-groove", "plate-on-pins", "phone-dock"])
 def test_stl_gives_the_same_final_pose_within_its_error(name, tmp_path):
     """Here far within, as all corners of the triangles are on the true surface and have all their digits."""
@@ -89,6 +93,7 @@ def test_stl_gives_the_same_final_pose_within_its_error(name, tmp_path):
     assert all("flat sides where it is round" in note for note in found.notes)
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("n_corners", [1, 2, 3, 8])
 def test_what_is_round_all_over_is_one_solid_of_step_and_its_core(n_corners, tmp_path):
     pytest.importorskip("OCP")
@@ -99,6 +104,7 @@ def test_what_is_round_all_over_is_one_solid_of_step_and_its_core(n_corners, tmp
     assert np.sort(solid["core"], axis=0) == pytest.approx(np.sort(1e3 * corners, axis=0), abs=1e-9)
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_what_is_round_at_one_end_alone_has_no_core(tmp_path):
     pytest.importorskip("OCP")
     bar, sleeve = step_solid("bullet", Capsule(0.003, 0.02), [], Pose()), Cylinder(0.003, 0.014, Pose((0, 0, 0.01)))
@@ -129,6 +135,7 @@ def test_a_hole_keeps_its_name_and_its_friction(to, tmp_path):
     assert (bore.name, bore.depth_m) == ("bore", 0.02)
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_friction_that_comes_back_nowhere_is_told(tmp_path):
     (tmp_path / "scene.stl").write_bytes(exported(run(with_rough_hole()), "stl", "scene.stl").files["scene.stl"])
     note = solids_note(with_rough_hole(), run(with_rough_hole()).pose)
@@ -169,6 +176,7 @@ def test_a_note_that_somebody_spoilt_is_said_and_passed_over(old, new, tmp_path)
     assert told.startswith("the note of cagepose in scene.stl.json is damaged")
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("name", ["scene.step", "scene.xml", "scene.urdf"])
 def test_a_spoilt_note_within_a_file_is_said(name, tmp_path):
     pytest.importorskip("OCP")
@@ -184,6 +192,7 @@ def test_a_spoilt_note_within_a_file_is_said(name, tmp_path):
         assert told in imported(str(tmp_path / name)).notes
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_solids_that_cannot_be_used_without_their_note_say_that_it_is_damaged(tmp_path):
     """Cage points are balls of nearly no size then."""
     path, scene = tmp_path / "scene.stl", load_scene(FILES["rail-pitch"])
@@ -195,6 +204,7 @@ def test_solids_that_cannot_be_used_without_their_note_say_that_it_is_damaged(tm
     assert "the note of cagepose in scene.stl.json is damaged" in str(caught.value.problems[1])
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("to", ["mjcf", "urdf", "step", "stl"])
 def test_what_is_adjustable_is_said_not_to_be_in_a_file(to):
     pytest.importorskip("OCP")
@@ -207,10 +217,11 @@ def assembly(folder: Path) -> str:
     block, pin = Box((0.03, 0.03, 0.02), Pose((0, 0, 0.0101))), Cylinder(0.05, 0.01, Pose((0, 0, -0.005)))
     cover = Box((0.01, 0.01, 0.01), Pose((0, 0, 0.2)))
     solids = [step_solid(name, shape, [], Pose()) for name, shape in (("block", block), ("table", pin), ("lid", cover))]
-    write_step(solids, folder / "parts.step")
+    write_here(solids, str(folder / "parts.step"))
     return str(folder / "parts.step")
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_foreign_solids_are_chosen_by_name(tmp_path, monkeypatch, capsys):
     pytest.importorskip("OCP")
     monkeypatch.chdir(tmp_path)

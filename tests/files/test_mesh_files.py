@@ -52,6 +52,7 @@ def scene_of(folder: Path, shape: str):
     return load_scene(folder / "scene.yaml")
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "glb"])
 def test_a_convex_mesh_is_the_convex_shape_of_its_corners(suffix, tmp_path):
     name = written(tmp_path, part(), f"part.{suffix}")
@@ -65,6 +66,7 @@ def test_a_convex_mesh_is_the_convex_shape_of_its_corners(suffix, tmp_path):
     assert ours.pose.quaternion_wxyz == pytest.approx(theirs.pose.quaternion_wxyz, abs=1e-11)
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_units_are_those_given_else_of_the_scene_else_metres_of_glb(tmp_path):
     stl, glb = (written(tmp_path, part(), f"part.{suffix}") for suffix in ("stl", "glb"))
 
@@ -76,12 +78,14 @@ def test_units_are_those_given_else_of_the_scene_else_metres_of_glb(tmp_path):
     assert size(f"mesh: {{file: {glb}}}") == pytest.approx(40.0)
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_corners_within_faces_and_edges_are_none(tmp_path):
     name = written(tmp_path, part().subdivide().subdivide(), "fine.stl")
     (shape,) = scene_of(tmp_path, f"mesh: {{file: {name}}}").object.shapes
     assert len(shape.hull.vertices_m) == len(CORNERS)
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize(
     "angles_deg", [(0, 0, 0), (10, 20, 30), (90, 0, 0), (45, 35.264389682754654, 45), (180, 90, 0)]
 )
@@ -99,6 +103,7 @@ def test_a_box_becomes_a_box(angles_deg, tmp_path):
         assert box.pose_object_box.quaternion_wxyz.tolist() == [1, 0, 0, 0]
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("by", [1e-4, 1.0])
 def test_what_is_nearly_a_box_is_none(by, tmp_path):
     corners = BOX_SIGNS * (15.0, 10.0, 5.0)
@@ -111,6 +116,7 @@ def test_what_is_nearly_a_box_is_none(by, tmp_path):
         assert scene_of(tmp_path, f"mesh: {{file: {name}}}").object.boxes == ()
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_a_saved_scene_holds_the_corners_itself(tmp_path):
     written(tmp_path, part(), "part.stl")
     scene = scene_of(tmp_path, "mesh: {file: part.stl}, name: part")
@@ -120,6 +126,7 @@ def test_a_saved_scene_holds_the_corners_itself(tmp_path):
     assert run(again).pose.position_m.tolist() == run(scene).pose.position_m.tolist()
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_a_mesh_that_changes_is_read_again(tmp_path):
     written(tmp_path, part(), "part.stl")
     first = scene_of(tmp_path, "mesh: {file: part.stl}")
@@ -230,6 +237,8 @@ BYTES = {
     "no-corner.glb": (glb_of_one(b"\x07\0\0\0"), "has a triangle whose corner is not there; export it again"),
     "part.step": (b"ISO-10303-21;", "has the suffix '.step'; give a file of one of: .stl, .obj, .ply, .glb"),
 }
+ASK_FOR_MUCH = ("eight-gigabytes.glb", "text.ply", "garbage.glb")
+"""Of which memory and processor time must be limited."""
 
 
 def refusal(folder: Path, name: str) -> str:
@@ -242,6 +251,7 @@ def refusal(folder: Path, name: str) -> str:
     return problem.message.removeprefix(f"{folder / name} ")
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("name", HOSTILE)
 def test_meshes_that_cannot_be_shapes_say_why_and_what_to_do(name, tmp_path):
     make, message = HOSTILE[name]
@@ -250,12 +260,15 @@ def test_meshes_that_cannot_be_shapes_say_why_and_what_to_do(name, tmp_path):
 
 
 @pytest.mark.parametrize("name", BYTES)
-def test_damaged_files_are_clear_errors(name, tmp_path):
+def test_damaged_files_are_clear_errors(name, tmp_path, request):
+    if name not in ASK_FOR_MUCH:
+        request.getfixturevalue("in_this_process")
     content, message = BYTES[name]
     (tmp_path / name).write_bytes(content)
     assert refusal(tmp_path, name).startswith(message)
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("share", [0.3, 0.9])
 def test_truncated_files_are_clear_errors(share, tmp_path):
     for suffix in ("stl", "ply", "glb"):

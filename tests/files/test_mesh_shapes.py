@@ -221,6 +221,7 @@ def scene_with(folder: Path, added, without, text=SCENE) -> Scene:
     return load_scene(folder / "scene.yaml")
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_a_mesh_of_several_shapes_stands_in_a_scene(tmp_path, capsys):
     """Its friction and holes in it are those of all its pieces; the shapes after it keep their numbers."""
     scene = scene_with(tmp_path, UNIONS["boss"][0], (Cylinder(5, 60, Pose((5, 0, 0))),))
@@ -236,6 +237,7 @@ def test_a_mesh_of_several_shapes_stands_in_a_scene(tmp_path, capsys):
     assert "note: 'plate' has flat sides where it is round here, up to 0.0096 mm off" in capsys.readouterr().out
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_numbers_of_a_mesh_of_several_shapes_cannot_be_adjusted(tmp_path):
     text = SCENE.replace(".stl}", ".stl}, position: [0, 0, 0]")
     text += 'adjustable: {x: {key: "object.shapes[0].position[0]", range: [0, 1]}}\n'

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from cagepose import Box, Pose
@@ -9,7 +11,7 @@ from cagepose.model.nearest import core_of, nearest_points
 from cagepose.model.shapes import AnyShape, Capsule, Cone, Convex, Cylinder, Disc, Sphere
 from cagepose.model.surface import shape_mesh
 
-N_PAIRS, SEGMENTS = 300, 96
+SEGMENTS = 96
 
 
 def shapes(generator: np.random.Generator) -> list[Box | AnyShape]:
@@ -27,10 +29,10 @@ def turned(generator: np.random.Generator, away_m: float) -> Pose:
     return Pose(away_m * way / np.linalg.norm(way), quaternion / np.linalg.norm(quaternion))
 
 
-def test_no_two_places_of_the_bodies_are_nearer() -> None:
+def test_no_two_places_of_the_bodies_are_nearer(cases: Callable[[int, int], int]) -> None:
     generator = np.random.default_rng(71)
-    n_apart = 0
-    for _ in range(N_PAIRS):
+    n_apart, n_pairs = 0, cases(100, 1500)
+    for _ in range(n_pairs):
         kinds = shapes(generator), shapes(generator)
         one, other = (of[generator.integers(len(of))] for of in kinds)
         here, there = turned(generator, 0.0), turned(generator, generator.uniform(0.02, 0.06))
@@ -46,4 +48,4 @@ def test_no_two_places_of_the_bodies_are_nearer() -> None:
         for shape, pose, end, way in ((one, here, foot, normal), (other, there, place, -normal)):
             heights = pose.transform(shape_mesh(shape, SEGMENTS).vertices_m) @ way - end @ way
             assert -5e-5 < heights.max() < 1e-9  # all of it is behind, and reaches there but for the mesh's chords
-    assert n_apart > 0.8 * N_PAIRS
+    assert n_apart > 0.8 * n_pairs

@@ -25,7 +25,7 @@ def test_pushes_come_as_far_as_linear_programs_and_every_end_is_free_and_station
     """Boxes among points, asked both ways, of which the ends are checked by the oracle of the programs' own tests."""
     rng = np.random.default_rng(31)
     n_ends = n_nearer = 0
-    for _ in range(cases(15, 150)):
+    for _ in range(cases(8, 150)):
         scene = caged_scene(rng)
         known, start = play(scene, search_s=0.0), Start(scene)
         pushed = PushedPlay(scene, unseated(scene), []).ranges()

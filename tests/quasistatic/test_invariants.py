@@ -48,7 +48,7 @@ def checked(result, number, verdicts):
 
 
 @pytest.mark.parametrize(
-    ("friction", "few", "many", "nameless_share"), [(None, 200, 1500, 0.001), (0.3, 100, 400, 0.02)]
+    ("friction", "few", "many", "nameless_share"), [(None, 100, 1500, 0.001), (0.3, 50, 500, 0.02)]
 )
 def test_random_scenes_end_by_name_downhill_and_outside(friction, few, many, nameless_share, say, cases):
     """``nameless_share``: runs that end "stalled" or "limit", no answer, at most; measured, see the printed line."""

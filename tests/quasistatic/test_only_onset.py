@@ -285,7 +285,7 @@ def test_the_search_agrees_with_linear_programs_for_all_modes(search, cases):
     """One to three contacts, sectors up to 1/20 of a turn: what these rule out has no other onset, and the mode of an
     onset that was found is one that they leave.
     """
-    random, n, ruled_out, others = np.random.default_rng(23), cases(30, 300), 0, 0
+    random, n, ruled_out, others = np.random.default_rng(23), cases(15, 300), 0, 0
     for _ in range(n):
         held = random_held(random)
         n_contacts = int(random.integers(1, 3)) if random.random() < 0.9 else 3

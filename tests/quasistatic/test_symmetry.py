@@ -74,7 +74,7 @@ def is_undecided(scene, expected, rng):
     return False
 
 
-@pytest.fixture(scope="module", params=[(None, 60, 300), (0.3, 25, 80)], ids=["frictionless", "friction"])
+@pytest.fixture(scope="module", params=[(None, 60, 300), (0.3, 12, 125)], ids=["frictionless", "friction"])
 def decided(request, cases):
     """Scenes that are no ties, with their runs; and how many were ties."""
     rng = np.random.default_rng(9)

@@ -10,7 +10,7 @@ from cagepose import Study, StudyResults
 from cagepose.files.key_path import parse_key_path
 from cagepose.files.scene_edit import with_values
 from cagepose.files.yaml_source import parse_yaml
-from cagepose.sampling import capture_map, sensitivity
+from cagepose.sampling import capture_map, report, sensitivity
 from our_studies import PEG, RAIL, RunStudy
 
 
@@ -35,6 +35,12 @@ def small_designs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sensitivity, "BASE_ROWS", 16)
     monkeypatch.setattr(sensitivity, "BASE_ONE_BY_ONE", 16)
     monkeypatch.setattr(capture_map, "CELLS_OF_SIDE", 8)
+
+
+@pytest.fixture
+def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The pictures of a report are left blank, where a test asks for its numbers: they take a second each time."""
+    monkeypatch.setattr(report, "figure_bytes", lambda *_: b"<svg></svg>")
 
 
 @pytest.fixture

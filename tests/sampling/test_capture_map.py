@@ -122,7 +122,7 @@ def test_the_capture_map_says_what_each_of_its_runs_does(run_study: RunStudy, tm
             assert found["ends"]["pitch_deg"][up][across] == pytest.approx(pitch, abs=1e-12)
 
 
-@pytest.mark.usefixtures("small_designs")
+@pytest.mark.usefixtures("small_designs", "no_pictures")
 def test_a_number_with_one_value_has_no_side_of_the_map(run_study: RunStudy, peg: Path) -> None:
     one, *others = {"cage.pose.position[1]": {"grid": [0.1]}, **HEIGHTS}.items()
     numbers = run_study(dict([one, *others]), 20, scene=peg).report()
@@ -132,7 +132,7 @@ def test_a_number_with_one_value_has_no_side_of_the_map(run_study: RunStudy, peg
         Study(peg, dict([one, *others]), {"runs": 8}, map={"over": [one[0], others[0][0]]})
 
 
-@pytest.mark.usefixtures("small_designs")
+@pytest.mark.usefixtures("small_designs", "no_pictures")
 @pytest.mark.parametrize("low", [-0.1, 0.1])
 def test_a_box_of_permitted_values_is_about_nominal_ones_that_are_on_the_map(
     run_study: RunStudy, peg: Path, low: float
@@ -143,7 +143,7 @@ def test_a_box_of_permitted_values_is_about_nominal_ones_that_are_on_the_map(
     assert found["box"] == ([[low, 0.2], [-0.1, 0.1]] if low < 0.0 else None)
 
 
-@pytest.mark.usefixtures("small_designs")
+@pytest.mark.usefixtures("small_designs", "no_pictures")
 @pytest.mark.parametrize("phase", ["weight", "push"])
 def test_the_capture_boundary_of_the_planar_rail_is_that_of_the_closed_formula(
     run_study: RunStudy, tmp_path: Path, phase: str
@@ -171,7 +171,7 @@ def test_the_capture_boundary_of_the_planar_rail_is_that_of_the_closed_formula(
         assert np.array_equal(row, pitches > -limit if phase == "weight" else pitches < limit)
 
 
-@pytest.mark.usefixtures("small_designs")
+@pytest.mark.usefixtures("small_designs", "no_pictures")
 @pytest.mark.parametrize(
     ("friction", "values"),
     [({"uniform": [0.0, 0.3]}, [0.0, 0.1, 0.2, 0.3]), ({"grid": [0.0, 0.2]}, [0.0, 0.2]),

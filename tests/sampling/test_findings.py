@@ -166,7 +166,7 @@ def test_no_row_leaves_a_worst_case_that_is_not_known(run_study: RunStudy, peg: 
     assert "- to -" not in page
 
 
-@pytest.mark.usefixtures("small_designs")
+@pytest.mark.usefixtures("small_designs", "no_pictures")
 def test_no_step_leaves_the_range_of_a_number(run_study: RunStudy, peg: Path) -> None:
     """A nominal friction of 0, and a cage that can only be lower: on the other side no scene is."""
     peg.write_text(PEG.replace("0.02, 3]", "0.02, 0.5]") + "friction: {coefficient: 0}\n", encoding="utf-8")
@@ -190,7 +190,7 @@ def test_a_jump_has_no_derivative(run_study: RunStudy, peg: Path) -> None:
     assert tolerance_of(numbers, "position_x")["worst_case"] == [0.0, 0.0]
 
 
-@pytest.mark.usefixtures("small_designs")
+@pytest.mark.usefixtures("small_designs", "no_pictures")
 def test_rounding_is_no_way_out_of_the_worst_case(
     run_study: RunStudy, peg: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -207,7 +207,7 @@ def test_rounding_is_no_way_out_of_the_worst_case(
     assert not re.findall(r"<td>[^<]*e-1", (tmp_path / "out" / "report.html").read_text(encoding="utf-8"))
 
 
-@pytest.mark.usefixtures("small_designs")
+@pytest.mark.usefixtures("small_designs", "no_pictures")
 def test_good_runs_that_do_not_rest_are_told(
     run_study: RunStudy, peg: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -222,7 +222,7 @@ def test_good_runs_that_do_not_rest_are_told(
     assert f"{escaped} good runs do not come to rest; write verdict == 'rests'" in capsys.readouterr().out
 
 
-@pytest.mark.usefixtures("small_designs")
+@pytest.mark.usefixtures("small_designs", "no_pictures")
 def test_a_failed_run_is_never_good_and_is_told(
     run_study: RunStudy, peg: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -329,7 +329,7 @@ def test_long_names_stay_within_their_pictures(run_study: RunStudy, peg: Path) -
             assert edges.x0 <= extent.x0 < extent.x1 <= edges.x1
 
 
-@pytest.mark.usefixtures("small_designs")
+@pytest.mark.usefixtures("small_designs", "no_pictures")
 def test_chosen_runs_are_scenes_that_run_as_their_rows_do(run_study: RunStudy, tmp_path: Path) -> None:
     vary = {"cage.points.*[2]": {"normal": {"sigma": 0.02}}, "friction.coefficient": {"uniform": [0, 0.2]}}
     results = run_study(vary, 300, accept="verdict == 'rests' and abs(pitch_deg) < 0.215")
@@ -345,7 +345,7 @@ def test_chosen_runs_are_scenes_that_run_as_their_rows_do(run_study: RunStudy, t
         assert f'"verdict":"{ended.verdict}"' in (tmp_path / "out" / one["page"]).read_text(encoding="utf-8")
 
 
-@pytest.mark.usefixtures("small_designs")
+@pytest.mark.usefixtures("small_designs", "no_pictures")
 def test_contacts_say_how_often_and_how_much(run_study: RunStudy) -> None:
     vary = {f"cage.pose.euler_zyx_deg[{axis}]": {"uniform": [-0.1, 0.1]} for axis in range(3)}
     with_forces = run_study(vary, 120, forces=True)
@@ -362,7 +362,7 @@ def test_contacts_say_how_often_and_how_much(run_study: RunStudy) -> None:
             assert row["greatest_force"] == forces.max()
 
 
-@pytest.mark.usefixtures("small_designs")
+@pytest.mark.usefixtures("small_designs", "no_pictures")
 def test_forces_are_those_of_the_first_rows_at_rest_in_whichever_part(
     run_study: RunStudy, peg: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -390,7 +390,7 @@ def test_where_no_row_rests_there_is_a_report_all_the_same(
     assert "of the runs are good" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
 
 
-@pytest.mark.usefixtures("small_designs")
+@pytest.mark.usefixtures("small_designs", "no_pictures")
 @pytest.mark.parametrize("name", ["force_C1", "force.C1"])
 def test_a_run_may_be_judged_by_its_forces(run_study: RunStudy, name: str) -> None:
     """In the rows, and in the runs beside them."""

@@ -117,7 +117,7 @@ def test_rows_of_every_scene_are_its_runs(run_study: RunStudy, path: Path) -> No
         vary["cage.points.*[2]"] = {"normal": {"sigma": 0.01}}
     if data["object"].get("mass"):
         vary["object.mass"] = {"uniform": [0.1, 1.0]}
-    results = run_study(vary, 12, scene=path, forces=True)
+    results = run_study(vary, 6, scene=path, forces=True)
     assert Runner(results.study).is_batch == ("object.mass" not in vary)
     compare_with_runs(results)
 
@@ -197,19 +197,19 @@ def test_a_study_goes_on_where_parts_are_missing(
 ) -> None:
     monkeypatch.setattr(runner, "ROWS_ONE_BY_ONE", 64)
     vary, runs = BUILT["a size"], 2 * 64 + 10
-    whole = run_study(vary, runs, folder="whole")
-    again = run_study(vary, runs, folder="again")
+    whole = run_study(vary, runs, folder="whole", workers=1)
+    again = run_study(vary, runs, folder="again", workers=1)
     first, second, _ = again.folder.parts()
     kept = first.stat().st_mtime_ns
     second.unlink()
     (second.parent / f".{second.name}.123.part").write_bytes(b"cut sho")  # what kill -9 leaves
     (tmp_path / "again" / ".study.yaml.123.part").write_bytes(b"sce")
-    resumed = run_study(vary, runs, folder="again", resume=True)
+    resumed = run_study(vary, runs, folder="again", resume=True, workers=1)
     assert rows_of(resumed) == rows_of(whole)
     assert first.stat().st_mtime_ns == kept
     assert not list((tmp_path / "again").rglob("*.part"))
-    assert rows_of(run_study(vary, runs, folder="again", resume=True)) == rows_of(whole)  # all is done
-    assert rows_of(run_study(vary, runs, folder="new", resume=True)) == rows_of(whole)  # nothing was begun
+    for folder in ("again", "new"):  # all is done, and nothing was begun
+        assert rows_of(run_study(vary, runs, folder=folder, resume=True, workers=1)) == rows_of(whole)
 
 
 KILLED = """
@@ -222,7 +222,9 @@ Study.load(sys.argv[1]).run(sys.argv[2], resume=True, workers=1)
 """
 
 
-def test_after_five_kills_at_random_moments_the_table_is_the_same(tmp_path: Path) -> None:
+def test_after_kills_at_random_moments_the_table_is_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cases: Callable[[int, int], int]
+) -> None:
     """Real processes and kill -9: each leaves whole parts alone, and what goes on needs no more than --resume."""
     study = tmp_path / "study.yaml"
     study.write_text(
@@ -232,7 +234,7 @@ def test_after_five_kills_at_random_moments_the_table_is_the_same(tmp_path: Path
     )
     rng, n_parts = np.random.default_rng(3), []
     command = [sys.executable, "-c", KILLED, str(study)]
-    for _ in range(5):
+    for _ in range(cases(2, 25)):
         with subprocess.Popen([*command, str(tmp_path / "killed")], stdout=subprocess.PIPE) as process:
             assert process.stdout is not None
             process.stdout.readline()
@@ -242,9 +244,8 @@ def test_after_five_kills_at_random_moments_the_table_is_the_same(tmp_path: Path
         assert all(pq.read_table(part).num_rows > 0 for part in parts)
         n_parts.append(len(parts))
     assert n_parts == sorted(n_parts)
-    for folder in ("killed", "whole"):
-        subprocess.run([*command, str(tmp_path / folder)], check=True, stdout=subprocess.PIPE)
-    killed, whole = StudyResults(tmp_path / "killed"), StudyResults(tmp_path / "whole")
+    monkeypatch.setattr(runner, "ROWS_OF_A_BATCH", 256)
+    killed, whole = (Study.load(study).run(tmp_path / folder, resume=True, workers=1) for folder in ("killed", "whole"))
     assert len(whole) == 4000
     assert rows_of(killed) == rows_of(whole)
 

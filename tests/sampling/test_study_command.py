@@ -73,6 +73,7 @@ def test_a_study_prints_what_its_page_says_and_show_says_it_again(
     assert answer(capsys, study, "--out", "out", "--resume")[0] == 0
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_a_condition_that_no_rest_meets_is_told(study: str, capsys: pytest.CaptureFixture[str]) -> None:
     """What the one method calls a rest the other one calls stable."""
     scene = Path("stepwise.yaml")
@@ -143,6 +144,7 @@ def test_what_cannot_be_done_is_said_in_one_line(
     assert len(err.splitlines()) == 1
 
 
+@pytest.mark.usefixtures("no_pictures")
 @pytest.mark.parametrize(
     ("number", "told", "remedy"),
     [

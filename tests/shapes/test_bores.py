@@ -111,7 +111,7 @@ def test_a_peg_that_stands_in_a_bore_with_friction_is_pushed_to_its_wall_and_no_
 def test_pegs_that_stand_in_a_bore_are_pushed_over_to_its_wall(cases, say) -> None:
     """With friction a peg tips about one point of its flat end, between those that are listed."""
     rng, verdicts = np.random.default_rng(3), {}
-    n_pegs = cases(30, 300)
+    n_pegs = cases(10, 300)
     for _ in range(n_pegs):
         radius, friction, around = float(rng.uniform(0.005, 0.02)), float(rng.uniform(0.2, 0.9)), rng.uniform(0.0, 6.28)
         length = radius * float(rng.uniform(1.0, 6.0))

@@ -54,7 +54,7 @@ class Seen:
 
 def test_ordinary_parts_have_an_answer(cases, say):
     rng, seen = np.random.default_rng(70), Seen(1e-12)
-    n_each = cases(6, 120)
+    n_each = cases(2, 120)
     for number in range(n_each * len(DRAWN)):
         draw = DRAWN[number % len(DRAWN)]
         try:
@@ -68,7 +68,7 @@ def test_ordinary_parts_have_an_answer(cases, say):
 
 def test_countersunk_screws_have_an_answer(cases, say):
     rng, seen = np.random.default_rng(74), Seen(PUT_BACK)
-    for number in range(cases(10, 400)):
+    for number in range(cases(5, 400)):
         try:
             scene = countersunk(rng)
         except SceneError:  # it begins in its seat
@@ -104,7 +104,7 @@ def test_screws_in_seats_of_other_angles_that_stalled(sizes, aside, friction, pu
 def test_springs_under_coulombs_law_hold_what_is_proven_to_rest(cases, say):
     """Where Coulomb's law allows an onset as well, they may hold or not."""
     rng, held = np.random.default_rng(72), Counter()
-    for number in range(cases(20, 200)):
+    for number in range(cases(15, 200)):
         try:
             scene = DRAWN[number % len(DRAWN)](rng)
         except SceneError:

@@ -110,7 +110,7 @@ def check(first, part, cage_part, pose: Pose, motion: Motion, end: float) -> Hit
 
 def test_random_motions(first, cases, say):
     rng = np.random.default_rng(3)
-    n_cases, seen = cases(60, 2600), {"met": 0, "not met": 0, "pressed": 0}
+    n_cases, seen = cases(30, 2600), {"met": 0, "not met": 0, "pressed": 0}
     for _ in range(n_cases):
         scale = float(rng.choice([1.0, 1.0, 1e-3, 1e3]))
         part, cage_part = (changed(random_part(rng), scale) for _ in range(2))
@@ -161,12 +161,12 @@ def test_edges_that_are_hardly_rounded_cross_after_the_way_between_them(first, r
 
 @pytest.mark.parametrize("near", [1e-4, 1e-5, 1e-6])
 @pytest.mark.parametrize("axis", [(0, 1, 0), (1, 0, 0), (0.6, 0.8, 0)])
-def test_edges_that_are_hardly_rounded_and_turn_slowly_meet_where_they_touch(first, near, axis):
+def test_edges_that_are_hardly_rounded_and_turn_slowly_meet_where_they_touch(first, near, axis, cases):
     """Half of them met up to 3e4 touch tolerances early, or not at all, when the search had used up its steps."""
     above = Convex(Pose(euler_zyx=(0, math.pi / 4, 0)).transform(CUBE), 1e-12)
     below = Convex(Pose(euler_zyx=(math.pi / 2, math.pi / 4, 0)).transform(CUBE))
     pose = Pose((0, 0, 2.0 * math.sqrt(2.0) + near))
-    for aside in np.geomspace(1e-4, 3e-2, 8):
+    for aside in np.geomspace(1e-4, 3e-2, 8)[:: 8 // min(8, cases(2, 40))]:
         for sign in (-1.0, 1.0):
             center = np.array((sign * aside, 0.7 * sign * aside, -1.0))
             check(first, above, below, pose, motion_of(center, np.zeros(3), 1.0, np.array(axis, dtype=float)), 1.0)

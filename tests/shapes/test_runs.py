@@ -32,7 +32,7 @@ def least_gap(held: list[Body], around: list[Body], pose: Pose) -> float:
 
 def test_nothing_goes_deep_or_up_and_rests_are_balanced(cases, say):
     rng, asked = np.random.default_rng(30), Asked()
-    for number in range(cases(30, 200)):
+    for number in range(cases(10, 200)):
         scene = scene_of(*random_problem(rng))
         held, around = bodies_of(scene)
 

@@ -109,7 +109,7 @@ def test_gaps_of_turned_parts(cases, say):
         for _ in range(N_PARTS)
     ]
     bodies, features = [circles_of(part) for part in parts], [shapes_of([part]) for part in parts]
-    n_pairs = cases(FEW, 8000)
+    n_pairs = cases(400, 8000)
     for number in range(n_pairs):
         i, j = rng.integers(N_PARTS, size=2)
         if not (isinstance(parts[i], Turned) or isinstance(parts[j], Turned)):
@@ -210,7 +210,7 @@ def told_of_hole(meetings: Meetings, away: float, touch_m: float) -> str:
 def test_gaps_in_and_over_holes(cases, say):
     rng, wrong, n_seen = np.random.default_rng(6), [], 0
     aways = np.array([0.0, 0.5, -0.5, 0.9, 3.0, 100.0, 1e5, 1e7, 3e7]) * HOLE_TOUCH
-    n_cases = cases(60, 400)
+    n_cases = cases(25, 400)
     for _ in range(n_cases):
         cage, plate, radius = random_plate(rng)
         part = random_peg(rng, radius)

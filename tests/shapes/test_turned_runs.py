@@ -41,7 +41,7 @@ def round_peg(rng: np.random.Generator, radius: float) -> Shape:
 
 def test_pegs_dropped_over_holes(cases, say):
     rng, asked = np.random.default_rng(40), Asked()
-    for number in range(cases(20, 60)):
+    for number in range(cases(8, 100)):
         chamfer = Chamfer(0.1, float(rng.choice([0.5, np.pi / 4, 1.0]))) if rng.random() < 0.5 else None
         depth, is_open = float(rng.choice([0.5, 1.0, 1.5])), bool(rng.random() < 0.5)
         plate = Box(
@@ -79,7 +79,7 @@ def test_a_round_end_that_tips_over_in_a_narrower_hole_goes_no_deeper_than_it_to
 
 def test_turned_parts_dropped_on_others(cases, say):
     rng, asked, number = np.random.default_rng(41), Asked(DEEP_ON_THE_WAY), 0
-    while number < cases(40, 1000):
+    while number < cases(10, 1000):
         part = random_turned(rng)
         beside = [random_turned(rng, Pose(rng.uniform(-0.8, 0.8, 3), random_turn(rng))) for _ in range(3)]
         floor = Box((20.0, 20.0, 1.0), Pose((0, 0, -2.5)))

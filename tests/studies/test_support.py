@@ -111,14 +111,14 @@ def test_a_bar_that_sticks_out_between_two_rollers_is_supported_ahead_of_them():
 
 
 def test_corners_of_a_region_without_end_are_as_near_to_it_as_is_told(monkeypatch):
-    """A plate pinched by three points on a slope of 40 deg; its round edge by six times as many directions."""
+    """A plate pinched by three points on a slope of 40 deg; its round edge by three times as many directions."""
     turned = Pose(euler_zyx=(0, math.radians(40), 0))
     cage = Cage([(0.03, 0.02, -0.01), (0.03, -0.02, -0.01), (-0.03, 0.0, 0.01)], pose=turned)
     plate, loads = Object([Box((0.2, 0.1, 0.02))], (0.05, 0, 0), pose=turned), [Load("weight", gravity=(0, 0, -1))]
     slides = Scene(plate, cage, loads, friction_coefficient=0.3)
     pinched = replace(run(Scene(plate, cage, loads, friction_coefficient=5.0)), scene=slides)
     view, found = region_of(pinched)
-    monkeypatch.setattr("cagepose.studies.support_region.N_DIRECTIONS", 720)
+    monkeypatch.setattr("cagepose.studies.support_region.N_DIRECTIONS", 360)
     finer = region_of(pinched)[1].corners - view.load_point
     sides = np.roll(finer, -1, axis=0) - finer
     outward = np.stack([sides[:, 1], -sides[:, 0]], axis=1) / np.linalg.norm(sides, axis=1)[:, None]
@@ -145,7 +145,7 @@ def test_without_friction_a_slope_supports_nothing():
 def test_a_weight_is_balanced_just_inside_the_region_and_not_just_outside(cases):
     """Blocks between points, centres of gravity across the region's edge, by the kernels' own equilibrium."""
     random, n_asked = np.random.default_rng(8), 0
-    for _ in range(cases(25, 400)):
+    for _ in range(cases(12, 400)):
         pushed = pushed_block(random, 0.3)
         held = pushed.object
         scene = Scene(held, pushed.cage, [Load("weight", gravity=(0, 0, -1))], friction_coefficient=0.3)

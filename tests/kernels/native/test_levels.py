@@ -42,7 +42,7 @@ def words(answer: Any) -> Any:
 @pytest.mark.skipif(NATIVE is None, reason="plain Python cannot be compared with itself")
 def test_plain_python_gives_the_same_answers(cases):
     """To 1e-12 m, and of a turn and a force: some processors round a sum of products once, and Python twice."""
-    n_random = cases(6, 20)
+    n_random = cases(2, 30)
     plain, native = asked(None, n_random), asked(NATIVE.level, n_random)
     assert len(plain) > 2 * n_random
     for name, answer in plain.items():

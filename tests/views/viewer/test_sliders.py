@@ -17,7 +17,7 @@ from driving import opened, served, set_range, shown_angles, slide, state, wait_
 from our_scenes import SCENES as OUR_SCENES
 
 RAIL = next(path for path in OUR_SCENES if path.stem == "rail-pitch")
-N_SWEPT = 5
+N_SWEPT = 3
 
 SLED = """\
 name: sled
