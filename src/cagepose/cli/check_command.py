@@ -6,7 +6,6 @@ import sys
 from typing import TYPE_CHECKING
 
 from cagepose.cli.options import SceneArgument, SetOption
-from cagepose.model.tolerances import SHOWN_AS_ZERO
 
 if TYPE_CHECKING:
     from cagepose.files.units import LengthUnit
@@ -56,6 +55,7 @@ def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int
 def _extent(limits_m: FloatArray, unit: LengthUnit) -> str:
     """``10 x 20 x 5 mm: x -5 to 5, ...`` in the body's frame: a mistaken unit is seen at once."""
     from cagepose.files.units import from_metres
+    from cagepose.model.tolerances import SHOWN_AS_ZERO
     from cagepose.model.wording import short
 
     low, high = from_metres(limits_m, unit).tolist()
