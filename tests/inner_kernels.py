@@ -28,7 +28,16 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     import numpy as np
 
     from cagepose.kernels.algebra.least_squares import empty_system
-    from cagepose.kernels.algebra.record import empty_record
+    from cagepose.kernels.algebra.record import empty_record, empty_rows
+    from cagepose.kernels.boundary.circle_and_circle import common_with_circle, follow_by_circle, places_by_circle
+    from cagepose.kernels.boundary.circle_and_round import (
+        Round,
+        common_with_line,
+        common_with_round,
+        follow_by_round,
+        places_by_round,
+    )
+    from cagepose.kernels.boundary.circle_places import Circle, Place
     from cagepose.kernels.collision.first_meeting import first_meeting
     from cagepose.kernels.collision.geometry import Geometry, empty_placement
     from cagepose.kernels.contact.cone import ConeWorkspace, cone_residual
@@ -47,6 +56,14 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield other_onset, (contacts, 0.0, load, tree, newton, empty_system(N_COLUMNS))
     vectors, origin = np.zeros((1, 3)), (0.0, 0.0, 0.0)
     geometry = Geometry(vectors, vectors, np.zeros((1, 3, 3)), 1, vectors, NO_SHAPES, NO_SHAPES, 0.0)
+    circle, line, places = Circle(origin, origin, origin, 0.0), Round(origin, origin, 0.0, 0.0), empty_rows(Place, 1)
+    yield places_by_round, (circle, line, 0.0, places)
+    yield places_by_circle, (circle, circle, 0.0, places)
+    yield follow_by_round, (circle, line, places[0], places)
+    yield follow_by_circle, (circle, circle, places[0], places)
+    yield common_with_line, (circle, line, 0.0)
+    yield common_with_round, (circle, line, 0.0)
+    yield common_with_circle, (circle, circle, 0.0, 0.0)
     yield first_meeting, (geometry, empty_placement(geometry), Motion(origin, origin, 0.0, origin), 0.0, 0.0, 0.0)
 
 
