@@ -1,0 +1,211 @@
+"""A boundary as rows of features, and those features at a pose.
+
+A part need not be convex: it is known by what can touch. A vertex and an edge have outward normals where the material
+beside them is convex; a face ends at its bounds. A radius is added on all sides: a sphere is a vertex with a radius, a
+capsule a line with one. The round side of a cylinder or a cone is a line with a radius that all of its normals are
+within; with a radius below zero it is the wall of a hole.
+
+Bounds stay in the frame of the body, and what is asked of them is turned into that frame: that is one normal and one
+place for a pair of features, where each of them may have a dozen bounds.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
+from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
+from cagepose.kernels.algebra.vector import (
+    Matrix,
+    Vector,
+    minus,
+    plus,
+    row,
+    times,
+    transposed_times,
+    vector_from,
+)
+from cagepose.kernels.boundary.tree import Node
+from cagepose.kernels.native.kernel import kernel
+
+VERTEX, LINE, FACE, CIRCLE = 0, 1, 2, 3
+"""Kinds of features."""
+HALF_SPACE, INSIDE, OUTSIDE, SEGMENT = 0, 1, 2, 3
+"""Kinds of bounds."""
+
+
+class Feature:
+    """A vertex, a straight edge, a round edge or a flat face; a record.
+
+    Attributes
+    ----------
+    kind
+        See above.
+    part
+        Which part of its body it is of: that has a name and a friction of its own.
+    point
+        The vertex, the start of a line, the centre of a circle, or a point of a face, metres.
+    direction
+        Unit vector along a line, the axis of a circle, or the outward normal of a face.
+    toward
+        Of a circle and of a hole's wall: unit vector across its axis that angles are measured from, right-handed about
+        the axis. Of a face with segments: one in its plane, along which rays lead.
+    length
+        Of a line, metres; the radius of a circle.
+    radius
+        Added on all sides, metres. Below zero: a line is the axis of a hole.
+    taper
+        Sine that the outward normals of a line make with the plane across it: its radius shrinks by as much a metre.
+    low, high
+        The outward normals of a circle are cos(psi) outward + sin(psi) axis with psi between these, radians.
+    start, width
+        The arc of a circle: angles from ``start`` to ``start + width``, radians; a width of 2 pi: all of it.
+    first_bound, last_bound
+        Its bounds, the last one not included.
+    least
+        Length of the shortest edge at a vertex or of a line, the radius of a circle, metres; inf: there is none. What
+        touches along it is told by the touch tolerance up to a tilt of one over the other.
+    """
+
+    kind: int
+    part: int
+    point: Annotated[FloatArray, 3]
+    direction: Annotated[FloatArray, 3]
+    toward: Annotated[FloatArray, 3]
+    length: float
+    radius: float
+    taper: float
+    low: float
+    high: float
+    start: float
+    width: float
+    first_bound: int
+    last_bound: int
+    least: float
+
+
+class Bound:
+    """One of the bounds of a feature, in the frame of its body; a record.
+
+    Those of a vertex and of a line hold its outward normals x, those of a face its points x as seen from
+    `Feature.point`. A feature is within all of its half-spaces and circles; and if it has segments, these are the
+    borders that a ray out of it crosses an odd number of times.
+
+    Attributes
+    ----------
+    kind
+        HALF_SPACE: x . direction <= limit. INSIDE, OUTSIDE of a circle: ``direction`` leads to its centre, metres, and
+        ``limit`` is its radius. SEGMENT: from ``direction`` to ``end``, metres.
+    """
+
+    kind: int
+    direction: Annotated[FloatArray, 3]
+    end: Annotated[FloatArray, 3]
+    limit: float
+
+
+class Boundary(NamedTuple):
+    """The features of one body, and the trees that find those that are near.
+
+    Attributes
+    ----------
+    features
+        Vertices first, then lines and circles, then faces.
+    bounds
+        Theirs.
+    nodes
+        The trees, see `cagepose.kernels.boundary.tree`.
+    """
+
+    features: Rows[Feature]
+    bounds: Rows[Bound]
+    nodes: Rows[Node]
+
+
+NO_BOUNDARY = Boundary(empty_rows(Feature, 0), empty_rows(Bound, 0), empty_rows(Node, 0))
+"""A body without features."""
+
+
+class PlacedBoundary(NamedTuple):
+    """A boundary at a pose. Features are placed when they are asked for, as most are far from everything.
+
+    Attributes
+    ----------
+    own
+        In the frame of the body.
+    features
+        In the world, of those that have been asked for: points, directions and middles.
+    is_placed
+        Whose have been, (n_features,).
+    pose
+        Position, and the rows of the rotation matrix, (4, 3).
+    """
+
+    own: Boundary
+    features: Rows[Feature]
+    is_placed: NDArray[np.bool_]
+    pose: FloatArray
+
+
+def empty_placed(own: Boundary) -> PlacedBoundary:
+    """Return memory for a boundary at a pose (plain Python)."""
+    return PlacedBoundary(own, np.array(own.features), np.zeros(len(own.features), np.bool_), np.zeros((4, 3)))
+
+
+@kernel
+def place_boundary(body: PlacedBoundary, position: Vector, quaternion: Quaternion) -> None:
+    """Place a boundary at a pose."""
+    rotation = matrix_from_quaternion(quaternion)
+    for k in range(3):
+        body.pose[0, k] = position[k]
+        for j in range(3):
+            body.pose[1 + j, k] = rotation[j][k]
+    for i in range(len(body.is_placed)):
+        body.is_placed[i] = False
+
+
+@kernel
+def position_of(body: PlacedBoundary) -> Vector:
+    return row(body.pose, 0)
+
+
+@kernel
+def rotation_of(body: PlacedBoundary) -> Matrix:
+    return (row(body.pose, 1), row(body.pose, 2), row(body.pose, 3))
+
+
+@kernel
+def place_feature(body: PlacedBoundary, i: int) -> None:
+    """Place a feature, if it is not."""
+    if body.is_placed[i]:
+        return
+    body.is_placed[i] = True
+    write_placed(body.own.features[i], position_of(body), rotation_of(body), body.features[i])
+
+
+@kernel
+def write_placed(feature: Feature, position: Vector, rotation: Matrix, out: Feature) -> None:
+    """Write a feature as it is in the world with its body at a pose; what does not change with the pose is there."""
+    point = plus(position, times(rotation, vector_from(feature.point)))
+    direction = times(rotation, vector_from(feature.direction))
+    for k in range(3):
+        out.point[k], out.direction[k] = point[k], direction[k]
+    if feature.kind == CIRCLE or feature.radius < 0.0:
+        toward = times(rotation, vector_from(feature.toward))
+        for k in range(3):
+            out.toward[k] = toward[k]
+
+
+@kernel
+def in_body(body: PlacedBoundary, direction: Vector) -> Vector:
+    """Return a direction of the world as the body has it."""
+    return transposed_times(rotation_of(body), direction)
+
+
+@kernel
+def seen_from_feature(body: PlacedBoundary, i: int, point: Vector) -> Vector:
+    """Return a place of the world as seen from a feature's own point, in the frame of the body."""
+    return transposed_times(rotation_of(body), minus(point, vector_from(body.features[i].point)))

@@ -1,0 +1,415 @@
+"""First contact of two boundaries while the object moves at a constant twist.
+
+Pairs of nodes of the two bodies' trees wait in the order in which their boxes can first overlap, so that a contact that
+is found ends all that can only come later.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from cagepose.kernels.algebra.record import IntArray, Rows, empty_rows
+from cagepose.kernels.algebra.vector import cross, dot, minus, norm, vector_from
+from cagepose.kernels.boundary.circle_first import first_touch_of_circle, lines_apart
+from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE
+from cagepose.kernels.boundary.features import (
+    CIRCLE,
+    LINE,
+    Feature,
+    PlacedBoundary,
+    place_feature,
+    position_of,
+    rotation_of,
+)
+from cagepose.kernels.boundary.first_touch import (
+    clear_step,
+    distance_from,
+    first_touch,
+    keeps_radius,
+    place_after,
+)
+from cagepose.kernels.boundary.meeting import Meeting, both_reach, meeting
+from cagepose.kernels.boundary.meetings import (
+    PLACES_AROUND,
+    SAME_PLACE,
+    Meetings,
+    can_touch,
+    find_circle_places,
+    meeting_at,
+    slack_of,
+)
+from cagepose.kernels.boundary.tree import EDGES, FACES, VERTICES, placed_box, span_of_overlap
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.along_motion import ahead, safe_step
+from cagepose.kernels.shapes.motion import Motion, velocity_at
+
+MOST_WAITING = 4096
+"""Pairs of nodes; of more, some are asked to the end at once."""
+LEAVES_OF_SPEED = 1e-6
+"""Features that touch and move apart faster leave each other, and may meet again."""
+LEAST_SLACK = 1e-12
+"""Sine, of rounding."""
+THIN_OF_LEAST = 0.1
+"""Of the shortest edge of two features: they may not go deeper, or could come out on the other side."""
+
+
+class Waiting:
+    """Two nodes that may meet; a record.
+
+    Attributes
+    ----------
+    node, cage_node
+        Indices.
+    begin, end
+        The amounts of the motion between which their boxes may overlap.
+    entry
+        In row k: which row is entry k of the heap.
+    """
+
+    node: int
+    cage_node: int
+    begin: float
+    end: float
+    entry: int
+
+
+class Queue(NamedTuple):
+    """Pairs that wait: rows, and how many of them and of entries of the heap there are, (2,). In the heap none can meet
+    earlier than entry (k - 1) // 2.
+    """
+
+    rows: Rows[Waiting]
+    used: IntArray
+
+
+def empty_queue() -> Queue:
+    """Return memory for pairs that wait (plain Python)."""
+    return Queue(empty_rows(Waiting, MOST_WAITING), np.zeros(2, np.int64))
+
+
+class Search(NamedTuple):
+    """What a first contact is asked with.
+
+    Attributes
+    ----------
+    motion, end
+        That of the object, and its greatest amount.
+    near_m, near_depth_m
+        Features nearer than the one may go so deep as the other.
+    speed
+        That no point of the object exceeds, metres for each unit of the amount.
+    touch_m, size_m
+        The touch tolerance, and the size of both bodies.
+    """
+
+    motion: Motion
+    end: float
+    near_m: float
+    near_depth_m: float
+    speed: float
+    touch_m: float
+    size_m: float
+
+
+class Hit(NamedTuple):
+    """What is reached, and after which amount of a motion.
+
+    Attributes
+    ----------
+    amount
+        Inf: nothing is.
+    feature, cage_feature
+        Indices; -1: nothing.
+    gap
+        How far apart they are now, metres.
+    """
+
+    amount: float
+    feature: int
+    cage_feature: int
+    gap: float
+
+
+NO_HIT = Hit(math.inf, -1, -1, math.inf)
+
+
+@kernel
+def let_wait(
+    held: PlacedBoundary, node: int, cage: PlacedBoundary, cage_node: int, search: Search, until: float, queue: Queue
+) -> bool:
+    """Let two nodes wait, if they may meet before an amount; False: there is no room."""
+    one, other = held.own.nodes[node], cage.own.nodes[cage_node]
+    if one.first == one.last or other.first == other.last:
+        return True
+    box = placed_box(one, position_of(held), rotation_of(held))
+    cage_box = placed_box(other, position_of(cage), rotation_of(cage))
+    span = span_of_overlap(box, cage_box, search.motion, min(search.end, until), search.touch_m)
+    if span.begin == math.inf:
+        return True
+    at = queue.used[0]
+    if at == len(queue.rows):
+        return False
+    row = queue.rows[at]
+    row.node, row.cage_node, row.begin, row.end = node, cage_node, span.begin, span.end
+    queue.used[0] = at + 1
+    entry = queue.used[1]
+    queue.used[1] = entry + 1
+    rows = queue.rows
+    while entry > 0 and span.begin < rows[rows[(entry - 1) // 2].entry].begin:
+        rows[entry].entry = rows[(entry - 1) // 2].entry
+        entry = (entry - 1) // 2
+    rows[entry].entry = at
+    return True
+
+
+@kernel
+def take_first(queue: Queue) -> int:
+    """Take the pair that can meet first out of the heap; return its row."""
+    rows, first = queue.rows, queue.rows[0].entry
+    n = queue.used[1] - 1
+    queue.used[1] = n
+    last, entry = rows[n].entry, 0
+    while 2 * entry + 1 < n:
+        child = 2 * entry + 1
+        if child + 1 < n and rows[rows[child + 1].entry].begin < rows[rows[child].entry].begin:
+            child += 1
+        if rows[rows[child].entry].begin >= rows[last].begin:
+            break
+        rows[entry].entry = rows[child].entry
+        entry = child
+    rows[entry].entry = last
+    return int(first)
+
+
+@kernel
+def first_to_meet(
+    held: PlacedBoundary, cage: PlacedBoundary, search: Search, meetings: Meetings, queue: Queue, moved: PlacedBoundary
+) -> Hit:
+    """Return what the object reaches first, but for what touches and is kept, or leaves.
+
+    Parameters
+    ----------
+    held, cage
+        At their poses.
+    search
+        See there.
+    meetings
+        What touches now; see `is_there`.
+    queue, moved
+        Memory.
+    """
+    hit = NO_HIT
+    queue.used[0] = queue.used[1] = 0
+    for own in range(3):
+        for other in range(3):
+            if own != FACES or other != FACES:
+                let_wait(held, own, cage, other, search, hit.amount, queue)
+    while queue.used[1] > 0:
+        at = take_first(queue)
+        node, cage_node = queue.rows[at].node, queue.rows[at].cage_node
+        if queue.rows[at].begin >= hit.amount:
+            break
+        one, other = held.own.nodes[node], cage.own.nodes[cage_node]
+        if one.left < 0 and other.left < 0:
+            until = min(queue.rows[at].end, search.end)
+            hit = first_of_leaves(held, node, cage, cage_node, until, search, meetings, moved, hit)
+            continue
+        divides_held = other.left < 0 or (one.left >= 0 and max(one.half) >= max(other.half))
+        for side in range(2):
+            left, right = (one.left, one.right) if divides_held else (other.left, other.right)
+            child = left if side == 0 else right
+            node_below, cage_below = (child, cage_node) if divides_held else (node, child)
+            if not let_wait(held, node_below, cage, cage_below, search, hit.amount, queue):
+                hit = first_of_ranges(held, node_below, cage, cage_below, search, meetings, moved, hit)
+    return hit
+
+
+@kernel
+def first_of_ranges(
+    held: PlacedBoundary,
+    node: int,
+    cage: PlacedBoundary,
+    cage_node: int,
+    search: Search,
+    meetings: Meetings,
+    moved: PlacedBoundary,
+    hit: Hit,
+) -> Hit:
+    """Return what features below two nodes reach that there is no room for to wait, or ``hit``."""
+    return first_of_leaves(held, node, cage, cage_node, search.end, search, meetings, moved, hit)
+
+
+@kernel
+def first_of_leaves(
+    held: PlacedBoundary,
+    node: int,
+    cage: PlacedBoundary,
+    cage_node: int,
+    until: float,
+    search: Search,
+    meetings: Meetings,
+    moved: PlacedBoundary,
+    hit: Hit,
+) -> Hit:
+    """Return what the features below two nodes reach if that is sooner than ``hit``, and else this."""
+    one, other = held.own.nodes[node], cage.own.nodes[cage_node]
+    for i in range(one.first, one.last):
+        for j in range(other.first, other.last):
+            if not can_touch(held.own.features[i], cage.own.features[j]):
+                continue
+            place_feature(held, i)
+            place_feature(cage, j)
+            hit = sooner(held, i, cage, j, min(until, hit.amount), search, meetings, moved, hit)
+    return hit
+
+
+@kernel
+def sooner(
+    held: PlacedBoundary,
+    i: int,
+    cage: PlacedBoundary,
+    j: int,
+    until: float,
+    search: Search,
+    meetings: Meetings,
+    moved: PlacedBoundary,
+    hit: Hit,
+) -> Hit:
+    """Return what two features reach before an amount, or ``hit``."""
+    motion = search.motion
+    if is_curved(held.own.features[i], cage.own.features[j]):
+        if (circle_apart(held, i, cage, j) - search.touch_m) >= until * search.speed:
+            return hit
+        return first_of_circle(held, i, cage, j, until, search, meetings, moved, hit)
+    if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
+        return hit
+    place_after(held, i, motion, 0.0, moved)
+    clear = clear_step(held, i, cage, j, motion, moved)
+    is_near = clear * search.speed <= SAME_PLACE * max(search.near_m, search.touch_m)  # and may be deep already
+    if not is_near and clear >= until:
+        return hit
+    met = meeting(held, i, cage, j)
+    amount = first_of_features(held, i, cage, j, met, until, search, meetings, moved)
+    return Hit(amount, i, j, met.gap) if amount < until else hit
+
+
+@kernel
+def is_curved(one: Feature, other: Feature) -> bool:
+    """Whether first contact of two features is found by advancement: of circles, and of lines with the sides of cones."""
+    if one.kind == CIRCLE or other.kind == CIRCLE:
+        return True
+    return bool(one.kind == LINE and other.kind == LINE and (one.taper != 0.0 or other.taper != 0.0))
+
+
+@kernel
+def circle_apart(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int) -> float:
+    """Return a length that two curved features are surely apart; below zero: none is known."""
+    one, other = held.features[i], cage.features[j]
+    apart = -math.inf
+    if one.kind == LINE and other.kind == LINE:
+        return lines_apart(one, other)
+    if one.kind == CIRCLE and keeps_radius(other):
+        apart = distance_from(cage, j, vector_from(one.point)) - one.length - one.radius - other.radius
+    if other.kind == CIRCLE and keeps_radius(one):
+        apart = max(
+            apart, distance_from(held, i, vector_from(other.point)) - other.length - other.radius - one.radius
+        )
+    return apart
+
+
+@kernel
+def first_of_circle(
+    held: PlacedBoundary,
+    i: int,
+    cage: PlacedBoundary,
+    j: int,
+    until: float,
+    search: Search,
+    meetings: Meetings,
+    moved: PlacedBoundary,
+    hit: Hit,
+) -> Hit:
+    """Return what two features reach before an amount, of which one is a circle, or ``hit``."""
+    one, other, touch_m = held.features[i], cage.features[j], search.touch_m
+    slack, slowest, n_kept, least = slack_of(one, other, touch_m), LEAVES_OF_SPEED * search.speed, 0, math.inf
+    n_places = find_circle_places(one, other, touch_m, meetings.places)
+    for k in range(PLACES_AROUND if n_places == WHOLE else n_places):
+        place = meetings.places[k]
+        met = meeting_at(held, i, cage, j, place)
+        if place.kind in (GREATEST, SADDLE) or not met.is_one:
+            continue
+        least = min(least, met.gap)
+        if met.gap > max(touch_m, search.near_m):
+            continue
+        closing = dot(met.normal, velocity_at(search.motion, met.place))
+        reaches_there = both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
+        is_beside = not reaches_there and abs(closing) <= slowest and is_there(meetings, met, touch_m)
+        if (reaches_there or is_beside or met.gap < -touch_m) and n_kept < len(meetings.kept):
+            meetings.kept[n_kept].angle = place.angle
+            n_kept += 1
+    exact = max(LEAST_SLACK, touch_m / search.size_m)
+    amount = first_touch_of_circle(
+        held, i, cage, j, search.motion, until, exact, touch_m, moved, meetings.places, meetings.kept, n_kept
+    )
+    return Hit(amount, i, j, least) if amount < until else hit
+
+
+@kernel
+def is_there(meetings: Meetings, met: Meeting, touch_m: float) -> bool:
+    """Whether features meet where there is a contact."""
+    for at in range(meetings.used[0]):
+        row = meetings.rows[at]
+        if dot(vector_from(row.normal), met.normal) > 0.0:
+            if norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m:
+                return True
+    return False
+
+
+@kernel
+def first_of_features(
+    held: PlacedBoundary,
+    i: int,
+    cage: PlacedBoundary,
+    j: int,
+    met: Meeting,
+    until: float,
+    search: Search,
+    meetings: Meetings,
+    moved: PlacedBoundary,
+) -> float:
+    """Return when two features that do not touch, or leave each other, reach each other; inf: they do not before an
+    amount.
+    """
+    one, other, motion, touch_m = held.own.features[i], cage.own.features[j], search.motion, search.touch_m
+    touches = met.is_one and abs(met.gap) <= touch_m
+    leaves = touches and both_reach(held, i, cage, j, met, slack_of(one, other, touch_m), 2.0 * touch_m)
+    is_hollow = one.radius < 0.0 or other.radius < 0.0
+    closing = dot(met.normal, velocity_at(motion, met.place)) if touches else -math.inf
+    slowest = LEAVES_OF_SPEED * search.speed
+    if touches and not leaves:
+        if abs(closing) <= slowest and is_there(meetings, met, touch_m):  # that of features next to them
+            return math.inf
+        closing = -math.inf
+    if leaves and motion.rate == 0.0 and not is_hollow:
+        return math.inf
+    if closing >= -slowest:  # a contact that carries, or it would not go into it
+        return math.inf
+    level, side = 0.0, 0.0
+    if met.is_one and abs(met.gap) <= max(search.near_m, touch_m):
+        depth = min(search.near_depth_m, THIN_OF_LEAST * min(one.least, other.least))
+        level = depth if leaves or abs(met.gap) <= search.near_m else 0.0
+        if not leaves:
+            level = max(level, 2.0 * touch_m)  # they do not reach there now, but might
+        if one.kind == LINE and other.kind == LINE:
+            side = -math.copysign(1.0, dot(met.normal, crossed_lines(held.features[i], cage.features[j])))
+    exact = max(LEAST_SLACK, touch_m / search.size_m)
+    return first_touch(held, i, cage, j, motion, until, level, side, exact, touch_m, moved)
+
+
+@kernel
+def crossed_lines(one: Feature, other: Feature) -> tuple[float, float, float]:
+    """Return the cross product of the directions of two lines."""
+    return cross(vector_from(one.direction), vector_from(other.direction))

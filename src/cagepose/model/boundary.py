@@ -1,0 +1,270 @@
+"""Bodies as boundaries: the features that kernels take, and the trees around them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from cagepose.kernels.algebra.record import dtype_of
+from cagepose.kernels.boundary.features import (
+    CIRCLE,
+    FACE,
+    HALF_SPACE,
+    INSIDE,
+    LINE,
+    OUTSIDE,
+    VERTEX,
+    Bound,
+    Boundary,
+    Feature,
+)
+from cagepose.kernels.boundary.tree import Node
+from cagepose.model.box import Box
+from cagepose.model.checks import FloatArray, unit_rows
+from cagepose.model.hole import Hole
+from cagepose.model.hull import Hull, hull_of
+from cagepose.model.pose import Pose
+from cagepose.model.shapes import Convex, Disc, Rounded, Shape, Turned
+
+LEAF = 4
+"""Features in a leaf of a tree, at most."""
+NOWHERE = np.zeros(3)
+
+
+class _Row(NamedTuple):
+    """A feature, its bounds apart, and a box around its core: lowest and highest coordinates."""
+
+    kind: int
+    part: int
+    point: FloatArray
+    direction: FloatArray
+    toward: FloatArray
+    length: float
+    radius: float
+    taper: float
+    low: float
+    high: float
+    start: float
+    width: float
+    bounds: list[tuple[int, FloatArray, FloatArray, float]]
+    least: float
+    box: FloatArray
+
+
+def boundary_of(parts: Iterable[Shape | FloatArray]) -> Boundary:
+    """Return the boundary of a body in its frame; a single point (3,) is a part, too."""
+    every = list(parts)
+    solids = [part for part in every if isinstance(part, Shape) and not isinstance(part, Hole)]
+    rows = list[_Row]()
+    for number, part in enumerate(every):
+        if isinstance(part, Hole):
+            rows += _hole_rows(part, [solid for solid in solids if solid.name in part.in_], number)
+            continue
+        made = _rows_of(part, number)
+        for hole in every:
+            if isinstance(hole, Hole) and isinstance(part, Shape) and part.name in hole.in_:
+                made = [_pierced(row, hole) for row in made]
+        rows += made
+    trees: list[list[_Row]] = [[], [], []]
+    for row in rows:
+        trees[0 if row.kind == VERTEX else 2 if row.kind == FACE else 1].append(row)
+    return _packed(trees)
+
+
+def _rows_of(part: Shape | FloatArray, number: int) -> list[_Row]:
+    if isinstance(part, np.ndarray):
+        return _hull_rows(hull_of(part[None]), Pose(), 0.0, number)
+    if isinstance(part, Box):
+        return _hull_rows(hull_of(part.corners_object()), Pose(), 0.0, number)
+    if isinstance(part, Rounded):
+        hull = part.hull if isinstance(part, Convex) else hull_of(part.core())
+        return _hull_rows(hull, part.pose_body_shape, part.radius_m, number)
+    if isinstance(part, Turned):
+        return _turned_rows(part, number)
+    raise TypeError(f"no boundary is known of a {part.kind}")
+
+
+def _turned_rows(part: Turned, number: int) -> list[_Row]:
+    """Return the features of what is turned about an axis: flat ends, their circles, and the side between them."""
+    pose, (low, wide), (high, narrow) = part.pose_body_shape, part.rims[0], part.rims[-1]
+    slant = math.atan2(wide - narrow, high - low) if high > low else 0.0
+    rows = []
+    for height, radius, out in ((low, wide, -1.0), (high, narrow, 1.0)):
+        sine = slant * out
+        if radius == 0.0:
+            rows.append(_tip(pose, height, out, slant, number))
+            continue
+        if isinstance(part, Disc):
+            sine = -0.5 * math.pi
+        rows.append(_round_face(pose, height, radius, out, number))
+        if not isinstance(part, Disc) or out > 0.0:
+            rows.append(_circle(pose, height, radius, out, (sine, 0.5 * math.pi), number))
+    if not isinstance(part, Disc):
+        rows.append(_side(pose, (low, wide), (high, narrow), number))
+    return rows
+
+
+def _hole_rows(hole: Hole, solids: Sequence[Shape], number: int) -> list[_Row]:
+    """Return the features of a hole: its walls, the circles between them, and its bottom."""
+    pose = hole.pose_body_shape
+    depth, is_open = hole.run_through(solids)
+    heights = [(-depth, hole.radius_m), *hole.rims[1:]]
+    rows = [_side(pose, (low, -radius), (high, -wide), number) for (low, radius), (high, wide) in pairwise(heights)]
+    slants = [math.atan2(wide - radius, high - low) for (low, radius), (high, wide) in pairwise(heights)]
+    for index, (height, radius) in enumerate(heights[1:]):
+        above = math.pi - slants[index + 1] if index + 1 < len(slants) else 0.5 * math.pi
+        rows.append(_circle(pose, height, radius, 1.0, (above, math.pi - slants[index]), number))
+    if is_open:
+        rows.append(_circle(pose, -depth, hole.radius_m, -1.0, (0.5 * math.pi, math.pi), number))
+    else:
+        rows.append(_round_face(pose, -depth, hole.radius_m, 1.0, number))
+    return rows
+
+
+def _circle(
+    pose: Pose, height: float, radius: float, out: float, normals: tuple[float, float], number: int
+) -> _Row:
+    """Return a circle about the shape's z axis; its own axis leads up (``out`` 1) or down (-1)."""
+    turn, center = pose.rotation, pose.transform(np.array((0.0, 0.0, height)))
+    axis = out * turn[:, 2]
+    reach = radius * np.sqrt(np.maximum(0.0, 1.0 - axis**2))
+    box = np.stack([center - reach, center + reach])
+    numbers = (radius, 0.0, 0.0, *normals, 0.0, 2.0 * math.pi)
+    return _Row(CIRCLE, number, center, axis, turn[:, 0], *numbers, [], radius, box)
+
+
+def _round_face(pose: Pose, height: float, radius: float, out: float, number: int) -> _Row:
+    """Return a flat face inside of a circle about the shape's z axis."""
+    circle = _circle(pose, height, radius, out, (0.0, 0.0), number)
+    bounds = [(INSIDE, NOWHERE, NOWHERE, radius)]
+    return circle._replace(kind=FACE, length=0.0, width=0.0, bounds=bounds, least=radius)
+
+
+def _tip(pose: Pose, height: float, out: float, slant: float, number: int) -> _Row:
+    """Return the tip of a cone, whose normals lead up (``out`` 1) or down (-1) at least as far as those of its side."""
+    place = pose.transform(np.array((0.0, 0.0, height)))
+    bounds = [(HALF_SPACE, -out * pose.rotation[:, 2], NOWHERE, -math.sin(slant * out))]
+    numbers = (0.0,) * 7
+    return _Row(VERTEX, number, place, NOWHERE, NOWHERE, *numbers, bounds, math.inf, np.stack([place, place]))
+
+
+def _side(pose: Pose, low: tuple[float, float], high: tuple[float, float], number: int) -> _Row:
+    """Return the side between two heights with their radii, those of a hole below zero."""
+    (start, radius), (end, other) = low, high
+    angle = math.atan2(radius - other, end - start)
+    sine, cosine = math.sin(angle), math.cos(angle)
+    reach = np.array((max(abs(radius), abs(other)),) * 2 + (0.5 * (end - start),))
+    middle, half = pose.transform(np.array((0.0, 0.0, 0.5 * (start + end)))), np.abs(pose.rotation) @ reach
+    start, end = start - radius * sine / cosine, end - other * sine / cosine
+    if abs(other) > abs(radius):  # from the wide end on, as the narrow one may be a tip
+        start, end, radius, sine = end, start, other, -sine
+    point, along = pose.transform(np.array((0.0, 0.0, start))), math.copysign(1.0, end - start) * pose.rotation[:, 2]
+    numbers = (abs(end - start), radius / cosine, sine, 0.0, 0.0, 0.0, 0.0)
+    least = min(abs(end - start), *(abs(wide) for wide in (low[1], high[1]) if wide != 0.0))
+    box = np.stack([middle - half, middle + half])
+    return _Row(LINE, number, point, along, pose.rotation[:, 0], *numbers, [], least, box)
+
+
+def _pierced(row: _Row, hole: Hole) -> _Row:
+    """Return a face without what a hole cuts out of it."""
+    circle = hole.circle_in(row.point + row.radius * row.direction, row.direction) if row.kind == FACE else None
+    if circle is None:
+        return row
+    center, wide = circle
+    seen = center - row.point
+    across = seen - (seen @ row.direction) * row.direction
+    return row._replace(bounds=[*row.bounds, (OUTSIDE, across, NOWHERE, wide)])
+
+
+def _hull_rows(hull: Hull, pose: Pose, radius_m: float, number: int) -> list[_Row]:
+    """Return the features of a hull, blown up by a radius."""
+    vertices = pose.transform(hull.vertices_m)
+    normals = hull.normals @ pose.rotation.T
+    starts, ends = vertices[hull.edges[:, 0]], vertices[hull.edges[:, 1]]
+    lengths = np.linalg.norm(ends - starts, axis=1)
+    along = (ends - starts) / lengths[:, None]
+    rows = []
+
+    def add(
+        kind: int,
+        point: FloatArray,
+        direction: FloatArray,
+        length: float,
+        bounds: Sequence[tuple[FloatArray, float]],
+        least: float,
+        corners: FloatArray,
+        toward: FloatArray = NOWHERE,
+    ) -> None:
+        spaces = [(HALF_SPACE, across, NOWHERE, size) for across, size in bounds]
+        box = np.stack([corners.min(axis=0) - radius_m, corners.max(axis=0) + radius_m])
+        numbers = (length, radius_m, 0.0, 0.0, 0.0, 0.0, 0.0)
+        rows.append(_Row(kind, number, point, direction, toward, *numbers, spaces, least, box))
+
+    for index, vertex in enumerate(vertices):
+        begins, ending = hull.edges[:, 0] == index, hull.edges[:, 1] == index
+        away = [(direction, 0.0) for direction in (*along[begins], *-along[ending])]
+        add(VERTEX, vertex, NOWHERE, 0.0, away, lengths[begins | ending].min(initial=np.inf), vertex[None])
+    outward = [_outward_across(vertices[list(face)], normal) for face, normal in zip(hull.faces, normals, strict=True)]
+    of_edge: dict[tuple[int, int], list[tuple[FloatArray, float]]] = {}
+    for face, across in zip(hull.faces, outward, strict=True):
+        for one, other, direction in zip(face, (*face[1:], face[0]), across, strict=True):
+            of_edge.setdefault((min(one, other), max(one, other)), []).append((-direction, 0.0))
+    for index, pair in enumerate(hull.edges.tolist()):
+        inward, ended = of_edge.get((min(pair), max(pair)), []), vertices[pair]
+        add(LINE, starts[index], along[index], float(lengths[index]), inward, float(lengths[index]), ended)
+    for face, normal, across in zip(hull.faces, normals, outward, strict=True):
+        corners = vertices[list(face)]
+        center = corners.mean(axis=0)
+        sides = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1)
+        bounds = [(direction, float(direction @ (corner - center))) for direction, corner in zip(across, corners, strict=True)]
+        add(FACE, center, normal, 0.0, bounds, float(sides.min()), corners)
+    return rows
+
+
+def _outward_across(corners: FloatArray, normal: FloatArray) -> FloatArray:
+    """Return the unit vectors out of a face across its sides, of which each begins at a corner."""
+    return unit_rows(np.cross(np.roll(corners, -1, axis=0) - corners, normal))
+
+
+def _packed(trees: Sequence[Sequence[_Row]]) -> Boundary:
+    """Return features in the order of their trees' leaves, with their bounds and the trees."""
+    nodes = [(NOWHERE, NOWHERE, -1, -1, 0, 0)] * 3
+    features, bounds = list[tuple[object, ...]](), list[tuple[int, FloatArray, FloatArray, float]]()
+    for root, rows in enumerate(trees):
+        first = len(features)
+        boxes = np.array([row.box for row in rows]).reshape(-1, 2, 3)
+        order = np.arange(len(rows))
+        _divide(boxes, order, 0, len(rows), first, root, nodes)
+        for row in (rows[index] for index in order.tolist()):
+            numbers = row[:-3]
+            features.append((*numbers, len(bounds), len(bounds) + len(row.bounds), row.least))
+            bounds.extend(row.bounds)
+    return Boundary(
+        np.array(features, dtype_of(Feature)), np.array(bounds, dtype_of(Bound)), np.array(nodes, dtype_of(Node))
+    )
+
+
+def _divide(
+    boxes: FloatArray, order: np.ndarray, begin: int, end: int, first: int, at: int, nodes: list[tuple[object, ...]]
+) -> None:
+    """Write the node of some features, and those below it; put the features into the order of the leaves."""
+    if begin == end:
+        nodes[at] = (NOWHERE, NOWHERE, -1, -1, first + begin, first + begin)
+        return
+    mine = boxes[order[begin:end]]
+    low, high = mine[:, 0].min(axis=0), mine[:, 1].max(axis=0)
+    left = right = -1
+    if end - begin > LEAF:
+        middles = mine.mean(axis=1)
+        axis = int(np.argmax(middles.max(axis=0) - middles.min(axis=0)))
+        half = (end - begin) // 2
+        order[begin:end] = order[begin:end][np.argsort(middles[:, axis], kind="stable")]
+        left, right = len(nodes), len(nodes) + 1
+        nodes.extend([nodes[at], nodes[at]])
+        _divide(boxes, order, begin, begin + half, first, left, nodes)
+        _divide(boxes, order, begin + half, end, first, right, nodes)
+    nodes[at] = (0.5 * (low + high), 0.5 * (high - low), left, right, first + begin, first + end)
