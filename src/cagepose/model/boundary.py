@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import dtype_of
 from cagepose.kernels.boundary.features import (
@@ -22,7 +23,7 @@ from cagepose.kernels.boundary.features import (
     Boundary,
     Feature,
 )
-from cagepose.kernels.boundary.tree import Node
+from cagepose.kernels.boundary.tree import EDGES, FACES, VERTICES, Node
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.hole import Hole
@@ -30,9 +31,11 @@ from cagepose.model.hull import Hull, hull_of
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Convex, Disc, Rounded, Shape, Turned
 
-LEAF = 4
-"""Features in a leaf of a tree, at most."""
+LEAF, FACES_IN_LEAF = 4, 32
+"""Features in a leaf of a tree, at most; of faces more, as a vertex is asked about several of them at once."""
 NOWHERE = np.zeros(3)
+AROUND = 50.0
+"""A hole that stands alone is one in a square plate: so many times its own size to each side."""
 
 
 class _Row(NamedTuple):
@@ -62,7 +65,10 @@ def boundary_of(parts: Iterable[Shape | FloatArray]) -> Boundary:
     rows = list[_Row]()
     for number, part in enumerate(every):
         if isinstance(part, Hole):
-            rows += _hole_rows(part, [solid for solid in solids if solid.name in part.in_], number)
+            within = [solid for solid in solids if solid.name in part.in_]
+            rows += _hole_rows(part, within, number)
+            if not within:
+                rows += [_pierced(row, part) for row in _rows_of(_plate_of(part), number)]
             continue
         made = _rows_of(part, number)
         for hole in every:
@@ -71,7 +77,7 @@ def boundary_of(parts: Iterable[Shape | FloatArray]) -> Boundary:
         rows += made
     trees: list[list[_Row]] = [[], [], []]
     for row in rows:
-        trees[0 if row.kind == VERTEX else 2 if row.kind == FACE else 1].append(row)
+        trees[VERTICES if row.kind == VERTEX else FACES if row.kind == FACE else EDGES].append(row)
     return _packed(trees)
 
 
@@ -125,9 +131,15 @@ def _hole_rows(hole: Hole, solids: Sequence[Shape], number: int) -> list[_Row]:
     return rows
 
 
-def _circle(
-    pose: Pose, height: float, radius: float, out: float, normals: tuple[float, float], number: int
-) -> _Row:
+def _plate_of(hole: Hole) -> Box:
+    """Return the plate that a hole which stands alone is in."""
+    wide = max(radius for _, radius in hole.rims)
+    depth, _ = hole.run_through([])
+    side = 2.0 * AROUND * (wide + depth)
+    return Box((side, side, depth), hole.pose_body_shape @ Pose((0.0, 0.0, -0.5 * depth)))
+
+
+def _circle(pose: Pose, height: float, radius: float, out: float, normals: tuple[float, float], number: int) -> _Row:
     """Return a circle about the shape's z axis; its own axis leads up (``out`` 1) or down (-1)."""
     turn, center = pose.rotation, pose.transform(np.array((0.0, 0.0, height)))
     axis = out * turn[:, 2]
@@ -220,7 +232,9 @@ def _hull_rows(hull: Hull, pose: Pose, radius_m: float, number: int) -> list[_Ro
         corners = vertices[list(face)]
         center = corners.mean(axis=0)
         sides = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1)
-        bounds = [(direction, float(direction @ (corner - center))) for direction, corner in zip(across, corners, strict=True)]
+        bounds = [
+            (direction, float(direction @ (corner - center))) for direction, corner in zip(across, corners, strict=True)
+        ]
         add(FACE, center, normal, 0.0, bounds, float(sides.min()), corners)
     return rows
 
@@ -232,39 +246,49 @@ def _outward_across(corners: FloatArray, normal: FloatArray) -> FloatArray:
 
 def _packed(trees: Sequence[Sequence[_Row]]) -> Boundary:
     """Return features in the order of their trees' leaves, with their bounds and the trees."""
-    nodes = [(NOWHERE, NOWHERE, -1, -1, 0, 0)] * 3
+    nodes: list[tuple[object, ...]] = [(NOWHERE, NOWHERE, -1, -1, 0, 0)] * 3
     features, bounds = list[tuple[object, ...]](), list[tuple[int, FloatArray, FloatArray, float]]()
     for root, rows in enumerate(trees):
         first = len(features)
         boxes = np.array([row.box for row in rows]).reshape(-1, 2, 3)
         order = np.arange(len(rows))
-        _divide(boxes, order, 0, len(rows), first, root, nodes)
+        _divide(boxes, order, 0, len(rows), first, FACES_IN_LEAF if root == FACES else LEAF, root, nodes)
         for row in (rows[index] for index in order.tolist()):
             numbers = row[:-3]
             features.append((*numbers, len(bounds), len(bounds) + len(row.bounds), row.least))
             bounds.extend(row.bounds)
-    return Boundary(
-        np.array(features, dtype_of(Feature)), np.array(bounds, dtype_of(Bound)), np.array(nodes, dtype_of(Node))
-    )
+    made = np.array(features, dtype_of(Feature))
+    heights = (made["point"] * made["direction"]).sum(axis=1) + made["radius"]
+    planes = np.ascontiguousarray(np.column_stack([made["direction"], heights]).T)
+    return Boundary(made, np.array(bounds, dtype_of(Bound)), np.array(nodes, dtype_of(Node)), planes)
 
 
 def _divide(
-    boxes: FloatArray, order: np.ndarray, begin: int, end: int, first: int, at: int, nodes: list[tuple[object, ...]]
+    boxes: FloatArray,
+    order: NDArray[np.int64],
+    begin: int,
+    end: int,
+    first: int,
+    leaf: int,
+    at: int,
+    nodes: list[tuple[object, ...]],
 ) -> None:
-    """Write the node of some features, and those below it; put the features into the order of the leaves."""
+    """Write the node of some features, and those below it; put the features into the order of the leaves, of ``leaf``
+    features at most.
+    """
     if begin == end:
         nodes[at] = (NOWHERE, NOWHERE, -1, -1, first + begin, first + begin)
         return
     mine = boxes[order[begin:end]]
     low, high = mine[:, 0].min(axis=0), mine[:, 1].max(axis=0)
     left = right = -1
-    if end - begin > LEAF:
+    if end - begin > leaf:
         middles = mine.mean(axis=1)
         axis = int(np.argmax(middles.max(axis=0) - middles.min(axis=0)))
         half = (end - begin) // 2
         order[begin:end] = order[begin:end][np.argsort(middles[:, axis], kind="stable")]
         left, right = len(nodes), len(nodes) + 1
         nodes.extend([nodes[at], nodes[at]])
-        _divide(boxes, order, begin, begin + half, first, left, nodes)
-        _divide(boxes, order, begin + half, end, first, right, nodes)
+        _divide(boxes, order, begin, begin + half, first, leaf, left, nodes)
+        _divide(boxes, order, begin + half, end, first, leaf, right, nodes)
     nodes[at] = (0.5 * (low + high), 0.5 * (high - low), left, right, first + begin, first + end)

@@ -12,11 +12,20 @@ import math
 from typing import NamedTuple
 
 from cagepose.kernels.algebra.record import Rows
-from cagepose.kernels.algebra.vector import Vector, cross, dot, norm, plus, scaled, vector_from
-from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE, Place, within_turn, write_place
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.boundary.circle import circle_of, outward_at
+from cagepose.kernels.boundary.circle_places import (
+    GREATEST,
+    SADDLE,
+    WHOLE,
+    Place,
+    on_circle,
+    within_turn,
+    write_place,
+)
 from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, Feature, PlacedBoundary
 from cagepose.kernels.boundary.first_touch import place_after
-from cagepose.kernels.boundary.meeting import Meeting, both_reach
+from cagepose.kernels.boundary.meeting import both_reach
 from cagepose.kernels.boundary.meetings import PLACES_AROUND, find_circle_places, meeting_at
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.advancement import speed_toward_round, speed_toward_side
@@ -28,6 +37,8 @@ ADVANCES = 2000
 NEWTON_STEPS = 12
 ROOT_OF_TOUCH, CONVERGES = 1e-3, 0.5
 """Of the touch tolerance: a gap that is less is a root; and of such a gap: a step that leaves more no longer helps."""
+KEPT_STEP = 1.0 / 32.0
+"""In amounts of the whole motion: a place that touches is looked at at least so often, whether it is still there."""
 SAME_ANGLE = 0.3
 """Radians: a place that touches now is the one that is nearer to where it was, as the motion goes on."""
 
@@ -53,10 +64,12 @@ def closing_of(one: Feature, other: Feature, motion: Motion) -> Closing:
     speed, grows = fastest, 0.0
     if small.kind == CIRCLE:  # which goes nowhere by turning about its own axis
         speed = norm(way) + spread * norm(cross(motion.axis, vector_from(small.direction)))
-    if wide.kind == LINE and speed_toward_side(wide, way) + spread < speed:
-        speed, grows = speed_toward_side(wide, way) + spread, growth
+    if wide.kind == LINE:
+        across = speed_toward_side(wide, way) + spread  # type: ignore[arg-type]
+        if across < speed:
+            speed, grows = across, growth
     if wide.kind == LINE or wide.kind == CIRCLE:
-        slower, slower_grows = speed_toward_round(wide, motion, middle, reach, fastest)
+        slower, slower_grows = speed_toward_round(wide, motion, middle, reach, fastest)  # type: ignore[arg-type]
         if slower < speed:
             speed, grows = slower, slower_grows
     return Closing(speed, grows)
@@ -106,9 +119,7 @@ def place_touches(
 
 
 @kernel
-def place_near(
-    one: Feature, other: Feature, angle: float, touch_m: float, places: Rows[Place]
-) -> int:
+def place_near(one: Feature, other: Feature, angle: float, touch_m: float, places: Rows[Place]) -> int:
     """Write the places of two features and return which of them is nearest to an angle; -1: none is that near."""
     n_places = find_circle_places(one, other, touch_m, places)
     nearest, least = -1, SAME_ANGLE
@@ -201,9 +212,10 @@ def first_touch_of_circle(
         closing = closing_of(one, other, motion)
         n_places = find_circle_places(one, other, touch_m, places)
         is_around = n_places == WHOLE
-        if is_around and one.kind == CIRCLE and other.kind == CIRCLE:
-            n_places = 0
         least, is_past = math.inf, False
+        if is_around and one.kind == CIRCLE and other.kind == CIRCLE:
+            least, n_places = circles_apart(one, other), 0
+            is_past, is_around = least <= touch_m, False
         for k in range(PLACES_AROUND if is_around else n_places):
             place = places[k]
             if place.kind in (GREATEST, SADDLE):
@@ -218,6 +230,8 @@ def first_touch_of_circle(
                 kept[at].angle = place.angle
                 if met.gap > touch_m:
                     n_kept = dropped(kept, n_kept, at)
+                if abs(met.gap) > touch_m:
+                    least = min(least, abs(met.gap))
                 continue
             if -ROOT_OF_TOUCH * touch_m <= met.gap <= touch_m:
                 angle = place.angle
@@ -235,6 +249,8 @@ def first_touch_of_circle(
         step = surely_clear(closing, least)
         if is_past and closing.speed > 0.0:  # a root that is no contact: on so short a way none is hidden that counts
             step = max(step, touch_m / closing.speed)
+        if n_kept > 0:
+            step = min(step, end * KEPT_STEP)
         if step >= end - amount:
             return math.inf
         if step > LEAST_STEP * end:
@@ -242,6 +258,14 @@ def first_touch_of_circle(
         else:
             amount, behind = gone_on(amount, step, end, behind)
     return math.inf
+
+
+@kernel
+def circles_apart(one: Feature, other: Feature) -> float:
+    """Return how far a place of a circle is from another one."""
+    point = on_circle(circle_of(one), 0.0).point
+    nearest = plus(vector_from(other.point), scaled(outward_at(other, point), other.length))
+    return max(0.0, norm(minus(point, nearest)) - one.radius - other.radius)
 
 
 @kernel

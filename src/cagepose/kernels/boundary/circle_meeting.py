@@ -82,10 +82,14 @@ def circle_meeting(a: PlacedBoundary, i: int, b: PlacedBoundary, j: int, place: 
     gap, normal = common.gap, common.normal
     if other.kind == VERTEX and other.radius + circle.radius == 0.0:
         return no_meeting(gap)
-    if is_sharp(circle, other) and circle.radius + other.radius == 0.0:
-        if norm(cross(common.tangent, common.other_tangent)) < SIDE_BY_SIDE_SINE:
-            return no_meeting(abs(gap))
-        if is_turned(a, i, common.point, b, j, common.other_point, normal, gap < 0.0):
+    if is_sharp(circle, other):
+        if circle.radius + other.radius < SHARP_OF_LENGTH * circle.length:
+            if norm(cross(common.tangent, common.other_tangent)) < SIDE_BY_SIDE_SINE:
+                return no_meeting(abs(gap))
+            is_back = is_turned(a, i, common.point, b, j, common.other_point, normal, gap < 0.0)
+        else:
+            is_back = gap < 0.0
+        if is_back:
             normal, gap = scaled(normal, -1.0), -gap
     gap -= circle.radius + (other.radius if is_core(circle, other) else 0.0)
     return Meeting(True, gap, normal, plus(common.point, scaled(normal, circle.radius)))

@@ -28,7 +28,7 @@ from cagepose.kernels.algebra.vector import (
     transposed_times,
     vector_from,
 )
-from cagepose.kernels.boundary.tree import Node
+from cagepose.kernels.boundary.tree import Node, PlacedBox, placed_box
 from cagepose.kernels.native.kernel import kernel
 
 VERTEX, LINE, FACE, CIRCLE = 0, 1, 2, 3
@@ -118,14 +118,18 @@ class Boundary(NamedTuple):
         Theirs.
     nodes
         The trees, see `cagepose.kernels.boundary.tree`.
+    planes
+        Of each face normal and height above the origin, radius included, (4, n_features), in the frame of the body: in
+        this order a processor works out how far a vertex is from several faces at once.
     """
 
     features: Rows[Feature]
     bounds: Rows[Bound]
     nodes: Rows[Node]
+    planes: FloatArray
 
 
-NO_BOUNDARY = Boundary(empty_rows(Feature, 0), empty_rows(Bound, 0), empty_rows(Node, 0))
+NO_BOUNDARY = Boundary(empty_rows(Feature, 0), empty_rows(Bound, 0), empty_rows(Node, 0), np.zeros((4, 0)))
 """A body without features."""
 
 
@@ -140,6 +144,9 @@ class PlacedBoundary(NamedTuple):
         In the world, of those that have been asked for: points, directions and middles.
     is_placed
         Whose have been, (n_features,).
+    boxes, is_boxed
+        Middles and half edges of the boxes of the world around the nodes of its trees, (n_nodes, 2, 3), metres; and of
+        which of them they are known, (n_nodes,).
     pose
         Position, and the rows of the rotation matrix, (4, 3).
     """
@@ -147,12 +154,22 @@ class PlacedBoundary(NamedTuple):
     own: Boundary
     features: Rows[Feature]
     is_placed: NDArray[np.bool_]
+    boxes: FloatArray
+    is_boxed: NDArray[np.bool_]
     pose: FloatArray
 
 
 def empty_placed(own: Boundary) -> PlacedBoundary:
     """Return memory for a boundary at a pose (plain Python)."""
-    return PlacedBoundary(own, np.array(own.features), np.zeros(len(own.features), np.bool_), np.zeros((4, 3)))
+    n_features, n_nodes = len(own.features), len(own.nodes)
+    return PlacedBoundary(
+        own,
+        np.array(own.features),
+        np.zeros(n_features, np.bool_),
+        np.zeros((n_nodes, 2, 3)),
+        np.zeros(n_nodes, np.bool_),
+        np.zeros((4, 3)),
+    )
 
 
 @kernel
@@ -163,8 +180,28 @@ def place_boundary(body: PlacedBoundary, position: Vector, quaternion: Quaternio
         body.pose[0, k] = position[k]
         for j in range(3):
             body.pose[1 + j, k] = rotation[j][k]
+    forget_placed(body)
+
+
+@kernel
+def forget_placed(body: PlacedBoundary) -> None:
+    """Let no feature and no box count as placed, as the pose has changed."""
     for i in range(len(body.is_placed)):
         body.is_placed[i] = False
+    for i in range(len(body.is_boxed)):
+        body.is_boxed[i] = False
+
+
+@kernel
+def box_of(body: PlacedBoundary, node: int) -> PlacedBox:
+    """Return the box of the world around a node."""
+    box = body.boxes[node]
+    if not body.is_boxed[node]:
+        body.is_boxed[node] = True
+        placed = placed_box(body.own.nodes[node], position_of(body), rotation_of(body))
+        for k in range(3):
+            box[0, k], box[1, k] = placed.middle[k], placed.half[k]
+    return PlacedBox((box[0, 0], box[0, 1], box[0, 2]), (box[1, 0], box[1, 1], box[1, 2]))
 
 
 @kernel

@@ -11,23 +11,27 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cagepose.kernels.algebra.record import IntArray, Rows, empty_rows
-from cagepose.kernels.algebra.vector import cross, dot, minus, norm, vector_from
+from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
+from cagepose.kernels.algebra.vector import cross, dot, minus, norm, scaled, vector_from
 from cagepose.kernels.boundary.circle_first import first_touch_of_circle, lines_apart
 from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE
 from cagepose.kernels.boundary.features import (
     CIRCLE,
+    FACE,
     LINE,
+    VERTEX,
     Feature,
     PlacedBoundary,
+    box_of,
+    in_body,
     place_feature,
     position_of,
-    rotation_of,
 )
 from cagepose.kernels.boundary.first_touch import (
     clear_step,
     distance_from,
     first_touch,
+    gap_ahead,
     keeps_radius,
     place_after,
 )
@@ -41,9 +45,9 @@ from cagepose.kernels.boundary.meetings import (
     meeting_at,
     slack_of,
 )
-from cagepose.kernels.boundary.tree import EDGES, FACES, VERTICES, placed_box, span_of_overlap
+from cagepose.kernels.boundary.tree import FACES, span_of_overlap
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.along_motion import ahead, safe_step
+from cagepose.kernels.shapes.along_motion import safe_step
 from cagepose.kernels.shapes.motion import Motion, velocity_at
 
 MOST_WAITING = 4096
@@ -144,8 +148,7 @@ def let_wait(
     one, other = held.own.nodes[node], cage.own.nodes[cage_node]
     if one.first == one.last or other.first == other.last:
         return True
-    box = placed_box(one, position_of(held), rotation_of(held))
-    cage_box = placed_box(other, position_of(cage), rotation_of(cage))
+    box, cage_box = box_of(held, node), box_of(cage, cage_node)
     span = span_of_overlap(box, cage_box, search.motion, min(search.end, until), search.touch_m)
     if span.begin == math.inf:
         return True
@@ -203,10 +206,10 @@ def first_to_meet(
     """
     hit = NO_HIT
     queue.used[0] = queue.used[1] = 0
-    for own in range(3):
-        for other in range(3):
-            if own != FACES or other != FACES:
-                let_wait(held, own, cage, other, search, hit.amount, queue)
+    for root in range(3):
+        for cage_root in range(3):
+            if root != FACES or cage_root != FACES:
+                let_wait(held, root, cage, cage_root, search, hit.amount, queue)
     while queue.used[1] > 0:
         at = take_first(queue)
         node, cage_node = queue.rows[at].node, queue.rows[at].cage_node
@@ -215,7 +218,7 @@ def first_to_meet(
         one, other = held.own.nodes[node], cage.own.nodes[cage_node]
         if one.left < 0 and other.left < 0:
             until = min(queue.rows[at].end, search.end)
-            hit = first_of_leaves(held, node, cage, cage_node, until, search, meetings, moved, hit)
+            hit = first_below(held, node, cage, cage_node, until, search, meetings, moved, hit)
             continue
         divides_held = other.left < 0 or (one.left >= 0 and max(one.half) >= max(other.half))
         for side in range(2):
@@ -223,27 +226,12 @@ def first_to_meet(
             child = left if side == 0 else right
             node_below, cage_below = (child, cage_node) if divides_held else (node, child)
             if not let_wait(held, node_below, cage, cage_below, search, hit.amount, queue):
-                hit = first_of_ranges(held, node_below, cage, cage_below, search, meetings, moved, hit)
+                hit = first_below(held, node_below, cage, cage_below, search.end, search, meetings, moved, hit)
     return hit
 
 
 @kernel
-def first_of_ranges(
-    held: PlacedBoundary,
-    node: int,
-    cage: PlacedBoundary,
-    cage_node: int,
-    search: Search,
-    meetings: Meetings,
-    moved: PlacedBoundary,
-    hit: Hit,
-) -> Hit:
-    """Return what features below two nodes reach that there is no room for to wait, or ``hit``."""
-    return first_of_leaves(held, node, cage, cage_node, search.end, search, meetings, moved, hit)
-
-
-@kernel
-def first_of_leaves(
+def first_below(
     held: PlacedBoundary,
     node: int,
     cage: PlacedBoundary,
@@ -256,6 +244,24 @@ def first_of_leaves(
 ) -> Hit:
     """Return what the features below two nodes reach if that is sooner than ``hit``, and else this."""
     one, other = held.own.nodes[node], cage.own.nodes[cage_node]
+    if held.own.features[one.first].kind == FACE and cage.own.features[other.first].kind == VERTEX:
+        for j in range(other.first, other.last):
+            find_clearances(cage, j, held, one.first, one.last, -1.0, min(until, hit.amount), search, meetings.heights)
+            for i in range(one.first, one.last):
+                if meetings.heights[i] <= 0.0:
+                    place_feature(held, i)
+                    hit = sooner(held, i, cage, j, min(until, hit.amount), search, meetings, moved, hit)
+        return hit
+    if held.own.features[one.first].kind == VERTEX and cage.own.features[other.first].kind == FACE:
+        for i in range(one.first, one.last):
+            find_clearances(
+                held, i, cage, other.first, other.last, 1.0, min(until, hit.amount), search, meetings.heights
+            )
+            for j in range(other.first, other.last):
+                if meetings.heights[j] <= 0.0:
+                    place_feature(cage, j)
+                    hit = sooner(held, i, cage, j, min(until, hit.amount), search, meetings, moved, hit)
+        return hit
     for i in range(one.first, one.last):
         for j in range(other.first, other.last):
             if not can_touch(held.own.features[i], cage.own.features[j]):
@@ -264,6 +270,40 @@ def first_of_leaves(
             place_feature(cage, j)
             hit = sooner(held, i, cage, j, min(until, hit.amount), search, meetings, moved, hit)
     return hit
+
+
+@kernel
+def find_clearances(
+    vertices: PlacedBoundary,
+    i: int,
+    faces: PlacedBoundary,
+    first: int,
+    last: int,
+    sense: float,
+    until: float,
+    search: Search,
+    out: FloatArray,
+) -> None:
+    """Write how far a vertex of one body surely stays from the planes of some faces of the other one, on its side of
+    them, up to an amount; at most zero: it may cross them. ``sense`` is 1 where the vertex moves, and -1 where the
+    faces do.
+
+    Its height changes at the speed along the normal, and this by the way's curvature.
+    """
+    place_feature(vertices, i)
+    vertex, planes, motion = vertices.features[i], faces.own.planes, search.motion
+    point, radius = vector_from(vertex.point), vertex.radius
+    way = scaled(velocity_at(motion, point), sense)
+    x, y, z = in_body(faces, minus(point, position_of(faces)))
+    u, v, w = in_body(faces, way)
+    bend = 0.5 * motion.rate * norm(cross(motion.axis, way)) * until * until
+    margin = bend + 2.0 * search.touch_m
+    n, m, k, above = planes[0, first:last], planes[1, first:last], planes[2, first:last], planes[3, first:last]
+    here = out[first:last]
+    for j in range(len(here)):
+        height = n[j] * x + m[j] * y + k[j] * z - above[j] - radius
+        rises = (n[j] * u + m[j] * v + k[j] * w) * until
+        here[j] = max(min(height, height + rises), -max(height, height + rises)) - margin
 
 
 @kernel
@@ -284,10 +324,10 @@ def sooner(
         if (circle_apart(held, i, cage, j) - search.touch_m) >= until * search.speed:
             return hit
         return first_of_circle(held, i, cage, j, until, search, meetings, moved, hit)
-    if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
+    if safe_step(gap_ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
         return hit
     place_after(held, i, motion, 0.0, moved)
-    clear = clear_step(held, i, cage, j, motion, moved)
+    clear = clear_step(moved, i, cage, j, motion)
     is_near = clear * search.speed <= SAME_PLACE * max(search.near_m, search.touch_m)  # and may be deep already
     if not is_near and clear >= until:
         return hit
@@ -298,7 +338,7 @@ def sooner(
 
 @kernel
 def is_curved(one: Feature, other: Feature) -> bool:
-    """Whether first contact of two features is found by advancement: of circles, and of lines with the sides of cones."""
+    """Whether first contact of two features is found by advancement: of circles, and of lines with sides of cones."""
     if one.kind == CIRCLE or other.kind == CIRCLE:
         return True
     return bool(one.kind == LINE and other.kind == LINE and (one.taper != 0.0 or other.taper != 0.0))
@@ -314,9 +354,7 @@ def circle_apart(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int) -> 
     if one.kind == CIRCLE and keeps_radius(other):
         apart = distance_from(cage, j, vector_from(one.point)) - one.length - one.radius - other.radius
     if other.kind == CIRCLE and keeps_radius(one):
-        apart = max(
-            apart, distance_from(held, i, vector_from(other.point)) - other.length - other.radius - one.radius
-        )
+        apart = max(apart, distance_from(held, i, vector_from(other.point)) - other.length - other.radius - one.radius)
     return apart
 
 
@@ -362,9 +400,9 @@ def is_there(meetings: Meetings, met: Meeting, touch_m: float) -> bool:
     """Whether features meet where there is a contact."""
     for at in range(meetings.used[0]):
         row = meetings.rows[at]
-        if dot(vector_from(row.normal), met.normal) > 0.0:
-            if norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m:
-                return True
+        is_near = norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
+        if is_near and dot(vector_from(row.normal), met.normal) > 0.0:
+            return True
     return False
 
 

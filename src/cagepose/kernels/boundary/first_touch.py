@@ -17,6 +17,7 @@ from cagepose.kernels.boundary.features import (
     VERTEX,
     Feature,
     PlacedBoundary,
+    forget_placed,
     position_of,
     rotation_of,
     write_placed,
@@ -48,8 +49,7 @@ def move_boundary(body: PlacedBoundary, motion: Motion, amount: float, moved: Pl
         column = turned(motion, (r[0][k], r[1][k], r[2][k]), so_far)
         moved.pose[0, k] = position[k]
         moved.pose[1, k], moved.pose[2, k], moved.pose[3, k] = column
-    for i in range(len(moved.is_placed)):
-        moved.is_placed[i] = False
+    forget_placed(moved)
 
 
 @kernel
@@ -85,9 +85,9 @@ def distance_from(body: PlacedBoundary, i: int, point: Vector) -> float:
 
 
 @kernel
-def clear_step(body: PlacedBoundary, i: int, b: PlacedBoundary, j: int, motion: Motion, moved: PlacedBoundary) -> float:
-    """Return how much farther the motion surely leads without a contact of two features, by how far apart they are;
-    feature i is placed in ``moved``.
+def clear_step(moved: PlacedBoundary, i: int, b: PlacedBoundary, j: int, motion: Motion) -> float:
+    """Return how much farther the motion surely leads without a contact of two features, by how far apart they are
+    where they are placed.
 
     What functions of planes and lines say where no feature is, needs no search then.
     """
@@ -141,6 +141,24 @@ def touches_after(
 
 
 @kernel
+def gap_ahead(
+    a: PlacedBoundary,
+    i: int,
+    b: PlacedBoundary,
+    j: int,
+    motion: Motion,
+    amount: float,
+    level: float,
+    side: float,
+    span: float,
+) -> Ahead:
+    """Return the function of the amount whose root is a contact of two features that are no circles, with its slope and
+    bounds; see `cagepose.kernels.shapes.along_motion.ahead`, which reads of features what those of both packages have.
+    """
+    return ahead(a, i, b, j, motion, amount, level, side, span)  # type: ignore[arg-type]
+
+
+@kernel
 def first_touch(
     a: PlacedBoundary,
     i: int,
@@ -174,11 +192,11 @@ def first_touch(
     one, other = a.features[i], b.features[j]
     is_sharp = one.kind == LINE and other.kind == LINE and one.radius + other.radius == 0.0
     if is_sharp and side == 0.0:
-        side = math.copysign(1.0, ahead(a, i, b, j, motion, 0.0, 0.0, 1.0, end).value)
+        side = math.copysign(1.0, gap_ahead(a, i, b, j, motion, 0.0, 0.0, 1.0, end).value)
     amount, was_apart, is_jump, behind = 0.0, False, False, BEHIND * end
     for _ in range(EVALUATIONS):
         rest = end - amount
-        now = ahead(a, i, b, j, motion, amount, level, side, rest)
+        now = gap_ahead(a, i, b, j, motion, amount, level, side, rest)
         if level > 0.0 and now.is_clear:
             level = 0.0
             continue
@@ -186,7 +204,7 @@ def first_touch(
         is_at_root = was_apart and now.value < 0.0
         if is_at_root and is_jump:
             place_after(a, i, motion, amount, moved)
-            is_at_root = clear_step(a, i, b, j, motion, moved) <= NEAR_ROOT * end
+            is_at_root = clear_step(moved, i, b, j, motion) <= NEAR_ROOT * end
         if is_at_root and touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
             return amount
         if is_sharp and level == 0.0 and now.value < 0.0:  # lines that have crossed, but not where both edges are
@@ -197,11 +215,11 @@ def first_touch(
         if NARROWER * step < rest:
             span, is_over = NARROWER * step, True
             while is_over and 0.0 < span < rest:
-                narrow = safe_step(ahead(a, i, b, j, motion, amount, level, side, span))
+                narrow = safe_step(gap_ahead(a, i, b, j, motion, amount, level, side, span))
                 step, is_over = max(step, min(narrow, span)), narrow >= span
                 span *= NARROWER
             place_after(a, i, motion, amount, moved)
-            clear = clear_step(a, i, b, j, motion, moved)
+            clear = clear_step(moved, i, b, j, motion)
             step, is_jump = max(step, clear), clear > step
             if stay_parallel(moved.features[i], other, motion, rest):
                 return math.inf

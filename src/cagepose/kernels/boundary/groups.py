@@ -1,4 +1,4 @@
-"""Which meetings at one place are alternatives: the object is out of the cage there if it is along one of their normals.
+"""Which meetings at one place are alternatives: the object is out of the cage there if it is along one of the normals.
 
 A corner that sticks into nothing but its own faces is out of another body as soon as it is out along one of them. At a
 place where faces meet in a concave edge, each of them is in the way by itself. So two meetings are alternatives if, on

@@ -6,10 +6,9 @@ import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
-from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.algebra.vector import minus, norm, vector_from
 from cagepose.kernels.boundary.circle import is_on_arc
 from cagepose.kernels.boundary.circle_meeting import circle_meeting, find_places
 from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE, Place, write_place
@@ -20,12 +19,13 @@ from cagepose.kernels.boundary.features import (
     VERTEX,
     Feature,
     PlacedBoundary,
+    box_of,
+    in_body,
     place_feature,
     position_of,
-    rotation_of,
 )
 from cagepose.kernels.boundary.meeting import Meeting, both_reach, is_seated, meeting, seated, swapped
-from cagepose.kernels.boundary.tree import EDGES, FACES, VERTICES, boxes_apart, placed_box
+from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart
 from cagepose.kernels.native.kernel import kernel
 
 SAME_PLACE = 4.0
@@ -37,7 +37,7 @@ DEEPEST_OF_LEAST = 0.05
 LEAST_SLACK, MOST_SLACK = 1e-9, 0.1
 """Sines that normals may be beyond those of a feature."""
 MOST_MEETINGS, MOST_PAIRS, MOST_PLACES = 4096, 256, 16
-"""Meetings that there is memory for; pairs of nodes that wait while two trees are descended; and places of one circle."""
+"""Meetings that there is memory for; pairs of nodes that wait while two trees are descended; places of one circle."""
 PLACES_AROUND = 8
 """Of a circle that is equally far all around, which stand for it."""
 FLAT, EQUALLY_FAR = 2.0, 0.5
@@ -86,6 +86,8 @@ class Meetings(NamedTuple):
         Memory for pairs of nodes, (MOST_PAIRS, 2).
     places, kept
         Memory for the places of a circle, and for those of them that touch.
+    heights
+        Memory for how far a vertex is above faces, (n_features,) of the body that has more, metres.
     """
 
     used: IntArray
@@ -93,12 +95,20 @@ class Meetings(NamedTuple):
     pairs: IntArray
     places: Rows[Place]
     kept: Rows[Place]
+    heights: FloatArray
 
 
-def empty_meetings() -> Meetings:
-    """Return memory for the meetings of two boundaries (plain Python)."""
+def empty_meetings(n_features: int) -> Meetings:
+    """Return memory for the meetings of two boundaries, of which none has more features (plain Python)."""
     pairs, places = np.zeros((MOST_PAIRS, 2), np.int64), empty_rows(Place, MOST_PLACES)
-    return Meetings(np.zeros(1, np.int64), empty_rows(Touching, MOST_MEETINGS), pairs, places, np.array(places))
+    return Meetings(
+        np.zeros(1, np.int64),
+        empty_rows(Touching, MOST_MEETINGS),
+        pairs,
+        places,
+        np.array(places),
+        np.zeros(n_features),
+    )
 
 
 def most_meetings(n_features: int, n_cage_features: int) -> int:
@@ -116,7 +126,7 @@ def can_touch(one: Feature, other: Feature) -> bool:
     if one.kind == LINE and other.kind == LINE:
         return min(one.radius, other.radius) >= 0.0
     if one.kind == CIRCLE or other.kind == CIRCLE:
-        return one.kind in (LINE, CIRCLE) and other.kind in (LINE, CIRCLE) or one.radius + other.radius != 0.0
+        return (one.kind in (LINE, CIRCLE) and other.kind in (LINE, CIRCLE)) or one.radius + other.radius != 0.0
     return one.radius + other.radius != 0.0
 
 
@@ -140,8 +150,6 @@ def find_meetings(held: PlacedBoundary, cage: PlacedBoundary, touch_m: float, fo
 @kernel
 def descend(held: PlacedBoundary, own: int, cage: PlacedBoundary, other: int, touch_m: float, found: Meetings) -> None:
     """Append the meetings of features below a node of each body's trees."""
-    position, rotation = position_of(held), rotation_of(held)
-    cage_position, cage_rotation = position_of(cage), rotation_of(cage)
     found.pairs[0, 0], found.pairs[0, 1] = own, other
     n_waiting = 1
     while n_waiting > 0:
@@ -149,15 +157,20 @@ def descend(held: PlacedBoundary, own: int, cage: PlacedBoundary, other: int, to
         one, two = held.own.nodes[found.pairs[n_waiting, 0]], cage.own.nodes[found.pairs[n_waiting, 1]]
         if one.first == one.last or two.first == two.last:
             continue
-        box, cage_box = placed_box(one, position, rotation), placed_box(two, cage_position, cage_rotation)
+        at, cage_at = found.pairs[n_waiting, 0], found.pairs[n_waiting, 1]
+        box, cage_box = box_of(held, at), box_of(cage, cage_at)
         if boxes_apart(box, cage_box) > touch_m:
             continue
         if one.left < 0 and two.left < 0:
-            meet_leaves(held, one.first, one.last, cage, two.first, two.last, touch_m, found)
+            if own == FACES and other == VERTICES:
+                meet_vertices(cage, two, held, one, True, touch_m, found)
+            elif own == VERTICES and other == FACES:
+                meet_vertices(held, one, cage, two, False, touch_m, found)
+            else:
+                meet_leaves(held, one.first, one.last, cage, two.first, two.last, touch_m, found)
             if found.used[0] < 0:
                 return
             continue
-        at, cage_at = found.pairs[n_waiting, 0], found.pairs[n_waiting, 1]
         divides_held = two.left < 0 or (one.left >= 0 and max(box.half) >= max(cage_box.half))
         for side in range(2):  # of the larger one, if it has two
             left, right = (one.left, one.right) if divides_held else (two.left, two.right)
@@ -186,6 +199,7 @@ def meet_leaves(
                 continue
             place_feature(held, i)
             place_feature(cage, j)
+            deepest_m = DEEPEST_OF_LEAST * min(one.least, other.least)
             if one.kind == CIRCLE or other.kind == CIRCLE:
                 meet_circle(held, i, cage, j, touch_m, found)
                 continue
@@ -193,12 +207,55 @@ def meet_leaves(
                 meet_seat(held, i, cage, j, touch_m, found)
                 continue
             met = meeting(held, i, cage, j)
-            deepest_m = DEEPEST_OF_LEAST * min(one.least, other.least)
             if not met.is_one or not -deepest_m <= met.gap <= touch_m:
                 continue
             if not both_reach(held, i, cage, j, met, slack_of(one, other, touch_m), 2.0 * touch_m):
                 continue
             append_meeting(i, j, 0.0, False, met, touch_m, found)
+
+
+@kernel
+def find_heights(
+    vertices: PlacedBoundary, i: int, faces: PlacedBoundary, first: int, last: int, out: FloatArray
+) -> None:
+    """Write how far a vertex of one body is above each of some faces of another one, radii apart."""
+    place_feature(vertices, i)
+    vertex, planes = vertices.features[i], faces.own.planes
+    x, y, z = in_body(faces, minus(vector_from(vertex.point), position_of(faces)))
+    radius = vertex.radius
+    n, m, k, above = planes[0, first:last], planes[1, first:last], planes[2, first:last], planes[3, first:last]
+    here = out[first:last]  # a slice from zero on, so that several are worked out at once
+    for j in range(len(here)):
+        here[j] = n[j] * x + m[j] * y + k[j] * z - above[j] - radius
+
+
+@kernel
+def meet_vertices(
+    vertices: PlacedBoundary,
+    one: Node,
+    faces: PlacedBoundary,
+    other: Node,
+    of_cage: bool,
+    touch_m: float,
+    found: Meetings,
+) -> None:
+    """Append the meetings of the vertices of a leaf, which are those of the cage or of the object, with some faces."""
+    for i in range(one.first, one.last):
+        find_heights(vertices, i, faces, other.first, other.last, found.heights)
+        for j in range(other.first, other.last):
+            height = found.heights[j]
+            if height > touch_m:
+                continue
+            vertex, face = vertices.own.features[i], faces.own.features[j]
+            if height < -DEEPEST_OF_LEAST * min(vertex.least, face.least):
+                continue
+            place_feature(faces, j)
+            slack = slack_of(vertex, face, touch_m)
+            held, cage = (faces, vertices) if of_cage else (vertices, faces)
+            at, cage_at = (j, i) if of_cage else (i, j)
+            met = meeting(held, at, cage, cage_at)
+            if both_reach(held, at, cage, cage_at, met, slack, 2.0 * touch_m):
+                append_meeting(at, cage_at, 0.0, False, met, touch_m, found)
 
 
 @kernel
