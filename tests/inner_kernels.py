@@ -29,15 +29,13 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
 
     from cagepose.kernels.algebra.least_squares import empty_system
     from cagepose.kernels.algebra.record import empty_record, empty_rows
-    from cagepose.kernels.boundary.circle_and_circle import common_with_circle, follow_by_circle, places_by_circle
-    from cagepose.kernels.boundary.circle_and_round import (
-        Round,
-        common_with_line,
-        common_with_round,
-        follow_by_round,
-        places_by_round,
-    )
+    from cagepose.kernels.boundary import first_meeting as of_boundaries
+    from cagepose.kernels.boundary.circle_and_circle import follow_by_circle, places_by_circle
+    from cagepose.kernels.boundary.circle_and_round import Round, follow_by_round, places_by_round
     from cagepose.kernels.boundary.circle_places import Circle, Place
+    from cagepose.kernels.boundary.features import NO_BOUNDARY, empty_placed, place_boundary
+    from cagepose.kernels.boundary.groups import number_groups
+    from cagepose.kernels.boundary.meetings import empty_meetings, find_meetings
     from cagepose.kernels.collision.first_meeting import first_meeting
     from cagepose.kernels.collision.geometry import Geometry, empty_placement
     from cagepose.kernels.contact.cone import ConeWorkspace, cone_residual
@@ -61,10 +59,13 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield places_by_circle, (circle, circle, 0.0, places)
     yield follow_by_round, (circle, line, places[0], places)
     yield follow_by_circle, (circle, circle, places[0], places)
-    yield common_with_line, (circle, line, 0.0)
-    yield common_with_round, (circle, line, 0.0)
-    yield common_with_circle, (circle, circle, 0.0, 0.0)
-    yield first_meeting, (geometry, empty_placement(geometry), Motion(origin, origin, 0.0, origin), 0.0, 0.0, 0.0)
+    body, found, motion = empty_placed(NO_BOUNDARY), empty_meetings(0), Motion(origin, origin, 0.0, origin)
+    yield place_boundary, (body, origin, (1.0, 0.0, 0.0, 0.0))
+    yield find_meetings, (body, body, 0.0, found)
+    yield number_groups, (body, body, 0.0, found)
+    search = of_boundaries.Search(motion, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    yield of_boundaries.first_to_meet, (body, body, search, found, of_boundaries.empty_queue(), body)
+    yield first_meeting, (geometry, empty_placement(geometry), motion, 0.0, 0.0, 0.0)
 
 
 def as_machine_code(inner: Any) -> Any:
