@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from audit import drawn_families, exact_families, loose_families, prism_families
+from audit import drawn_families, exact_families, loose_families, prism_families, round_families
 from audit.case import Case
 from cagepose import Scene, SceneError
 
@@ -29,6 +29,13 @@ DRAWN: dict[str, Callable[[np.random.Generator], Scene]] = {
     "prism": prism_families.prism,
     "stopped-prism": prism_families.stopped_prism,
     "edge-prism": prism_families.edge_prism,
+    "tapered-pin": round_families.tapered_pin,
+    "square-hole": round_families.square_hole,
+    "ball-on-hole": round_families.ball_on_hole,
+    "peg": round_families.peg,
+    "countersunk": round_families.countersunk,
+    "coin": round_families.coin,
+    "roller": round_families.roller,
 }
 """Families of random scenes."""
 
@@ -39,6 +46,11 @@ NUMBERED: dict[str, Callable[[int], Scene]] = {
     "table": drawn_families.table,
 }
 """Families of one drawing each, whose index sets the friction."""
+
+ROUND = ("tapered-pin", "square-hole", "ball-on-hole", "peg", "countersunk", "coin", "roller")
+"""Families with other shapes than points and boxes, which take most of the time: a quarter as many are asked, unless
+they are asked alone.
+"""
 
 ENDINGS = {"open-plate": "escapes", "stopped-plate": "rests", "prism": "escapes"}
 """Verdicts that are known by hand."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from audit import balance, certified, groups, order, robustness, stability, uniqueness, way
+from audit import balance, certified, groups, inside, order, robustness, stability, uniqueness, way
 from audit.case import Answer, Case, Failure
 from audit.families import make_case
 from cagepose import Run, run
@@ -28,7 +28,10 @@ ORACLES: dict[str, Callable[[Run], Answer]] = {
     "order": order.order_of_verdicts,
     "poses": order.order_of_poses,
     "batch": order.batch,
+    "inside": inside.inside,
 }
+OF_ALL_SHAPES = ("certified", "falls", "inside")
+"""What can be asked where there is more than boxes in the object and points in the cage."""
 ENDING, TIME, CRASH = "ending", "time", "crash"
 """Questions to every run: has it the right end? Did it take longer than `SLOW_S`? Was there an exception?"""
 SLOW_S = 1.0
@@ -65,8 +68,8 @@ def examine(case: Case) -> Finding:
         answers[ENDING] = _ending(found, case.ending)
         answers[TIME] = [f"took {solve_s:.1f} s"] if solve_s > SLOW_S else []
         if solve_s <= SLOW_S:
-            for name, oracle in ORACLES.items():
-                answers[name] = oracle(found)
+            for name in OF_ALL_SHAPES if case.scene.has_other_shapes else ORACLES:
+                answers[name] = ORACLES[name](found)
     except Exception as error:  # whatever it is, it must not end the audit, and is a failure
         answers[CRASH] = [f"{type(error).__name__}: {error}"]
     failures = [

@@ -7,13 +7,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from audit import balance, certified, groups, order, robustness, stability, uniqueness, way
+from audit import balance, certified, groups, inside, order, robustness, stability, uniqueness, way
 from audit.case import Case
 from audit.families import FAMILIES, make_case
 from audit.geometry import acting
 from audit.oracles import ENDING, ORACLES, TIME, examine
 from audit.scene_yaml import scene_yaml
-from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, load_scene, run
+from cagepose import (
+    Box,
+    Cage,
+    Capsule,
+    Cone,
+    Force,
+    Hole,
+    Load,
+    Object,
+    Pose,
+    Scene,
+    Sphere,
+    load_scene,
+    run,
+)
 
 FLOOR = [(x, y, 0.0) for x, y in ((-0.04, -0.03), (0.04, -0.03), (0.0, 0.04))]
 WEIGHT = Load("weight", gravity=(0, 0, -1))
@@ -262,3 +276,75 @@ def test_loads_are_weighed_as_the_theory_says():
         [Load("both", gravity=(0, 0, -10), force=Force((1, 0, 0), (0, 0, 0), 3.0))],
     )
     assert [np.linalg.norm(act.force) for act in acting(heavy, heavy.loads[0])] == pytest.approx([3.0, 20.0])
+
+
+def pin_over_hole(beside):
+    """A tapered pin of radius 4 to 8 mm that falls into a sharp hole of radius 5 mm."""
+    plate = Box((0.06, 0.06, 0.03), Pose((0, 0, -0.015)), "plate")
+    pin = Object(shapes=[Cone(0.004, 0.008, 0.04, Pose((0, 0, 0.02)), "pin")], pose=Pose((beside, 0, 0.002)))
+    cage = Cage(shapes=[plate], holes=[Hole(0.005, 0.03, in_=("plate",))])
+    return Scene(pin, cage, [WEIGHT], friction_coefficient=0.0)
+
+
+def held_block():
+    """A block that comes to rest on a round bar and a ball."""
+    shapes = [Capsule(0.01, 0.2, Pose((-0.03, 0, 0), euler_zyx=(0, 0, np.pi / 2)))]
+    shapes += [Sphere(0.01, Pose((0.03, y, 0))) for y in (-0.02, 0.02)]
+    block = Object([Box((0.1, 0.1, 0.02))], pose=Pose((0, 0, 0.03)))
+    return Scene(block, Cage(shapes=shapes), [WEIGHT], friction_coefficient=0.0)
+
+
+def lowered(one, drop_m):
+    """The last event of a run, its poses that much lower."""
+    phase = one.phases[-1]
+    event = phase.events[-1]
+
+    def down(pose):
+        return Pose(pose.position_m - (0, 0, drop_m), pose.quaternion_wxyz)
+
+    path = tuple(map(down, event.path))
+    event = replace(event, pose_world_object=down(event.pose_world_object), path=path)
+    return with_phase(one, events=(*phase.events[:-1], event))
+
+
+@pytest.mark.parametrize(
+    ("scene", "lever"),
+    [(pin_over_hole(0.0), np.sqrt(101.0)), (held_block(), 1.0), (block_on(FLOOR), 1.0)],
+    ids=["pin", "block", "points"],
+)
+def test_a_path_that_is_lower_by_a_little_more_than_the_error_is_found(scene, lever):
+    """The pin's surface is steep, 1 in 10: lowered by the root of 101, it is one deeper in the rim."""
+    one = run(scene)
+    error_m = inside.error_m(one, is_told=True)
+    assert inside.inside(one) == []
+    assert inside.inside(lowered(one, 0.9 * lever * error_m)) == []
+    (text,) = inside.inside(lowered(one, 1.1 * lever * error_m))
+    assert "sizes in the cage" in text
+
+
+def test_a_way_between_its_poses_through_a_ball_is_found():
+    """A block jumps from one side of its three supports to the other, without a pose between."""
+    one = run(held_block())
+    event = one.phases[0].events[0]
+    below = Pose((0, 0, -0.05))
+    through = replace(event, motion=replace(event.motion, distance_m=0.08), pose_world_object=below, path=())
+    (text,) = inside.inside(with_phase(one, events=(through,)))
+    assert "event 1 (free)" in text
+
+
+def test_an_escape_with_something_in_its_way_is_found():
+    one = run(block_on([(0.2, 0, 0)]))
+    assert one.verdict == "escapes"
+    assert inside.inside(one) == []
+    (text,) = inside.inside(replace(one, scene=block_on([(0.04, 0, -0.1)])))
+    assert "(escapes)" in text
+
+
+def test_a_depth_is_that_of_arithmetic():
+    """At z = -11 mm the pin has radius 5.1 mm at the mouth, whose sharp rim is (5.1 - 5) 10 / sqrt(101) mm in it."""
+    one = run(pin_over_hole(0.0))
+    (depth,) = inside.deepest(lowered(one, 0.001))
+    assert one.pose.position_m[2] == pytest.approx(-0.01, abs=1e-9)
+    assert depth.depth_m == pytest.approx(0.1e-3 * 10 / np.sqrt(101), rel=1e-6)
+    assert np.hypot(*depth.place_world[:2]) == pytest.approx(0.005, abs=1e-6)
+    assert depth.place_world[2] == pytest.approx(0.0, abs=1e-6)
