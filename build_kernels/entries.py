@@ -14,6 +14,15 @@ from cagepose.kernels.algebra.pose import write_euler_zyx, write_quaternions
 from cagepose.kernels.algebra.program_bound import extents
 from cagepose.kernels.algebra.record import dtype_of, empty_record, empty_rows
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
+from cagepose.kernels.boundary.arcs import Arc
+from cagepose.kernels.boundary.candidates import find_pairs
+from cagepose.kernels.boundary.corners import find_corners
+from cagepose.kernels.boundary.fans import find_arcs
+from cagepose.kernels.boundary.inside import is_in_face
+from cagepose.kernels.boundary.lines import empty_fan_work
+from cagepose.kernels.boundary.loops import Border, Loop, find_loops
+from cagepose.kernels.boundary.pieces import Piece, PieceEdge, PieceFace, Pieces, Plane, find_planes
+from cagepose.kernels.boundary.places import find_groups, merge_places, settle_vertices
 from cagepose.kernels.collision.geometry import Geometry, empty_cage, empty_placement, place_object
 from cagepose.kernels.contact.loads import Action
 from cagepose.kernels.contact.metric import Body
@@ -111,3 +120,17 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield find_linear_play, (goals, rows, bounds, program, extremes)
     yield certify, (geometry, 0.0, goals, numbers, play_work, empty_certificate_workspace(1))
     yield grow_tree, (geometry, vectors, empty_rows(Station, 1), 1, empty_placement(geometry), tolerances)
+
+    indices, is_true = np.zeros(1, np.int64), np.zeros(1, np.bool_)
+    pieces = Pieces(empty_rows(Piece, 1), vectors, empty_rows(PieceEdge, 1), empty_rows(PieceFace, 1), indices)
+    planes, borders = empty_rows(Plane, 1), empty_rows(Border, 1)
+    yield find_groups, (indices, 0.0, pieces, indices)
+    yield find_planes, (indices, 0.0, 0.0, pieces, planes)
+    yield settle_vertices, (0.0, pieces, planes)
+    yield find_pairs, (0.0, pieces, planes, 1, indices)
+    fan, arcs = empty_fan_work(1, 1), empty_rows(Arc, 1)
+    yield find_arcs, (indices, indices, 1, ORIGIN, 0.0, 0.0, pieces, planes, is_true, fan, arcs)
+    yield merge_places, (indices, numbers, 0.0, vectors, indices)
+    yield find_corners, (indices, indices, 0.0, pieces, planes, indices, indices, vectors, vectors, is_true)
+    yield find_loops, (vectors, borders, empty_rows(Loop, 1))
+    yield is_in_face, (ORIGIN, ORIGIN, borders, 0, 1, 0.0)

@@ -1,0 +1,70 @@
+"""The trimmed faces of a union: borders chained to loops, and loops to regions."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.kernels.algebra.record import dtype_of
+from cagepose.kernels.boundary.loops import NONE, Border, Loop, find_loops
+from cagepose.model.boundary.trimmed import Faces
+
+Rows = NDArray[np.void]
+
+
+def faces_of(planes: Rows, arcs: Rows, ends: NDArray[np.int64]) -> tuple[Faces, int]:
+    """Return the faces on planes, and how many of their borders lead nowhere.
+
+    Parameters
+    ----------
+    arcs
+        Around all lines, see `kernels.boundary.arcs.Arc`.
+    ends
+        Of each, the places at which it starts and ends, (n, 2).
+    """
+    which, side = np.nonzero(arcs["is_border"])
+    arc = arcs[which]
+    normals, inward = arc["normals"][np.arange(len(arc)), side], arc["inward"][np.arange(len(arc)), side]
+    oriented = 2 * arc["planes"][np.arange(len(arc)), side] + (arc["sides"][np.arange(len(arc)), side] < 0.0)
+    keys = np.stack([oriented, arc["parts"][np.arange(len(arc)), side]], axis=1)
+    regions, first, face = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    face = face.reshape(-1)
+    is_along = np.einsum("ij,ij->i", np.cross(inward, normals), arc["direction"]) > 0.0
+    forth, back = np.where(is_along, 0, 1), np.where(is_along, 1, 0)
+    borders = np.zeros(len(arc), dtype_of(Border))
+    borders["start"] = np.where(is_along[:, None], arc["start"], arc["end"])
+    borders["end"] = np.where(is_along[:, None], arc["end"], arc["start"])
+    borders["direction"] = np.where(is_along[:, None], arc["direction"], -arc["direction"])
+    borders["start_node"], borders["end_node"] = ends[which, forth], ends[which, back]
+    borders["inward"], borders["face"] = inward, face
+    borders = borders[np.argsort(face, kind="stable")]
+    loops = np.zeros(len(borders), dtype_of(Loop))
+    n_loops, n_open = find_loops(normals[first], borders, loops)
+    return _regions(planes, regions, normals[first], borders, loops[:n_loops]), n_open
+
+
+def _regions(planes: Rows, keys: NDArray[np.int64], normals: NDArray[np.float64], borders: Rows, loops: Rows) -> Faces:
+    """Return one face for each outer loop, with the inner loops within it."""
+    loop_of = np.searchsorted(loops["first"], borders["loop"])
+    region = np.where(loops["region"] == NONE, np.arange(len(loops)), loops["region"])
+    outer, index, n_loops = np.unique(region, return_inverse=True, return_counts=True)
+    face = borders["face"][loops["first"][outer]]
+    order = _in_loops(borders, loops, np.argsort(index, kind="stable"))
+    oriented, parts = keys[face].T
+    offsets = planes["offset"][oriented // 2] * np.where(oriented % 2, -1.0, 1.0)
+    is_convex = loops["is_convex"][outer] & (n_loops == 1)
+    n_borders = np.bincount(index.reshape(-1)[loop_of], minlength=len(outer))
+    return Faces(normals[face], offsets, oriented, parts, is_convex, n_borders, borders[order])
+
+
+def _in_loops(borders: Rows, loops: Rows, order: NDArray[np.int64]) -> list[int]:
+    """Return the indices of borders along one loop after the other."""
+    following, found = borders["following"].tolist(), []
+    for first in loops["first"][order].tolist():
+        k = first
+        while k != NONE:
+            found.append(k)
+            k = following[k]
+            if k == first:
+                break
+    return found
