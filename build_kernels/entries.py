@@ -130,7 +130,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield find_pairs, (0.0, pieces, planes, 1, indices)
     fan, arcs = empty_fan_work(1, 1), empty_rows(Arc, 1)
     yield find_arcs, (indices, indices, 1, ORIGIN, 0.0, 0.0, pieces, planes, is_true, fan, arcs)
-    yield merge_places, (indices, numbers, 0.0, vectors, indices)
+    yield merge_places, (indices, numbers, numbers, vectors, indices)
     yield find_corners, (indices, indices, 0.0, pieces, planes, indices, indices, vectors, vectors, is_true)
     yield find_loops, (vectors, borders, empty_rows(Loop, 1))
     yield is_in_face, (ORIGIN, ORIGIN, borders, 0, 1, 0.0)

@@ -72,7 +72,7 @@ def find_arcs(
         work.holds_line[a], work.holds_line[b] = True, True
         _mark_done(pairs, n_planes, work, is_done)
         n_spans = find_spans(line, touch_m, pieces, planes, work)
-        n_cuts = find_cuts(n_spans, touch_m, work)
+        n_cuts = find_cuts(n_spans, work)
         first_arc = n_arcs
         for c in range(n_cuts - 1):
             n_rays = _find_rays(line, 0.5 * (work.cuts[c] + work.cuts[c + 1]), n_spans, pieces, planes, work)
@@ -185,7 +185,7 @@ def _write_arc(
         last = (last + 1) % n_rays
     start = plus(line.point, scaled(line.direction, work.cuts[c]))
     end = plus(line.point, scaled(line.direction, work.cuts[c + 1]))
-    arc.until = work.cuts[c + 1]
+    arc.slacks[0], arc.slacks[1] = work.slacks[c], work.slacks[c + 1]
     for k in range(3):
         arc.start[k], arc.end[k], arc.direction[k] = start[k], end[k], line.direction[k]
     for j in range(2):

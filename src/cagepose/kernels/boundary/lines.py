@@ -17,17 +17,29 @@ LEAST_SINE = 1e-9
 """Planes at a smaller angle cross in no line."""
 PARALLEL = 1e-12
 """A plane that a line makes a smaller sine with is not crossed by it."""
+LEAST_LEVER = 1e-3
+"""Where planes cross at a smaller sine, places are not looked for any farther away than at this one."""
 
 
 class Line(NamedTuple):
-    """A place on a line, its unit direction, and two unit vectors that span the plane across it, right-handed with
-    the direction as the third: angles around the line are measured from the first of them to the second.
+    """A line in which two planes cross.
+
+    Attributes
+    ----------
+    point, direction
+        A place on it, metres, and its unit direction.
+    first, second
+        Unit vectors across it, right-handed with the direction as the third: angles are measured from the first of
+        them to the second.
+    sine
+        Of the angle between the planes.
     """
 
     point: Vector
     direction: Vector
     first: Vector
     second: Vector
+    sine: float
 
 
 class Span:
@@ -37,6 +49,8 @@ class Span:
     ----------
     start, end
         From the line's place along its direction, metres.
+    start_slack, end_slack
+        How far these may be off, as planes may be off by what touches, metres.
     piece
         Which one.
     first_active, last_active
@@ -45,6 +59,8 @@ class Span:
 
     start: float
     end: float
+    start_slack: float
+    end_slack: float
     piece: int
     first_active: int
     last_active: int
@@ -80,8 +96,8 @@ class FanWork(NamedTuple):
         Of each plane, whether the line lies in it.
     spans, active
         See `Span`.
-    cuts
-        Where spans begin and end, in order, metres.
+    cuts, slacks
+        Where spans begin and end, in order, and how far these places may be off, metres.
     rays
         Around the line, in order.
     """
@@ -90,6 +106,7 @@ class FanWork(NamedTuple):
     spans: Rows[Span]
     active: IntArray
     cuts: FloatArray
+    slacks: FloatArray
     rays: Rows[Ray]
 
 
@@ -99,6 +116,7 @@ def empty_fan_work(n_pieces: int, n_faces: int) -> FanWork:
         np.zeros(n_faces, np.bool_),
         empty_rows(Span, n_pieces),
         np.zeros(n_faces, np.int64),
+        np.zeros(2 * n_pieces),
         np.zeros(2 * n_pieces),
         empty_rows(Ray, 2 * n_faces),
     )
@@ -114,7 +132,7 @@ def line_of(a: Plane, b: Plane, near: Vector) -> Line:
     height = a.offset - dot(first, near)
     other = b.offset - dot(normal, near)
     foot = plus(scaled(cross(normal, direction), height / sine), scaled(cross(direction, first), other / sine))
-    return Line(plus(near, foot), direction, first, cross(direction, first))
+    return Line(plus(near, foot), direction, first, cross(direction, first), sine)
 
 
 @kernel
@@ -128,13 +146,14 @@ def note_planes(line: Line, reach_m: float, touch_m: float, planes: Rows[Plane],
 
 @kernel
 def find_spans(line: Line, touch_m: float, pieces: Pieces, planes: Rows[Plane], work: FanWork) -> int:
-    """Write where pieces hold a line over more than ``touch_m``; return how many do."""
+    """Write where pieces hold a line over more than a place; return how many do."""
     n_spans, n_active = 0, 0
     for k in range(len(pieces.pieces)):
         piece = pieces.pieces[k]
         if _passes_by(line, piece, touch_m):
             continue
         start, end, last_active = -math.inf, math.inf, n_active
+        slope_in, slope_out = 1.0, 1.0
         for f in range(piece.first_face, piece.last_face):
             face = pieces.faces[f]
             if work.holds_line[face.plane]:
@@ -142,15 +161,18 @@ def find_spans(line: Line, touch_m: float, pieces: Pieces, planes: Rows[Plane], 
                 last_active += 1
                 continue
             height, slope = height_over(face, line.point, planes), dot(outward(face, planes), line.direction)
-            if slope > PARALLEL:
-                end = min(end, -height / slope)
-            elif slope < -PARALLEL:
-                start = max(start, -height / slope)
-            elif height > 0.0:
-                end = -math.inf
-        if end - start > touch_m:
-            span = work.spans[n_spans]
-            span.start, span.end, span.piece = start, end, k
+            if abs(slope) <= PARALLEL:
+                if height > 0.0:
+                    end = -math.inf
+            elif slope > 0.0 and -height / slope < end:
+                end, slope_out = -height / slope, slope
+            elif slope < 0.0 and -height / slope > start:
+                start, slope_in = -height / slope, -slope
+        span = work.spans[n_spans]
+        span.start, span.end, span.piece = start, end, k
+        span.start_slack = touch_m / max(min(line.sine, slope_in), LEAST_LEVER)
+        span.end_slack = touch_m / max(min(line.sine, slope_out), LEAST_LEVER)
+        if end - start > max(span.start_slack, span.end_slack):
             span.first_active, span.last_active = n_active, last_active
             n_spans, n_active = n_spans + 1, last_active
     return n_spans
@@ -165,20 +187,31 @@ def _passes_by(line: Line, piece: Piece, touch_m: float) -> bool:
 
 
 @kernel
-def find_cuts(n_spans: int, touch_m: float, work: FanWork) -> int:
-    """Write where spans begin and end, each more than ``touch_m`` behind the one before; return how many."""
+def find_cuts(n_spans: int, work: FanWork) -> int:
+    """Write where spans begin and end, those at one place as the one that is known best; return how many places."""
     n_ends = 0
     for s in range(n_spans):
-        for end in (work.spans[s].start, work.spans[s].end):
-            k = n_ends
-            while k > 0 and work.cuts[k - 1] > end:
-                work.cuts[k] = work.cuts[k - 1]
-                k -= 1
-            work.cuts[k] = end
-            n_ends += 1
-    n_cuts = 0
+        span = work.spans[s]
+        _put_in_order(span.start, span.start_slack, n_ends, work)
+        _put_in_order(span.end, span.end_slack, n_ends + 1, work)
+        n_ends += 2
+    n_cuts, last = 0, -math.inf
     for k in range(n_ends):
-        if n_cuts == 0 or work.cuts[k] - work.cuts[n_cuts - 1] > touch_m:
-            work.cuts[n_cuts] = work.cuts[k]
+        cut, slack = work.cuts[k], work.slacks[k]
+        if n_cuts > 0 and cut - last <= max(slack, work.slacks[n_cuts - 1]):
+            if slack < work.slacks[n_cuts - 1]:
+                work.cuts[n_cuts - 1], work.slacks[n_cuts - 1] = cut, slack
+        else:
+            work.cuts[n_cuts], work.slacks[n_cuts] = cut, slack
             n_cuts += 1
+        last = cut
     return n_cuts
+
+
+@kernel
+def _put_in_order(cut: float, slack: float, n_cuts: int, work: FanWork) -> None:
+    k = n_cuts
+    while k > 0 and work.cuts[k - 1] > cut:
+        work.cuts[k], work.slacks[k] = work.cuts[k - 1], work.slacks[k - 1]
+        k -= 1
+    work.cuts[k], work.slacks[k] = cut, slack

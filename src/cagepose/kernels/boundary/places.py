@@ -32,18 +32,21 @@ def find_groups(order: IntArray, touch_m: float, pieces: Pieces, groups: IntArra
 
 
 @entry
-def merge_places(order: IntArray, keys: FloatArray, touch_m: float, places: FloatArray, nodes: IntArray) -> None:
-    """Write for each of the places (n, 3) the first one that it is at: those within ``touch_m`` are one, and so on.
+def merge_places(order: IntArray, keys: FloatArray, slacks: FloatArray, places: FloatArray, nodes: IntArray) -> None:
+    """Write for each of the places (n, 3) the first one that it is at.
 
-    ``keys`` are their heights along some unit vector, (n,), ``order`` sorts them.
+    Two are at one place, and what is there with either, if they are as close as the one may be off that is known less
+    well: ``slacks``, (n,), metres. ``keys`` are heights along some unit vector, (n,), ``order`` sorts them.
     """
+    greatest = 0.0
     for k in range(len(order)):
-        nodes[k] = k
+        nodes[k], greatest = k, max(greatest, slacks[k])
     for i in range(len(order)):
         for j in range(i + 1, len(order)):
-            if keys[order[j]] > keys[order[i]] + touch_m:
+            if keys[order[j]] > keys[order[i]] + greatest:
                 break
-            if norm(minus(row(places, order[i]), row(places, order[j]))) <= touch_m:
+            slack = max(slacks[order[i]], slacks[order[j]])
+            if norm(minus(row(places, order[i]), row(places, order[j]))) <= slack:
                 _unite(order[i], order[j], nodes)
     for k in range(len(order)):
         nodes[k] = _first_of(k, nodes)

@@ -80,8 +80,9 @@ def _of_group(pieces: Sequence[ConvexPiece], touch_m: float) -> Boundary:
     arcs = _arcs_of(rows, planes, n_planes, touch_m)
     places = np.concatenate([rows.vertices, arcs["start"], arcs["end"]])
     keys, nodes = places @ ALONG, np.zeros(len(places), np.int64)
-    merge_places(np.argsort(keys), keys, 2.0 * touch_m, places, nodes)
     n_vertices = len(rows.vertices)
+    slacks = np.concatenate([np.full(n_vertices, touch_m), *arcs["slacks"].T])
+    merge_places(np.argsort(keys), keys, 2.0 * slacks, places, nodes)
     ends = nodes[n_vertices:].reshape(2, -1).T
     arcs["start"], arcs["end"] = places[ends[:, 0]], places[ends[:, 1]]
     is_long = ends[:, 0] != ends[:, 1]
