@@ -68,13 +68,18 @@ def _unite(one: int, other: int, groups: IntArray) -> None:
 
 @entry
 def settle_vertices(touch_m: float, pieces: Pieces, planes: Rows[Plane]) -> None:
-    """Move vertices that are not on the planes of their faces, as these have been brought in line with others'."""
+    """Move vertices that are not on the planes of their faces, as these have been brought in line with others', and
+    widen the bounds of their pieces.
+    """
     for k in range(len(pieces.pieces)):
-        for v in range(pieces.pieces[k].first_vertex, pieces.pieces[k].last_vertex):
+        piece = pieces.pieces[k]
+        for v in range(piece.first_vertex, piece.last_vertex):
             place = row(pieces.vertices, v)
             if _farthest(k, v, place, pieces, planes) > SETTLED * touch_m:
-                for j in range(3):
-                    pieces.vertices[v, j] = _crossing(k, v, place, pieces, planes)[j]
+                place = _crossing(k, v, place, pieces, planes)
+            for j in range(3):
+                pieces.vertices[v, j] = place[j]
+                piece.low[j], piece.high[j] = min(piece.low[j], place[j]), max(piece.high[j], place[j])
 
 
 @kernel

@@ -24,8 +24,6 @@ TILT_RAD = 1e-6
 """Faces of different pieces at this angle can be flush: Euler angles are often written with six decimals."""
 ALONG = np.array((0.4127, 0.5309, 0.7401))
 """A direction across which few places of ordinary parts lie: the sweep over places goes along it."""
-OWN_PLANES = -1.0
-"""An angle that no two faces make."""
 
 Rows = NDArray[np.void]
 IntArray = NDArray[np.int64]
@@ -59,13 +57,15 @@ def boundary_of(pieces: Sequence[ConvexPiece], touch_m: float) -> Boundary:
 def _of_apart(pieces: Sequence[ConvexPiece]) -> Boundary:
     """Return the boundary of pieces that are all apart: their own vertices, edges and faces."""
     rows = packed(pieces)
-    planes, _ = _planes_of(rows, 0.0, OWN_PLANES)
+    planes = np.zeros(len(rows.faces), dtype_of(Plane))
+    planes["normal"], planes["middle"] = rows.faces["normal"], rows.faces["middle"]
+    planes["offset"] = np.einsum("ij,ij->i", planes["normal"], planes["middle"])
+    rows.faces["plane"], rows.faces["side"] = np.arange(len(planes)), 1.0
     arcs = np.zeros(len(rows.edges), dtype_of(Arc))
     ends = np.stack([rows.edges["start"], rows.edges["end"]], axis=1)
     arcs["kind"], arcs["start"], arcs["end"] = CONVEX, *np.moveaxis(rows.vertices[ends], 1, 0)
     arcs["direction"] = unit_rows(arcs["end"] - arcs["start"])
     arcs["planes"] = np.stack([rows.edges["right"], rows.edges["left"]], axis=1)
-    arcs["planes"] = rows.faces["plane"][arcs["planes"]]
     arcs["normals"], arcs["sides"], arcs["is_border"] = planes["normal"][arcs["planes"]], 1.0, 1
     arcs["inward"] = np.cross(arcs["normals"], arcs["direction"][:, None]) * np.array((-1.0, 1.0))[:, None]
     arcs["parts"] = rows.pieces["part"][rows.faces["piece"][rows.edges["left"]]][:, None]
