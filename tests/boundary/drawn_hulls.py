@@ -39,7 +39,9 @@ def drawn_hull(rng: Rng, size_m: float = SIZE_M) -> Hull:
 def drawn_pieces(rng: Rng, n: int) -> list[ConvexPiece]:
     """Pieces of two parts that overlap at random."""
     poses = [Pose(0.7 * SIZE_M * rng.uniform(-1.0, 1.0, 3), rng.standard_normal(4)) for _ in range(n)]
-    return [piece_of_hull(drawn_hull(rng, SIZE_M * rng.uniform(0.4, 1.5)), pose, int(rng.integers(2))) for pose in poses]
+    return [
+        piece_of_hull(drawn_hull(rng, SIZE_M * rng.uniform(0.4, 1.5)), pose, int(rng.integers(2))) for pose in poses
+    ]
 
 
 def cut(hull: Hull, n_cuts: int, rng: Rng) -> list[Hull]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+
 from boundary.boundary_checks import faults_of_surface
 from boundary.drawn_hulls import SIZE_M, drawn_hull
 from boundary.same_features import differences
-
 from cagepose import Pose
 from cagepose.model.boundary.convex_pieces import piece_of_hull
 from cagepose.model.boundary.union import boundary_of

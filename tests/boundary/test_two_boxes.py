@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from boundary.boundary_checks import faces_at, faults_of_surface
 
+from boundary.boundary_checks import faces_at, faults_of_surface
 from cagepose import Box, Pose
 from cagepose.model.boundary.convex_pieces import piece_of_box
 from cagepose.model.boundary.trimmed import Boundary

@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+
 from boundary.boundary_checks import areas, faces_at, faults_of_surface, volume
 from boundary.box_grid import Box, cells_of, drawn_boxes, edges_of, n_regions, squares_of, vertices_of
-
-from cagepose import Pose
 from cagepose import Box as Block
+from cagepose import Pose
 from cagepose.model.boundary.convex_pieces import piece_of_box
 from cagepose.model.boundary.trimmed import Boundary
 from cagepose.model.boundary.union import boundary_of

@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
+
 from boundary.boundary_checks import faces_at, faults_of_surface
 from boundary.drawn_hulls import SIZE_M, cut, drawn_hull, drawn_pieces
 from boundary.same_features import differences
-from numpy.typing import NDArray
-
 from cagepose import Pose
 from cagepose.model.boundary.convex_pieces import ConvexPiece, piece_of_hull
 from cagepose.model.boundary.trimmed import Boundary

@@ -96,18 +96,18 @@ def _find_corner(
 
 @kernel
 def _is_near(piece: Piece, place: Vector, touch_m: float) -> bool:
+    is_near = True
     for k in range(3):
-        if not piece.low[k] - touch_m <= place[k] <= piece.high[k] + touch_m:
-            return False
-    return True
+        is_near = is_near and piece.low[k] - touch_m <= place[k] <= piece.high[k] + touch_m
+    return is_near
 
 
 @kernel
 def _holds(piece: Piece, place: Vector, touch_m: float, pieces: Pieces, planes: Rows[Plane]) -> bool:
+    is_held = True
     for f in range(piece.first_face, piece.last_face):
-        if height_over(pieces.faces[f], place, planes) > touch_m:
-            return False
-    return True
+        is_held = is_held and height_over(pieces.faces[f], place, planes) <= touch_m
+    return is_held
 
 
 @kernel
@@ -171,7 +171,7 @@ def _bounding(tangents: FloatArray, n_tangents: int, is_outer: NDArray[np.bool_]
 
 @kernel
 def _is_normal(normal: Vector, tangents: FloatArray, n_tangents: int) -> bool:
+    is_normal = True
     for t in range(n_tangents):
-        if dot(normal, row(tangents, t)) > WITHIN:
-            return False
-    return True
+        is_normal = is_normal and dot(normal, row(tangents, t)) <= WITHIN
+    return is_normal

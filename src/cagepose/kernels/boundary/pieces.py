@@ -153,11 +153,10 @@ def _is_on(face: PieceFace, plane: Plane, touch_m: float, tilt_rad: float, piece
 @kernel
 def _has_plane(k: int, plane: int, pieces: Pieces) -> bool:
     """Whether a face of piece ``k`` was found to lie on a plane."""
-    piece = pieces.pieces[k]
+    piece, has_plane = pieces.pieces[k], False
     for f in range(piece.first_face, piece.last_face):
-        if pieces.faces[f].plane == plane:
-            return True
-    return False
+        has_plane = has_plane or pieces.faces[f].plane == plane
+    return has_plane
 
 
 @kernel
@@ -183,7 +182,7 @@ def height_over(face: PieceFace, place: Vector, planes: Rows[Plane]) -> float:
 @kernel
 def are_within_reach(one: Piece, other: Piece, touch_m: float) -> bool:
     """Whether the bounds of two pieces meet, or nearly so."""
+    is_near = True
     for k in range(3):
-        if one.low[k] > other.high[k] + touch_m or other.low[k] > one.high[k] + touch_m:
-            return False
-    return True
+        is_near = is_near and one.low[k] <= other.high[k] + touch_m and other.low[k] <= one.high[k] + touch_m
+    return is_near

@@ -66,9 +66,8 @@ def packed(pieces: Sequence[ConvexPiece]) -> Pieces:
     rows["low"] = np.minimum.reduceat(vertices, first_vertex)
     rows["high"] = np.maximum.reduceat(vertices, first_vertex)
     edges = np.zeros(rows["last_edge"][-1], dtype_of(PieceEdge))
-    of_edges = np.concatenate(
-        [topology.edges + (v, v, f, f) for topology, v, f in zip(topologies, first_vertex, first_face, strict=True)]
-    )
+    shifts = np.stack([first_vertex, first_vertex, first_face, first_face], axis=1)
+    of_edges = np.concatenate([topology.edges + shift for topology, shift in zip(topologies, shifts, strict=True)])
     edges["start"], edges["end"], edges["left"], edges["right"] = of_edges.T
     corners = np.concatenate([topology.corners + v for topology, v in zip(topologies, first_vertex, strict=True)])
     return Pieces(rows, vertices, edges, _faces(pieces, topologies, vertices, corners), corners)
@@ -111,7 +110,7 @@ class _Topology:
 def _topology_of(hull: Hull) -> _Topology:
     left: dict[tuple[int, int], int] = {}
     for index, loop in enumerate(hull.faces):
-        left.update({side: index for side in zip(loop, (*loop[1:], loop[0]), strict=True)})
+        left.update(dict.fromkeys(zip(loop, (*loop[1:], loop[0]), strict=True), index))
     edges = [(start, end, left[start, end], left[end, start]) for start, end in hull.edges.tolist()]
     corners = [corner for loop in hull.faces for corner in loop]
     n_corners = [len(loop) for loop in hull.faces]

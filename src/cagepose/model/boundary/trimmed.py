@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from cagepose.model.checks import FloatArray
 
 IntArray = NDArray[np.int64]
+F = TypeVar("F", "Vertices", "Edges", "Faces")
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,8 +117,14 @@ def joined(boundaries: Sequence[Boundary]) -> Boundary:
         for planes in (boundary.edges.planes, boundary.faces.planes):
             planes += first_plane
         first_plane = int(boundary.faces.planes.max()) + 1
-    rows = [
-        kind(*[np.concatenate([getattr(getattr(each, name), field.name) for each in boundaries]) for field in fields(kind)])
-        for name, kind in (("vertices", Vertices), ("edges", Edges), ("faces", Faces))
-    ]
-    return Boundary(*rows, sum(boundary.n_open for boundary in boundaries))
+    return Boundary(
+        _one_behind_the_other([boundary.vertices for boundary in boundaries]),
+        _one_behind_the_other([boundary.edges for boundary in boundaries]),
+        _one_behind_the_other([boundary.faces for boundary in boundaries]),
+        sum(boundary.n_open for boundary in boundaries),
+    )
+
+
+def _one_behind_the_other(features: Sequence[F]) -> F:
+    names = [field.name for field in fields(features[0])]
+    return type(features[0])(*[np.concatenate([getattr(each, name) for each in features]) for name in names])
