@@ -14,7 +14,7 @@ from cagepose.kernels.boundary.first_meeting import Hit, Search, empty_queue, fi
 from cagepose.kernels.boundary.groups import number_groups
 from cagepose.kernels.boundary.meetings import Meetings, empty_meetings, find_meetings
 from cagepose.kernels.shapes.motion import Motion
-from cagepose.model.boundary import boundary_of
+from cagepose.model.boundary.features import boundary_of
 from cagepose.model.shapes import Shape
 from inner_kernels import as_machine_code
 

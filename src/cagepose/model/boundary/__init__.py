@@ -1,1 +1,1 @@
-"""The boundary of a union of convex pieces: vertices, convex edges and trimmed faces."""
+"""Bodies as boundaries: their features for kernels, and the boundary of a union of convex pieces."""
