@@ -28,7 +28,7 @@ class Asked:
     """An object and a cage, both in their own frames at first."""
 
     def __init__(self, held: Sequence[Shape], cage: Sequence[Shape], touch_m: float) -> None:
-        self.held, self.cage = empty_placed(boundary_of(held)), empty_placed(boundary_of(cage))
+        self.held, self.cage = empty_placed(boundary_of(held, touch_m)), empty_placed(boundary_of(cage, touch_m))
         self.moved, self.queue = empty_placed(self.held.own), empty_queue()
         self.found = empty_meetings(max(len(self.held.own.features), len(self.cage.own.features)))
         self.touch_m = touch_m

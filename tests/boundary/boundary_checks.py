@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.boundary.inside import is_in_face
-from cagepose.model.boundary.trimmed import Boundary
+from cagepose.model.boundary.trimmed import TrimmedUnion
 
 FloatArray = NDArray[np.float64]
 
 
-def areas(boundary: Boundary) -> FloatArray:
+def areas(boundary: TrimmedUnion) -> FloatArray:
     """Area of each face, (n,), by Stokes: of all its loops."""
     faces, last = boundary.faces, np.cumsum(boundary.faces.n_borders)
     arms = faces.borders["start"] - np.repeat(faces.borders["start"][last - faces.n_borders], faces.n_borders, axis=0)
@@ -20,12 +20,12 @@ def areas(boundary: Boundary) -> FloatArray:
     return np.add.reduceat(np.einsum("ij,ij->i", np.cross(arms, beyond), normals) / 2.0, last - faces.n_borders)
 
 
-def volume(boundary: Boundary) -> float:
+def volume(boundary: TrimmedUnion) -> float:
     """By Gauss, of the distances of all faces from the origin."""
     return float(areas(boundary) @ boundary.faces.offsets_m) / 3.0
 
 
-def faces_at(boundary: Boundary, place: FloatArray, normal: FloatArray, tolerance_m: float) -> list[int]:
+def faces_at(boundary: TrimmedUnion, place: FloatArray, normal: FloatArray, tolerance_m: float) -> list[int]:
     """Return the faces with this outward normal that a place on their plane lies in."""
     faces, last = boundary.faces, np.cumsum(boundary.faces.n_borders)
     near = (faces.normals @ normal > 1.0 - 1e-9) & (np.abs(faces.normals @ place - faces.offsets_m) <= tolerance_m)
@@ -38,7 +38,7 @@ def faces_at(boundary: Boundary, place: FloatArray, normal: FloatArray, toleranc
     return found
 
 
-def faults_of_surface(boundary: Boundary, tolerance_m: float) -> list[str]:
+def faults_of_surface(boundary: TrimmedUnion, tolerance_m: float) -> list[str]:
     """Say where a boundary is not closed, or its rows do not fit each other."""
     faces, edges, vertices = boundary.faces, boundary.edges, boundary.vertices
     faults = [f"{boundary.n_open} open borders"] if boundary.n_open else []

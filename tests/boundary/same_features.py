@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.model.boundary.trimmed import Boundary
+from cagepose.model.boundary.trimmed import TrimmedUnion
 
 FloatArray = NDArray[np.float64]
 ANGLE = 1e-7
 
 
-def differences(one: Boundary, other: Boundary, tolerance_m: float) -> list[str]:
+def differences(one: TrimmedUnion, other: TrimmedUnion, tolerance_m: float) -> list[str]:
     faults = []
     pairs = [
         ("vertices", _vertices(one), _vertices(other)),
@@ -35,14 +35,14 @@ def _scale(name: str, n: int, tolerance_m: float) -> FloatArray:
     return np.array([tolerance_m] * n_lengths + [ANGLE] * (n - n_lengths))
 
 
-def _vertices(boundary: Boundary) -> FloatArray:
+def _vertices(boundary: TrimmedUnion) -> FloatArray:
     """Place and part with each of the tangents of a vertex, that one after the other."""
     vertices = boundary.vertices
     places = np.repeat(vertices.places_m, vertices.n_tangents, axis=0)
     return np.hstack([places, vertices.tangents, np.repeat(vertices.parts, vertices.n_tangents)[:, None]])
 
 
-def _edges(boundary: Boundary, *, is_swapped: bool = False) -> FloatArray:
+def _edges(boundary: TrimmedUnion, *, is_swapped: bool = False) -> FloatArray:
     edges = boundary.edges
     ends = [edges.starts_m, edges.ends_m]
     sides = np.concatenate([edges.normals, edges.parts[..., None]], axis=2)
@@ -51,12 +51,12 @@ def _edges(boundary: Boundary, *, is_swapped: bool = False) -> FloatArray:
     return np.hstack([*ends, sides.reshape(len(sides), -1)])
 
 
-def _faces(boundary: Boundary) -> FloatArray:
+def _faces(boundary: TrimmedUnion) -> FloatArray:
     faces = boundary.faces
     return np.column_stack([faces.offsets_m, faces.normals, faces.parts, faces.is_convex, faces.n_borders])
 
 
-def _borders(boundary: Boundary) -> FloatArray:
+def _borders(boundary: TrimmedUnion) -> FloatArray:
     faces = boundary.faces
     of_face = np.column_stack([faces.normals, faces.parts])
     borders = faces.borders

@@ -11,7 +11,7 @@ from boundary.drawn_hulls import SIZE_M, drawn_hull
 from boundary.same_features import differences
 from cagepose import Pose
 from cagepose.model.boundary.convex_pieces import piece_of_hull
-from cagepose.model.boundary.union import boundary_of
+from cagepose.model.boundary.union import union_of
 
 TOUCH_M = 1e-9 * SIZE_M
 Cases = Callable[[int, int], int]
@@ -20,7 +20,7 @@ Cases = Callable[[int, int], int]
 def test_a_lone_hull_keeps_each_digit_of_its_vertices_edges_and_faces(cases: Cases) -> None:
     for case in range(cases(200, 4000)):
         hull = drawn_hull(np.random.default_rng((case, 3)))
-        found = boundary_of([piece_of_hull(hull, Pose(), 0)], TOUCH_M)
+        found = union_of([piece_of_hull(hull, Pose(), 0)], TOUCH_M)
         assert not faults_of_surface(found, TOUCH_M)
         assert (found.vertices.places_m == hull.vertices_m).all()
         assert found.vertices.n_tangents.tolist() == np.bincount(hull.edges.ravel()).tolist()
@@ -35,6 +35,6 @@ def test_a_hull_twice_at_one_place_is_that_hull(cases: Cases) -> None:
     for case in range(cases(200, 4000)):
         hull = drawn_hull(np.random.default_rng((case, 4)))
         piece = piece_of_hull(hull, Pose(), 0)
-        lone, twice = boundary_of([piece], TOUCH_M), boundary_of([piece, piece], TOUCH_M)
+        lone, twice = union_of([piece], TOUCH_M), union_of([piece, piece], TOUCH_M)
         assert not faults_of_surface(twice, TOUCH_M), case
         assert not differences(lone, twice, 1e-9 * SIZE_M), case

@@ -8,23 +8,23 @@ import pytest
 from boundary.boundary_checks import faces_at, faults_of_surface
 from cagepose import Box, Pose
 from cagepose.model.boundary.convex_pieces import piece_of_box
-from cagepose.model.boundary.trimmed import Boundary
-from cagepose.model.boundary.union import boundary_of
+from cagepose.model.boundary.trimmed import TrimmedUnion
+from cagepose.model.boundary.union import union_of
 
 TOUCH_M = 1e-9
 SHIFTS_M = (0.0, 1e-14, -1e-14, 1e-12, -1e-12, 3e-10, -3e-10)
 
 
-def _boundary(*boxes: tuple[tuple[float, ...], tuple[float, ...]], parts: tuple[int, ...] | None = None) -> Boundary:
+def _union(*boxes: tuple[tuple[float, ...], tuple[float, ...]], parts: tuple[int, ...] | None = None) -> TrimmedUnion:
     """Of boxes from one corner to the opposite one, of one part or of the parts given."""
     blocks = [Box(np.subtract(high, low), Pose(np.add(low, high) / 2.0)) for low, high in boxes]
     owners = parts or (0,) * len(blocks)
-    found = boundary_of([piece_of_box(block, part) for block, part in zip(blocks, owners, strict=True)], TOUCH_M)
+    found = union_of([piece_of_box(block, part) for block, part in zip(blocks, owners, strict=True)], TOUCH_M)
     assert not faults_of_surface(found, TOUCH_M)
     return found
 
 
-def _counts(boundary: Boundary) -> tuple[int, int, int]:
+def _counts(boundary: TrimmedUnion) -> tuple[int, int, int]:
     return len(boundary.vertices.places_m), len(boundary.edges.starts_m), len(boundary.faces.normals)
 
 
@@ -33,18 +33,18 @@ UNIT = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
 
 @pytest.mark.parametrize("shift", SHIFTS_M)
 def test_flush_boxes_of_one_size_are_one_box(shift: float) -> None:
-    assert _counts(_boundary(UNIT, ((1.0 + shift, shift, -shift), (2.0, 1.0, 1.0)))) == (8, 12, 6)
+    assert _counts(_union(UNIT, ((1.0 + shift, shift, -shift), (2.0, 1.0, 1.0)))) == (8, 12, 6)
 
 
 @pytest.mark.parametrize("shift", SHIFTS_M)
 def test_a_box_inside_another_is_no_feature(shift: float) -> None:
     for low in (0.25, shift):  # clear of the faces, and with three faces on them
-        assert _counts(_boundary(UNIT, ((low,) * 3, (0.75,) * 3))) == (8, 12, 6)
+        assert _counts(_union(UNIT, ((low,) * 3, (0.75,) * 3))) == (8, 12, 6)
 
 
 @pytest.mark.parametrize("shift", SHIFTS_M)
 def test_boxes_that_share_an_edge_have_two_edges_there(shift: float) -> None:
-    found = _boundary(UNIT, ((1.0 + shift, 1.0, 0.0), (2.0, 2.0, 1.0)))
+    found = _union(UNIT, ((1.0 + shift, 1.0, 0.0), (2.0, 2.0, 1.0)))
     vertical = np.abs(found.edges.directions[:, 2]) > 0.5
     at_line = np.abs(found.edges.starts_m[:, :2] - 1.0).max(axis=1) < TOUCH_M
     assert np.count_nonzero(vertical & at_line) == 2
@@ -54,13 +54,13 @@ def test_boxes_that_share_an_edge_have_two_edges_there(shift: float) -> None:
 
 @pytest.mark.parametrize("shift", SHIFTS_M)
 def test_boxes_that_share_a_vertex_have_none_there(shift: float) -> None:
-    found = _boundary(UNIT, ((1.0 + shift, 1.0, 1.0), (2.0, 2.0, 2.0)))
+    found = _union(UNIT, ((1.0 + shift, 1.0, 1.0), (2.0, 2.0, 2.0)))
     assert _counts(found) == (14, 24, 12)
 
 
 @pytest.mark.parametrize("shift", SHIFTS_M)
 def test_a_flush_box_on_the_middle_of_edges_leaves_their_ends(shift: float) -> None:
-    found = _boundary(UNIT, ((1.0 + shift, 0.25, 0.0), (2.0, 0.75, 1.0)))
+    found = _union(UNIT, ((1.0 + shift, 0.25, 0.0), (2.0, 0.75, 1.0)))
     n_of_length = {1.0: 4 + 4 + 2 + 4 + 2, 0.25: 4, 0.5: 2}
     assert _counts(found) == (12, sum(n_of_length.values()), 5 + 2 + 1 + 2)
     lengths = np.linalg.norm(found.edges.ends_m - found.edges.starts_m, axis=1).round(6)
@@ -70,7 +70,7 @@ def test_a_flush_box_on_the_middle_of_edges_leaves_their_ends(shift: float) -> N
 
 
 def test_each_part_keeps_its_own_region_of_a_flush_face() -> None:
-    found = _boundary(UNIT, ((1.0, 0.0, 0.0), (3.0, 1.0, 1.0)), parts=(7, 2))
+    found = _union(UNIT, ((1.0, 0.0, 0.0), (3.0, 1.0, 1.0)), parts=(7, 2))
     up = found.faces.normals[:, 2] > 0.5
     assert sorted(found.faces.parts[up]) == [2, 7]
     assert len({*found.faces.planes[up].tolist()}) == 1
@@ -83,14 +83,14 @@ def test_each_part_keeps_its_own_region_of_a_flush_face() -> None:
 
 
 def test_where_two_parts_have_a_face_in_common_it_is_the_first_ones() -> None:
-    found = _boundary(((0.0, 0.0, 0.0), (2.0, 1.0, 1.0)), ((1.0, 0.0, 0.0), (3.0, 1.0, 1.0)), parts=(1, 0))
+    found = _union(((0.0, 0.0, 0.0), (2.0, 1.0, 1.0)), ((1.0, 0.0, 0.0), (3.0, 1.0, 1.0)), parts=(1, 0))
     for x, part in ((0.5, 1), (1.5, 0), (2.5, 0)):
         (face,) = faces_at(found, np.array((x, 0.5, 1.0)), np.array((0.0, 0.0, 1.0)), TOUCH_M)
         assert found.faces.parts[face] == part
 
 
 def test_a_face_with_a_block_on_it_has_an_inner_loop_and_is_not_convex() -> None:
-    found = _boundary(UNIT, ((0.25, 0.25, 0.5), (0.75, 0.75, 2.0)))
+    found = _union(UNIT, ((0.25, 0.25, 0.5), (0.75, 0.75, 2.0)))
     top = found.faces.normals[:, 2] > 0.5
     assert sorted(found.faces.n_borders[top].tolist()) == [4, 8]
     assert found.faces.is_convex[top].tolist() == [n == 4 for n in found.faces.n_borders[top].tolist()]
@@ -103,6 +103,6 @@ def test_a_face_with_a_block_on_it_has_an_inner_loop_and_is_not_convex() -> None
 def test_boxes_turned_by_the_rounding_of_an_angle_are_flush(tilt: float) -> None:
     pose = Pose((1.5, 0.5, 0.5), euler_zyx=(tilt, -tilt, tilt / 2.0))
     pieces = [piece_of_box(Box((1.0, 1.0, 1.0), at), 0) for at in (Pose((0.5, 0.5, 0.5)), pose)]
-    found = boundary_of(pieces, TOUCH_M)
+    found = union_of(pieces, TOUCH_M)
     assert not faults_of_surface(found, TOUCH_M)
     assert _counts(found) == (8, 12, 6)

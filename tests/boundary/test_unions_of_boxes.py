@@ -12,8 +12,8 @@ from boundary.box_grid import Box, cells_of, drawn_boxes, edges_of, n_regions, s
 from cagepose import Box as Block
 from cagepose import Pose
 from cagepose.model.boundary.convex_pieces import piece_of_box
-from cagepose.model.boundary.trimmed import Boundary
-from cagepose.model.boundary.union import boundary_of
+from cagepose.model.boundary.trimmed import TrimmedUnion
+from cagepose.model.boundary.union import union_of
 from cagepose.model.volume import union_moments
 
 CELL_M = 0.0137
@@ -53,7 +53,7 @@ def _axes(vectors: np.ndarray, turn: Pose) -> list[tuple[int, ...]]:
     return [tuple(vector) for vector in np.round(along).astype(int).tolist()]
 
 
-def _edges(boundary: Boundary, turn: Pose, slack_m: float) -> list[tuple[tuple[int, ...], ...]]:
+def _edges(boundary: TrimmedUnion, turn: Pose, slack_m: float) -> list[tuple[tuple[int, ...], ...]]:
     edges = boundary.edges
     starts, ends = _on_grid(edges.starts_m, turn, slack_m), _on_grid(edges.ends_m, turn, slack_m)
     first, second = (_axes(edges.normals[:, k], turn) for k in (0, 1))
@@ -63,7 +63,7 @@ def _edges(boundary: Boundary, turn: Pose, slack_m: float) -> list[tuple[tuple[i
     ]
 
 
-def _wrong(boundary: Boundary, boxes: list[Box], blocks: list[Block], turn: Pose, slack_m: float) -> list[str]:
+def _wrong(boundary: TrimmedUnion, boxes: list[Box], blocks: list[Block], turn: Pose, slack_m: float) -> list[str]:
     """What differs from the grid of cells."""
     cells, faults = cells_of(boxes), faults_of_surface(boundary, TOUCH_M)
     found = _edges(boundary, turn, slack_m)
@@ -102,5 +102,5 @@ def test_a_union_of_boxes_is_what_a_grid_of_cells_says(kind: str, cases: Cases) 
         boxes = drawn_boxes(rng, int(rng.integers(least, greatest)), size)
         turn = Pose((0.0, 0.0, 0.0), rng.standard_normal(4)) if is_turned else Pose()
         blocks = _blocks(rng, boxes, turn, shift_m)
-        boundary = boundary_of([piece_of_box(block, 0) for block in blocks], TOUCH_M)
+        boundary = union_of([piece_of_box(block, 0) for block in blocks], TOUCH_M)
         assert not _wrong(boundary, boxes, blocks, turn, 1e-15 + 1e-15 * bool(is_turned) + 20 * shift_m), case

@@ -13,8 +13,8 @@ from boundary.drawn_hulls import SIZE_M, cut, drawn_hull, drawn_pieces
 from boundary.same_features import differences
 from cagepose import Pose
 from cagepose.model.boundary.convex_pieces import ConvexPiece, piece_of_hull
-from cagepose.model.boundary.trimmed import Boundary
-from cagepose.model.boundary.union import boundary_of
+from cagepose.model.boundary.trimmed import TrimmedUnion
+from cagepose.model.boundary.union import union_of
 
 FloatArray = NDArray[np.float64]
 Cases = Callable[[int, int], int]
@@ -51,7 +51,7 @@ def test_a_place_on_a_piece_is_in_a_face_if_the_place_before_it_is_outside_of_al
     for case in range(cases(200, 3000)):
         rng = np.random.default_rng((case, 5))
         pieces = KINDS[kind](rng)
-        boundary = boundary_of(pieces, TOUCH_M)
+        boundary = union_of(pieces, TOUCH_M)
         assert not faults_of_surface(boundary, TOUCH_M), case
         for piece in pieces:
             for face, normal in zip(piece.hull.faces, piece.normals, strict=True):
@@ -70,7 +70,7 @@ def test_convex_edges_are_where_less_than_half_a_ring_around_them_is_inside(kind
     for case in range(cases(200, 3000)):
         rng = np.random.default_rng((case, 6))
         pieces = KINDS[kind](rng)
-        boundary = boundary_of(pieces, TOUCH_M)
+        boundary = union_of(pieces, TOUCH_M)
         edges = boundary.edges
         lines = [(piece.vertices_m[a], piece.vertices_m[b]) for piece in pieces for a, b in piece.hull.edges]
         for start, end in [*lines, *zip(edges.starts_m, edges.ends_m, strict=True)]:
@@ -99,7 +99,7 @@ def _edges_around(pieces: list[ConvexPiece], place: FloatArray, along: FloatArra
     return sum(width < N_AROUND / 2 for width in widths)
 
 
-def _edges_at(boundary: Boundary, place: FloatArray) -> list[int]:
+def _edges_at(boundary: TrimmedUnion, place: FloatArray) -> list[int]:
     edges = boundary.edges
     arms = place - edges.starts_m
     along = np.einsum("ij,ij->i", arms, edges.directions)
@@ -113,6 +113,6 @@ def test_the_order_of_pieces_changes_no_feature(kind: str, cases: Cases) -> None
     for case in range(cases(200, 3000)):
         rng = np.random.default_rng((case, 7))
         pieces = KINDS[kind](rng)
-        one = boundary_of(pieces, TOUCH_M)
-        other = boundary_of([pieces[k] for k in rng.permutation(len(pieces))], TOUCH_M)
+        one = union_of(pieces, TOUCH_M)
+        other = union_of([pieces[k] for k in rng.permutation(len(pieces))], TOUCH_M)
         assert not differences(one, other, 1e-9 * SIZE_M), case

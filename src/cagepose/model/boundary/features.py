@@ -18,12 +18,16 @@ from cagepose.kernels.boundary.features import (
     INSIDE,
     LINE,
     OUTSIDE,
+    SEGMENT,
     VERTEX,
     Bound,
     Boundary,
     Feature,
 )
 from cagepose.kernels.boundary.tree import EDGES, FACES, VERTICES, Node
+from cagepose.model.boundary.convex_pieces import ConvexPiece, piece_of_box, piece_of_hull
+from cagepose.model.boundary.trimmed import TrimmedUnion
+from cagepose.model.boundary.union import union_of
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.hole import Hole
@@ -34,6 +38,8 @@ from cagepose.model.shapes import Convex, Disc, Rounded, Shape, Turned
 LEAF, FACES_IN_LEAF = 4, 32
 """Features in a leaf of a tree, at most; of faces more, as a vertex is asked about several of them at once."""
 NOWHERE = np.zeros(3)
+RAY = np.array((0.4127, 0.5309, 0.7401))
+"""A direction that few borders of ordinary parts lie along: rays of crossing parity do."""
 AROUND = 50.0
 """A hole that stands alone is one in a square plate: so many times its own size to each side."""
 
@@ -58,27 +64,104 @@ class _Row(NamedTuple):
     box: FloatArray
 
 
-def boundary_of(parts: Iterable[Shape | FloatArray]) -> Boundary:
-    """Return the boundary of a body in its frame; a single point (3,) is a part, too."""
+def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary:
+    """Return the boundary of a body in its frame; a single point (3,) is a part, too.
+
+    Of polyhedra it is that of their union: what lies inside another one is no feature, and a seam between flush faces
+    is no edge. Round parts and holes have their features, whatever other parts cover them.
+
+    Parameters
+    ----------
+    parts
+        Those of the body.
+    touch_m
+        What is this close is at one place, metres.
+    """
     every = list(parts)
     solids = [part for part in every if isinstance(part, Shape) and not isinstance(part, Hole)]
-    rows = list[_Row]()
+    rows, pieces = list[_Row](), list[ConvexPiece]()
     for number, part in enumerate(every):
         if isinstance(part, Hole):
             within = [solid for solid in solids if solid.name in part.in_]
             rows += _hole_rows(part, within, number)
             if not within:
                 rows += [_pierced(row, part) for row in _rows_of(_plate_of(part), number)]
-            continue
-        made = _rows_of(part, number)
-        for hole in every:
-            if isinstance(hole, Hole) and isinstance(part, Shape) and part.name in hole.in_:
-                made = [_pierced(row, hole) for row in made]
-        rows += made
+        elif (piece := _piece_of(part, number)) is not None:
+            pieces.append(piece)
+        else:
+            rows += _rows_of(part, number)
+    if pieces:
+        rows += _union_rows(union_of(pieces, touch_m))
+    names = [part.name if isinstance(part, Shape) else None for part in every]
+    for hole in (part for part in every if isinstance(part, Hole)):
+        rows = [_pierced(row, hole) if names[row.part] in hole.in_ else row for row in rows]
     trees: list[list[_Row]] = [[], [], []]
     for row in rows:
         trees[VERTICES if row.kind == VERTEX else FACES if row.kind == FACE else EDGES].append(row)
     return _packed(trees)
+
+
+def _piece_of(part: Shape | FloatArray, number: int) -> ConvexPiece | None:
+    """Return a sharp polyhedron as a piece of a union; None: the part is none."""
+    if isinstance(part, Box):
+        return piece_of_box(part, number)
+    if isinstance(part, Convex) and part.radius_m == 0.0 and len(part.hull.faces) > 3:
+        return piece_of_hull(part.hull, part.pose_body_shape, number)
+    return None
+
+
+def _union_rows(union: TrimmedUnion) -> list[_Row]:
+    """Return the features of a union of polyhedra."""
+    edges, vertices, faces = union.edges, union.vertices, union.faces
+    lengths = np.linalg.norm(edges.ends_m - edges.starts_m, axis=1)
+    rows = []
+    last, ends_at = np.cumsum(vertices.n_tangents), np.stack([edges.starts_m, edges.ends_m])
+    for index, place in enumerate(vertices.places_m):
+        part, end = int(vertices.parts[index]), int(last[index])
+        away = vertices.tangents[end - vertices.n_tangents[index] : end]
+        spaces = [(HALF_SPACE, tangent, NOWHERE, 0.0) for tangent in away]
+        at_place = np.abs(ends_at - place).max(axis=2).min(axis=0)
+        least = float(lengths[at_place <= 1e-9 * lengths].min(initial=np.inf))
+        rows.append(_row(VERTEX, part, place, NOWHERE, NOWHERE, 0.0, spaces, least, place[None]))
+    for index, (one, other) in enumerate(edges.normals):
+        cosine = one @ other
+        into = unit_rows(np.array([cosine * one - other, cosine * other - one]))
+        spaces = [(HALF_SPACE, direction, NOWHERE, 0.0) for direction in into]
+        corners, length = np.stack([edges.starts_m[index], edges.ends_m[index]]), float(lengths[index])
+        part = int(edges.parts[index, 0])
+        rows.append(_row(LINE, part, corners[0], edges.directions[index], NOWHERE, length, spaces, length, corners))
+    last = np.cumsum(faces.n_borders)
+    for index, (normal, part, end) in enumerate(zip(faces.normals, faces.parts.tolist(), last, strict=True)):
+        borders = faces.borders[end - faces.n_borders[index] : end]
+        starts, ends = borders["start"] - borders["start"].mean(axis=0), borders["end"] - borders["start"].mean(axis=0)
+        if faces.is_convex[index]:
+            heights = -(borders["inward"] * starts).sum(axis=1)
+            across = zip(-borders["inward"], heights.tolist(), strict=True)
+            bounds = [(HALF_SPACE, outward, NOWHERE, height) for outward, height in across]
+        else:
+            bounds = [(SEGMENT, start, ending, 0.0) for start, ending in zip(starts, ends, strict=True)]
+        least, middle = float(np.linalg.norm(ends - starts, axis=1).min()), borders["start"].mean(axis=0)
+        middle = middle + (faces.offsets_m[index] - normal @ middle) * normal
+        ray = unit_rows(np.cross(normal, RAY)[None])[0]
+        rows.append(_row(FACE, part, middle, normal, ray, 0.0, bounds, least, borders["start"]))
+    return rows
+
+
+def _row(
+    kind: int,
+    part: int,
+    point: FloatArray,
+    direction: FloatArray,
+    toward: FloatArray,
+    length: float,
+    bounds: list[tuple[int, FloatArray, FloatArray, float]],
+    least: float,
+    corners: FloatArray,
+) -> _Row:
+    """Return a sharp straight feature."""
+    box = np.stack([corners.min(axis=0), corners.max(axis=0)])
+    numbers = (length, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return _Row(kind, part, point, direction, toward, *numbers, bounds, least, box)
 
 
 def _rows_of(part: Shape | FloatArray, number: int) -> list[_Row]:

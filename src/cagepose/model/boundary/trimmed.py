@@ -1,4 +1,4 @@
-"""The boundary of a body: convex vertices, convex edges and trimmed faces."""
+"""The boundary of a union: convex vertices, convex edges and trimmed faces."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class Faces:
 
 
 @dataclass(frozen=True, eq=False)
-class Boundary:
+class TrimmedUnion:
     """The boundary of a body in its frame.
 
     Attributes
@@ -108,7 +108,7 @@ class Boundary:
     n_open: int
 
 
-def joined(boundaries: Sequence[Boundary]) -> Boundary:
+def joined(boundaries: Sequence[TrimmedUnion]) -> TrimmedUnion:
     """Return the boundaries of groups of parts that are apart as one."""
     if len(boundaries) == 1:
         return boundaries[0]
@@ -117,7 +117,7 @@ def joined(boundaries: Sequence[Boundary]) -> Boundary:
         for planes in (boundary.edges.planes, boundary.faces.planes):
             planes += first_plane
         first_plane = int(boundary.faces.planes.max()) + 1
-    return Boundary(
+    return TrimmedUnion(
         _one_behind_the_other([boundary.vertices for boundary in boundaries]),
         _one_behind_the_other([boundary.edges for boundary in boundaries]),
         _one_behind_the_other([boundary.faces for boundary in boundaries]),

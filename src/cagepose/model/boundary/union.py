@@ -18,7 +18,7 @@ from cagepose.kernels.boundary.places import find_groups, merge_places, settle_v
 from cagepose.model.boundary.convex_pieces import ConvexPiece, packed
 from cagepose.model.boundary.corners import vertices_of
 from cagepose.model.boundary.regions import faces_of
-from cagepose.model.boundary.trimmed import Boundary, Edges, joined
+from cagepose.model.boundary.trimmed import Edges, TrimmedUnion, joined
 from cagepose.model.checks import FloatArray, unit_rows
 
 TILT_RAD = 1e-6
@@ -34,7 +34,7 @@ Rows = NDArray[np.void]
 IntArray = NDArray[np.int64]
 
 
-def boundary_of(pieces: Sequence[ConvexPiece], touch_m: float) -> Boundary:
+def union_of(pieces: Sequence[ConvexPiece], touch_m: float) -> TrimmedUnion:
     """Return the boundary of a union of pieces.
 
     Parameters
@@ -59,7 +59,7 @@ def boundary_of(pieces: Sequence[ConvexPiece], touch_m: float) -> Boundary:
     return joined(found)
 
 
-def _of_apart(pieces: Sequence[ConvexPiece]) -> Boundary:
+def _of_apart(pieces: Sequence[ConvexPiece]) -> TrimmedUnion:
     """Return the boundary of pieces that are all apart: their own vertices, edges and faces."""
     rows: Any = packed(pieces)
     planes = np.zeros(len(rows.faces), dtype_of(Plane))
@@ -77,7 +77,7 @@ def _of_apart(pieces: Sequence[ConvexPiece]) -> Boundary:
     return _boundary(rows, planes, arcs, ends, np.arange(len(rows.vertices)), 0.0)
 
 
-def _of_group(pieces: Sequence[ConvexPiece], touch_m: float) -> Boundary:
+def _of_group(pieces: Sequence[ConvexPiece], touch_m: float) -> TrimmedUnion:
     """Return the boundary of pieces that may meet."""
     rows = packed(pieces)
     planes, n_planes = _planes_of(rows, touch_m, TILT_RAD)
@@ -92,13 +92,13 @@ def _of_group(pieces: Sequence[ConvexPiece], touch_m: float) -> Boundary:
     return _boundary(rows, planes, arcs[is_long], ends[is_long], nodes[:n_vertices], touch_m)
 
 
-def _boundary(rows: Pieces, planes: Rows, arcs: Rows, ends: IntArray, nodes: IntArray, touch_m: float) -> Boundary:
+def _boundary(rows: Pieces, planes: Rows, arcs: Rows, ends: IntArray, nodes: IntArray, touch_m: float) -> TrimmedUnion:
     convex = arcs[arcs["kind"] == CONVEX]
     oriented = 2 * convex["planes"] + (convex["sides"] < 0.0)
     of_sides = [rows_of_sides[:, ::-1] for rows_of_sides in (convex["normals"], oriented, convex["parts"])]
     edges = Edges(convex["start"], convex["end"], convex["direction"], *of_sides)
     faces, n_open = faces_of(planes, arcs, ends)
-    return Boundary(vertices_of(rows, planes, nodes, touch_m), edges, faces, n_open)
+    return TrimmedUnion(vertices_of(rows, planes, nodes, touch_m), edges, faces, n_open)
 
 
 def _planes_of(rows: Any, touch_m: float, tilt_rad: float) -> tuple[Rows, int]:
