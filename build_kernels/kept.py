@@ -83,6 +83,9 @@ class KeptKernel(NamedTuple):
 
 def file_of(function: Callable[..., Any], signature: Any) -> Path:
     """Return the file for a kernel with arguments of the types of a signature, whether there is one or not."""
+    if function.__closure__:
+        name, free = f"{function.__module__}.{function.__qualname__}", ", ".join(function.__code__.co_freevars)
+        raise TypeError(f"{name}: a build cannot tell whether {free} of the function around it has changed; pass it on")
     takes, _ = sigutils.normalize_signature(signature)
     content = digest_of(*_content(function.__code__, function), *[described(kind) for kind in takes])
     return folder() / f"{function.__module__}.{function.__qualname__}.{content}"

@@ -115,6 +115,15 @@ def test_a_change_compiles_what_it_changes(built, tmp_path, old, new, answer, co
         assert build(tmp_path, changed) == (answer, set())
 
 
+def test_a_kernel_that_takes_a_value_of_a_function_around_it_is_refused(tmp_path):
+    """Its code says no more than the value's name, so that a change would go unseen."""
+    head, _, kernel = CALLEE.partition("@kernel")
+    made = ("@kernel" + kernel.replace("FACTOR * x", "factor * x")).strip().replace("\n", "\n    ")
+    text = f"{head}def made(factor):\n    {made}\n    return pair\n\npair = made(2.0)\n"
+    with pytest.raises(AssertionError, match=r"pair: a build cannot tell whether factor of the function around it has"):
+        build(tmp_path, text)
+
+
 def test_a_thing_that_a_build_cannot_see_through_is_refused(tmp_path):
     """A function that is no kernel would be inlined by Numba, or fail; its changes would go unseen."""
     text = CALLEE.replace("@kernel", "LIST = [1.0]\n\n@kernel").replace("FACTOR * x", "LIST[0] * x")
