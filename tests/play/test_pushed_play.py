@@ -83,6 +83,21 @@ def test_closing_a_gap_of_a_roller_brings_the_end_back_as_said():
     assert (before.exact - after.exact) / by == pytest.approx(worth.closing, rel=1e-4)
 
 
+def test_two_holes_that_end_one_way_are_each_worth_all_of_it_closed_and_nothing_opened():
+    """A plate on two bolts with 0.3 mm: either bolt moved by d inwards brings the end back by d. It tilts by 2e-6 rad
+    in 0.01 mm of height, so that the push has arms of 5e-8 m about both, which shared it by 0.42 and 0.58."""
+    plate = Box(np.array([60, 20, 4]) * MM, Pose(np.array([0, 0, 2]) * MM), "plate")
+    holes = [Hole(3.3 * MM, 4 * MM, pose_body_shape=Pose(np.array([x, 0, 4]) * MM), in_=["plate"]) for x in (-20, 20)]
+    sheets = [Box(np.array([100, 60, 10]) * MM, Pose(np.array([0, 0, z]) * MM)) for z in (-5, 9.01)]
+    bolts = [Cylinder(3 * MM, 20 * MM, Pose(np.array([x, 0, 2]) * MM)) for x in (-20, 20)]
+    scene = Scene(Object(shapes=[plate, *holes]), Cage(shapes=[*sheets, *bolts]), DOWN)
+    ends = play(scene, search_s=0.0).freedoms["x"]
+    for end in (ends.low, ends.high):
+        assert [end.reached, len(end.clearances)] == pytest.approx([math.copysign(0.3 * MM, end.reached), 2])
+        for clearance in end.clearances:
+            assert (clearance.closing, clearance.opening) == pytest.approx((1.0, 0.0), abs=0.01)
+
+
 def test_a_ball_amid_six_balls_goes_between_three_of_them_and_turns_for_ever():
     """A ball of 10 mm amid balls of 5 mm that are 0.2 mm away. By hand, it goes farthest along x where it touches
     three, at (x, x, x) with 3 x^2 - 2 d x + d^2 - 15^2 = 0, d = 15.2; on top of one of them it comes to 0.2 alone."""

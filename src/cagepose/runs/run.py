@@ -41,7 +41,8 @@ class Motion:
     Attributes
     ----------
     kind
-        "travel" (no angle), "turn" (no distance along the axis) or "screw".
+        "travel" (no angle), "turn" (no distance along the axis, however far off that is: a long slide that tips by a
+        little is one; tables and pictures tell it as it looks) or "screw".
     distance_m, angle_rad
         How far; a travel that meets nothing has an infinite distance (the object escapes).
     direction_world

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cagepose.kernels.algebra.record import empty_rows
-from cagepose.kernels.play.clearances import LimitingGap, find_limiting_gaps
+from cagepose.kernels.algebra.linear_program import N_UNKNOWNS, OPTIMAL, Program, solve_program
+from cagepose.kernels.algebra.record import empty_record, empty_rows
+from cagepose.kernels.play.clearances import REACH_OF_PROGRAM, LimitingGap, find_limiting_gaps
 from cagepose.kernels.play.extreme import Extreme
 from cagepose.kernels.play.goal import SHIFT, Goal
 from cagepose.kernels.play.polytope import empty_play_workspace
@@ -15,7 +16,7 @@ from cagepose.kernels.play.tolerances import LEAST_PRICE
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.studies.contact_cones import ConeProgram, contact_cones, greatest_normal_force, least_normal_force
+from cagepose.studies.contact_cones import contact_cones
 from cagepose.studies.play_frame import PlayFrame
 
 
@@ -82,17 +83,30 @@ def pressed_clearances(scene: Scene, pose: Pose, contacts: np.ndarray, push: Flo
         contacts["place"] - pose.transform(scene.object.center_of_gravity_m),
         np.zeros(len(contacts)),
     )
-    load = -push / np.repeat([1.0, cones.length_m], 3)
+    load = push / np.repeat([1.0, cones.length_m], 3)
     size = float(np.linalg.norm(load))
-    program, counts = ConeProgram(cones, 0.0), np.zeros(len(contacts))
     found = []
     for point in np.unique(contacts["point"]):
-        together = np.flatnonzero(contacts["point"] == point)
-        greatest = greatest_normal_force(program, load / size, counts, together)
-        if greatest <= LEAST_PRICE:
+        together = contacts["point"] == point
+        closing = _loss(cones.columns[:, 0], load / size, together.astype(np.float64))
+        if closing <= REACH_OF_PROGRAM * LEAST_PRICE:
             continue
-        least = max(0.0, least_normal_force(program, load / size, counts, together))
-        box = contacts["box"][together[0]]
+        opening = -_loss(cones.columns[:, 0], load / size, -together.astype(np.float64))
+        box = contacts["box"][together][0]
         names = scene.cage.element_names[point], scene.object.element_names[box]
-        found.append(Clearance(*names, None, size * greatest, size * least))
+        found.append(Clearance(*names, None, size * closing, size * max(opening, 0.0)))
     return tuple(sorted(found, key=lambda clearance: (-clearance.closing, -clearance.opening)))
+
+
+def _loss(normals: FloatArray, push: FloatArray, gaps: FloatArray) -> float:
+    """Return how much less far a push comes when gaps are closed by so much, (n,); inf: they cannot be.
+
+    Contacts in one line but for rounding would share their push uniquely, with arms that only a turn far beyond the
+    play makes up for: no motion is greater than `REACH_OF_PROGRAM`.
+    """
+    program = empty_record(Program)
+    program.objective[:] = push
+    rows = np.concatenate([-normals, np.eye(N_UNKNOWNS), -np.eye(N_UNKNOWNS)])
+    bounds = np.concatenate([-gaps, np.full(2 * N_UNKNOWNS, REACH_OF_PROGRAM)])
+    outcome = solve_program(rows, bounds, program)
+    return -float(push @ program.x) if outcome == OPTIMAL else np.inf
