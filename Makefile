@@ -58,7 +58,7 @@ test-deep: $(READY)  ## run the tests that draw random cases with many of them, 
 test-python: $(READY)  ## run the tests of kernels and of stepwise runs with kernels as plain Python
 	@CAGEPOSE_KERNELS=python $(BIN)/python -m pytest $(ON_ALL_CORES) tests/kernels tests/stepwise
 
-audit: $(READY)  ## ask independent oracles about seeded scenes, five minutes (N=510: so many; CASE=grid:12: that one)
+audit: $(READY)  ## ask independent oracles about seeded scenes, six minutes (N=510: so many; CASE=grid:12: that one)
 	@$(BIN)/python -m audit $(if $(filter file,$(origin N)),,--scenes $(N)) $(if $(CASE),--case $(CASE))
 
 lint: $(READY)  ## check style, types and the floors' import contract

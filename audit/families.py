@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from itertools import count
 
 import numpy as np
 
-from audit import drawn_families, exact_families, loose_families, prism_families, round_families
+from audit import (
+    caged_families,
+    drawn_families,
+    exact_families,
+    loose_families,
+    prism_families,
+    round_families,
+    union_families,
+)
 from audit.case import Case
 from cagepose import Scene, SceneError
 
@@ -36,6 +45,10 @@ DRAWN: dict[str, Callable[[np.random.Generator], Scene]] = {
     "countersunk": round_families.countersunk,
     "coin": round_families.coin,
     "roller": round_families.roller,
+    "caged": caged_families.caged,
+    "caged-seams": caged_families.caged_seams,
+    "pushed-block": caged_families.pushed_block,
+    "union": union_families.union,
 }
 """Families of random scenes."""
 
@@ -59,12 +72,26 @@ FAMILIES = (*DRAWN, *NUMBERED)
 
 
 def make_case(family: str, index: int, seed: int = 0) -> Case:
-    """Return one case; a draw that is no scene (a point inside, two points on each other) is drawn again."""
+    """Return one case, which is the same however many are asked."""
     if family in NUMBERED:
         return Case(family, index, seed, NUMBERED[family](index))
     rng = np.random.default_rng([seed, zlib.crc32(family.encode()), index])
+    return Case(family, index, seed, _drawn(family, rng), ENDINGS.get(family))
+
+
+def drawn_scenes(family: str, n_scenes: float, seed: int) -> Iterator[Scene]:
+    """Yield so many scenes of a family, or without end, from one generator: the same ones for the same seed."""
+    rng = np.random.default_rng(seed)
+    for number in count():
+        if number >= n_scenes:
+            return
+        yield _drawn(family, rng)
+
+
+def _drawn(family: str, rng: np.random.Generator) -> Scene:
+    """Draw a scene; a draw that is none (a point inside, two points on each other) is drawn again."""
     while True:
         try:
-            return Case(family, index, seed, DRAWN[family](rng), ENDINGS.get(family))
+            return DRAWN[family](rng)
         except SceneError:
             continue

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from caged_scenes import LOADS, adversarial_scene, caged_scene
+from audit.caged_families import GRAVITY, caged, caged_seams
 from cagepose import Box, Cage, Object, Play, Scene, SceneError, play
 from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.studies.cage_verdict import search_way_out
@@ -131,7 +131,7 @@ def test_a_plate_must_be_thicker_than_what_linearising_leaves_out(thickness_mm, 
     points += [(side * 30.5, y, 0) for side in (-1, 1) for y in (-20, 20)]
     points += [(x, side * 30.5, 0) for side in (-1, 1) for x in (-20, 20)]
     plate = Object([Box(np.array([60, 60, thickness_mm]) * MM, name="plate")])
-    found = play(Scene(plate, Cage(np.array(points) * MM), LOADS), search_s=0.0)
+    found = play(Scene(plate, Cage(np.array(points) * MM), GRAVITY), search_s=0.0)
     assert found.cage.verdict == verdict, found.cage.reason
     if verdict != "caged":
         assert "may come out behind its face of plate" in found.cage.reason
@@ -140,7 +140,7 @@ def test_a_plate_must_be_thicker_than_what_linearising_leaves_out(thickness_mm, 
 def test_a_cage_that_is_too_wide_for_any_proof_says_how_far_the_object_turns():
     """A cube 20 mm wide with 8 points 6 mm from each face: sixty degrees and more at the first look."""
     points = [side * 16 * np.eye(3)[axis] + offset for axis in range(3) for side in (-1, 1) for offset in corners(axis)]
-    found = play(Scene(Object([Box(np.full(3, 20 * MM))]), Cage(np.array(points) * MM), LOADS), search_s=0.0)
+    found = play(Scene(Object([Box(np.full(3, 20 * MM))]), Cage(np.array(points) * MM), GRAVITY), search_s=0.0)
     assert found.cage.verdict == "not certified"
     assert "the object turns by up to" in found.cage.reason
 
@@ -153,7 +153,7 @@ def corners(axis: int) -> list[np.ndarray]:
 def test_a_ball_joint_of_eight_points_is_too_loose_for_the_proof():
     """A cube between points in front of the middle of its faces turns freely: nothing is certified."""
     points = [side * 6 * axis for axis in np.eye(3) for side in (-1, 1)]
-    found = play(Scene(Object([Box(np.full(3, 10 * MM))]), Cage(np.array(points) * MM), LOADS), search_s=0.1)
+    found = play(Scene(Object([Box(np.full(3, 10 * MM))]), Cage(np.array(points) * MM), GRAVITY), search_s=0.1)
     assert found.cage.verdict != "caged"
     assert set(found.cage.free_directions) == {"roll", "pitch", "yaw"}
     assert found.freedoms["x"].high.linear == pytest.approx(1 * MM)
@@ -192,7 +192,7 @@ def test_random_walks_in_random_caged_scenes_stay_within_the_certified_bounds(ca
     rng = np.random.default_rng(9)
     n_proven = 0
     for _ in range(cases(20, 100)):
-        scene = caged_scene(rng)
+        scene = caged(rng)
         found = play(scene, [rng.uniform(-50, 50, 3) * MM], [rng.normal(size=3)], search_s=0.0)
         if found.cage.verdict == "caged":
             n_proven += walk(scene, found, 0.05) > 100
@@ -204,7 +204,7 @@ def test_random_walks_in_adversarial_scenes_stay_within_the_certified_bounds(cas
     n_proven, n_asked, n_scenes = 0, 0, cases(40, 120)
     while n_asked < n_scenes:
         try:
-            scene = adversarial_scene(rng)
+            scene = caged_seams(rng)
         except SceneError:  # a point of one box starts inside another
             continue
         n_asked += 1
@@ -222,7 +222,7 @@ def test_no_certified_scene_is_escaped_and_no_extreme_passes_its_bound(cases):
     rng = np.random.default_rng(10)
     n_proven, n_scenes = 0, cases(40, 100)
     for _ in range(n_scenes):
-        found = play(caged_scene(rng), search_s=0.0)
+        found = play(caged(rng), search_s=0.0)
         if found.cage.verdict == "caged":
             n_proven += 1
             for ends in found.freedoms.values():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog, minimize
 
-from caged_scenes import caged_scene
+from audit.caged_families import caged
 from cagepose import Box, Cage, Load, Object, Pose, Scene, play
 from cagepose.kernels.algebra.linear_program import OPTIMAL, UNBOUNDED, solve_program
 from cagepose.kernels.play.polytope import empty_play_workspace, write_start
@@ -47,7 +47,7 @@ def test_all_twelve_programs_of_random_caged_scenes_agree_with_highs(cases):
     rng = np.random.default_rng(5)
     n_bounded, n_scenes = 0, cases(40, 250)
     for _ in range(n_scenes):
-        frame = PlayFrame(caged_scene(rng))
+        frame = PlayFrame(caged(rng))
         work = empty_play_workspace(frame.geometry)
         write_start(frame.geometry, work)
         n = len(work.faces)
@@ -73,7 +73,7 @@ def test_all_twelve_programs_of_random_caged_scenes_agree_with_highs(cases):
 def test_every_extreme_is_a_pose_outside_that_has_the_value(cases):
     rng = np.random.default_rng(6)
     for _ in range(cases(25, 100)):
-        scene = caged_scene(rng)
+        scene = caged(rng)
         found = play(scene, search_s=0.0)
         for name, ends in found.freedoms.items():
             for end in (ends.low, ends.high):
@@ -157,7 +157,7 @@ def test_no_extreme_can_be_bettered_nearby(cases):
     rng = np.random.default_rng(7)
     n_compared, n_scenes = 0, cases(20, 40)
     for _ in range(n_scenes):
-        scene = caged_scene(rng)
+        scene = caged(rng)
         name = FREEDOMS[rng.integers(6)]
         end = play(scene, search_s=0.0).freedoms[name].high
         assert end.exact is not None
@@ -185,7 +185,7 @@ def test_closing_and_opening_each_gap_moves_the_extreme_as_said():
     rng = np.random.default_rng(8)
     deviations = []
     for _ in range(20):
-        scene = caged_scene(rng)
+        scene = caged(rng)
         if len(scene.object.boxes) > 1:
             continue
         before = play(scene, search_s=0.0)

@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import nnls
 from scipy.spatial.transform import Rotation
 
-from caged_scenes import caged_scene
+from audit.caged_families import caged
 from cagepose import (
     Box,
     Cage,
@@ -160,7 +160,7 @@ def solid_at(rng: np.random.Generator, point: np.ndarray, outward: np.ndarray) -
 
 def cage_of_solids(rng: np.random.Generator) -> Scene:
     """A caged scene of points, each with a random solid behind it; some solids are left out as they reach the box."""
-    scene = caged_scene(rng)
+    scene = caged(rng)
     pose = scene.cage.pose_world_cage.inverse() @ scene.object.pose_world_object
     kept = list[Shape]()
     for point in scene.cage.points_cage:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from caged_scenes import caged_scene
+from audit.caged_families import caged
 from cagepose import Box, Cage, Capsule, Cylinder, Hole, Load, Object, Pose, Scene, SceneError, Shape, Sphere, play, run
 from cagepose.studies.play_frame import FREEDOMS
 from cagepose.studies.pushed_play import PushedPlay
@@ -26,7 +26,7 @@ def test_pushes_come_as_far_as_linear_programs_and_every_end_is_free_and_station
     rng = np.random.default_rng(31)
     n_ends = n_nearer = 0
     for _ in range(cases(8, 150)):
-        scene = caged_scene(rng)
+        scene = caged(rng)
         known, start = play(scene, search_s=0.0), Start(scene)
         pushed = PushedPlay(scene, unseated(scene), []).ranges()
         for name, ends in zip(FREEDOMS, pushed, strict=True):

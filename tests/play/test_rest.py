@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from caged_scenes import caged_scene
+from audit.caged_families import caged
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, load_scene, run
 from cagepose.studies.play_rest import PressedPoint, play_rests
 from rails import exact_tilt_deg, rail_scene
@@ -80,7 +80,7 @@ def test_rests_of_random_scenes_balance_and_agree_with_the_quasistatic_method(ca
     rng = np.random.default_rng(12)
     n_compared, n_scenes = 0, cases(20, 40)
     for _ in range(n_scenes):
-        scene = caged_scene(rng)
+        scene = caged(rng)
         (rest,) = play_rests(scene)
         assert rest.pose_world_object is not None
         assert unbalanced(scene, rest.pose_world_object, scene.loads[0], rest.exact_forces) == pytest.approx(

@@ -6,12 +6,12 @@ import itertools
 import math
 from functools import cache
 
+from audit.families import drawn_scenes
 from cagepose import Run, Scene, run
 from quasistatic.paths import again
-from random_scenes import random_scenes
 
 SEED = 20261121
-_drawn = random_scenes(math.inf, SEED)
+_drawn = drawn_scenes("union", math.inf, SEED)
 _scenes = list[Scene]()
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog, minimize
 
+from audit.families import drawn_scenes
 from cagepose import Pose, run
 from quasistatic.paths import again, distance, path_of, potential, rows_at
 from rails import rail_scene
-from random_scenes import random_scenes
 
 
 def moved(scene, pose, xi):
@@ -103,7 +103,7 @@ def test_slsqp_comes_back_to_our_rests(say, cases):
     rng = np.random.default_rng(7)
     n_compared = n_gave_up = 0
     worst_pose, worst_potential = 0.0, 0.0
-    for number, plain in enumerate(random_scenes(cases(150, 600), seed=77)):
+    for number, plain in enumerate(drawn_scenes("union", cases(150, 600), seed=77)):
         result = run(again(plain), method="quasistatic")
         if not is_isolated(result):
             continue

@@ -7,10 +7,10 @@ import collections
 import numpy as np
 import pytest
 
+from audit.families import drawn_scenes
 from cagepose import run
 from quasistatic.paths import VERDICTS, again, depth, path_of, potential
 from quasistatic.random_runs import random_run
-from random_scenes import random_scenes
 
 RISE = 1e-12
 """In total force times size. A potential may rise by this, its rounding over some thousand metres of sums. A rest is
@@ -72,7 +72,7 @@ def test_random_scenes_end_by_name_downhill_and_outside(friction, few, many, nam
 
 @pytest.mark.parametrize("friction", [None, 0.3])
 def test_the_same_scene_gives_the_same_run_to_the_last_bit(friction):
-    for scene in random_scenes(5, seed=3):
+    for scene in drawn_scenes("union", 5, seed=3):
         first, second = (run(again(scene, friction=friction), method="quasistatic") for _ in range(2))
         assert first.verdict == second.verdict
         assert np.array_equal(first.pose.quaternion_wxyz, second.pose.quaternion_wxyz)

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog, nnls, root
 
-from caged_scenes import pushed_block
+from audit.caged_families import pushed_block
 from cagepose import run
 from cagepose.kernels.algebra.least_squares import empty_system
 from cagepose.kernels.algebra.record import empty_record

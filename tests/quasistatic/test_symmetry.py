@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from audit.families import drawn_scenes
 from cagepose import Object, Pose, Scene, run
 from mapped_scenes import KINDS, mapped, mirrored
 from quasistatic.paths import RESTS, again
 from rails import rail_scene
-from random_scenes import random_scenes
 
 
 def seen_otherwise(scene, kind, rng):
@@ -80,7 +80,7 @@ def decided(request, cases):
     rng = np.random.default_rng(9)
     friction, few, many = request.param
     kept, n_ties = [], 0
-    for number, plain in enumerate(random_scenes(cases(few, many), seed=21)):
+    for number, plain in enumerate(drawn_scenes("union", cases(few, many), seed=21)):
         scene = again(plain, friction=friction, metric=("release", "drag")[number % 2])
         expected = run(scene, method="quasistatic")
         if is_undecided(scene, expected, rng):

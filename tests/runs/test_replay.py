@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from audit.families import drawn_scenes
 from cagepose import CageposeError, Event, Run, load_run, load_scene, run, save_run
 from cagepose.model.methods import METHODS
 from cagepose.runs.replay import replay_event
 from our_scenes import CASES, SCENES
-from random_scenes import random_scenes
 
 
 def all_events(found: Run) -> list[tuple[int, int, Event]]:
@@ -47,7 +47,7 @@ def test_any_event_of_our_scenes_is_the_same_when_it_is_made_again(method):
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("friction", [None, 0.3])
 def test_any_event_of_random_scenes_is_the_same_when_it_is_made_again(method, friction):
-    for scene in random_scenes(30, 20261122):
+    for scene in drawn_scenes("union", 30, 20261122):
         found = run(scene if friction is None else scene.changed(friction_coefficient=friction), method)
         for phase, number, event in all_events(found):
             assert is_same(replay_event(found, phase, number), event)

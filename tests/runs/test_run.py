@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from audit.families import drawn_scenes
 from bench.ours import read_run
 from cagepose import Box, Cage, Load, Moment, Object, Pose, Scene, SceneError, load_scene, run
 from cagepose.kernels.native.kernel import Entry
@@ -13,7 +14,6 @@ from cagepose.kernels.outcome.trace import LIMIT, STALLED
 from cagepose.model.methods import DEFAULT_FRICTION, DEFAULT_METHOD, METHODS
 from cagepose.runs.methods import REGISTRY
 from rails import rail_scene
-from random_scenes import random_scenes
 
 
 def assert_replays(result):
@@ -31,7 +31,7 @@ def assert_replays(result):
 @pytest.mark.parametrize("method", METHODS)
 def test_motions_lead_from_each_pose_to_the_next(method):
     assert_replays(run(rail_scene(pitch_deg=0.1), method))
-    for scene in random_scenes(30, seed=3):
+    for scene in drawn_scenes("union", 30, seed=3):
         assert_replays(run(scene, method))
 
 

@@ -16,12 +16,12 @@ import collections
 import numpy as np
 import pytest
 
+from audit.families import drawn_scenes
 from balance import imbalance
 from cagepose import PhaseRun, Run, Scene
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.kernels.contact.metric import Body
-from random_scenes import random_scenes
 from stepwise_run import run
 
 VERDICTS = {"stable", "escapes", "spins", "cycling", "limit"}
@@ -77,7 +77,7 @@ def test_random_scenes_end_by_name_and_nobody_is_ever_inside(say, monkeypatch, c
     n_scenes = cases(300, 20_000)
     verdicts: collections.Counter[str] = collections.Counter()
     worst, most_events = 0.0, 0
-    for number, scene in enumerate(random_scenes(n_scenes, seed=20261121)):
+    for number, scene in enumerate(drawn_scenes("union", n_scenes, seed=20261121)):
         result = run(scene)
         verdicts[result.verdict] += 1
         assert result.verdict in VERDICTS
@@ -102,7 +102,7 @@ def test_random_scenes_end_by_name_and_nobody_is_ever_inside(say, monkeypatch, c
 
 @pytest.mark.parametrize("seed", range(5))
 def test_the_same_scene_gives_the_same_run_to_the_last_bit(seed):
-    first, second = (run(next(iter(random_scenes(1, seed)))) for _ in range(2))
+    first, second = (run(next(iter(drawn_scenes("union", 1, seed)))) for _ in range(2))
     assert [event.rule for event in first.phases[-1].events] == [event.rule for event in second.phases[-1].events]
     assert np.array_equal(first.pose.quaternion_wxyz, second.pose.quaternion_wxyz)
     assert np.array_equal(first.pose.position_m, second.pose.position_m)

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from audit.families import drawn_scenes
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, Tolerances
-from random_scenes import random_scenes
 from stepwise_run import run
 
 DOWN = Load("gravity", gravity=(0, 0, -1))
@@ -232,7 +232,7 @@ def test_the_length_of_gravity_does_not_matter(length):
 
 def test_where_the_object_was_drawn_does_not_matter(cases):
     """The same part drawn 1000 sizes from its own origin; a cycle may take one more round to be told from rounding."""
-    for scene in random_scenes(cases(30, 100), seed=17):
+    for scene in drawn_scenes("union", cases(30, 100), seed=17):
         held, shift = scene.object, 1000.0 * scene.size_m * np.array([0.6, -0.64, 0.48])
         moved = Object(
             [

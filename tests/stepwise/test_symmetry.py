@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from audit.families import drawn_scenes
 from cagepose import Pose
 from mapped_scenes import KINDS, mapped
-from random_scenes import random_scenes
 from stepwise_run import run
 
 
@@ -23,7 +23,7 @@ def log(result):
 @pytest.fixture(scope="module")
 def scenes_without_ties(cases):
     """A tie is decided by convention, which a mirror or a new order of points need not respect."""
-    results = [(scene, run(scene)) for scene in random_scenes(cases(40, 500), seed=11)]
+    results = [(scene, run(scene)) for scene in drawn_scenes("union", cases(40, 500), seed=11)]
     return [
         (scene, result)
         for scene, result in results

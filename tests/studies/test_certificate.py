@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from caged_scenes import adversarial_scene, pushed_block
+from audit.caged_families import caged_seams, pushed_block
 from cagepose import (
     Box,
     Cage,
@@ -70,7 +70,7 @@ def test_certificates_of_random_blocks_and_unions_agree_with_the_verdicts(cases,
     random, n, seen = np.random.default_rng(40), cases(60, 1500), {"strong": 0, "weak": 0, "not shown": 0, None: 0}
     n_leaves, without = 0, 0
     for index in range(n):
-        scene = adversarial_scene(random) if index % 2 else pushed_block(random, float(random.choice([0.1, 0.3])))
+        scene = caged_seams(random) if index % 2 else pushed_block(random, float(random.choice([0.1, 0.3])))
         a_run = run(scene)
         proof = a_run.phases[-1].proof
         found = certificate(a_run)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from caged_scenes import pushed_block
+from audit.caged_families import pushed_block
 from cagepose import Box, Cage, Load, Object, Pose, Scene, load_scene, run
 from cagepose.model.shapes import Capsule, Cylinder
 from cagepose.paper.cases import sample_scene

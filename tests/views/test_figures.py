@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from audit.families import drawn_scenes
 from cagepose import Load, Object, Scene, load_scene, run
 from cagepose.files.write import MADE_BY
 from cagepose.paper.cases import sample_scene
@@ -24,7 +25,6 @@ from cagepose.views.style import figure_bytes
 from cagepose.views.viewer.picture import PictureMaker
 from cagepose.views.viewer.playback import playback
 from cagepose.views.viewer.stage import Stage
-from random_scenes import random_scenes
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 
@@ -130,7 +130,7 @@ def test_lengths_are_in_the_unit_asked_for(sample):
 
 
 def test_a_long_run_leaves_events_out_and_says_how_many():
-    runs = (run(scene, method="stepwise") for scene in random_scenes(400, seed=7))
+    runs = (run(scene, method="stepwise") for scene in drawn_scenes("union", 400, seed=7))
     long = next(found for found in runs if sum(len(phase.events) for phase in found.phases) > 2 * MOST_SNAPSHOTS)
     n_motions = sum(event.motion is not None for phase in long.phases for event in phase.events)
     figure = event_figure(long)
@@ -142,7 +142,7 @@ def test_a_long_run_leaves_events_out_and_says_how_many():
 @pytest.mark.parametrize("verdict", ["stable", "escapes", "spins", "cycling"])
 def test_runs_of_every_end_can_be_drawn(verdict):
     """Seeded random scenes; warnings are errors, so no axis is without width and nothing is left undrawn."""
-    runs = (run(scene, method="stepwise") for scene in random_scenes(200, seed=5))
+    runs = (run(scene, method="stepwise") for scene in drawn_scenes("union", 200, seed=5))
     found = next(found for found in runs if found.verdict == verdict)
     for figure in (pose_figure(found), event_figure(found)):
         with Image.open(io.BytesIO(figure_bytes(figure, ".png"))) as image:

@@ -44,8 +44,8 @@ def asked(level: str | None, n_random: int) -> dict[str, Any]:
 
 
 def scenes(n_random: int) -> Iterator[tuple[str, Scene]]:
+    from audit.families import drawn_scenes
     from quasistatic.paths import again
-    from random_scenes import random_scenes
 
     left_out = SLOW_AS_PLAIN_PYTHON + (SECONDS_AS_PLAIN_PYTHON if n_random < MANY else ())
     for path in SCENES:
@@ -53,7 +53,7 @@ def scenes(n_random: int) -> Iterator[tuple[str, Scene]]:
             yield path.stem, load_scene(path)
         if path.stem == "tapered-pin":
             yield f"{path.stem} over its hole", load_scene(path).changed("object.pose.position", (0.0, 0.0, 0.01))
-    for number, scene in enumerate(random_scenes(n_random, SEED)):
+    for number, scene in enumerate(drawn_scenes("union", n_random, SEED)):
         yield f"random {number}", again(scene, friction=(None, 0.3)[number % 2])
 
 

@@ -1,4 +1,4 @@
-"""Seeded random scenes in which one or two boxes are caged: points beside every face, at small gaps."""
+"""Families in which points stand around a part on all sides, so that it has play and cannot get out."""
 
 from __future__ import annotations
 
@@ -6,13 +6,14 @@ import math
 
 import numpy as np
 
+from audit.case import FloatArray
+from audit.draws import MM, Rng, friction
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene
 
-MM = 1e-3
-LOADS = (Load("gravity", gravity=(0, 0, -1)),)
+GRAVITY = (Load("gravity", gravity=(0, 0, -1)),)
 
 
-def caged_scene(rng: np.random.Generator) -> Scene:
+def caged(rng: Rng) -> Scene:
     """A box of 10 to 50 mm with three to five points beside each face, 0.01 to 0.2 mm away; sometimes a second box."""
     size = rng.uniform(10, 50, 3)
     boxes = [Box(size * MM)]
@@ -30,10 +31,10 @@ def caged_scene(rng: np.random.Generator) -> Scene:
     turn = Pose(rng.uniform(-20, 20, 3) * MM, rng.normal(size=4))
     world = turn.transform(np.array(points) * MM)
     cage = Pose(rng.uniform(-20, 20, 3) * MM, rng.normal(size=4))
-    return Scene(Object(boxes, pose=turn), Cage(cage.inverse_transform(world), pose=cage), LOADS)
+    return Scene(Object(boxes, pose=turn), Cage(cage.inverse_transform(world), pose=cage), GRAVITY)
 
 
-def adversarial_scene(rng: np.random.Generator) -> Scene:
+def caged_seams(rng: Rng) -> Scene:
     """Points near edges and seams and in notches, at gaps of a thousandth to a fifth of a box; any size and turn."""
     size = rng.uniform(5, 50, 3)
     if rng.random() < 0.3:
@@ -62,10 +63,27 @@ def adversarial_scene(rng: np.random.Generator) -> Scene:
     cage = Pose(rng.uniform(-20, 20, 3) * scale, rng.normal(size=4))
     parts = [Box(edges * scale, Pose(pose.position_m * scale, pose.quaternion_wxyz)) for edges, pose in boxes]
     world = turn.transform(points * scale)
-    return Scene(Object(parts, pose=turn), Cage(cage.inverse_transform(world), pose=cage), LOADS)
+    return Scene(Object(parts, pose=turn), Cage(cage.inverse_transform(world), pose=cage), GRAVITY)
 
 
-def _beside(rng: np.random.Generator, size: np.ndarray, widest: float, near: float, most: int) -> np.ndarray:
+def pushed_block(rng: Rng, mu: float | None = None) -> Scene:
+    """A block between 8 to 18 points on its six sides, play 0.1 to 1 mm; weight and a push somewhere in one phase.
+
+    A coefficient of friction that is given is not drawn.
+    """
+    size = rng.uniform(20, 60, 3)
+    faces = [*range(6), *rng.integers(0, 6, rng.integers(2, 13))]
+    points = rng.uniform(-0.45, 0.45, (len(faces), 3)) * size
+    for point, face in zip(points, faces, strict=True):
+        axis = face // 2
+        point[axis] = (1 if face % 2 else -1) * (size[axis] / 2 + rng.uniform(0.1, 1))
+    push = Force(rng.normal(size=3), rng.uniform(-0.4, 0.4, 3) * size * MM)
+    load = Load("push", gravity=(0, 0, -1), force=push)
+    coefficient = friction(rng) if mu is None else mu
+    return Scene(Object([Box(size * MM)]), Cage(points * MM), [load], friction_coefficient=coefficient)
+
+
+def _beside(rng: Rng, size: FloatArray, widest: float, near: float, most: int) -> FloatArray:
     """One to ``most`` - 1 points before each face, many of them near an edge."""
     points = []
     for axis in range(3):
@@ -78,16 +96,3 @@ def _beside(rng: np.random.Generator, size: np.ndarray, widest: float, near: flo
                 point[axis] = side * (size[axis] / 2 + rng.uniform(1e-3, 1) * widest)
                 points.append(point)
     return np.array(points)
-
-
-def pushed_block(random: np.random.Generator, friction: float) -> Scene:
-    """A block between 8 to 18 points on its six sides, play 0.1 to 1 mm; weight, and a push as great somewhere."""
-    size = random.uniform(20, 60, 3)
-    faces = [*range(6), *random.integers(0, 6, random.integers(2, 13))]
-    points = random.uniform(-0.45, 0.45, (len(faces), 3)) * size
-    for point, face in zip(points, faces, strict=True):
-        axis = face // 2
-        point[axis] = (1 if face % 2 else -1) * (size[axis] / 2 + random.uniform(0.1, 1))
-    push = Force(random.normal(size=3), random.uniform(-0.4, 0.4, 3) * size * 1e-3)
-    load = Load("push", gravity=(0, 0, -1), force=push)
-    return Scene(Object([Box(size * 1e-3)]), Cage(points * 1e-3), [load], friction_coefficient=friction)

@@ -1,34 +1,39 @@
-"""Seeded random scenes: boxes that may be turned and overlap, cage points around them, one or two loads."""
+"""The family of unions of boxes, turned and overlapping, with points around them: ties, seams and grazing."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
-from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, SceneError
+from audit.case import FloatArray
+from audit.draws import Rng
+from cagepose import Box, Cage, Force, Load, Object, Pose, Scene
 
 
-def random_pose(rng: np.random.Generator, spread: float) -> Pose:
-    """A pose with any orientation and a position within ``spread`` of the origin."""
-    return Pose(rng.uniform(-spread, spread, 3), rng.normal(size=4))
+def union(rng: Rng) -> Scene:
+    """1 to 6 boxes, 3 to 24 points, gravity, a push, or both one after the other; without friction."""
+    held = _object(rng, int(rng.integers(1, 7)))
+    points = _points(rng, held, int(rng.integers(3, 25)))
+    gravity = Load("gravity", gravity=_direction(rng))
+    push = Load("push", force=Force(_direction(rng), rng.uniform(-0.015, 0.015, 3)))
+    loads = [[gravity], [push], [gravity, push]][rng.integers(3)]
+    return Scene(held, Cage(points), loads, name="random")
 
 
-def random_object(rng: np.random.Generator, n_boxes: int) -> Object:
+def _object(rng: Rng, n_boxes: int) -> Object:
     """Boxes of 2 to 20 mm near the origin; half of them aligned, half of them turned; some flush with each other."""
     boxes = []
     for _ in range(n_boxes):
         size = np.round(rng.uniform(0.002, 0.020, 3), 3)
         position = np.round(rng.uniform(-0.010, 0.010, 3), 3)
         boxes.append(Box(size, Pose(position, rng.normal(size=4)) if rng.random() < 0.5 else Pose(position)))
-    pose = random_pose(rng, 0.005) if rng.random() < 0.5 else Pose()
+    pose = Pose(rng.uniform(-0.005, 0.005, 3), rng.normal(size=4)) if rng.random() < 0.5 else Pose()
     center = rng.uniform(-0.005, 0.005, 3)
     return Object(boxes, center, pose=pose)
 
 
-def random_points(rng: np.random.Generator, held: Object, n_points: int) -> np.ndarray:
+def _points(rng: Rng, held: Object, n_points: int) -> FloatArray:
     """Points outside of the object, near its surface more often than far away; some are mirrored twins (ties)."""
-    points: list[np.ndarray] = []
+    points: list[FloatArray] = []
     while len(points) < n_points:
         if points and rng.random() < 0.2:
             candidate = points[-1] * rng.choice([-1.0, 1.0], 3)
@@ -56,36 +61,10 @@ def random_points(rng: np.random.Generator, held: Object, n_points: int) -> np.n
     return np.array(points)
 
 
-def random_direction(rng: np.random.Generator) -> np.ndarray:
+def _direction(rng: Rng) -> FloatArray:
     """Often along an axis, where ties and grazing live."""
     if rng.random() < 0.5:
         direction = np.zeros(3)
         direction[rng.integers(3)] = rng.choice([-1.0, 1.0])
         return direction
     return rng.normal(size=3)
-
-
-def random_scene(rng: np.random.Generator) -> Scene:
-    """1 to 6 boxes, 3 to 24 points, gravity, a push, or both one after the other."""
-    held = random_object(rng, int(rng.integers(1, 7)))
-    points = random_points(rng, held, int(rng.integers(3, 25)))
-    gravity = Load("gravity", gravity=random_direction(rng))
-    push = Load("push", force=Force(random_direction(rng), rng.uniform(-0.015, 0.015, 3)))
-    loads = [[gravity], [push], [gravity, push]][rng.integers(3)]
-    return Scene(held, Cage(points), loads, name="random")
-
-
-def random_scenes(n_scenes: float, seed: int) -> Iterator[Scene]:
-    """Yield ``n_scenes`` scenes, or without end; the same ones for the same seed.
-
-    A draw that is refused at the door (a point in the seam between two flush boxes) is drawn again.
-    """
-    rng = np.random.default_rng(seed)
-    n_drawn = 0
-    while n_drawn < n_scenes:
-        try:
-            scene = random_scene(rng)
-        except SceneError:
-            continue
-        n_drawn += 1
-        yield scene
