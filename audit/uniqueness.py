@@ -19,7 +19,7 @@ from cagepose import Pose, Run, Scene
 N_STARTS, N_SWEEPS, N_CHOICES, N_NEWTON = 20, 120, 3, 25
 MOST_CONTACTS = 14
 OBEYS = 1e-9
-"""Greatest violation of Coulomb's law: speeds by the motion, forces by the load."""
+"""Greatest violation of Coulomb's law, in lengths of the motion."""
 MOVES = 1e-4
 """Least length of a motion, by that of the free one: shorter ones are a rest that has not converged."""
 
@@ -72,16 +72,22 @@ def scaled_rows(
 
 
 def violation(rows: FloatArray, b: FloatArray, mus: FloatArray, forces: FloatArray) -> float:
-    """The greatest violation of (5.7): speeds by the motion's length, forces by the load's, each at their wrench."""
+    """The greatest violation of (5.7), in lengths of the motion, or of the load for forces where that is less; each
+    speed and force at its wrench.
+
+    A contact that slips is told from one that sticks by whichever it obeys better: it must be slow, or have all of its
+    friction against its slip.
+    """
     y = b - np.einsum("ijk,ij->k", rows, forces)
-    speed = float(np.linalg.norm(y))
+    speed = max(float(np.linalg.norm(y)), 1e-300)
+    unit = min(speed, float(np.linalg.norm(b)))
     worst = 0.0
     for row, force, mu in zip(rows, forces, mus, strict=True):
         arm = float(np.linalg.norm(row[0]))
-        v, f = row @ y / (arm * max(speed, 1e-300)), force * arm
+        v, f = row @ y / (arm * speed), force * arm / unit
         slip, grip = float(np.linalg.norm(v[1:])), float(np.linalg.norm(f[1:]))
-        missing = float(np.linalg.norm(f[1:] * slip - mu * f[0] * v[1:]))
-        worst = max(worst, v[0], -f[0], min(abs(v[0]), abs(f[0])), grip - mu * f[0], missing)
+        missing = float(np.linalg.norm(f[1:] - mu * f[0] * v[1:] / max(slip, 1e-300)))
+        worst = max(worst, v[0], -f[0], min(abs(v[0]), abs(f[0])), grip - mu * f[0], min(slip, missing))
     return worst
 
 

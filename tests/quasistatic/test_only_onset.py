@@ -15,6 +15,7 @@ import pytest
 from scipy.optimize import linprog, nnls, root
 
 from audit.caged_families import pushed_block
+from audit.uniqueness import violation
 from cagepose import run
 from cagepose.kernels.algebra.least_squares import empty_system
 from cagepose.kernels.algebra.record import empty_record
@@ -188,22 +189,11 @@ def flaw(held: Held, leaf: Leaf) -> float:
 
 
 def is_onset(held: Held, forces: np.ndarray, least: float = 1e-6, error: float = 1e-9) -> bool:
-    """Whether forces (n, 3) leave a motion of at least so many loads, and obey Coulomb's law (5.7) with it but for an
-    error in lengths of the motion.
-    """
-    y = held.load[:6] - np.einsum("ij,ijk->k", forces, held.columns)
-    v = held.columns @ y
-    normal, slip, friction = forces[:, 0], np.linalg.norm(v[:, 1:], axis=1), forces[:, 1:]
-    small = error * np.linalg.norm(y) * (1 + np.abs(forces).max())
-    full = np.abs(friction * slip[:, None] - held.friction * normal[:, None] * v[:, 1:]).max()
-    return bool(
-        np.linalg.norm(y) > least
-        and v[:, 0].max() <= small
-        and normal.min() >= -small
-        and np.abs(normal * v[:, 0]).max() <= small
-        and (np.linalg.norm(friction, axis=1) - held.friction * normal).max() <= small
-        and full <= small
-    )
+    """Whether forces (n, 3) leave a motion of at least so many loads, and obey Coulomb's law but for an error."""
+    b = held.load[:6]
+    y = b - np.einsum("ij,ijk->k", forces, held.columns)
+    frictions = np.full(len(forces), held.friction)
+    return bool(np.linalg.norm(y) > least and violation(held.columns, b, frictions, forces) <= error)
 
 
 @pytest.fixture(scope="module")

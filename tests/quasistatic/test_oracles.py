@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
+from audit.uniqueness import violation
 from cagepose.kernels.algebra.least_squares import PassiveSet, empty_system, nonnegative_least_squares
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.contact.cone import ConeWorkspace, clear_cone, cone_residual, write_forces
@@ -135,31 +136,10 @@ def test_the_frictionless_onset_obeys_the_optimality_conditions(cases):
         assert y == pytest.approx(b - normals.T @ x, abs=1e-11 * scale)
 
 
-def coulomb_violation(columns, friction, b, forces):
-    """The greatest violation of Coulomb's law, in lengths of the load, from the forces alone.
-
-    At every contact: not going in, no pull, no force where it opens, inside the cone, and where it slips the whole of
-    the friction along the slip of the load's motion. Forces and speeds each at the scale of their wrench.
-    """
-    y = b - np.einsum("ijk,ij->k", columns, forces)
-    lengths = np.linalg.norm(columns[:, 0], axis=1)
-    size = np.linalg.norm(b)
-    worst = 0.0
-    for i, scale in enumerate(lengths):
-        rates, f = columns[i] @ y / scale, forces[i] * scale
-        slip = np.linalg.norm(rates[1:])
-        tangential = np.linalg.norm(f[1:])
-        worst = max(worst, rates[0], -f[0], min(abs(rates[0]), f[0]), tangential - friction * f[0])
-        if slip > 0.0:
-            missing = friction * f[0] - f[1:] @ rates[1:] / slip
-            worst = max(worst, min(slip, missing))
-    return worst / size
-
-
 def test_the_onset_with_friction_obeys_coulombs_law(say, cases):
     """Random sets of 1 to 8 contacts, mu from 0.05 to 1: where nothing balances the load, what is left of it is a twist
     along which it works and that no force in a cone resists, and forces and motion are found for all but a share that
-    is named ("stalled" in a run), and obey the law to 1e-8 of the load.
+    is named ("stalled" in a run), and obey the law to 1e-8 of the motion.
     """
     rng = np.random.default_rng(4)
     residual, onset = as_machine_code(cone_residual), as_machine_code(coulomb_onset)
@@ -187,8 +167,8 @@ def test_the_onset_with_friction_obeys_coulombs_law(say, cases):
         if not onset(contacts, friction, b, cone, y, empty_record(NewtonWorkspace)):
             n_unsolved += 1
             continue
-        worst = max(worst, coulomb_violation(columns, friction, b, forces))
-    say(f"{n_moves} onsets with friction: {n_unsolved} unsolved; greatest violation {worst:.1e} of the load")
+        worst = max(worst, violation(columns, b, np.full(n, friction), forces))
+    say(f"{n_moves} onsets with friction: {n_unsolved} unsolved; greatest violation {worst:.1e} of the motion")
     assert worst <= 1e-8
     assert n_unsolved <= UNSOLVED_SHARE * n_moves
 
