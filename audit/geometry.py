@@ -56,6 +56,11 @@ def gaps(scene: Scene, pose: Pose) -> FloatArray:
     return nearest
 
 
+def deepest(scene: Scene, pose: Pose) -> float:
+    """How deep a point is inside the part at most, in sizes of the scene; below zero: none is."""
+    return -float(gaps(scene, pose).min()) / scene.size_m
+
+
 def touches(scene: Scene, pose: Pose, touch_m: float | None = None) -> list[Touch]:
     """Every point on every face, within the touch tolerance of face and box; covered faces are left out (2.7)."""
     tau = scene.touch_m if touch_m is None else touch_m

@@ -10,8 +10,8 @@ import numpy as np
 from audit.case import Answer, FloatArray
 from audit.geometry import (
     acting,
+    deepest,
     farthest_move,
-    gaps,
     half_sizes,
     load_of,
     load_size,
@@ -48,12 +48,12 @@ def depth(run: Run) -> Answer:
     allowed = 1.001 * scene.tolerances.touch
     for phase in run.phases:
         for event in phase.events:
-            inside = -float(gaps(scene, event.pose_world_object).min()) / scene.size_m
+            inside = deepest(scene, event.pose_world_object)
             if inside > allowed:
                 found.append(f"{phase.name}: a point lies {inside:.1e} sizes inside at the end of an event")
                 break
     for frame in run.frames():
-        inside = -float(gaps(scene, frame.pose_world_object).min()) / scene.size_m
+        inside = deepest(scene, frame.pose_world_object)
         if inside > DEEP_ON_THE_WAY:
             found.append(f"{run.phases[frame.phase_index].name}: a point lies {inside:.1e} sizes inside on a frame")
             break
@@ -94,7 +94,7 @@ def _deepest(run: Run, start: Pose, event: Event) -> float:
     thin = float(half_sizes(scene).min())
     n_samples = int(np.clip(math.ceil(2.0 * way / thin), LEAST_SAMPLES, MOST_SAMPLES))
     poses = [run.pose_on_the_way(start, event, k / n_samples) for k in range(1, n_samples)]
-    return max(-float(gaps(scene, pose).min()) for pose in poses) / scene.size_m
+    return max(deepest(scene, pose) for pose in poses)
 
 
 def _met_on_the_line(scene: Scene, pose: Pose, down: FloatArray) -> str | None:

@@ -196,6 +196,16 @@ def test_an_onset_that_breaks_coulombs_law_does_not_count():
         assert uniqueness.violation(rows, b, np.full(len(rows), 0.2), np.array(wrong)) > 1e-2
 
 
+def test_faults_count_in_lengths_of_a_slow_motion():
+    """A load of which friction leaves a millionth: a force out of its cone by as little is all of the motion."""
+    rows = np.zeros((1, 3, 6))
+    rows[0, :, :3] = np.eye(3)
+    b, mus = np.array([1.0, 0.2 + 1e-6, 0, 0, 0, 0]), np.array([0.2])
+    assert uniqueness.violation(rows, b, mus, np.array([[1.0, 0.2, 0.0]])) < 1e-9
+    for wrong in ([1.0, 0.2 + 2e-6, 0.0], [1.0, 0.2 - 1e-6, 0.0], [1.0 + 1e-6, 0.2, 0.0]):
+        assert uniqueness.violation(rows, b, mus, np.array([wrong])) > 0.1
+
+
 def test_a_way_uphill_is_found():
     one = dropped()
     assert way.potential_falls(one) == []
@@ -262,7 +272,7 @@ def test_a_case_comes_back_from_its_index_and_from_its_file(family, tmp_path):
         for again in (make_case(family, index).scene, load_scene(path)):
             assert again.cage.points_world() == pytest.approx(scene.cage.points_world(), abs=1e-15 * scene.size_m)
             assert again.size_m == pytest.approx(scene.size_m, rel=1e-14)
-            assert again.friction_coefficient == (scene.friction_coefficient or 0.0)
+            assert (again.friction_coefficient or 0.0) == (scene.friction_coefficient or 0.0)
             assert [load.name for load in again.loads] == [load.name for load in scene.loads]
 
 

@@ -1,4 +1,4 @@
-"""What tests ask of a run's path: its poses, the loads' potential, depths and gaps."""
+"""What tests ask of a run's path: its poses, the loads' potential, and gaps."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from cagepose import Load, PhaseRun, Pose, Run, Scene
-from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.runs.load_scaling import scaled_load
 
 RESTS = ("rests", "may rest")
@@ -52,17 +51,6 @@ def potential(scene: Scene, load: Load, pose: Pose) -> float:
         value += spring.preload_n * (length - start) + 0.5 * spring.stiffness_n_per_m * (length - start) ** 2
         total += abs(spring.preload_n) + spring.stiffness_n_per_m * scene.size_m
     return float(value / (total * scene.size_m))
-
-
-def depth(scene: Scene, pose: Pose) -> float:
-    """The deepest that any cage point is in any box, as a fraction of the scene's size."""
-    return float(deepest_boxes(scene.geometry, *pose.as_tuples())[0].max() / scene.size_m)
-
-
-def distance(scene: Scene, one: Pose, other: Pose) -> float:
-    """The farthest that any corner of the object is apart in two poses, as a fraction of the scene's size."""
-    corners = np.concatenate([box.corners_object() for box in scene.object.boxes])
-    return float(np.linalg.norm(one.transform(corners) - other.transform(corners), axis=1).max() / scene.size_m)
 
 
 def rows_at(scene: Scene, pose: Pose, within_m: float, points: tuple[str, ...] | None = None) -> list[tuple]:

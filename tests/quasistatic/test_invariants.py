@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from audit.families import drawn_scenes
+from audit.geometry import deepest
 from cagepose import run
-from quasistatic.paths import VERDICTS, again, depth, path_of, potential
+from quasistatic.paths import VERDICTS, again, path_of, potential
 from quasistatic.random_runs import random_run
 
 RISE = 1e-12
@@ -33,7 +34,7 @@ def checked(result, number, verdicts):
     scene = result.scene
     verdicts[result.verdict] += 1
     assert result.verdict in VERDICTS
-    rise, deepest = 0.0, -np.inf
+    rise, inside = 0.0, -np.inf
     for phase, load in zip(result.phases, scene.loads, strict=False):
         poses = path_of(phase)
         for pose in poses:
@@ -43,8 +44,8 @@ def checked(result, number, verdicts):
         if len(rises):
             rises[-1] -= lifted(scene, load, phase)
         rise = max(rise, float(rises.max(initial=0.0)))
-        deepest = max(deepest, *(depth(scene, pose) for pose in poses))
-    return rise, deepest
+        inside = max(inside, *(deepest(scene, pose) for pose in poses))
+    return rise, inside
 
 
 @pytest.mark.parametrize(
@@ -57,9 +58,9 @@ def test_random_scenes_end_by_name_downhill_and_outside(friction, few, many, nam
     rises, depths = [], []
     for number in range(n_scenes):
         result = random_run(number, friction)
-        rise, deepest = checked(result, number, verdicts)
+        rise, inside = checked(result, number, verdicts)
         rises.append(rise)
-        depths.append(deepest / result.scene.tolerances.touch)
+        depths.append(inside / result.scene.tolerances.touch)
     shares = ", ".join(f"{name} {count / n_scenes:.2%}" for name, count in verdicts.most_common())
     say(
         f"{n_scenes} random scenes, friction {friction or 0.0:g}: {shares}; greatest rise of the potential"

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from audit.geometry import deepest
 from cagepose import Variation, run, run_many
-from quasistatic.paths import RESTS, again, depth, path_poses
+from quasistatic.paths import RESTS, again, path_poses
 from rails import SIDE_PLAY_MM, exact_tilt_deg, rail_scene, tilt_deg
 
 WORLD_DEG = {
@@ -118,4 +119,4 @@ def test_with_friction_it_slides_to_the_same_tilt(play_mm, misaligned, metric):
 def test_no_roller_is_ever_inside(misaligned, friction):
     scene = again(rail_scene(**{misaligned: 0.1}), friction=friction)
     result = run(scene, method="quasistatic")
-    assert max(depth(scene, pose) for pose in path_poses(result)) <= 1e-12
+    assert max(deepest(scene, pose) for pose in path_poses(result)) <= 1e-12

@@ -7,10 +7,11 @@ from collections import Counter
 import numpy as np
 import pytest
 
+from audit.geometry import deepest, farthest_move
 from balance import imbalance
 from cagepose import Cage, Contact, Load, Pose, Scene, Spring, run
 from cagepose.files.scene_file import parse_scene
-from quasistatic.paths import RESTS, depth, distance, path_of, potential
+from quasistatic.paths import RESTS, path_of, potential
 from quasistatic.test_end_poses import came_back, is_isolated
 from sprung_scenes import cube, sprung
 
@@ -21,22 +22,20 @@ tension."""
 
 def test_the_potential_never_rises_and_nothing_goes_in(say, cases):
     random = np.random.default_rng(8)
-    verdicts, greatest, deepest = Counter(), -1.0, 0.0
+    verdicts, greatest, inside = Counter(), -1.0, 0.0
     for number in range(cases(100, 1000)):
         scene = sprung(random, friction=(0.0, 0.2)[number % 2])
         result = run(scene)
         verdicts[result.verdict] += 1
         values = [potential(scene, scene.loads[0], pose) for pose in path_of(result.phases[0])]
         greatest = max(greatest, float(np.diff(values).max(initial=-1.0)))
-        deepest = max(deepest, *(depth(scene, pose) for pose in path_of(result.phases[0])))
+        inside = max(inside, *(deepest(scene, pose) for pose in path_of(result.phases[0])))
         if result.verdict in RESTS:
             assert imbalance(scene, result.phases[0]) <= UNBALANCED, f"scene {number}"
             assert all(is_in_cone(contact, scene.friction_coefficient or 0.0) for contact in result.contacts)
-    say(
-        f"springs: {dict(verdicts)}; the potential rose by {greatest:.1e} of load times size, points {deepest:.1e} deep"
-    )
+    say(f"springs: {dict(verdicts)}; the potential rose by {greatest:.1e} of load times size, points {inside:.1e} deep")
     assert greatest <= 1e-12
-    assert deepest <= 2e-9
+    assert inside <= 2e-9
     assert verdicts["escapes"] == 0
     assert verdicts["limit"] + verdicts["stalled"] == 0
 
@@ -60,7 +59,7 @@ def test_slsqp_finds_no_lower_pose_beside_a_rest_on_springs(say, cases):
             n_gave_up += 1
             continue
         n_compared += 1
-        worst = max(worst, distance(scene, back[0], result.pose))
+        worst = max(worst, farthest_move(scene, back[0], result.pose))
     say(f"SLSQP on springs: {n_compared} rests, {n_gave_up} given up; poses within {worst:.1e} of the size")
     assert worst <= 1e-6
     assert n_gave_up <= 0.2 * n_compared

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from audit.families import drawn_scenes
+from audit.geometry import farthest_move
 from cagepose import Object, Pose, Scene, run
 from mapped_scenes import KINDS, mapped, mirrored
 from quasistatic.paths import RESTS, again
@@ -29,12 +30,6 @@ def seen_otherwise(scene, kind, rng):
     return other, lambda pose: mirrored(frame.inverse() @ pose, flip, 1.0 / scale)
 
 
-def apart(scene, one, other):
-    """The farthest that a corner is apart in two poses, in sizes."""
-    corners = np.concatenate([box.corners_object() for box in scene.object.boxes])
-    return float(np.linalg.norm(one.transform(corners) - other.transform(corners), axis=1).max() / scene.size_m)
-
-
 @pytest.mark.parametrize("friction", [None, 0.1])
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("misaligned", [{"pitch_deg": 0.1}, {"yaw_deg": 0.1, "roll_deg": -0.05}])
@@ -45,7 +40,7 @@ def test_the_rail_seen_otherwise_ends_alike(misaligned, kind, friction):
     found = run(other, method="quasistatic")
     assert found.verdict in RESTS
     assert [phase.verdict for phase in found.phases] == [phase.verdict for phase in expected.phases]
-    assert apart(scene, back(found.pose), expected.pose) <= 1e-8
+    assert farthest_move(scene, back(found.pose), expected.pose) <= 1e-8
 
 
 def is_undecided(scene, expected, rng):
@@ -68,7 +63,7 @@ def is_undecided(scene, expected, rng):
         )
         found = run(nudged, method="quasistatic")
         if found.verdict != expected.verdict or (
-            expected.verdict in RESTS and apart(scene, found.pose, expected.pose) > 1e-9
+            expected.verdict in RESTS and farthest_move(scene, found.pose, expected.pose) > 1e-9
         ):
             return True
     return False
@@ -107,7 +102,7 @@ def test_a_random_scene_seen_otherwise_ends_alike(decided, kind, say):
             differ.append((number, found.verdict, expected.verdict))
         elif expected.verdict in RESTS:
             n_rests += 1
-            distance = apart(scene, back(found.pose), expected.pose)
+            distance = farthest_move(scene, back(found.pose), expected.pose)
             worst = max(worst, distance)
             if distance > alike:
                 differ.append((number, distance))

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from audit.families import drawn_scenes
+from audit.geometry import farthest_move
 from cagepose import Box, Cage, Load, Object, Pose, Scene, run
 from cagepose.model.shapes import Convex
-from quasistatic.paths import RESTS, distance
+from quasistatic.paths import RESTS
 from shapes.asked_runs import Asked
 from shapes.convex_bodies import Body, body_of, gap
 from shapes.shape_scenes import random_problem, scene_of
@@ -125,6 +126,6 @@ def test_a_box_as_a_hull_of_its_corners_and_points_ends_where_the_box_does(cases
         one, two = run(scene, method="quasistatic"), run(other, method="quasistatic")
         assert one.verdict == two.verdict
         if one.verdict in RESTS:
-            worst = max(worst, distance(scene, one.pose, two.pose))
+            worst = max(worst, farthest_move(scene, one.pose, two.pose))
     assert worst < 1e-9
     say(f"{n_scenes} boxes as hulls end at most {worst:.1e} sizes from the boxes")
