@@ -16,6 +16,7 @@ from audit.geometry import (
     Acting,
     Touch,
     acting,
+    acting_at,
     choices,
     corners,
     friction_of,
@@ -160,13 +161,28 @@ def least_imbalance(
 class _Frame:
     """Where wrenches are taken, and the load there: of magnitude 1."""
 
-    def __init__(self, scene: Scene, pose: Pose, places: FloatArray, acts: Sequence[Acting]) -> None:
-        points = corners(scene, pose)
-        self.length = 2.0 * float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())
+    def __init__(
+        self,
+        scene: Scene,
+        pose: Pose,
+        places: FloatArray,
+        acts: Sequence[Acting],
+        couple: FloatArray | None = None,
+        *,
+        of_all: bool = False,
+    ) -> None:
+        """With ``of_all`` the load is as large as all that acts, which may balance without contacts."""
+        points = corners(scene, pose) if scene.object.boxes else pose.position_m[None]
+        reach = float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())
+        self.length = 2.0 * reach if scene.object.boxes else scene.size_m
         self.middle = places.mean(axis=0) if len(places) else points.mean(axis=0)
         total = np.sum([self.wrench(act.force, pose.transform(act.at_object)) for act in acts], axis=0)
+        size = load_size(acts)
+        if couple is not None:
+            total = total + np.concatenate([np.zeros(3), couple / self.length])
+            size += float(np.linalg.norm(couple)) / self.length
         force, moment = float(np.linalg.norm(total[:3])), float(np.linalg.norm(total[3:]))
-        self.magnitude = max(force, moment, 1e-9 * load_size(acts))
+        self.magnitude = max(force, moment, size if of_all else 1e-9 * size)
         self.load = total / self.magnitude
 
     def wrench(self, force: FloatArray, at: FloatArray) -> FloatArray:
@@ -183,22 +199,39 @@ def _edges(frame: _Frame, touch: Touch, mu: float, n_sides: int, outside: bool) 
     return np.array([frame.wrench(ray, touch.place) for ray in rays])
 
 
-def _wrong_forces(scene: Scene, phase: PhaseRun) -> list[str]:
-    acts = acting(scene, load_of(scene, phase.name))
-    world = dict(zip(scene.cage.names, scene.cage.points_world(), strict=True))
-    places = np.array([world[contact.point] for contact in phase.contacts])
-    frame = _Frame(scene, phase.pose, places, acts)
-    net, largest, fall = frame.load.copy(), 0.0, 0.0
-    found = []
+def imbalance(scene: Scene, phase: PhaseRun) -> float:
+    """What the reported forces leave of the load of a phase, in loads; all of its contacts have forces."""
+    frame, places = _frame_of(scene, phase)
+    net = frame.load.copy()
     for contact, place in zip(phase.contacts, places, strict=True):
+        assert contact.force_normal_n is not None
+        assert contact.force_tangential_n is not None
+        force = contact.force_tangential_n - contact.force_normal_n * contact.normal_world
+        net += frame.wrench(force / frame.magnitude, place)
+    return float(max(np.linalg.norm(net[:3]), np.linalg.norm(net[3:])))
+
+
+def _frame_of(scene: Scene, phase: PhaseRun) -> tuple[_Frame, FloatArray]:
+    """The frame of a phase's contacts, and their places, of points where these are."""
+    load = load_of(scene, phase.name)
+    acts, couple = acting_at(scene, load, phase.pose)
+    world = dict(zip(scene.cage.names, scene.cage.points_world(), strict=True))
+    places = np.array([world.get(contact.point, contact.place_world) for contact in phase.contacts])
+    return _Frame(scene, phase.pose, places, acts, couple, of_all=load.needs_newtons), places
+
+
+def _wrong_forces(scene: Scene, phase: PhaseRun) -> list[str]:
+    frame, _ = _frame_of(scene, phase)
+    largest, fall = 0.0, 0.0
+    found = []
+    for contact in phase.contacts:
         if contact.force_normal_n is None or contact.force_tangential_n is None:
             return [f"{phase.verdict} without the force of {contact.point}"]
         normal_n, tangential = contact.force_normal_n / frame.magnitude, contact.force_tangential_n / frame.magnitude
-        net += frame.wrench(tangential - normal_n * contact.normal_world, place)
         largest = max(largest, normal_n)
         fall += normal_n * abs(contact.gap_m) / scene.size_m
         found += _outside_its_cone(contact, normal_n, tangential, friction_of(scene, contact))
-    left = float(np.abs(net).max())
+    left = imbalance(scene, phase)
     if left > REST:
         found.append(f"the reported forces leave {left:.1e} loads")
     if largest > MOST_FORCE:

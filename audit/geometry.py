@@ -126,20 +126,40 @@ def friction_of(scene: Scene, contact: Touch | Contact) -> float:
 
 
 def acting(scene: Scene, load: Load) -> list[Acting]:
-    """The forces of a load: in newtons if masses and magnitudes say all, else relative to each other."""
-    center, mass = scene.object.center_of_gravity_m, scene.object.mass_kg
-    down = load.gravity_world
-    if load.force is None:
-        assert down is not None
-        return [Acting(down / np.linalg.norm(down) if mass is None else mass * down, center)]
-    magnitude = load.force.magnitude_n
-    push = Acting(load.force.direction * (1.0 if magnitude is None else magnitude), load.force.at_object_m)
+    """The dead forces of a load: in newtons if masses and magnitudes say all, else relative to each other."""
+    center, mass, down = scene.object.center_of_gravity_m, scene.object.mass_kg, load.gravity_world
+    magnitudes = [push.magnitude_n for push in load.pushes]
+    pushes = [
+        Acting(push.direction * (1.0 if magnitude is None else magnitude), push.at_object_m)
+        for push, magnitude in zip(load.pushes, magnitudes, strict=True)
+        if not push.follows
+    ]
     if down is None:
-        return [push]
-    if mass is not None and magnitude is not None:
-        return [push, Acting(mass * down, center)]
-    weight = WEIGHT_BESIDE_FORCE * np.linalg.norm(push.force) * down / np.linalg.norm(down)
-    return [push, Acting(weight, center)]
+        return pushes
+    if mass is not None and None not in magnitudes:
+        return [*pushes, Acting(mass * down, center)]
+    beside = WEIGHT_BESIDE_FORCE * np.linalg.norm(pushes[0].force) if pushes else 1.0
+    return [*pushes, Acting(beside * down / np.linalg.norm(down), center)]
+
+
+def acting_at(scene: Scene, load: Load, pose: Pose) -> tuple[list[Acting], FloatArray]:
+    """All forces of a load at a pose, those that follow the object and those of springs too, and its moments, (3,)."""
+    acts, couple = acting(scene, load), np.zeros(3)
+    for push in load.pushes:
+        if push.follows:
+            magnitude = 1.0 if push.magnitude_n is None else push.magnitude_n
+            acts.append(Acting(magnitude * pose.rotation @ push.direction, push.at_object_m))
+    for spring in load.springs:
+        start = scene.object.pose_world_object.transform(spring.at_object_m)
+        way = spring.to_world_m - pose.transform(spring.at_object_m)
+        length = float(np.linalg.norm(way))
+        longer = length - float(np.linalg.norm(spring.to_world_m - start))
+        tension = spring.preload_n + spring.stiffness_n_per_m * longer
+        acts.append(Acting(tension / length * way, spring.at_object_m))
+    for moment in load.moments:
+        turned = pose.rotation @ moment.direction if moment.follows else moment.direction
+        couple = couple + moment.magnitude_nm * turned
+    return acts, couple
 
 
 def load_of(scene: Scene, name: str) -> Load:

@@ -21,10 +21,12 @@ from cagepose import (
     Force,
     Hole,
     Load,
+    Moment,
     Object,
     Pose,
     Scene,
     Sphere,
+    Spring,
     load_scene,
     run,
 )
@@ -109,6 +111,32 @@ def test_falsified_forces_are_found(changes, said):
     one = dropped(friction=0.1)
     assert balance.forces(one) == []
     assert any(said in text for text in balance.forces(with_force(one, **changes)))
+
+
+def test_a_balance_with_springs_moments_and_following_forces_is_asked_too():
+    """A thousandth of a newton more on one foot is found, and a spring, a force or a moment that is another one."""
+    spring = Spring((0, 0, 0.01), (0.0, 0.02, 0.3), 100.0, 2.0)
+    follower = Force((0, 0.1, -1), (0.01, 0, 0.01), 3.0, follows=True)
+    moment = Moment((1, 0, 0), 0.01, follows=True)
+
+    def loads(spring, follower, moment):
+        return [Load("all", gravity=(0, 0, -9.81), forces=[follower], springs=[spring], moments=[moment])]
+
+    held = block_on(FLOOR).object
+    heavy = Object(held.boxes, mass_kg=1.0, pose=held.pose_world_object)
+    one = run(Scene(heavy, Cage(FLOOR), loads(spring, follower, moment), friction_coefficient=0.5))
+    phase = one.phases[-1]
+    assert one.verdict in balance.AT_REST
+    assert balance.imbalance(one.scene, phase) < 1e-8
+    more = with_force(one, force_normal_n=phase.contacts[0].force_normal_n + 1e-3).phases[-1]
+    assert balance.imbalance(one.scene, more) > 1e-5
+    for others in (
+        (Spring((0, 0, 0.01), (0.0, 0.02, 0.3), 100.0, 2.1), follower, moment),
+        (spring, Force((0, 0.1, -1), (0.01, 0, 0.01), 3.1, follows=True), moment),
+        (spring, follower, Moment((1, 0, 0), 0.011, follows=True)),
+    ):
+        wrong = Scene(heavy, Cage(FLOOR), loads(*others), friction_coefficient=0.5)
+        assert balance.imbalance(wrong, phase) > 1e-4
 
 
 def test_a_contact_that_is_missing_is_found():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from balance import imbalance
+from audit.balance import imbalance
 from cagepose import Box, Cage, Force, Load, Moment, Object, Pose, Run, Scene, Spring, Variation, run, run_many
 from quasistatic.paths import path_of
 from sprung_scenes import cube, sprung

@@ -7,8 +7,8 @@ from collections import Counter
 import numpy as np
 import pytest
 
+from audit.balance import imbalance
 from audit.geometry import deepest, farthest_move
-from balance import imbalance
 from cagepose import Cage, Contact, Load, Pose, Scene, Spring, run
 from cagepose.files.scene_file import parse_scene
 from quasistatic.paths import RESTS, path_of, potential

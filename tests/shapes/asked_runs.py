@@ -6,8 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from audit import balance
+from audit.geometry import acting, load_size
 from cagepose import Pose, Run, Scene
-from cagepose.runs.load_scaling import scaled_load
 from quasistatic.paths import RESTS, VERDICTS, path_of, potential
 
 DEEP = 4.0
@@ -22,19 +23,9 @@ def imbalance(scene: Scene, result: Run) -> float:
     """What is left of the forces and moments at the end, of the load, but for the rounding of their sum: in a jam,
     contacts press on each other with any multiple of it.
     """
-    phase, load = result.phases[-1], scene.loads[-1]
-    weighed, about = scaled_load(scene, load), phase.pose.transform(scene.object.center_of_gravity_m)
-    force, moment = np.array(weighed.gravity, dtype=float), np.zeros(3)
-    total = np.linalg.norm(force)
-    for push, each in zip(load.pushes, weighed.forces, strict=True):
-        force, total = force + each, total + np.linalg.norm(each)
-        moment = moment + np.cross(phase.pose.transform(push.at_object_m) - about, each)
-    for contact in phase.contacts:
-        carried = contact.force_tangential_n - contact.force_normal_n * contact.normal_world
-        force, moment = force + carried, moment + np.cross(contact.place_world - about, carried)
-    left = max(float(np.linalg.norm(force)), float(np.linalg.norm(moment)) / scene.size_m)
+    phase, total = result.phases[-1], load_size(acting(scene, scene.loads[-1]))
     rounding = np.finfo(float).eps * len(phase.contacts) * sum(contact.force_normal_n for contact in phase.contacts)
-    return max(left - rounding, 0.0) / float(total)
+    return max(balance.imbalance(scene, phase) - float(rounding / total), 0.0)
 
 
 class Asked:

@@ -11,7 +11,7 @@ import math
 
 import pytest
 
-from balance import imbalance
+from audit.balance import imbalance
 from cagepose.kernels.native.library import kernel_library
 from golden_runs import CASES, GOLDEN, current, golden, golden_path
 

@@ -16,9 +16,9 @@ import collections
 import numpy as np
 import pytest
 
+from audit.balance import imbalance
 from audit.families import drawn_scenes
 from audit.geometry import deepest
-from balance import imbalance
 from cagepose import PhaseRun, Run, Scene
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.contact.metric import Body
