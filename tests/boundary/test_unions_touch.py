@@ -7,6 +7,7 @@ import numpy as np
 from boundary.asked import Asked
 from cagepose import Box, Pose
 from cagepose.kernels.shapes.motion import Motion
+from cagepose.model.hull import hull_of
 from cagepose.model.shapes import Convex, Sphere
 from shapes.convex_bodies import random_turn
 
@@ -34,7 +35,7 @@ def _halves(corners: np.ndarray, normal: np.ndarray, offset: float) -> list[np.n
                 share = heights[i] / (heights[i] - heights[j])
                 crossing.append(corners[i] + share * (corners[j] - corners[i]))
     halves = [np.concatenate([corners[heights * sign > 0.0], crossing]) for sign in (1.0, -1.0)]
-    return [Convex(half).vertices_m for half in halves]
+    return [hull_of(half).vertices_m for half in halves]
 
 
 def test_points_slide_over_seams_and_cubes_stand_on_them(cases):
