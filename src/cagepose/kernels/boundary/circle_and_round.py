@@ -117,6 +117,7 @@ def common_with_round(circle: Circle, other: Round, angle: float) -> Common:
     seen = minus(here.point, other.point)
     height = dot(seen, other.direction)
     across = minus(seen, scaled(other.direction, height))
+    across = minus(across, scaled(other.direction, dot(across, other.direction)))  # near the axis rounding is left
     rho, slant = norm(across), slant_of(other)
     out = scaled(across, 1.0 / rho) if rho > 0.0 else some_across(here, other.direction)
     normal = plus(scaled(out, slant), scaled(other.direction, other.taper))

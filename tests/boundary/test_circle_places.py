@@ -1,0 +1,199 @@
+"""All places where a circle has a common normal with something else: against dense sampling, none missed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from boundary import circle_pairs
+from boundary.circle_sampling import Sampled, size_of, stationary
+from cagepose.kernels.algebra.record import empty_rows
+from cagepose.kernels.boundary.circle_and_circle import common_with_circle, follow_by_circle, places_by_circle
+from cagepose.kernels.boundary.circle_and_flat import (
+    common_with_plane,
+    common_with_point,
+    places_by_plane,
+    places_by_point,
+)
+from cagepose.kernels.boundary.circle_and_round import (
+    Round,
+    common_with_line,
+    common_with_round,
+    follow_by_round,
+    places_by_round,
+)
+from cagepose.kernels.boundary.circle_places import (
+    FLAT,
+    GREATEST,
+    LEAST,
+    SADDLE,
+    WHOLE,
+    Circle,
+    Place,
+    on_circle,
+    radius_of_curvature,
+)
+from inner_kernels import as_machine_code
+
+EXACT = 1e-12
+"""Of the size."""
+PAIRS = {"line": circle_pairs.with_line, "round": circle_pairs.with_round, "circle": circle_pairs.with_circle}
+UNIT = Circle((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0), 1.0)
+
+
+def apart(one: float, other: float) -> float:
+    return abs(math.remainder(float(one) - float(other), 2.0 * math.pi))
+
+
+def kind_of(rises: bool, side: float, is_circle: bool) -> int:
+    if is_circle and rises != (side > 0.0):
+        return SADDLE
+    return LEAST if rises else GREATEST
+
+
+def found_by(circle, other, flat_m: float):
+    """The kernels' places along the first circle, or the smaller of two, and that circle and the other one."""
+    is_circle, places = isinstance(other, Circle), empty_rows(Place, 16)
+    find = as_machine_code(places_by_circle if is_circle else places_by_round)
+    n_places = find(circle, other, flat_m, places)
+    is_first = not is_circle or circle.radius <= other.radius
+    rows = [row.copy() for row in places[: max(n_places, 0)]]
+    angles = [(float(row["angle" if is_first else "other_angle"]), row) for row in rows]
+    return n_places, angles, (circle, other) if is_first else (other, circle)
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_no_place_is_missed_and_each_is_exact(name, cases, say):
+    rng = np.random.default_rng(3)
+    n_pairs, n_places, n_whole, missed, worst = cases(150, 20_000), 0, 0, [], 0.0
+    for pair in range(n_pairs):
+        circle, other = PAIRS[name](rng)
+        size, is_circle = size_of(circle, other), name == "circle"
+        flat_m = size * float(rng.choice([1e-13, 1e-11, 1e-9]))
+        n_found, found, (along, around) = found_by(circle, other, flat_m)
+        if n_found == WHOLE:
+            around_it = Sampled(along, around).distance(np.linspace(-np.pi, np.pi, 4096))
+            assert np.ptp(around_it) <= 2.0 * flat_m + 1e-14 * size, (pair, circle, other)
+            n_whole += 1
+            continue
+        for side in (1.0, -1.0) if is_circle else (1.0,):
+            exact = Sampled(along, around, side, np.longdouble)
+            for told in stationary(along, around, side):
+                n_places += 1
+                middle, reach = 0.5 * (told.low + told.high), 0.5 * (told.high - told.low) + 1e-6
+                near = [
+                    angle
+                    for angle, place in found
+                    if place["is_near"] == (side > 0.0)
+                    and place["kind"] in (FLAT, kind_of(told.rises, side, is_circle))
+                    and apart(angle, middle) <= reach
+                ]
+                if not near:
+                    missed.append((pair, told))
+                elif told.rises:
+                    nearest = min(near, key=lambda angle, told=told: apart(angle, told.angle))
+                    one, two = exact.distance(np.array([nearest, told.angle], dtype=np.longdouble))
+                    worst = max(worst, abs(float(one - two)) / size)
+    say(f"{name}: {n_places} sampled places of {n_pairs} pairs, {len(missed)} missed, least distances to {worst:.1e}")
+    assert not missed
+    assert worst < EXACT
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_what_is_told_is_stationary_and_has_a_common_normal(name, cases):
+    """The slope is zero, and the common normal leads from one place to the other, as far as the gap."""
+    rng = np.random.default_rng(4)
+    for pair in range(cases(150, 4000)):
+        circle, other = PAIRS[name](rng)
+        size = size_of(circle, other)
+        n_found, found, (along, around) = found_by(circle, other, 1e-9 * size)
+        for angle, place in found:
+            if place["kind"] == FLAT:
+                continue
+            sampled = Sampled(along, around, 1.0 if place["is_near"] else -1.0, np.longdouble)
+            if sampled._at(np.array([angle]))[4][0] < 1e-6 * size:
+                continue  # it crosses an axis
+            before, at, after = sampled.slope(np.array([angle - EXACT, angle, angle + EXACT], dtype=np.longdouble))
+            assert abs(at) < EXACT * size or (before > 0.0) != (after > 0.0), (pair, n_found, place)
+            if name == "circle":
+                met = common_with_circle(circle, other, place["angle"], place["other_angle"])
+            else:
+                met = (common_with_line if name == "line" else common_with_round)(circle, other, angle)
+            gap, normal = met.gap, np.array(met.normal)
+            between = np.array(met.other_point) - np.array(met.point)
+            assert abs(np.linalg.norm(normal) - 1.0) < 1e-14
+            assert abs(normal @ between - gap) < EXACT * size
+            shift = other.radius if name == "round" else 0.0
+            told = sampled.distance(np.array([angle]))[0] - shift
+            assert abs(abs(gap) - abs(told)) < EXACT * size, (pair, place)
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_a_place_is_known_again_after_a_small_motion(name, cases):
+    """After a motion of 1e-4 radii each least place is followed to the nearest one that the full search tells."""
+    rng = np.random.default_rng(5)
+    n_followed = 0
+    for _ in range(cases(100, 2000)):
+        circle, other = PAIRS[name](rng)
+        is_circle, size = name == "circle", size_of(circle, other)
+        n_before, before, _ = found_by(circle, other, 1e-9 * size)
+        moved = circle._replace(centre=tuple(np.array(circle.centre) + 1e-4 * circle.radius * rng.normal(size=3)))
+        n_after, after, (along, _) = found_by(moved, other, 1e-9 * size)
+        follow, row = as_machine_code(follow_by_circle if is_circle else follow_by_round), empty_rows(Place, 16)
+        if WHOLE in (n_before, n_after):
+            continue
+        for angle, place in before:
+            same = [at for at, row in after if row["kind"] == place["kind"] and row["is_near"] == place["is_near"]]
+            if place["kind"] != LEAST or not same or any(row["kind"] == FLAT for _, row in before + after):
+                continue
+            assert follow(moved, other, place, row)
+            followed = float(row[0]["angle" if along is moved else "other_angle"])
+            assert abs(apart(followed, angle) - min(apart(at, angle) for at in same)) < 1e-7
+            n_followed += 1
+    assert n_followed > 0
+
+
+def test_a_point_and_a_plane_by_hand():
+    places = empty_rows(Place, 2)
+    assert places_by_point(UNIT, (0.0, 2.0, 0.0), 1e-9, places) == 2
+    assert [place["angle"] for place in places] == pytest.approx([math.pi / 2.0, -math.pi / 2.0])
+    assert [common_with_point(UNIT, (0.0, 2.0, 0.0), place["angle"]).gap for place in places] == pytest.approx(
+        [1.0, 3.0]
+    )
+    assert places_by_point(UNIT, (1e-10, 0.0, 5.0), 1e-9, places) == WHOLE
+    slanted = (0.6, 0.0, 0.8)
+    assert places_by_plane(UNIT, slanted, 1e-9, places) == 2
+    gaps = [common_with_plane(UNIT, (0.0, 0.0, -1.0), slanted, place["angle"]).gap for place in places]
+    assert gaps == pytest.approx([0.2, 1.4], abs=1e-15)
+    assert places_by_plane(UNIT, (0.0, 0.0, -1.0), 1e-9, places) == WHOLE
+
+
+def test_a_circle_around_a_torus_is_equally_far():
+    """Parallels, meridians and Villarceau's circles of a torus are equally far from its core circle."""
+    places, size = empty_rows(Place, 16), 0.3
+    for around in (
+        Circle((0.0, 0.0, size), UNIT.axis, UNIT.toward, 1.0),
+        Circle((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), UNIT.toward, size),
+        Circle((size, 0.0, 0.0), (0.0, size, math.sqrt(1.0 - size * size)), UNIT.toward, 1.0),
+    ):
+        assert places_by_circle(UNIT, around, 1e-9, places) == WHOLE
+
+
+def test_a_line_that_touches_a_circle_in_its_plane_is_met_at_one_place():
+    places = empty_rows(Place, 16)
+    tangent = Round((1.0, 3.0, 0.0), (0.0, 1.0, 0.0), 0.0, 0.0)
+    n_places = places_by_round(UNIT, tangent, 1e-9, places)
+    assert [place["kind"] for place in places[:n_places]].count(LEAST) == 1
+    at = next(float(place["angle"]) for place in places[:n_places] if place["kind"] == LEAST)
+    assert abs(at) < 1e-7
+    met = common_with_line(UNIT, tangent, at)
+    assert abs(met.gap) < 1e-14
+
+
+def test_a_mouth_bends_toward_the_normals_that_lead_into_it():
+    here = on_circle(UNIT, 0.3)
+    inward = (-0.8 * here.outward[0], -0.8 * here.outward[1], 0.6)
+    assert radius_of_curvature(UNIT, here.outward, inward) == pytest.approx(-1.25)
+    assert radius_of_curvature(UNIT, here.outward, (0.0, 0.0, 1.0)) == math.inf
