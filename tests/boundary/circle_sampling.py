@@ -68,6 +68,10 @@ class Sampled:
         across = np.stack([point[k] - height * self.along[k] for k in range(3)])
         return point, tangent, height, across, np.sqrt(np.sum(across * across, axis=0))
 
+    def from_axis(self, angles: Array) -> Array:
+        """The distance from the axis of the other one."""
+        return self._at(angles)[4]
+
     def distance(self, angles: Array) -> Array:
         _, _, height, _, rho = self._at(angles)
         if isinstance(self.other, Round):
@@ -83,7 +87,7 @@ class Sampled:
             slant = np.copysign(1.0, self.other.radius) * np.sqrt(1.0 - taper**2)
             lean = sum(tangent[k] * self.along[k] for k in range(3))
             return slant * np.sum(tangent * across, axis=0) + taper * lean * rho
-        scale = self.side * self.other.radius / np.maximum(rho, np.finfo(rho.dtype).tiny)
+        scale = self.side * self.other.radius / np.maximum(rho, 1e-100)
         return np.sum(tangent * (point - scale * across), axis=0)
 
 
