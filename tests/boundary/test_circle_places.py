@@ -105,7 +105,7 @@ def test_no_place_is_missed_and_each_is_exact(name, cases, say):
 def test_what_is_told_is_stationary_and_has_a_common_normal(name, cases):
     """The slope is zero, and the common normal leads from one place to the other, as far as the gap."""
     rng = np.random.default_rng(4)
-    for pair in range(cases(150, 4000)):
+    for pair in range(cases(60, 4000)):
         circle, other = PAIRS[name](rng)
         size = size_of(circle, other)
         n_found, found, (along, around) = found_by(circle, other, 1e-9 * size)

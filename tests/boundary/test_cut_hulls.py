@@ -18,7 +18,7 @@ Cases = Callable[[int, int], int]
 
 
 def test_the_pieces_of_a_hull_give_back_its_own_features(cases: Cases) -> None:
-    for case in range(cases(200, 4000)):
+    for case in range(cases(40, 2000)):
         rng = np.random.default_rng((case, 1))
         hull = drawn_hull(rng)
         whole = union_of([piece_of_hull(hull, Pose(), 0)], TOUCH_M)
@@ -30,7 +30,7 @@ def test_the_pieces_of_a_hull_give_back_its_own_features(cases: Cases) -> None:
 
 
 def test_pieces_shifted_within_the_touch_tolerance_give_back_the_hull(cases: Cases) -> None:
-    for case in range(cases(200, 4000)):
+    for case in range(cases(40, 2000)):
         rng = np.random.default_rng((case, 2))
         hull = drawn_hull(rng)
         whole = union_of([piece_of_hull(hull, Pose(), 0)], TOUCH_M)

@@ -82,7 +82,7 @@ class Tally:
 
 def test_motions_of_round_and_sharp_parts(cases, say):
     rng, tally = np.random.default_rng(7), Tally()
-    for _ in range(cases(60, 1000)):
+    for _ in range(cases(20, 1000)):
         part, cage_part = turned_bodies.random_turned(rng), turned_bodies.random_turned(rng)
         body, other = turned_bodies.circles_of(part), turned_bodies.circles_of(cage_part)
         size = max(body.size, other.size)

@@ -18,7 +18,7 @@ Cases = Callable[[int, int], int]
 
 
 def test_a_lone_hull_keeps_each_digit_of_its_vertices_edges_and_faces(cases: Cases) -> None:
-    for case in range(cases(200, 4000)):
+    for case in range(cases(40, 2000)):
         hull = drawn_hull(np.random.default_rng((case, 3)))
         found = union_of([piece_of_hull(hull, Pose(), 0)], TOUCH_M)
         assert not faults_of_surface(found, TOUCH_M)
@@ -32,7 +32,7 @@ def test_a_lone_hull_keeps_each_digit_of_its_vertices_edges_and_faces(cases: Cas
 
 
 def test_a_hull_twice_at_one_place_is_that_hull(cases: Cases) -> None:
-    for case in range(cases(200, 4000)):
+    for case in range(cases(40, 2000)):
         hull = drawn_hull(np.random.default_rng((case, 4)))
         piece = piece_of_hull(hull, Pose(), 0)
         lone, twice = union_of([piece], TOUCH_M), union_of([piece, piece], TOUCH_M)

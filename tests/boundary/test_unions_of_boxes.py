@@ -96,7 +96,7 @@ def _wrong(boundary: TrimmedUnion, boxes: list[Box], blocks: list[Block], turn: 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_union_of_boxes_is_what_a_grid_of_cells_says(kind: str, cases: Cases) -> None:
     least, greatest, size, is_turned, shift_m = KINDS[kind]
-    n_cases = cases(40, 400) if greatest > 20 else cases(200, 5000)
+    n_cases = cases(6, 400) if greatest > 20 else cases(40, 5000)
     for case in range(n_cases):
         rng = np.random.default_rng((case, len(kind)))
         boxes = drawn_boxes(rng, int(rng.integers(least, greatest)), size)

@@ -48,7 +48,7 @@ def _heights(pieces: list[ConvexPiece], places: FloatArray) -> FloatArray:
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_place_on_a_piece_is_in_a_face_if_the_place_before_it_is_outside_of_all(kind: str, cases: Cases) -> None:
     n_asked = 0
-    for case in range(cases(200, 3000)):
+    for case in range(cases(20, 1500)):
         rng = np.random.default_rng((case, 5))
         pieces = KINDS[kind](rng)
         boundary = union_of(pieces, TOUCH_M)
@@ -67,7 +67,7 @@ def test_a_place_on_a_piece_is_in_a_face_if_the_place_before_it_is_outside_of_al
 @pytest.mark.parametrize("kind", KINDS)
 def test_convex_edges_are_where_less_than_half_a_ring_around_them_is_inside(kind: str, cases: Cases) -> None:
     n_asked = 0
-    for case in range(cases(200, 3000)):
+    for case in range(cases(20, 1500)):
         rng = np.random.default_rng((case, 6))
         pieces = KINDS[kind](rng)
         boundary = union_of(pieces, TOUCH_M)
@@ -110,7 +110,7 @@ def _edges_at(boundary: TrimmedUnion, place: FloatArray) -> list[int]:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_order_of_pieces_changes_no_feature(kind: str, cases: Cases) -> None:
-    for case in range(cases(200, 3000)):
+    for case in range(cases(20, 1500)):
         rng = np.random.default_rng((case, 7))
         pieces = KINDS[kind](rng)
         one = union_of(pieces, TOUCH_M)
