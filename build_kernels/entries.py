@@ -121,7 +121,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield certify, (geometry, 0.0, goals, numbers, play_work, empty_certificate_workspace(1))
     yield grow_tree, (geometry, vectors, empty_rows(Station, 1), 1, empty_placement(geometry), tolerances)
 
-    indices, triples, is_true = np.zeros(1, np.int64), np.zeros((1, 3), np.int64), np.zeros(1, np.bool_)
+    indices, is_true = np.zeros(1, np.int64), np.zeros(1, np.bool_)
     pieces = Pieces(empty_rows(Piece, 1), vectors, empty_rows(PieceEdge, 1), empty_rows(PieceFace, 1), indices)
     planes, borders = empty_rows(Plane, 1), empty_rows(Border, 1)
     yield find_groups, (indices, 0.0, pieces, indices)
@@ -130,7 +130,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield find_pairs, (0.0, pieces, planes, 1, indices)
     fan, arcs = empty_fan_work(1, 1), empty_rows(Arc, 1)
     yield find_arcs, (indices, indices, 1, ORIGIN, 0.0, 0.0, pieces, planes, is_true, fan, arcs)
-    yield merge_places, (indices, indices, numbers, numbers, 0.0, vectors, triples, planes, indices)
+    yield merge_places, (indices, numbers, numbers, vectors, indices)
     yield find_corners, (indices, indices, 0.0, pieces, planes, indices, indices, vectors, vectors, is_true)
     yield find_loops, (vectors, borders, empty_rows(Loop, 1))
     yield is_in_face, (ORIGIN, ORIGIN, borders, 0, 1, 0.0)

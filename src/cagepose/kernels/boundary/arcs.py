@@ -25,8 +25,8 @@ class Arc:
         Of the line, metres.
     direction
         Unit vector from the start to the end.
-    start_planes, end_planes
-        Three planes that cross there.
+    slacks
+        How far the start and the end may be off, metres.
     planes, sides, parts
         Of both faces: plane, 1.0 or -1.0 (see `PieceFace.side`), and the first of the parts that it belongs to.
     normals
@@ -41,8 +41,7 @@ class Arc:
     start: Annotated[FloatArray, 3]
     end: Annotated[FloatArray, 3]
     direction: Annotated[FloatArray, 3]
-    start_planes: Annotated[IntArray, 3]
-    end_planes: Annotated[IntArray, 3]
+    slacks: Annotated[FloatArray, 2]
     planes: Annotated[IntArray, 2]
     sides: Annotated[FloatArray, 2]
     parts: Annotated[IntArray, 2]
@@ -57,7 +56,8 @@ def is_continued(arcs: Rows[Arc], first: int, new: int) -> bool:
     for k in range(first, new):
         if _goes_on(arcs[k], arcs[new]):
             for j in range(3):
-                arcs[k].end[j], arcs[k].end_planes[j] = arcs[new].end[j], arcs[new].end_planes[j]
+                arcs[k].end[j] = arcs[new].end[j]
+            arcs[k].slacks[1] = arcs[new].slacks[1]
             return True
     return False
 

@@ -67,12 +67,12 @@ def find_arcs(
         a, b = pairs[order[k]] // n_planes, pairs[order[k]] % n_planes
         if norm(cross(vector_from(planes[a].normal), vector_from(planes[b].normal))) < LEAST_SINE:
             continue
-        line = line_of(a, b, middle, planes)
+        line = line_of(planes[a], planes[b], middle)
         note_planes(line, reach_m, touch_m, planes, n_planes, work)
         work.holds_line[a], work.holds_line[b] = True, True
         _mark_done(pairs, n_planes, work, is_done)
         n_spans = find_spans(line, touch_m, pieces, planes, work)
-        n_cuts = find_cuts(line, n_spans, touch_m, planes, work)
+        n_cuts = find_cuts(n_spans, work)
         first_arc = n_arcs
         for c in range(n_cuts - 1):
             n_rays = _find_rays(line, 0.5 * (work.cuts[c] + work.cuts[c + 1]), n_spans, pieces, planes, work)
@@ -185,9 +185,7 @@ def _write_arc(
         last = (last + 1) % n_rays
     start = plus(line.point, scaled(line.direction, work.cuts[c]))
     end = plus(line.point, scaled(line.direction, work.cuts[c + 1]))
-    for j in range(2):
-        arc.start_planes[j] = arc.end_planes[j] = line.a if j == 0 else line.b
-    arc.start_planes[2], arc.end_planes[2] = work.cut_planes[c], work.cut_planes[c + 1]
+    arc.slacks[0], arc.slacks[1] = work.slacks[c], work.slacks[c + 1]
     for k in range(3):
         arc.start[k], arc.end[k], arc.direction[k] = start[k], end[k], line.direction[k]
     for j in range(2):

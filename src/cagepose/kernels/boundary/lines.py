@@ -17,6 +17,8 @@ LEAST_SINE = 1e-9
 """Planes at a smaller angle cross in no line."""
 PARALLEL = 1e-12
 """A plane that a line makes a smaller sine with is not crossed by it."""
+LEAST_LEVER = 1e-3
+"""Where planes cross at a smaller sine, places are not looked for any farther away than at this one."""
 
 
 class Line(NamedTuple):
@@ -29,18 +31,14 @@ class Line(NamedTuple):
     first, second
         Unit vectors across it, right-handed with the direction as the third: angles are measured from the first of
         them to the second.
-    a, b
-        These planes.
     sine
-        Of the angle between them.
+        Of the angle between the planes.
     """
 
     point: Vector
     direction: Vector
     first: Vector
     second: Vector
-    a: int
-    b: int
     sine: float
 
 
@@ -51,8 +49,8 @@ class Span:
     ----------
     start, end
         From the line's place along its direction, metres.
-    start_plane, end_plane
-        The plane in which the piece ends there.
+    start_slack, end_slack
+        How far these may be off, as planes may be off by what touches, metres.
     piece
         Which one.
     first_active, last_active
@@ -61,8 +59,8 @@ class Span:
 
     start: float
     end: float
-    start_plane: int
-    end_plane: int
+    start_slack: float
+    end_slack: float
     piece: int
     first_active: int
     last_active: int
@@ -98,10 +96,8 @@ class FanWork(NamedTuple):
         Of each plane, whether the line lies in it.
     spans, active
         See `Span`.
-    cuts, cut_planes
-        Where spans begin and end, in order, metres, and a plane that crosses the line there.
-    slacks, ends
-        Of each end of a span how far it may be off, metres, and which it is: 2 * span, or 2 * span + 1.
+    cuts, slacks
+        Where spans begin and end, in order, and how far these places may be off, metres.
     rays
         Around the line, in order.
     """
@@ -110,9 +106,7 @@ class FanWork(NamedTuple):
     spans: Rows[Span]
     active: IntArray
     cuts: FloatArray
-    cut_planes: IntArray
     slacks: FloatArray
-    ends: IntArray
     rays: Rows[Ray]
 
 
@@ -123,24 +117,22 @@ def empty_fan_work(n_pieces: int, n_faces: int) -> FanWork:
         empty_rows(Span, n_pieces),
         np.zeros(n_faces, np.int64),
         np.zeros(2 * n_pieces),
-        np.zeros(2 * n_pieces, np.int64),
         np.zeros(2 * n_pieces),
-        np.zeros(2 * n_pieces, np.int64),
         empty_rows(Ray, 2 * n_faces),
     )
 
 
 @kernel
-def line_of(a: int, b: int, near: Vector, planes: Rows[Plane]) -> Line:
+def line_of(a: Plane, b: Plane, near: Vector) -> Line:
     """Return the line of two planes, its place the one nearest to ``near``; they must not be parallel."""
-    first, normal = vector_from(planes[a].normal), vector_from(planes[b].normal)
+    first, normal = vector_from(a.normal), vector_from(b.normal)
     way = cross(first, normal)
     sine = norm(way)
     direction = scaled(way, 1.0 / sine)
-    height = planes[a].offset - dot(first, near)
-    other = planes[b].offset - dot(normal, near)
+    height = a.offset - dot(first, near)
+    other = b.offset - dot(normal, near)
     foot = plus(scaled(cross(normal, direction), height / sine), scaled(cross(direction, first), other / sine))
-    return Line(plus(near, foot), direction, first, cross(direction, first), a, b, sine)
+    return Line(plus(near, foot), direction, first, cross(direction, first), sine)
 
 
 @kernel
@@ -161,7 +153,7 @@ def find_spans(line: Line, touch_m: float, pieces: Pieces, planes: Rows[Plane], 
         if _passes_by(line, piece, touch_m):
             continue
         start, end, last_active = -math.inf, math.inf, n_active
-        span = work.spans[n_spans]
+        slope_in, slope_out = 1.0, 1.0
         for f in range(piece.first_face, piece.last_face):
             face = pieces.faces[f]
             if work.holds_line[face.plane]:
@@ -173,11 +165,14 @@ def find_spans(line: Line, touch_m: float, pieces: Pieces, planes: Rows[Plane], 
                 if height > 0.0:
                     end = -math.inf
             elif slope > 0.0 and -height / slope < end:
-                end, span.end_plane = -height / slope, face.plane
+                end, slope_out = -height / slope, slope
             elif slope < 0.0 and -height / slope > start:
-                start, span.start_plane = -height / slope, face.plane
-        if end - start > touch_m:
-            span.start, span.end, span.piece = start, end, k
+                start, slope_in = -height / slope, -slope
+        span = work.spans[n_spans]
+        span.start, span.end, span.piece = start, end, k
+        span.start_slack = touch_m / max(min(line.sine, slope_in), LEAST_LEVER)
+        span.end_slack = touch_m / max(min(line.sine, slope_out), LEAST_LEVER)
+        if end - start > max(span.start_slack, span.end_slack):
             span.first_active, span.last_active = n_active, last_active
             n_spans, n_active = n_spans + 1, last_active
     return n_spans
@@ -192,55 +187,31 @@ def _passes_by(line: Line, piece: Piece, touch_m: float) -> bool:
 
 
 @kernel
-def find_cuts(line: Line, n_spans: int, touch_m: float, planes: Rows[Plane], work: FanWork) -> int:
-    """Write where spans begin and end; return how many places.
-
-    Planes may be off by what touches, and cuts by more: by much, where a plane is crossed at a small angle. So those
-    are taken first that are known best, and others are at the nearest of them that is within what they may be off.
-    """
+def find_cuts(n_spans: int, work: FanWork) -> int:
+    """Write where spans begin and end, those at one place as the one that is known best; return how many places."""
+    n_ends = 0
     for s in range(n_spans):
         span = work.spans[s]
-        _put_in_order(span.start, span.start_plane, 2 * s, _slack(line, span.start_plane, touch_m, planes), work)
-        _put_in_order(span.end, span.end_plane, 2 * s + 1, _slack(line, span.end_plane, touch_m, planes), work)
-    n_cuts = 0
-    for k in range(2 * n_spans):
-        cut, nearest = work.cuts[k], n_cuts
-        for c in range(n_cuts):
-            apart = abs(work.cuts[c] - cut)
-            if apart <= work.slacks[k] and (nearest == n_cuts or apart < abs(work.cuts[nearest] - cut)):
-                nearest = c
-        if nearest == n_cuts:
-            work.cuts[n_cuts], work.cut_planes[n_cuts] = cut, work.cut_planes[k]
-            n_cuts += 1
-        span = work.spans[work.ends[k] // 2]
-        if work.ends[k] % 2 == 0:
-            span.start = work.cuts[nearest]
+        _put_in_order(span.start, span.start_slack, n_ends, work)
+        _put_in_order(span.end, span.end_slack, n_ends + 1, work)
+        n_ends += 2
+    n_cuts, last = 0, -math.inf
+    for k in range(n_ends):
+        cut, slack = work.cuts[k], work.slacks[k]
+        if n_cuts > 0 and cut - last <= max(slack, work.slacks[n_cuts - 1]):
+            if slack < work.slacks[n_cuts - 1]:
+                work.cuts[n_cuts - 1], work.slacks[n_cuts - 1] = cut, slack
         else:
-            span.end = work.cuts[nearest]
-    for k in range(n_cuts):
-        cut, plane, c = work.cuts[k], work.cut_planes[k], k
-        while c > 0 and work.cuts[c - 1] > cut:
-            work.cuts[c], work.cut_planes[c] = work.cuts[c - 1], work.cut_planes[c - 1]
-            c -= 1
-        work.cuts[c], work.cut_planes[c] = cut, plane
+            work.cuts[n_cuts], work.slacks[n_cuts] = cut, slack
+            n_cuts += 1
+        last = cut
     return n_cuts
 
 
 @kernel
-def _put_in_order(cut: float, plane: int, end: int, slack: float, work: FanWork) -> None:
-    """Put an end of a span where it belongs in the order of what they may be off: ``end`` are there."""
-    k = end
-    while k > 0 and work.slacks[k - 1] > slack:
-        work.cuts[k], work.cut_planes[k] = work.cuts[k - 1], work.cut_planes[k - 1]
-        work.slacks[k], work.ends[k] = work.slacks[k - 1], work.ends[k - 1]
+def _put_in_order(cut: float, slack: float, n_cuts: int, work: FanWork) -> None:
+    k = n_cuts
+    while k > 0 and work.cuts[k - 1] > cut:
+        work.cuts[k], work.slacks[k] = work.cuts[k - 1], work.slacks[k - 1]
         k -= 1
-    work.cuts[k], work.cut_planes[k], work.slacks[k], work.ends[k] = cut, plane, slack, end
-
-
-@kernel
-def _slack(line: Line, plane: int, touch_m: float, planes: Rows[Plane]) -> float:
-    """Return how far a plane's cut may be off along a line if that plane and the line's own are off by ``touch_m``."""
-    normal = vector_from(planes[plane].normal)
-    a, b = vector_from(planes[line.a].normal), vector_from(planes[line.b].normal)
-    by_line = abs(dot(cross(b, normal), line.direction)) + abs(dot(cross(a, normal), line.direction))
-    return touch_m * (1.0 + by_line / line.sine) / abs(dot(normal, line.direction))
+    work.cuts[k], work.slacks[k] = cut, slack

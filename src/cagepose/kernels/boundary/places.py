@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
-from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled, vector_from
-from cagepose.kernels.boundary.pieces import NO_PLANE, Pieces, Plane, are_within_reach, height_over, outward
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled
+from cagepose.kernels.boundary.pieces import Pieces, Plane, are_within_reach, height_over, outward
 from cagepose.kernels.native.kernel import entry, kernel
 
-NO_NODE = -1
 SETTLED = 0.1
 """A vertex this close to its planes, as a share of what touches, stays where it is."""
 
@@ -33,68 +32,24 @@ def find_groups(order: IntArray, touch_m: float, pieces: Pieces, groups: IntArra
 
 
 @entry
-def merge_places(
-    first: IntArray,
-    order: IntArray,
-    keys: FloatArray,
-    slacks: FloatArray,
-    touch_m: float,
-    places: FloatArray,
-    crossing: IntArray,
-    planes: Rows[Plane],
-    nodes: IntArray,
-) -> None:
-    """Write for each place the one that it is at, itself or another.
+def merge_places(order: IntArray, keys: FloatArray, slacks: FloatArray, places: FloatArray, nodes: IntArray) -> None:
+    """Write for each of the places (n, 3) the first one that it is at.
 
-    Parameters
-    ----------
-    first
-        Places in the order of their slacks: those that are known best are taken first.
-    order, keys
-        Heights of the places along some unit vector, (n,), and what sorts them.
-    slacks
-        How far away it may be what a place is at, metres.
-    places
-        (n, 3), metres.
-    crossing
-        Three planes that cross at each, (n, 3): it is at the nearest place that is within ``touch_m`` of all three.
-        `NO_PLANE`: it is at a place within ``touch_m``.
+    Two are at one place, and what is there with either, if they are as close as the one may be off that is known less
+    well: ``slacks``, (n,), metres. ``keys`` are heights along some unit vector, (n,), ``order`` sorts them.
     """
+    greatest = 0.0
     for k in range(len(order)):
-        nodes[k] = NO_NODE
+        nodes[k], greatest = k, max(greatest, slacks[k])
     for i in range(len(order)):
-        k = first[i]
-        at, least = _place_in_order(keys[k] - slacks[k], order, keys), slacks[k]
-        found = k
-        while at < len(order) and keys[order[at]] <= keys[k] + slacks[k]:
-            other = order[at]
-            apart = norm(minus(row(places, other), row(places, k)))
-            if nodes[other] == other and apart <= least and _is_at(k, row(places, other), touch_m, crossing, planes):
-                found, least = other, apart
-            at += 1
-        nodes[k] = found
-
-
-@kernel
-def _is_at(k: int, place: Vector, touch_m: float, crossing: IntArray, planes: Rows[Plane]) -> bool:
-    for j in range(3):
-        p = crossing[k, j]
-        if p != NO_PLANE and abs(dot(vector_from(planes[p].normal), place) - planes[p].offset) > touch_m:
-            return False
-    return True
-
-
-@kernel
-def _place_in_order(key: float, order: IntArray, keys: FloatArray) -> int:
-    """Return the first index of ``order`` from which on keys are not below one."""
-    low, high = 0, len(order)
-    while low < high:
-        half = (low + high) // 2
-        if keys[order[half]] < key:
-            low = half + 1
-        else:
-            high = half
-    return low
+        for j in range(i + 1, len(order)):
+            if keys[order[j]] > keys[order[i]] + greatest:
+                break
+            slack = max(slacks[order[i]], slacks[order[j]])
+            if norm(minus(row(places, order[i]), row(places, order[j]))) <= slack:
+                _unite(order[i], order[j], nodes)
+    for k in range(len(order)):
+        nodes[k] = _first_of(k, nodes)
 
 
 @kernel
@@ -141,7 +96,7 @@ def _farthest(k: int, v: int, place: Vector, pieces: Pieces, planes: Rows[Plane]
 
 @kernel
 def _crossing(k: int, v: int, place: Vector, pieces: Pieces, planes: Rows[Plane]) -> Vector:
-    """Return where three faces of piece ``k`` cross that meet at a vertex: those that make the greatest angle."""
+    """Return where the planes of three faces of piece ``k`` cross that meet at a vertex, those of the widest angle."""
     greatest, best = 0.0, place
     for e in range(pieces.pieces[k].first_edge, pieces.pieces[k].last_edge):
         edge = pieces.edges[e]

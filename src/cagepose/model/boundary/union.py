@@ -13,7 +13,7 @@ from cagepose.kernels.boundary.arcs import CONVEX, Arc
 from cagepose.kernels.boundary.candidates import find_pairs
 from cagepose.kernels.boundary.fans import NO_ROOM, find_arcs
 from cagepose.kernels.boundary.lines import empty_fan_work
-from cagepose.kernels.boundary.pieces import NO_PLANE, Pieces, Plane, find_planes
+from cagepose.kernels.boundary.pieces import Pieces, Plane, find_planes
 from cagepose.kernels.boundary.places import find_groups, merge_places, settle_vertices
 from cagepose.model.boundary.convex_pieces import ConvexPiece, packed
 from cagepose.model.boundary.corners import vertices_of
@@ -23,10 +23,6 @@ from cagepose.model.checks import FloatArray, unit_rows
 
 TILT_RAD = 1e-6
 """Faces of different pieces at this angle can be flush: Euler angles are often written with six decimals."""
-MERGED = 2.0
-"""Ends of edges are one if they are so often what touches from each other's planes: either may be off by that."""
-GREATEST_LEVER = 1e5
-"""Where planes cross at small angles, places that are farther away than so often what touches are others."""
 ALONG = np.array((0.4127, 0.5309, 0.7401))
 """A direction across which few places of ordinary parts lie: the sweep over places goes along it."""
 
@@ -79,13 +75,15 @@ def _of_apart(pieces: Sequence[ConvexPiece]) -> TrimmedUnion:
 
 def _of_group(pieces: Sequence[ConvexPiece], touch_m: float) -> TrimmedUnion:
     """Return the boundary of pieces that may meet."""
-    rows = packed(pieces)
+    rows: Any = packed(pieces)
     planes, n_planes = _planes_of(rows, touch_m, TILT_RAD)
     settle_vertices(touch_m, rows, planes)
     arcs = _arcs_of(rows, planes, n_planes, touch_m)
-    n_vertices = len(rows.vertices)
     places = np.concatenate([rows.vertices, arcs["start"], arcs["end"]])
-    nodes = _nodes_of(places, arcs, planes, touch_m)
+    keys, nodes = places @ ALONG, np.zeros(len(places), np.int64)
+    n_vertices = len(rows.vertices)
+    slacks = np.concatenate([np.full(n_vertices, touch_m), *arcs["slacks"].T])
+    merge_places(np.argsort(keys), keys, 2.0 * slacks, places, nodes)
     ends = nodes[n_vertices:].reshape(2, -1).T
     arcs["start"], arcs["end"] = places[ends[:, 0]], places[ends[:, 1]]
     is_long = ends[:, 0] != ends[:, 1]
@@ -129,22 +127,6 @@ def _arcs_of(rows: Pieces, planes: Rows, n_planes: int, touch_m: float) -> Rows:
         if n_arcs != NO_ROOM:
             return arcs[:n_arcs]
         n_room *= 2
-
-
-def _nodes_of(places: FloatArray, arcs: Rows, planes: Rows, touch_m: float) -> IntArray:
-    """Return which of the places each is at: vertices of pieces, and starts and ends of arcs."""
-    crossing = np.concatenate([arcs["start_planes"], arcs["end_planes"]])
-    a, b, c = np.moveaxis(planes["normal"][crossing], 1, 0)
-    across = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)])
-    levers = np.linalg.norm(across, axis=2).sum(axis=0)
-    sines = np.abs(np.einsum("ij,ij->i", across[0], a))
-    n_vertices, touch_m = len(places) - len(crossing), MERGED * touch_m
-    slacks = np.concatenate([np.full(n_vertices, touch_m), touch_m * np.minimum(levers / sines, GREATEST_LEVER)])
-    crossing = np.concatenate([np.full((n_vertices, 3), NO_PLANE), crossing])
-    keys, nodes = places @ ALONG, np.zeros(len(places), np.int64)
-    first = np.argsort(slacks, kind="stable")
-    merge_places(first, np.argsort(keys), keys, slacks, touch_m, places, crossing, planes, nodes)
-    return nodes
 
 
 def _ball(vertices: FloatArray) -> tuple[FloatArray, float]:
