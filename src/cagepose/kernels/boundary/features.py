@@ -119,8 +119,8 @@ class Boundary(NamedTuple):
     nodes
         The trees, see `cagepose.kernels.boundary.tree`.
     planes
-        Of each face normal and height above the origin, radius included, (4, n_features), in the frame of the body: in
-        this order a processor works out how far a vertex is from several faces at once.
+        Of each face normal, height above the origin with its radius, and shortest edge, (5, n_features), in the frame
+        of the body: in this order a processor works out how far a vertex is from several faces at once.
     """
 
     features: Rows[Feature]
@@ -129,7 +129,7 @@ class Boundary(NamedTuple):
     planes: FloatArray
 
 
-NO_BOUNDARY = Boundary(empty_rows(Feature, 0), empty_rows(Bound, 0), empty_rows(Node, 0), np.zeros((4, 0)))
+NO_BOUNDARY = Boundary(empty_rows(Feature, 0), empty_rows(Bound, 0), empty_rows(Node, 0), np.zeros((5, 0)))
 """A body without features."""
 
 

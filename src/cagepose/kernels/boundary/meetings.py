@@ -215,18 +215,24 @@ def meet_leaves(
 
 
 @kernel
-def find_heights(
-    vertices: PlacedBoundary, i: int, faces: PlacedBoundary, first: int, last: int, out: FloatArray
-) -> None:
-    """Write how far a vertex of one body is above each of some faces of another one, radii apart."""
+def find_beyond(
+    vertices: PlacedBoundary, i: int, faces: PlacedBoundary, first: int, last: int, touch_m: float, out: FloatArray
+) -> int:
+    """Write how far a vertex of one body is from touching the planes of some faces of another one: above them, or so
+    deep below that it is on their far side; at most zero: it may touch. Return of how many.
+    """
     place_feature(vertices, i)
     vertex, planes = vertices.features[i], faces.own.planes
     x, y, z = in_body(faces, minus(vector_from(vertex.point), position_of(faces)))
-    radius = vertex.radius
+    radius, deepest = vertex.radius, DEEPEST_OF_LEAST * vertex.least
     n, m, k, above = planes[0, first:last], planes[1, first:last], planes[2, first:last], planes[3, first:last]
-    here = out[first:last]  # a slice from zero on, so that several are worked out at once
+    least, here = planes[4, first:last], out[first:last]  # slices from zero on, so that several are worked out at once
+    n_near = 0
     for j in range(len(here)):
-        here[j] = n[j] * x + m[j] * y + k[j] * z - above[j] - radius
+        height = n[j] * x + m[j] * y + k[j] * z - above[j] - radius
+        here[j] = max(height - touch_m, -height - min(DEEPEST_OF_LEAST * least[j], deepest))
+        n_near += here[j] <= 0.0
+    return n_near
 
 
 @kernel
@@ -241,21 +247,17 @@ def meet_vertices(
 ) -> None:
     """Append the meetings of the vertices of a leaf, which are those of the cage or of the object, with some faces."""
     for i in range(one.first, one.last):
-        find_heights(vertices, i, faces, other.first, other.last, found.heights)
+        if find_beyond(vertices, i, faces, other.first, other.last, touch_m, found.heights) == 0:
+            continue
         for j in range(other.first, other.last):
-            height = found.heights[j]
-            if height > touch_m:
-                continue
-            vertex, face = vertices.own.features[i], faces.own.features[j]
-            if height < -DEEPEST_OF_LEAST * min(vertex.least, face.least):
-                continue
-            place_feature(faces, j)
-            slack = slack_of(vertex, face, touch_m)
-            held, cage = (faces, vertices) if of_cage else (vertices, faces)
-            at, cage_at = (j, i) if of_cage else (i, j)
-            met = meeting(held, at, cage, cage_at)
-            if both_reach(held, at, cage, cage_at, met, slack, 2.0 * touch_m):
-                append_meeting(at, cage_at, 0.0, False, met, touch_m, found)
+            if found.heights[j] <= 0.0:
+                place_feature(faces, j)
+                slack = slack_of(vertices.own.features[i], faces.own.features[j], touch_m)
+                held, cage = (faces, vertices) if of_cage else (vertices, faces)
+                at, cage_at = (j, i) if of_cage else (i, j)
+                met = meeting(held, at, cage, cage_at)
+                if both_reach(held, at, cage, cage_at, met, slack, 2.0 * touch_m):
+                    append_meeting(at, cage_at, 0.0, False, met, touch_m, found)
 
 
 @kernel

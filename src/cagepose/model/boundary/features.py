@@ -342,7 +342,7 @@ def _packed(trees: Sequence[Sequence[_Row]]) -> Boundary:
             bounds.extend(row.bounds)
     made = np.array(features, dtype_of(Feature))
     heights = (made["point"] * made["direction"]).sum(axis=1) + made["radius"]
-    planes = np.ascontiguousarray(np.column_stack([made["direction"], heights]).T)
+    planes = np.ascontiguousarray(np.column_stack([made["direction"], heights, made["least"]]).T)
     return Boundary(made, np.array(bounds, dtype_of(Bound)), np.array(nodes, dtype_of(Node)), planes)
 
 
