@@ -45,7 +45,7 @@ from cagepose.kernels.boundary.meetings import (
     meeting_at,
     slack_of,
 )
-from cagepose.kernels.boundary.tree import FACES, span_of_overlap
+from cagepose.kernels.boundary.tree import may_touch, span_of_overlap
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.along_motion import safe_step
 from cagepose.kernels.shapes.motion import Motion, velocity_at
@@ -208,7 +208,7 @@ def first_to_meet(
     queue.used[0] = queue.used[1] = 0
     for root in range(3):
         for cage_root in range(3):
-            if root != FACES or cage_root != FACES:
+            if may_touch(root, held.own.nodes[root], cage_root, cage.own.nodes[cage_root]):
                 let_wait(held, root, cage, cage_root, search, hit.amount, queue)
     while queue.used[1] > 0:
         at = take_first(queue)

@@ -25,7 +25,7 @@ from cagepose.kernels.boundary.features import (
     position_of,
 )
 from cagepose.kernels.boundary.meeting import Meeting, both_reach, is_seated, meeting, seated, swapped
-from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart
+from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
 from cagepose.kernels.native.kernel import kernel
 
 SAME_PLACE = 4.0
@@ -142,9 +142,8 @@ def find_meetings(held: PlacedBoundary, cage: PlacedBoundary, touch_m: float, fo
     found.used[0] = 0
     for own in range(3):
         for other in range(3):
-            if found.used[0] < 0 or (own == FACES and other == FACES):
-                continue
-            descend(held, own, cage, other, touch_m, found)
+            if found.used[0] >= 0 and may_touch(own, held.own.nodes[own], other, cage.own.nodes[other]):
+                descend(held, own, cage, other, touch_m, found)
 
 
 @kernel

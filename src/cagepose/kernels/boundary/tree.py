@@ -31,6 +31,8 @@ class Node:
         Its two halves; -1: it is a leaf.
     first, last
         Its features, the last one not included: those of a root may be none.
+    is_rounded, has_circles
+        Of a root: whether one of its features has a radius, and whether one is a circle.
     """
 
     middle: Annotated[FloatArray, 3]
@@ -39,6 +41,19 @@ class Node:
     right: int
     first: int
     last: int
+    is_rounded: bool
+    has_circles: bool
+
+
+@kernel
+def may_touch(root: int, one: Node, other_root: int, other: Node) -> bool:
+    """Whether features of two trees can touch: a face meets vertices and circles, edges meet edges, and the others need
+    a radius.
+    """
+    if root == FACES or other_root == FACES:
+        edges = other if root == FACES else one
+        return root != other_root and (VERTICES in (root, other_root) or edges.has_circles)
+    return (root == EDGES and other_root == EDGES) or one.is_rounded or other.is_rounded
 
 
 class PlacedBox(NamedTuple):

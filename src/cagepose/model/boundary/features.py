@@ -329,13 +329,18 @@ def _outward_across(corners: FloatArray, normal: FloatArray) -> FloatArray:
 
 def _packed(trees: Sequence[Sequence[_Row]]) -> Boundary:
     """Return features in the order of their trees' leaves, with their bounds and the trees."""
-    nodes: list[tuple[object, ...]] = [(NOWHERE, NOWHERE, -1, -1, 0, 0)] * 3
+    nodes: list[tuple[object, ...]] = [(NOWHERE, NOWHERE, -1, -1, 0, 0, False, False)] * 3
     features, bounds = list[tuple[object, ...]](), list[tuple[int, FloatArray, FloatArray, float]]()
     for root, rows in enumerate(trees):
         first = len(features)
         boxes = np.array([row.box for row in rows]).reshape(-1, 2, 3)
         order = np.arange(len(rows))
         _divide(boxes, order, 0, len(rows), first, FACES_IN_LEAF if root == FACES else LEAF, root, nodes)
+        nodes[root] = (
+            *nodes[root][:-2],
+            any(row.radius != 0.0 for row in rows),
+            any(row.kind == CIRCLE for row in rows),
+        )
         for row in (rows[index] for index in order.tolist()):
             numbers = row[:-3]
             features.append((*numbers, len(bounds), len(bounds) + len(row.bounds), row.least))
@@ -360,7 +365,7 @@ def _divide(
     features at most.
     """
     if begin == end:
-        nodes[at] = (NOWHERE, NOWHERE, -1, -1, first + begin, first + begin)
+        nodes[at] = (NOWHERE, NOWHERE, -1, -1, first + begin, first + begin, False, False)
         return
     mine = boxes[order[begin:end]]
     low, high = mine[:, 0].min(axis=0), mine[:, 1].max(axis=0)
@@ -374,4 +379,4 @@ def _divide(
         nodes.extend([nodes[at], nodes[at]])
         _divide(boxes, order, begin, begin + half, first, leaf, left, nodes)
         _divide(boxes, order, begin + half, end, first, leaf, right, nodes)
-    nodes[at] = (0.5 * (low + high), 0.5 * (high - low), left, right, first + begin, first + end)
+    nodes[at] = (0.5 * (low + high), 0.5 * (high - low), left, right, first + begin, first + end, False, False)
