@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial import ConvexHull
+from scipy.spatial.transform import Rotation
 
-from cagepose import Pose
+from cagepose import Convex, Pose, SceneError
 from cagepose.model.hull import FLAT, hull_of
 
 CUBE = np.array(list(product((-1.0, 1.0), repeat=3)))
@@ -117,3 +118,18 @@ def test_points_on_a_line_make_a_segment_and_points_at_one_place_a_point():
     assert hull.vertices_m.tolist() == line[[1, 2]].tolist()
     point = hull_of(np.array([(1.0, 2.0, 3.0)] * 3))
     assert (point.dimension, point.vertices_m.tolist(), len(point.edges)) == (0, [[1.0, 2.0, 3.0]], 0)
+
+
+def test_a_needle_as_thin_as_what_is_flat_is_refused_and_none_takes_for_ever():
+    """Turned, the outlines of its faces may cross themselves, as rounding decides which triangles lie in one plane."""
+    angles, told = 2.0 * np.pi * np.arange(24) / 24.0, list[str]()
+    ring = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(24)])
+    for number in range(40):
+        turn = Rotation.random(random_state=number).as_matrix()
+        needle = np.concatenate([1.0e-8 * ring, 1.0e-8 * ring + (0.0, 0.0, 1.0)]) @ turn
+        try:
+            Convex(needle)
+        except SceneError as error:
+            told.append(str(error))
+    assert told
+    assert all(text.startswith("vertices") for text in told)

@@ -102,7 +102,7 @@ def _hull_of(numbers: bytes) -> Hull:
         points[corners],
         np.array(sorted(pairs), dtype=np.int64).reshape(-1, 2),
         loops,
-        unit_rows(np.array([_area_vector(scaled[face]) for face in faces])) if faces else np.zeros((0, 3)),
+        _normals(np.array([_area_vector(scaled[face]) for face in faces]).reshape(-1, 3)),
     )
     for array in (hull.vertices_m, hull.edges, hull.normals):
         array.setflags(write=False)
@@ -303,10 +303,20 @@ def _merged(points: FloatArray, triangles: list[_Triangle], tolerance: float) ->
     loops = []
     for outline in following:
         loop = [next(iter(outline))]
-        while (corner := outline[loop[-1]]) != loop[0]:
+        while len(loop) <= len(outline) and (corner := outline[loop[-1]]) != loop[0]:
             loop.append(corner)
-        loops.append([corner for corner in loop if len(faces_at[corner]) > 2])
+        is_closed = len(loop) <= len(outline)  # the outline of a face that is as thin as what is flat may cross itself
+        corners = [corner for corner in loop if len(faces_at[corner]) > 2] if is_closed else []
+        loops.append(corners or loop[:1])
     return loops
+
+
+def _normals(areas: FloatArray) -> FloatArray:
+    """Return unit vectors along those given, (n, 3); of a face without an area, zero."""
+    normals, has_area = np.zeros_like(areas), areas.any(axis=1)
+    if has_area.any():
+        normals[has_area] = unit_rows(areas[has_area])
+    return normals
 
 
 def _area_vector(loop: FloatArray) -> FloatArray:
