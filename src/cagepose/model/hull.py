@@ -1,9 +1,9 @@
 """The convex hull of points in space, as contact takes it: corners, edges, and flat faces with all their corners.
 
-Points outside are added, the farthest first, to a hull of triangles. On which side of a triangle a point lies is
-decided exactly, in whole numbers where rounding leaves it open, so that the triangles always close up; only then
-triangles that lie in one plane within `FLAT` are made one face. A corner that is left with fewer than three faces lies
-within a face or an edge: it is no corner.
+Points outside are added to a hull of triangles: of those that wait at one triangle, the farthest first. On which side
+of a triangle a point lies is decided exactly, in whole numbers where rounding leaves it open, so that the triangles
+always close up. Only then triangles that lie in one plane within `FLAT` are made one face. A corner that is left with
+fewer than three faces lies within a face or an edge: it is no corner.
 """
 
 from __future__ import annotations
@@ -227,7 +227,7 @@ class _Outside:
                 points = points[~sees]
 
     def farthest(self) -> tuple[int, _Triangle] | None:
-        """Return a point that waits, the farthest from its triangle, and that triangle; None: all are inside."""
+        """Return a triangle at which points wait, and the farthest of these before it; None: all are inside."""
         triangle = next(iter(self._waiting), None)
         return None if triangle is None else (self._waiting[triangle][1], triangle)
 

@@ -19,8 +19,8 @@ FEW = 32
 
 
 def near_pairs(low: FloatArray, high: FloatArray, most: float = math.inf) -> IntArray:
-    """Return the pairs of boxes along the axes that overlap or touch, by their indices; some of them, and more than
-    ``most``, where there are more.
+    """Return the pairs of boxes along the axes that overlap or touch, by their indices. The search stops once it has
+    more than ``most``.
 
     Parameters
     ----------

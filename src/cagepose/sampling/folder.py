@@ -60,7 +60,8 @@ class StudyFolder:
         if not self.path.parent.is_dir():
             raise self._refused("its folder does not exist; make the folder first")
         if not (self.path / STUDY_NAME).exists():
-            others = [path for path in self.path.glob("*") if path.name != LOCK and not _is_remnant(path)]
+            held = self.path.iterdir() if self.path.exists() else ()
+            others = [path for path in held if path.name != LOCK and not _is_remnant(path)]
             if not all(_holds(path, wanted.get(path.name)) for path in others):
                 raise self._refused("holds something else than a study; name another folder, or a new one")
         else:

@@ -1,5 +1,5 @@
-"""When a circle touches another feature first: conservative advancement, then Newton's method on the gap, equation
-(2.14).
+"""When a circle touches another feature first, or a line the side of a cone: conservative advancement, then Newton's
+method on the gap, equation (2.14).
 
 The gap at any place of a circle falls no faster than the one moves toward the other, so a step by the least gap over
 this speed jumps over no contact: a place that comes up on the way has been no nearer than those that were there. Where
@@ -175,7 +175,7 @@ def root_of_gap(
 
 
 @kernel
-def first_touch_of_circle(
+def first_touch_of_curved(
     a: PlacedBoundary,
     i: int,
     b: PlacedBoundary,
@@ -189,7 +189,8 @@ def first_touch_of_circle(
     kept: Rows[Place],
     n_kept: int,
 ) -> float:
-    """Return the amount, up to ``end``, after which two features touch, of which one is a circle; inf: they do not.
+    """Return the amount, up to ``end``, after which two curved features touch; inf: they do not, or it
+    is not known: all steps are used up where they stay a hundred touch tolerances apart on the way.
 
     Parameters
     ----------

@@ -15,12 +15,10 @@ from cagepose.kernels.boundary.circle_and_flat import (
 from cagepose.kernels.boundary.circle_and_round import Round, common_with_line, common_with_round, places_by_round
 from cagepose.kernels.boundary.circle_places import Common, Place
 from cagepose.kernels.boundary.features import CIRCLE, FACE, VERTEX, Feature, PlacedBoundary
-from cagepose.kernels.boundary.meeting import SHARP_OF_LENGTH, Meeting, is_turned, no_meeting
+from cagepose.kernels.boundary.meeting import is_turned
 from cagepose.kernels.native.kernel import kernel
-
-SIDE_BY_SIDE_SINE = 1e-6
-"""Between the tangents of a circle and of a sharp edge: a lesser one is none. The faces that end there tell the normal
-to all digits, which two curves that nearly coincide would leave to rounding."""
+from cagepose.kernels.shapes.meeting import SHARP, Meeting, without_normal
+from cagepose.kernels.shapes.side_by_side import SIDE_BY_SIDE
 
 
 @kernel
@@ -36,7 +34,7 @@ def is_sharp(circle: Feature, other: Feature) -> bool:
         return False
     if other.kind == CIRCLE:
         return True
-    return bool(other.taper == 0.0 and abs(other.radius) < SHARP_OF_LENGTH * circle.length)
+    return bool(other.taper == 0.0 and abs(other.radius) < SHARP * circle.length)
 
 
 @kernel
@@ -81,11 +79,11 @@ def circle_meeting(a: PlacedBoundary, i: int, b: PlacedBoundary, j: int, place: 
     common = common_at(circle, other, place)
     gap, normal = common.gap, common.normal
     if other.kind == VERTEX and other.radius + circle.radius == 0.0:
-        return no_meeting(gap)
+        return without_normal(gap)
     if is_sharp(circle, other):
-        if circle.radius + other.radius < SHARP_OF_LENGTH * circle.length:
-            if norm(cross(common.tangent, common.other_tangent)) < SIDE_BY_SIDE_SINE:
-                return no_meeting(abs(gap))
+        if circle.radius + other.radius < SHARP * circle.length:
+            if norm(cross(common.tangent, common.other_tangent)) < SIDE_BY_SIDE:
+                return without_normal(abs(gap))
             is_back = is_turned(a, i, common.point, b, j, common.other_point, normal, gap < 0.0)
         else:
             is_back = gap < 0.0

@@ -141,7 +141,7 @@ class PlacedBoundary(NamedTuple):
     own
         In the frame of the body.
     features
-        In the world, of those that have been asked for: points, directions and middles.
+        In the world, of those that have been asked for: points and directions.
     is_placed
         Whose have been, (n_features,).
     boxes, is_boxed
@@ -180,12 +180,6 @@ def place_boundary(body: PlacedBoundary, position: Vector, quaternion: Quaternio
         body.pose[0, k] = position[k]
         for j in range(3):
             body.pose[1 + j, k] = rotation[j][k]
-    forget_placed(body)
-
-
-@kernel
-def forget_placed(body: PlacedBoundary) -> None:
-    """Let no feature and no box count as placed, as the pose has changed."""
     for i in range(len(body.is_placed)):
         body.is_placed[i] = False
     for i in range(len(body.is_boxed)):

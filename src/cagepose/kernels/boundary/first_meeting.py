@@ -13,7 +13,7 @@ import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import cross, dot, minus, norm, scaled, vector_from
-from cagepose.kernels.boundary.circle_first import first_touch_of_circle, lines_apart
+from cagepose.kernels.boundary.circle_first import first_touch_of_curved, lines_apart
 from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE
 from cagepose.kernels.boundary.features import (
     CIRCLE,
@@ -33,21 +33,20 @@ from cagepose.kernels.boundary.first_touch import (
     first_touch,
     gap_ahead,
     keeps_radius,
-    place_after,
 )
-from cagepose.kernels.boundary.meeting import Meeting, both_reach, meeting
+from cagepose.kernels.boundary.meeting import both_reach, meeting
 from cagepose.kernels.boundary.meetings import (
     PLACES_AROUND,
-    SAME_PLACE,
     Meetings,
     can_touch,
     find_circle_places,
     meeting_at,
     slack_of,
 )
-from cagepose.kernels.boundary.tree import may_touch, span_of_overlap
+from cagepose.kernels.boundary.tree import Node, may_touch, span_of_overlap
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.along_motion import safe_step
+from cagepose.kernels.shapes.meeting import SAME_PLACE, Meeting
 from cagepose.kernels.shapes.motion import Motion, velocity_at
 
 MOST_WAITING = 4096
@@ -244,24 +243,11 @@ def first_below(
 ) -> Hit:
     """Return what the features below two nodes reach if that is sooner than ``hit``, and else this."""
     one, other = held.own.nodes[node], cage.own.nodes[cage_node]
-    if held.own.features[one.first].kind == FACE and cage.own.features[other.first].kind == VERTEX:
-        for j in range(other.first, other.last):
-            find_clearances(cage, j, held, one.first, one.last, -1.0, min(until, hit.amount), search, meetings.heights)
-            for i in range(one.first, one.last):
-                if meetings.heights[i] <= 0.0:
-                    place_feature(held, i)
-                    hit = sooner(held, i, cage, j, min(until, hit.amount), search, meetings, moved, hit)
-        return hit
-    if held.own.features[one.first].kind == VERTEX and cage.own.features[other.first].kind == FACE:
-        for i in range(one.first, one.last):
-            find_clearances(
-                held, i, cage, other.first, other.last, 1.0, min(until, hit.amount), search, meetings.heights
-            )
-            for j in range(other.first, other.last):
-                if meetings.heights[j] <= 0.0:
-                    place_feature(cage, j)
-                    hit = sooner(held, i, cage, j, min(until, hit.amount), search, meetings, moved, hit)
-        return hit
+    kind, cage_kind = held.own.features[one.first].kind, cage.own.features[other.first].kind
+    if kind == FACE and cage_kind == VERTEX:
+        return first_of_vertices(cage, other, held, one, True, until, search, meetings, moved, hit)
+    if kind == VERTEX and cage_kind == FACE:
+        return first_of_vertices(held, one, cage, other, False, until, search, meetings, moved, hit)
     for i in range(one.first, one.last):
         for j in range(other.first, other.last):
             if not can_touch(held.own.features[i], cage.own.features[j]):
@@ -269,6 +255,35 @@ def first_below(
             place_feature(held, i)
             place_feature(cage, j)
             hit = sooner(held, i, cage, j, min(until, hit.amount), search, meetings, moved, hit)
+    return hit
+
+
+@kernel
+def first_of_vertices(
+    vertices: PlacedBoundary,
+    one: Node,
+    faces: PlacedBoundary,
+    other: Node,
+    of_cage: bool,
+    until: float,
+    search: Search,
+    meetings: Meetings,
+    moved: PlacedBoundary,
+    hit: Hit,
+) -> Hit:
+    """Return what the vertices of a leaf, which are those of the cage or of the object, and some faces reach if that is
+    sooner than ``hit``, and else this.
+    """
+    sense = -1.0 if of_cage else 1.0
+    held, cage = (faces, vertices) if of_cage else (vertices, faces)
+    for i in range(one.first, one.last):
+        latest = min(until, hit.amount)
+        find_clearances(vertices, i, faces, other.first, other.last, sense, latest, search, meetings.heights)
+        for j in range(other.first, other.last):
+            if meetings.heights[j] <= 0.0:
+                place_feature(faces, j)
+                at, cage_at = (j, i) if of_cage else (i, j)
+                hit = sooner(held, at, cage, cage_at, min(until, hit.amount), search, meetings, moved, hit)
     return hit
 
 
@@ -321,13 +336,12 @@ def sooner(
     """Return what two features reach before an amount, or ``hit``."""
     motion = search.motion
     if is_curved(held.own.features[i], cage.own.features[j]):
-        if (circle_apart(held, i, cage, j) - search.touch_m) >= until * search.speed:
+        if (curved_apart(held, i, cage, j) - search.touch_m) >= until * search.speed:
             return hit
-        return first_of_circle(held, i, cage, j, until, search, meetings, moved, hit)
+        return first_of_curved(held, i, cage, j, until, search, meetings, moved, hit)
     if safe_step(gap_ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
         return hit
-    place_after(held, i, motion, 0.0, moved)
-    clear = clear_step(moved, i, cage, j, motion)
+    clear = clear_step(held, i, cage, j, motion)
     is_near = clear * search.speed <= SAME_PLACE * max(search.near_m, search.touch_m)  # and may be deep already
     if not is_near and clear >= until:
         return hit
@@ -345,7 +359,7 @@ def is_curved(one: Feature, other: Feature) -> bool:
 
 
 @kernel
-def circle_apart(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int) -> float:
+def curved_apart(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int) -> float:
     """Return a length that two curved features are surely apart; below zero: none is known."""
     one, other = held.features[i], cage.features[j]
     apart = -math.inf
@@ -359,7 +373,7 @@ def circle_apart(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int) -> 
 
 
 @kernel
-def first_of_circle(
+def first_of_curved(
     held: PlacedBoundary,
     i: int,
     cage: PlacedBoundary,
@@ -370,7 +384,7 @@ def first_of_circle(
     moved: PlacedBoundary,
     hit: Hit,
 ) -> Hit:
-    """Return what two features reach before an amount, of which one is a circle, or ``hit``."""
+    """Return what two curved features reach before an amount, see `is_curved`, or ``hit``."""
     one, other, touch_m = held.features[i], cage.features[j], search.touch_m
     slack, slowest, n_kept, least = slack_of(one, other, touch_m), LEAVES_OF_SPEED * search.speed, 0, math.inf
     n_places = find_circle_places(one, other, touch_m, meetings.places)
@@ -389,7 +403,7 @@ def first_of_circle(
             meetings.kept[n_kept].angle = place.angle
             n_kept += 1
     exact = max(LEAST_SLACK, touch_m / search.size_m)
-    amount = first_touch_of_circle(
+    amount = first_touch_of_curved(
         held, i, cage, j, search.motion, until, exact, touch_m, moved, meetings.places, meetings.kept, n_kept
     )
     return Hit(amount, i, j, least) if amount < until else hit
@@ -442,12 +456,7 @@ def first_of_features(
         if not leaves:
             level = max(level, 2.0 * touch_m)  # they do not reach there now, but might
         if one.kind == LINE and other.kind == LINE:
-            side = -math.copysign(1.0, dot(met.normal, crossed_lines(held.features[i], cage.features[j])))
+            crossed = cross(vector_from(held.features[i].direction), vector_from(cage.features[j].direction))
+            side = -math.copysign(1.0, dot(met.normal, crossed))
     exact = max(LEAST_SLACK, touch_m / search.size_m)
     return first_touch(held, i, cage, j, motion, until, level, side, exact, touch_m, moved)
-
-
-@kernel
-def crossed_lines(one: Feature, other: Feature) -> tuple[float, float, float]:
-    """Return the cross product of the directions of two lines."""
-    return cross(vector_from(one.direction), vector_from(other.direction))

@@ -17,12 +17,11 @@ from cagepose.kernels.boundary.features import (
     VERTEX,
     Feature,
     PlacedBoundary,
-    forget_placed,
     position_of,
     rotation_of,
     write_placed,
 )
-from cagepose.kernels.boundary.meeting import PARALLEL_SINE, both_reach, meeting
+from cagepose.kernels.boundary.meeting import both_reach, meeting
 from cagepose.kernels.boundary.reach import beyond_face
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.along_motion import (
@@ -37,25 +36,19 @@ from cagepose.kernels.shapes.along_motion import (
     gone_on,
     safe_step,
 )
+from cagepose.kernels.shapes.meeting import PARALLEL
 from cagepose.kernels.shapes.motion import Motion, moved_point, turned, turned_by_amount, velocity_at
 
 
 @kernel
-def move_boundary(body: PlacedBoundary, motion: Motion, amount: float, moved: PlacedBoundary) -> None:
-    """Write the pose of a body after an amount of a motion; no feature is placed there."""
+def place_after(body: PlacedBoundary, i: int, motion: Motion, amount: float, moved: PlacedBoundary) -> None:
+    """Write one feature, and the pose of its body, as they are after an amount of a motion."""
     so_far, r = turned_by_amount(motion, amount), rotation_of(body)
     position = moved_point(motion, position_of(body), so_far)
     for k in range(3):
         column = turned(motion, (r[0][k], r[1][k], r[2][k]), so_far)
         moved.pose[0, k] = position[k]
         moved.pose[1, k], moved.pose[2, k], moved.pose[3, k] = column
-    forget_placed(moved)
-
-
-@kernel
-def place_after(body: PlacedBoundary, i: int, motion: Motion, amount: float, moved: PlacedBoundary) -> None:
-    """Write a feature, and the pose of its body, as they are after an amount of a motion."""
-    move_boundary(body, motion, amount, moved)
     write_placed(body.own.features[i], position_of(moved), rotation_of(moved), moved.features[i])
 
 
@@ -116,7 +109,7 @@ def stay_parallel(one: Feature, other: Feature, motion: Motion, span: float) -> 
     if one.kind != LINE or other.kind != LINE:
         return False
     sine = norm(cross(vector_from(one.direction), vector_from(other.direction)))
-    return sine + motion.rate * span < PARALLEL_SINE
+    return sine + motion.rate * span < PARALLEL
 
 
 @kernel

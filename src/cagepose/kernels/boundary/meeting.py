@@ -8,51 +8,22 @@ normal must be one of both, and the place on both.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, VERTEX, Feature, PlacedBoundary
 from cagepose.kernels.boundary.reach import beyond_normals, reaches
 from cagepose.kernels.native.kernel import kernel
-
-PARALLEL_SINE = 1e-7
-"""Lines that make a smaller angle lie side by side, and meet at their ends."""
-SHARP_OF_LENGTH = 1e-6
-"""Lines of a smaller radius, if any, are told by their faces which way is out, as cores may be into each other by the
-touch tolerance; those of a greater one by where they are."""
-CENTRED_OF_RADIUS = 1e-10
-"""Nearer to the axis of a slanted wall, a ball touches it all around."""
-
-
-class Meeting(NamedTuple):
-    """Two features, the first of the object.
-
-    Attributes
-    ----------
-    is_one
-        Whether features of these kinds can touch.
-    gap
-        Between the rounded features; below zero: how deep, metres.
-    normal, place
-        Outward unit normal of the object; the object's point of contact, in the world.
-    """
-
-    is_one: bool
-    gap: float
-    normal: Vector
-    place: Vector
-
-
-@kernel
-def no_meeting(gap: float) -> Meeting:
-    """Return that two features, so far apart, do not meet."""
-    return Meeting(False, gap, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-
-
-@kernel
-def swapped(met: Meeting) -> Meeting:
-    """Return a meeting as the other body has it."""
-    return Meeting(met.is_one, met.gap, scaled(met.normal, -1.0), plus(met.place, scaled(met.normal, met.gap)))
+from cagepose.kernels.shapes.meeting import (
+    CENTRED,
+    PARALLEL,
+    SHARP,
+    Meeting,
+    apart,
+    swapped,
+    tapered_edges,
+    without_normal,
+)
+from cagepose.kernels.shapes.rims import OnAxis, nearest_on_edge
 
 
 @kernel
@@ -76,27 +47,10 @@ def vertex_over_face(vertex: Feature, face: Feature) -> Meeting:
     return Meeting(True, gap, normal, plus(point, scaled(normal, vertex.radius)))
 
 
-class OnAxis(NamedTuple):
-    """What of a line is nearest to a point: a place on its axis, where it has a radius, and how far the point is from
-    there, below zero in a hole.
-    """
-
-    place: Vector
-    radius: float
-    away: float
-
-
 @kernel
 def nearest_on_axis(line: Feature, point: Vector) -> OnAxis:
     """Return what of a line, as far as its axis leads, is nearest to a point."""
-    along = vector_from(line.direction)
-    seen = minus(point, vector_from(line.point))
-    height = dot(along, seen)
-    if line.taper != 0.0:
-        side = norm(minus(seen, scaled(along, height))) / math.sqrt(1.0 - line.taper * line.taper)
-        height -= math.copysign(side, line.radius) * line.taper
-    place = plus(vector_from(line.point), scaled(along, height))
-    return OnAxis(place, line.radius - line.taper * height, math.copysign(norm(minus(point, place)), line.radius))
+    return nearest_on_edge(line, point)  # type: ignore[arg-type]
 
 
 @kernel
@@ -123,7 +77,7 @@ def is_turned(
 ) -> bool:
     """Whether of two normals across sharp features the opposite one is out of the object, if their bounds tell."""
     out = outward_share(a, i, normal, core) + outward_share(b, j, scaled(normal, -1.0), other_core)
-    return out < 0.0 if abs(out) > PARALLEL_SINE else otherwise
+    return out < 0.0 if abs(out) > PARALLEL else otherwise
 
 
 @kernel
@@ -133,17 +87,17 @@ def line_across_line(a: PlacedBoundary, i: int, b: PlacedBoundary, j: int) -> Me
     u, w = vector_from(one.direction), vector_from(other.direction)
     crossed = cross(u, w)
     sine = norm(crossed)
-    if sine < PARALLEL_SINE or one.radius < 0.0 or other.radius < 0.0:
-        return no_meeting(math.inf)
+    if sine < PARALLEL or one.radius < 0.0 or other.radius < 0.0:
+        return apart()
     start = minus(vector_from(other.point), vector_from(one.point))
     if one.taper != 0.0 or other.taper != 0.0:
-        return tapered_lines(one, other, start, crossed, sine)
+        return tapered_edges(one, other, start, crossed, sine)  # type: ignore[arg-type]
     s = dot(cross(start, w), crossed) / (sine * sine)  # start + t w - s u is along the normal
     normal = scaled(crossed, 1.0 / sine)
     distance = dot(start, normal)
     core = plus(vector_from(one.point), scaled(u, s))
     turned = distance < 0.0
-    if one.radius + other.radius < SHARP_OF_LENGTH * min(one.length, other.length):
+    if one.radius + other.radius < SHARP * min(one.length, other.length):
         turned = is_turned(a, i, core, b, j, core, normal, turned)
     if turned:
         normal, distance = scaled(normal, -1.0), -distance
@@ -151,32 +105,12 @@ def line_across_line(a: PlacedBoundary, i: int, b: PlacedBoundary, j: int) -> Me
 
 
 @kernel
-def tapered_lines(one: Feature, other: Feature, start: Vector, crossed: Vector, sine: float) -> Meeting:
-    """Return how two lines meet that cross and whose radii change along them: for tapers s and s' the normal has
-    n.u = s, n.w = -s'.
-    """
-    u, w = vector_from(one.direction), vector_from(other.direction)
-    cosine, square = dot(u, w), sine * sine
-    along, other_along = (one.taper + other.taper * cosine) / square, (-other.taper - one.taper * cosine) / square
-    beyond = 1.0 - along * one.taper + other_along * other.taper
-    if beyond <= 0.0:
-        return no_meeting(math.inf)
-    across = math.copysign(math.sqrt(beyond), dot(start, crossed)) / sine
-    normal = plus(plus(scaled(u, along), scaled(w, other_along)), scaled(crossed, across))
-    gap = dot(normal, start) - one.radius - other.radius
-    distance = dot(start, crossed) / (across * square)
-    s = dot(cross(minus(start, scaled(normal, distance)), w), crossed) / square
-    core = plus(vector_from(one.point), scaled(u, s))
-    return Meeting(True, gap, normal, plus(core, scaled(normal, one.radius - one.taper * s)))
-
-
-@kernel
 def between_cores(core: Vector, radius: float, others: Vector, other_radius: float, side: float) -> Meeting:
     """Return how round features meet whose cores are nearest to each other at two places."""
     between = minus(others, core)
     distance = side * norm(between)
-    if abs(distance) <= CENTRED_OF_RADIUS * max(abs(radius), abs(other_radius)):
-        return no_meeting(distance - radius - other_radius)
+    if abs(distance) <= CENTRED * max(abs(radius), abs(other_radius)):
+        return without_normal(distance - radius - other_radius)
     normal = scaled(between, 1.0 / distance)
     return Meeting(True, distance - radius - other_radius, normal, plus(core, scaled(normal, radius)))
 
@@ -188,7 +122,7 @@ def is_seated(ball: Feature, wall: Feature) -> bool:
         return False
     center = vector_from(ball.point)
     on_axis = nearest_on_axis(wall, center)
-    return norm(minus(on_axis.place, center)) <= CENTRED_OF_RADIUS * max(ball.radius, -on_axis.radius)
+    return norm(minus(on_axis.place, center)) <= CENTRED * max(ball.radius, -on_axis.radius)
 
 
 @kernel
@@ -207,7 +141,7 @@ def seated(ball: Feature, wall: Feature, angle: float) -> Meeting:
 def vertex_beside_line(vertex: Feature, line: Feature) -> Meeting:
     """Return how a vertex of the object and a line of the cage meet, one of which has a radius."""
     if vertex.radius + line.radius == 0.0:
-        return no_meeting(math.inf)
+        return apart()
     nearest = nearest_on_axis(line, vector_from(vertex.point))
     if is_seated(vertex, line):
         return seated(vertex, line, 0.0)
@@ -226,11 +160,11 @@ def meeting(a: PlacedBoundary, i: int, b: PlacedBoundary, j: int) -> Meeting:
     if one.kind == LINE and other.kind == LINE:
         return line_across_line(a, i, b, j)
     if one.kind == FACE or other.kind == FACE:
-        return no_meeting(math.inf)
+        return apart()
     if other.kind == LINE:
         return vertex_beside_line(one, other)
     if one.kind == LINE:
         return swapped(vertex_beside_line(other, one))
     if one.radius + other.radius == 0.0:
-        return no_meeting(math.inf)
+        return apart()
     return between_cores(vector_from(one.point), one.radius, vector_from(other.point), other.radius, 1.0)

@@ -24,14 +24,12 @@ from cagepose.kernels.boundary.features import (
     place_feature,
     position_of,
 )
-from cagepose.kernels.boundary.meeting import Meeting, both_reach, is_seated, meeting, seated, swapped
+from cagepose.kernels.boundary.meeting import both_reach, is_seated, meeting, seated
 from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.meeting import SAME_PLACE, Meeting, swapped
+from cagepose.kernels.shapes.touching import SAME_NORMAL
 
-SAME_PLACE = 4.0
-"""In touch tolerances: meetings nearer to each other are at one place."""
-SAME_NORMAL = 1e-9
-"""Radians. Meetings at one place with normals nearer than this are one."""
 DEEPEST_OF_LEAST = 0.05
 """Of the shortest edge: features that are deeper in each other are on far sides of a part, and do not touch."""
 LEAST_SLACK, MOST_SLACK = 1e-9, 0.1
@@ -109,11 +107,6 @@ def empty_meetings(n_features: int) -> Meetings:
         np.array(places),
         np.zeros(n_features),
     )
-
-
-def most_meetings(n_features: int, n_cage_features: int) -> int:
-    """Return how many meetings of so many features there is memory for (plain Python)."""
-    return min(n_features * n_cage_features, MOST_MEETINGS)
 
 
 @kernel
@@ -198,19 +191,13 @@ def meet_leaves(
                 continue
             place_feature(held, i)
             place_feature(cage, j)
-            deepest_m = DEEPEST_OF_LEAST * min(one.least, other.least)
             if one.kind == CIRCLE or other.kind == CIRCLE:
                 meet_circle(held, i, cage, j, touch_m, found)
                 continue
             if is_seated(held.features[i], cage.features[j]) or is_seated(cage.features[j], held.features[i]):
                 meet_seat(held, i, cage, j, touch_m, found)
                 continue
-            met = meeting(held, i, cage, j)
-            if not met.is_one or not -deepest_m <= met.gap <= touch_m:
-                continue
-            if not both_reach(held, i, cage, j, met, slack_of(one, other, touch_m), 2.0 * touch_m):
-                continue
-            append_meeting(i, j, 0.0, False, met, touch_m, found)
+            append_touching(held, i, cage, j, 0.0, False, meeting(held, i, cage, j), touch_m, found)
 
 
 @kernel
@@ -251,12 +238,10 @@ def meet_vertices(
         for j in range(other.first, other.last):
             if found.heights[j] <= 0.0:
                 place_feature(faces, j)
-                slack = slack_of(vertices.own.features[i], faces.own.features[j], touch_m)
                 held, cage = (faces, vertices) if of_cage else (vertices, faces)
                 at, cage_at = (j, i) if of_cage else (i, j)
                 met = meeting(held, at, cage, cage_at)
-                if both_reach(held, at, cage, cage_at, met, slack, 2.0 * touch_m):
-                    append_meeting(at, cage_at, 0.0, False, met, touch_m, found)
+                append_touching(held, at, cage, cage_at, 0.0, False, met, touch_m, found)
 
 
 @kernel
@@ -299,10 +284,7 @@ def meet_circle(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, touc
         if place.kind in (GREATEST, SADDLE) or not is_on_arc(circle, place.angle, 2.0 * touch_m):
             continue
         met = meeting_at(held, i, cage, j, place)
-        if not met.is_one or not -DEEPEST_OF_LEAST * min(one.least, other.least) <= met.gap <= touch_m:
-            continue
-        if both_reach(held, i, cage, j, met, slack_of(one, other, touch_m), 2.0 * touch_m):
-            append_meeting(i, j, place.angle, is_around, met, touch_m, found)
+        append_touching(held, i, cage, j, place.angle, is_around, met, touch_m, found)
 
 
 @kernel
@@ -312,10 +294,27 @@ def meet_seat(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, touch_
     for k in range(PLACES_AROUND):
         angle = math.pi * (2 * k + 1) / PLACES_AROUND
         met = seated(one, other, angle) if one.kind == VERTEX else swapped(seated(other, one, angle))
-        if not -DEEPEST_OF_LEAST * min(one.least, other.least) <= met.gap <= touch_m:
-            return
-        if both_reach(held, i, cage, j, met, slack_of(one, other, touch_m), 2.0 * touch_m):
-            append_meeting(i, j, angle, True, met, touch_m, found)
+        append_touching(held, i, cage, j, angle, True, met, touch_m, found)
+
+
+@kernel
+def append_touching(
+    held: PlacedBoundary,
+    i: int,
+    cage: PlacedBoundary,
+    j: int,
+    angle: float,
+    is_around: bool,
+    met: Meeting,
+    touch_m: float,
+    found: Meetings,
+) -> None:
+    """Append a meeting, if two features touch there: they are near, not on far sides of a part, and both reach."""
+    one, other = held.own.features[i], cage.own.features[j]
+    if not met.is_one or not -DEEPEST_OF_LEAST * min(one.least, other.least) <= met.gap <= touch_m:
+        return
+    if both_reach(held, i, cage, j, met, slack_of(one, other, touch_m), 2.0 * touch_m):
+        append_meeting(i, j, angle, is_around, met, touch_m, found)
 
 
 @kernel

@@ -26,12 +26,13 @@ from cagepose.kernels.boundary.features import (
 )
 from cagepose.kernels.boundary.tree import EDGES, FACES, VERTICES, Node
 from cagepose.model.boundary.convex_pieces import ConvexPiece, piece_of_box, piece_of_hull
-from cagepose.model.boundary.trimmed import TrimmedUnion
+from cagepose.model.boundary.trimmed import Edges, TrimmedUnion
 from cagepose.model.boundary.union import union_of
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.hole import Hole
 from cagepose.model.hull import Hull, hull_of
+from cagepose.model.near_pairs import near_pairs
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Convex, Disc, Rounded, Shape, Turned
 
@@ -40,6 +41,8 @@ LEAF, FACES_IN_LEAF = 4, 32
 NOWHERE = np.zeros(3)
 RAY = np.array((0.4127, 0.5309, 0.7401))
 """A direction that few borders of ordinary parts lie along: rays of crossing parity do."""
+SAME_END_OF_LENGTH = 1e-9
+"""Of the shortest edge: an end that is nearer to a vertex is at it."""
 AROUND = 50.0
 """A hole that stands alone is one in a square plate: so many times its own size to each side."""
 
@@ -115,21 +118,21 @@ def _union_rows(union: TrimmedUnion) -> list[_Row]:
     edges, vertices, faces = union.edges, union.vertices, union.faces
     lengths = np.linalg.norm(edges.ends_m - edges.starts_m, axis=1)
     rows = []
-    last, ends_at = np.cumsum(vertices.n_tangents), np.stack([edges.starts_m, edges.ends_m])
+    last, shortest = np.cumsum(vertices.n_tangents), _shortest_at(vertices.places_m, edges, lengths)
     for index, place in enumerate(vertices.places_m):
         part, end = int(vertices.parts[index]), int(last[index])
         away = vertices.tangents[end - vertices.n_tangents[index] : end]
         spaces = [(HALF_SPACE, tangent, NOWHERE, 0.0) for tangent in away]
-        at_place = np.abs(ends_at - place).max(axis=2).min(axis=0)
-        least = float(lengths[at_place <= 1e-9 * lengths].min(initial=np.inf))
-        rows.append(_row(VERTEX, part, place, NOWHERE, NOWHERE, 0.0, spaces, least, place[None]))
+        rows.append(_row(VERTEX, part, place, NOWHERE, NOWHERE, 0.0, 0.0, spaces, float(shortest[index]), place[None]))
     for index, (one, other) in enumerate(edges.normals):
         cosine = one @ other
         into = unit_rows(np.array([cosine * one - other, cosine * other - one]))
         spaces = [(HALF_SPACE, direction, NOWHERE, 0.0) for direction in into]
         corners, length = np.stack([edges.starts_m[index], edges.ends_m[index]]), float(lengths[index])
         part = int(edges.parts[index, 0])
-        rows.append(_row(LINE, part, corners[0], edges.directions[index], NOWHERE, length, spaces, length, corners))
+        rows.append(
+            _row(LINE, part, corners[0], edges.directions[index], NOWHERE, length, 0.0, spaces, length, corners)
+        )
     last = np.cumsum(faces.n_borders)
     for index, (normal, part, end) in enumerate(zip(faces.normals, faces.parts.tolist(), last, strict=True)):
         borders = faces.borders[end - faces.n_borders[index] : end]
@@ -143,8 +146,19 @@ def _union_rows(union: TrimmedUnion) -> list[_Row]:
         least, middle = float(np.linalg.norm(ends - starts, axis=1).min()), borders["start"].mean(axis=0)
         middle = middle + (faces.offsets_m[index] - normal @ middle) * normal
         ray = unit_rows(np.cross(normal, RAY)[None])[0]
-        rows.append(_row(FACE, part, middle, normal, ray, 0.0, bounds, least, borders["start"]))
+        rows.append(_row(FACE, part, middle, normal, ray, 0.0, 0.0, bounds, least, borders["start"]))
     return rows
+
+
+def _shortest_at(places: FloatArray, edges: Edges, lengths: FloatArray) -> FloatArray:
+    """Return the length of the shortest edge that starts or ends at each place, (n,); inf: none does."""
+    everywhere = np.concatenate([places, edges.starts_m, edges.ends_m])
+    slack = SAME_END_OF_LENGTH * float(lengths.min(initial=0.0))
+    pairs = near_pairs(everywhere - slack, everywhere + slack)
+    ends = pairs[(pairs[:, 0] < len(places)) & (pairs[:, 1] >= len(places))]
+    shortest = np.full(len(places), np.inf)
+    np.minimum.at(shortest, ends[:, 0], np.tile(lengths, 2)[ends[:, 1] - len(places)])
+    return shortest
 
 
 def _row(
@@ -154,13 +168,14 @@ def _row(
     direction: FloatArray,
     toward: FloatArray,
     length: float,
+    radius: float,
     bounds: list[tuple[int, FloatArray, FloatArray, float]],
     least: float,
     corners: FloatArray,
 ) -> _Row:
-    """Return a sharp straight feature."""
-    box = np.stack([corners.min(axis=0), corners.max(axis=0)])
-    numbers = (length, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    """Return a straight feature, blown up by a radius."""
+    box = np.stack([corners.min(axis=0) - radius, corners.max(axis=0) + radius])
+    numbers = (length, radius, 0.0, 0.0, 0.0, 0.0, 0.0)
     return _Row(kind, part, point, direction, toward, *numbers, bounds, least, box)
 
 
@@ -292,12 +307,9 @@ def _hull_rows(hull: Hull, pose: Pose, radius_m: float, number: int) -> list[_Ro
         bounds: Sequence[tuple[FloatArray, float]],
         least: float,
         corners: FloatArray,
-        toward: FloatArray = NOWHERE,
     ) -> None:
         spaces = [(HALF_SPACE, across, NOWHERE, size) for across, size in bounds]
-        box = np.stack([corners.min(axis=0) - radius_m, corners.max(axis=0) + radius_m])
-        numbers = (length, radius_m, 0.0, 0.0, 0.0, 0.0, 0.0)
-        rows.append(_Row(kind, number, point, direction, toward, *numbers, spaces, least, box))
+        rows.append(_row(kind, number, point, direction, NOWHERE, length, radius_m, spaces, least, corners))
 
     for index, vertex in enumerate(vertices):
         begins, ending = hull.edges[:, 0] == index, hull.edges[:, 1] == index
