@@ -28,14 +28,18 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     import numpy as np
 
     from cagepose.kernels.algebra.least_squares import empty_system
+    from cagepose.kernels.algebra.motion import Motion
     from cagepose.kernels.algebra.record import empty_record, empty_rows
     from cagepose.kernels.boundary import first_meeting as of_boundaries
     from cagepose.kernels.boundary.circle_and_circle import follow_by_circle, places_by_circle
     from cagepose.kernels.boundary.circle_and_round import Round, follow_by_round, places_by_round
+    from cagepose.kernels.boundary.circle_first import first_touch_of_curved
     from cagepose.kernels.boundary.circle_places import Circle, Place
     from cagepose.kernels.boundary.features import NO_BOUNDARY, empty_placed, place_boundary
     from cagepose.kernels.boundary.groups import number_groups
-    from cagepose.kernels.boundary.meetings import empty_meetings, find_meetings
+    from cagepose.kernels.boundary.meetings import find_meetings
+    from cagepose.kernels.boundary.overlap import empty_overlap_work, find_overlap
+    from cagepose.kernels.boundary.touching import empty_meetings
     from cagepose.kernels.collision.first_meeting import first_meeting
     from cagepose.kernels.collision.geometry import Geometry, empty_placement
     from cagepose.kernels.contact.cone import ConeWorkspace, cone_residual
@@ -43,7 +47,6 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     from cagepose.kernels.contact.coulomb import coulomb_onset
     from cagepose.kernels.contact.coulomb_newton import NewtonWorkspace
     from cagepose.kernels.shapes.features import NO_SHAPES
-    from cagepose.kernels.shapes.motion import Motion
     from cagepose.kernels.stability.relaxation import N_COLUMNS
     from cagepose.kernels.stability.strong import ModeTree, other_onset
 
@@ -63,8 +66,11 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield place_boundary, (body, origin, (1.0, 0.0, 0.0, 0.0))
     yield find_meetings, (body, body, 0.0, found)
     yield number_groups, (body, body, 0.0, found)
+    yield find_overlap, (body, body, 0.0, empty_overlap_work(NO_BOUNDARY, NO_BOUNDARY))
     search = of_boundaries.Search(motion, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     yield of_boundaries.first_to_meet, (body, body, search, found, of_boundaries.empty_queue(), body)
+    one = (body, 0, body, 0, motion, 0.0, 0.0, 0.0, body, found.places, found.kept, 0)
+    yield first_touch_of_curved, one
     yield first_meeting, (geometry, empty_placement(geometry), motion, 0.0, 0.0, 0.0)
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from cagepose import Box, Pose
+from cagepose.kernels.algebra.motion import Motion
 from cagepose.kernels.collision.first_meeting import Hit, first_meeting
-from cagepose.kernels.shapes.motion import Motion
 from cagepose.model.features import shapes_of
 from cagepose.model.shapes import Convex, Sphere
 from inner_kernels import as_machine_code

@@ -12,12 +12,12 @@ import pytest
 from scipy.optimize import brentq
 
 from cagepose import Box, Pose
+from cagepose.kernels.algebra.motion import Motion
 from cagepose.kernels.collision.first_meeting import Hit, first_meeting
 from cagepose.kernels.shapes.advancement import root_of_gap
 from cagepose.kernels.shapes.along_motion import place_moved
 from cagepose.kernels.shapes.features import EDGE, RIM, copied
 from cagepose.kernels.shapes.meeting import meeting
-from cagepose.kernels.shapes.motion import Motion
 from cagepose.model.features import placed_shapes, shapes_of
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.shapes import Capsule, Cone, Cylinder, Disc, Shape, Sphere, Turned

@@ -63,7 +63,27 @@ class Place:
     is_near: bool
 
 
-class OnCircle(NamedTuple):
+class Kept:
+    """A place that features may be in each other at, as they touch there now; a record.
+
+    Attributes
+    ----------
+    angle, other_angle
+        As in `Place`, where it is after a motion.
+    depth_m
+        So deep, until they have been farther apart than that and than they touch, metres; inf: any.
+    is_held
+        Whether the motion keeps them there: they are put back afterwards, however far they come apart or into each
+        other on the way.
+    """
+
+    angle: float
+    other_angle: float
+    depth_m: float
+    is_held: bool
+
+
+class CirclePoint(NamedTuple):
     """A place of a circle.
 
     Attributes
@@ -106,13 +126,13 @@ class Common(NamedTuple):
 
 
 @kernel
-def on_circle(circle: Circle, angle: float) -> OnCircle:
+def on_circle(circle: Circle, angle: float) -> CirclePoint:
     """Return the place of a circle at an angle."""
     cosine, sine = math.cos(angle), math.sin(angle)
     aside = cross(circle.axis, circle.toward)
     outward = plus(scaled(circle.toward, cosine), scaled(aside, sine))
     tangent = minus(scaled(aside, cosine), scaled(circle.toward, sine))
-    return OnCircle(plus(circle.centre, scaled(outward, circle.radius)), outward, tangent)
+    return CirclePoint(plus(circle.centre, scaled(outward, circle.radius)), outward, tangent)
 
 
 @kernel
@@ -146,7 +166,7 @@ def write_place(out: Place, angle: float, other_angle: float, kind: int, is_near
 
 
 @kernel
-def common_of_sharp(here: OnCircle, size: float, other_point: Vector, other_tangent: Vector) -> Common:
+def common_of_sharp(here: CirclePoint, size: float, other_point: Vector, other_tangent: Vector) -> Common:
     """Return the common normal of a circle of a size and another sharp curve, at places where they have one.
 
     The normal is across both tangents; where those are parallel, along the way between the two places; and where there

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
-from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
+from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import (
     Matrix,
     Vector,
@@ -35,6 +35,8 @@ VERTEX, LINE, FACE, CIRCLE = 0, 1, 2, 3
 """Kinds of features."""
 HALF_SPACE, INSIDE, OUTSIDE, SEGMENT = 0, 1, 2, 3
 """Kinds of bounds."""
+HULL, TURNED = 0, 1
+"""Kinds of covers."""
 
 
 class Feature:
@@ -66,8 +68,11 @@ class Feature:
     first_bound, last_bound
         Its bounds, the last one not included.
     least
-        Length of the shortest edge at a vertex or of a line, the radius of a circle, metres; inf: there is none. What
+        Length of the shortest edge at a vertex or of a line, the radius of a circle, metres; inf: there is none. Of the
+        tip of a cone, the radius of its wide end. What
         touches along it is told by the touch tolerance up to a tilt of one over the other.
+    first_cover, last_cover
+        What may cover it, in `Boundary.cover_list`, the last one not included.
     """
 
     kind: int
@@ -85,6 +90,8 @@ class Feature:
     first_bound: int
     last_bound: int
     least: float
+    first_cover: int
+    last_cover: int
 
 
 class Bound:
@@ -107,15 +114,76 @@ class Bound:
     limit: float
 
 
+class BodyPart:
+    """One part of a body: it has a name, and a friction of its own; a record.
+
+    Attributes
+    ----------
+    middle, reach
+        A ball around it, in the frame of the body, metres.
+    point
+        Of a single point, the feature that it is; else -1.
+    """
+
+    middle: Annotated[FloatArray, 3]
+    reach: float
+    point: int
+
+
+class Cover:
+    """A convex solid of a body, or a part of what a hole takes away; a record.
+
+    Attributes
+    ----------
+    kind
+        HULL: what lies within half-spaces, and no farther than a radius from there. TURNED: a straight line turned
+        about an axis, between flat ends.
+    point
+        Of a hull, what its bounds are seen from; of what is turned, the middle of its first end; in the frame of the
+        body, metres.
+    axis
+        Unit vector from the first to the second end.
+    radius, other_radius
+        Of a hull, what is added on all sides; of what is turned, of its two ends, metres.
+    length
+        From end to end, metres.
+    reach
+        No point of it is farther from ``point``, metres.
+    first_bound, last_bound
+        Of a hull: its half-spaces and its edges, which are segments; the last one not included.
+    first_opening, last_opening
+        Which covers take material away from it, in `Boundary.cover_list`.
+    touch_m
+        What is this close touches, metres.
+    """
+
+    kind: int
+    point: Annotated[FloatArray, 3]
+    axis: Annotated[FloatArray, 3]
+    radius: float
+    other_radius: float
+    length: float
+    reach: float
+    first_bound: int
+    last_bound: int
+    first_opening: int
+    last_opening: int
+    touch_m: float
+
+
 class Boundary(NamedTuple):
     """The features of one body, and the trees that find those that are near.
 
     Attributes
     ----------
+    parts
+        Those of the body.
     features
         Vertices first, then lines and circles, then faces.
     bounds
-        Theirs.
+        Theirs, and those of the covers.
+    covers, cover_list
+        What may cover features, or takes away from what does; and their indices, one range after the other.
     nodes
         The trees, see `cagepose.kernels.boundary.tree`.
     planes
@@ -123,14 +191,35 @@ class Boundary(NamedTuple):
         of the body: in this order a processor works out how far a vertex is from several faces at once.
     """
 
+    parts: Rows[BodyPart]
     features: Rows[Feature]
     bounds: Rows[Bound]
+    covers: Rows[Cover]
+    cover_list: IntArray
     nodes: Rows[Node]
     planes: FloatArray
 
 
-NO_BOUNDARY = Boundary(empty_rows(Feature, 0), empty_rows(Bound, 0), empty_rows(Node, 0), np.zeros((5, 0)))
+NO_BOUNDARY = Boundary(
+    empty_rows(BodyPart, 0),
+    empty_rows(Feature, 0),
+    empty_rows(Bound, 0),
+    empty_rows(Cover, 0),
+    np.zeros(0, np.int64),
+    empty_rows(Node, 0),
+    np.zeros((5, 0)),
+)
 """A body without features."""
+
+
+class Placing(NamedTuple):
+    """Memory for a boundary at a pose; see `PlacedBoundary`."""
+
+    features: Rows[Feature]
+    is_placed: NDArray[np.bool_]
+    boxes: FloatArray
+    is_boxed: NDArray[np.bool_]
+    pose: FloatArray
 
 
 class PlacedBoundary(NamedTuple):
@@ -159,17 +248,27 @@ class PlacedBoundary(NamedTuple):
     pose: FloatArray
 
 
-def empty_placed(own: Boundary) -> PlacedBoundary:
+def empty_placing(own: Boundary) -> Placing:
     """Return memory for a boundary at a pose (plain Python)."""
     n_features, n_nodes = len(own.features), len(own.nodes)
-    return PlacedBoundary(
-        own,
-        np.array(own.features),
+    return Placing(
+        empty_rows(Feature, n_features),
         np.zeros(n_features, np.bool_),
         np.zeros((n_nodes, 2, 3)),
         np.zeros(n_nodes, np.bool_),
         np.zeros((4, 3)),
     )
+
+
+def empty_placed(own: Boundary) -> PlacedBoundary:
+    """Return a boundary with memory for a pose (plain Python)."""
+    return PlacedBoundary(own, *empty_placing(own))
+
+
+@kernel
+def placed_in(own: Boundary, memory: Placing) -> PlacedBoundary:
+    """Return a boundary as it is placed in some memory."""
+    return PlacedBoundary(own, memory.features, memory.is_placed, memory.boxes, memory.is_boxed, memory.pose)
 
 
 @kernel
@@ -180,10 +279,8 @@ def place_boundary(body: PlacedBoundary, position: Vector, quaternion: Quaternio
         body.pose[0, k] = position[k]
         for j in range(3):
             body.pose[1 + j, k] = rotation[j][k]
-    for i in range(len(body.is_placed)):
-        body.is_placed[i] = False
-    for i in range(len(body.is_boxed)):
-        body.is_boxed[i] = False
+    body.is_placed[:] = False
+    body.is_boxed[:] = False
 
 
 @kernel
@@ -214,7 +311,19 @@ def place_feature(body: PlacedBoundary, i: int) -> None:
     if body.is_placed[i]:
         return
     body.is_placed[i] = True
+    body.features[i] = body.own.features[i]  # type: ignore[index]
     write_placed(body.own.features[i], position_of(body), rotation_of(body), body.features[i])
+
+
+@kernel
+def place_feature_at(body: PlacedBoundary, i: int, position: Vector, rotation: Matrix) -> None:
+    """Place one feature, and the pose of its body, where a pose is tried."""
+    for k in range(3):
+        body.pose[0, k] = position[k]
+        for j in range(3):
+            body.pose[1 + j, k] = rotation[j][k]
+    body.features[i] = body.own.features[i]  # type: ignore[index]
+    write_placed(body.own.features[i], position, rotation, body.features[i])
 
 
 @kernel
@@ -228,6 +337,12 @@ def write_placed(feature: Feature, position: Vector, rotation: Matrix, out: Feat
         toward = times(rotation, vector_from(feature.toward))
         for k in range(3):
             out.toward[k] = toward[k]
+
+
+@kernel
+def middle_of_part(body: PlacedBoundary, part: int) -> Vector:
+    """Return the middle of the ball around a part, in the world."""
+    return plus(position_of(body), times(rotation_of(body), vector_from(body.own.parts[part].middle)))
 
 
 @kernel

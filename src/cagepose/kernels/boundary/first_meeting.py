@@ -11,9 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from cagepose.kernels.algebra.motion import Motion, velocity_at
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import cross, dot, minus, norm, scaled, vector_from
-from cagepose.kernels.boundary.circle_first import first_touch_of_curved, lines_apart
+from cagepose.kernels.boundary.along_motion import ahead, safe_step
+from cagepose.kernels.boundary.circle_first import first_touch_of_curved, kept_at, lines_apart
 from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE
 from cagepose.kernels.boundary.features import (
     CIRCLE,
@@ -31,23 +33,20 @@ from cagepose.kernels.boundary.first_touch import (
     clear_step,
     distance_from,
     first_touch,
-    gap_ahead,
     keeps_radius,
 )
 from cagepose.kernels.boundary.meeting import both_reach, meeting
 from cagepose.kernels.boundary.meetings import (
     PLACES_AROUND,
-    Meetings,
     can_touch,
     find_circle_places,
     meeting_at,
     slack_of,
 )
+from cagepose.kernels.boundary.met import Meeting
+from cagepose.kernels.boundary.touching import SAME_PLACE, Meetings
 from cagepose.kernels.boundary.tree import Node, may_touch, span_of_overlap
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.along_motion import safe_step
-from cagepose.kernels.shapes.meeting import SAME_PLACE, Meeting
-from cagepose.kernels.shapes.motion import Motion, velocity_at
 
 MOST_WAITING = 4096
 """Pairs of nodes; of more, some are asked to the end at once."""
@@ -88,9 +87,9 @@ class Queue(NamedTuple):
     used: IntArray
 
 
-def empty_queue() -> Queue:
-    """Return memory for pairs that wait (plain Python)."""
-    return Queue(empty_rows(Waiting, MOST_WAITING), np.zeros(2, np.int64))
+def empty_queue(n_pairs: int = MOST_WAITING) -> Queue:
+    """Return memory for so many pairs that wait (plain Python)."""
+    return Queue(empty_rows(Waiting, n_pairs), np.zeros(2, np.int64))
 
 
 class Search(NamedTuple):
@@ -128,15 +127,22 @@ class Hit(NamedTuple):
         Indices; -1: nothing.
     gap
         How far apart they are now, metres.
+    angle
+        Where on a circle, if one of them is one, radians; of two, on the object's. Else zero.
+    is_open
+        They are not reached, but graze each other so long that what comes behind the amount is not known. Nothing is
+        reached before it: ask again from there.
     """
 
     amount: float
     feature: int
     cage_feature: int
     gap: float
+    angle: float
+    is_open: bool
 
 
-NO_HIT = Hit(math.inf, -1, -1, math.inf)
+NO_HIT = Hit(math.inf, -1, -1, math.inf, 0.0, False)
 
 
 @kernel
@@ -339,7 +345,7 @@ def sooner(
         if (curved_apart(held, i, cage, j) - search.touch_m) >= until * search.speed:
             return hit
         return first_of_curved(held, i, cage, j, until, search, meetings, moved, hit)
-    if safe_step(gap_ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
+    if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
         return hit
     clear = clear_step(held, i, cage, j, motion)
     is_near = clear * search.speed <= SAME_PLACE * max(search.near_m, search.touch_m)  # and may be deep already
@@ -347,7 +353,7 @@ def sooner(
         return hit
     met = meeting(held, i, cage, j)
     amount = first_of_features(held, i, cage, j, met, until, search, meetings, moved)
-    return Hit(amount, i, j, met.gap) if amount < until else hit
+    return Hit(amount, i, j, met.gap, 0.0, False) if amount < until else hit
 
 
 @kernel
@@ -387,35 +393,67 @@ def first_of_curved(
     """Return what two curved features reach before an amount, see `is_curved`, or ``hit``."""
     one, other, touch_m = held.features[i], cage.features[j], search.touch_m
     slack, slowest, n_kept, least = slack_of(one, other, touch_m), LEAVES_OF_SPEED * search.speed, 0, math.inf
+    deepest = min(search.near_depth_m, THIN_OF_LEAST * min(one.least, other.least))
+    n_kept = hold_places(i, j, meetings)
     n_places = find_circle_places(one, other, touch_m, meetings.places)
     for k in range(PLACES_AROUND if n_places == WHOLE else n_places):
         place = meetings.places[k]
         met = meeting_at(held, i, cage, j, place)
-        if place.kind in (GREATEST, SADDLE) or not met.is_one:
+        if place.kind in (GREATEST, SADDLE) or not met.is_one or kept_at(place.angle, meetings.kept, n_kept) >= 0:
             continue
-        least = min(least, met.gap)
         if met.gap > max(touch_m, search.near_m):
+            least = min(least, met.gap)
             continue
-        closing = dot(met.normal, velocity_at(search.motion, met.place))
+        touches = abs(met.gap) <= touch_m
         reaches_there = both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
-        is_beside = not reaches_there and abs(closing) <= slowest and is_there(meetings, met, touch_m)
-        if (reaches_there or is_beside or met.gap < -touch_m) and n_kept < len(meetings.kept):
-            meetings.kept[n_kept].angle = place.angle
+        depth = deepest if abs(met.gap) <= search.near_m or (touches and reaches_there) else 0.0
+        depth = max(depth, 2.0 * touch_m)  # they may not reach there now, but might
+        is_passed, is_held = reaches_there and met.gap < -depth, False
+        if touches:
+            closing = dot(met.normal, velocity_at(search.motion, met.place))
+            is_held = is_there(meetings, met, True, touch_m)
+            if is_held:
+                is_passed = True
+            elif reaches_there:  # a contact that carries, or it would not go into it
+                is_passed = closing >= -slowest
+            else:  # that of features next to them
+                is_passed = abs(closing) <= slowest and is_there(meetings, met, False, touch_m)
+        if not is_held:
+            least = min(least, met.gap)
+        if is_passed or met.gap >= -depth:
+            row = meetings.kept[n_kept]
+            row.angle, row.other_angle, row.is_held = place.angle, place.other_angle, is_held
+            row.depth_m = math.inf if is_passed else depth
             n_kept += 1
+        if n_kept == len(meetings.kept):
+            break
     exact = max(LEAST_SLACK, touch_m / search.size_m)
-    amount = first_touch_of_curved(
+    found = first_touch_of_curved(
         held, i, cage, j, search.motion, until, exact, touch_m, moved, meetings.places, meetings.kept, n_kept
     )
-    return Hit(amount, i, j, least) if amount < until else hit
+    return Hit(found.amount, i, j, least, found.angle, found.is_open) if found.amount < until else hit
 
 
 @kernel
-def is_there(meetings: Meetings, met: Meeting, touch_m: float) -> bool:
-    """Whether features meet where there is a contact."""
-    for at in range(meetings.used[0]):
+def hold_places(i: int, j: int, meetings: Meetings) -> int:
+    """Write the places of two features that the motion keeps; return how many there are."""
+    n_kept = 0
+    for at in range(meetings.used[1]):
+        row = meetings.rows[at]
+        if row.is_kept and row.feature == i and row.cage_feature == j and n_kept < len(meetings.kept):
+            kept = meetings.kept[n_kept]
+            kept.angle, kept.other_angle, kept.depth_m, kept.is_held = row.angle, 0.0, math.inf, True
+            n_kept += 1
+    return n_kept
+
+
+@kernel
+def is_there(meetings: Meetings, met: Meeting, is_kept: bool, touch_m: float) -> bool:
+    """Whether features meet where there is a contact, or one that the motion keeps."""
+    for at in range(meetings.used[1]):
         row = meetings.rows[at]
         is_near = norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
-        if is_near and dot(vector_from(row.normal), met.normal) > 0.0:
+        if is_near and (row.is_kept or not is_kept) and dot(vector_from(row.normal), met.normal) > 0.0:
             return True
     return False
 
@@ -441,8 +479,10 @@ def first_of_features(
     is_hollow = one.radius < 0.0 or other.radius < 0.0
     closing = dot(met.normal, velocity_at(motion, met.place)) if touches else -math.inf
     slowest = LEAVES_OF_SPEED * search.speed
+    if touches and is_there(meetings, met, True, touch_m):  # it is put back there
+        return math.inf
     if touches and not leaves:
-        if abs(closing) <= slowest and is_there(meetings, met, touch_m):  # that of features next to them
+        if abs(closing) <= slowest and is_there(meetings, met, False, touch_m):  # that of features next to them
             return math.inf
         closing = -math.inf
     if leaves and motion.rate == 0.0 and not is_hollow:

@@ -10,33 +10,27 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.boundary.covered import is_covered
 from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, VERTEX, Feature, PlacedBoundary
+from cagepose.kernels.boundary.met import CENTRED, PARALLEL, SHARP, Meeting, apart, swapped, without_normal
 from cagepose.kernels.boundary.reach import beyond_normals, reaches
+from cagepose.kernels.boundary.tapered import nearest_on_axis, tapered_lines
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.meeting import (
-    CENTRED,
-    PARALLEL,
-    SHARP,
-    Meeting,
-    apart,
-    swapped,
-    tapered_edges,
-    without_normal,
-)
-from cagepose.kernels.shapes.rims import OnAxis, nearest_on_edge
 
 
 @kernel
 def both_reach(
     a: PlacedBoundary, i: int, b: PlacedBoundary, j: int, met: Meeting, slack: float, slack_m: float
 ) -> bool:
-    """Whether two features can touch where they meet, equation (2.11)."""
+    """Whether two features can touch where they meet, equation (2.11): both reach there, and neither is covered."""
     if not met.is_one:
         return False
     one = minus(met.place, scaled(met.normal, a.features[i].radius))
     other = plus(met.place, scaled(met.normal, met.gap + b.features[j].radius))
     back = scaled(met.normal, -1.0)
-    return reaches(a, i, met.normal, one, slack, slack_m) and reaches(b, j, back, other, slack, slack_m)
+    if not (reaches(a, i, met.normal, one, slack, slack_m) and reaches(b, j, back, other, slack, slack_m)):
+        return False
+    return not (is_covered(a, i, met.normal, one) or is_covered(b, j, back, other))
 
 
 @kernel
@@ -45,12 +39,6 @@ def vertex_over_face(vertex: Feature, face: Feature) -> Meeting:
     point, normal = vector_from(vertex.point), scaled(vector_from(face.direction), -1.0)
     gap = dot(normal, minus(vector_from(face.point), point)) - vertex.radius - face.radius
     return Meeting(True, gap, normal, plus(point, scaled(normal, vertex.radius)))
-
-
-@kernel
-def nearest_on_axis(line: Feature, point: Vector) -> OnAxis:
-    """Return what of a line, as far as its axis leads, is nearest to a point."""
-    return nearest_on_edge(line, point)  # type: ignore[arg-type]
 
 
 @kernel
@@ -91,7 +79,7 @@ def line_across_line(a: PlacedBoundary, i: int, b: PlacedBoundary, j: int) -> Me
         return apart()
     start = minus(vector_from(other.point), vector_from(one.point))
     if one.taper != 0.0 or other.taper != 0.0:
-        return tapered_edges(one, other, start, crossed, sine)  # type: ignore[arg-type]
+        return tapered_lines(one, other, start, crossed, sine)
     s = dot(cross(start, w), crossed) / (sine * sine)  # start + t w - s u is along the normal
     normal = scaled(crossed, 1.0 / sine)
     distance = dot(start, normal)
@@ -127,13 +115,15 @@ def is_seated(ball: Feature, wall: Feature) -> bool:
 
 @kernel
 def seated(ball: Feature, wall: Feature, angle: float) -> Meeting:
-    """Return how a ball of the object on the axis of a hole's slanted wall meets it at an angle around the axis."""
+    """Return how a ball of the object and a hole's slanted wall meet at an angle around the wall's axis: the gap to the
+    plane that touches the wall there. A ball on the axis is as far from the wall itself, all around.
+    """
     axis, toward, center = vector_from(wall.direction), vector_from(wall.toward), vector_from(ball.point)
     out = plus(scaled(toward, math.cos(angle)), scaled(cross(axis, toward), math.sin(angle)))
     slant = math.sqrt(1.0 - wall.taper * wall.taper)
     normal = minus(scaled(out, slant), scaled(axis, wall.taper))  # out of the ball, into the wall
-    height = dot(axis, minus(center, vector_from(wall.point)))
-    gap = wall.taper * height - wall.radius - ball.radius
+    seen = minus(center, vector_from(wall.point))
+    gap = -dot(normal, seen) - wall.radius - ball.radius
     return Meeting(True, gap, normal, plus(center, scaled(normal, ball.radius)))
 
 

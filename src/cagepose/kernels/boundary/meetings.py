@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, NamedTuple
 
-import numpy as np
-
-from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
-from cagepose.kernels.algebra.vector import minus, norm, vector_from
-from cagepose.kernels.boundary.circle import is_on_arc
+from cagepose.kernels.algebra.record import FloatArray, Rows
+from cagepose.kernels.algebra.vector import dot, minus, vector_from
+from cagepose.kernels.boundary.circle import WHOLE_TURN, is_on_arc
 from cagepose.kernels.boundary.circle_meeting import circle_meeting, find_places
 from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE, Place, write_place
+from cagepose.kernels.boundary.far_sides import drop_far_sides
 from cagepose.kernels.boundary.features import (
     CIRCLE,
     FACE,
@@ -24,89 +22,22 @@ from cagepose.kernels.boundary.features import (
     place_feature,
     position_of,
 )
+from cagepose.kernels.boundary.flat_circle import Arc, next_arc, part_to_ask
 from cagepose.kernels.boundary.meeting import both_reach, is_seated, meeting, seated
+from cagepose.kernels.boundary.met import Meeting, swapped
+from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, SAME_PLACE, Along, Meetings
 from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
+from cagepose.kernels.boundary.twins import append_meeting
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.meeting import SAME_PLACE, Meeting, swapped
-from cagepose.kernels.shapes.touching import SAME_NORMAL
 
 DEEPEST_OF_LEAST = 0.05
 """Of the shortest edge: features that are deeper in each other are on far sides of a part, and do not touch."""
 LEAST_SLACK, MOST_SLACK = 1e-9, 0.1
 """Sines that normals may be beyond those of a feature."""
-MOST_MEETINGS, MOST_PAIRS, MOST_PLACES = 4096, 256, 16
-"""Meetings that there is memory for; pairs of nodes that wait while two trees are descended; places of one circle."""
 PLACES_AROUND = 8
 """Of a circle that is equally far all around, which stand for it."""
 FLAT, EQUALLY_FAR = 2.0, 0.5
 """In touch tolerances: by how much less the gap changes along a circle that lies flat on a face, or on a round side."""
-
-
-class Touching:
-    """Two features that touch; a record.
-
-    Attributes
-    ----------
-    feature, cage_feature
-        Indices.
-    angle
-        Where on a circle, if one of them is one, radians; of two, on the object's.
-    is_around
-        Whether all of the circle is equally far there, to the touch tolerance, and this is one of the places that stand
-        for it.
-    gap, normal, place
-        As in `Meeting`.
-    group
-        Index of the first row that it is an alternative to: the object is out of the cage there if it is along one of
-        the normals of a group. A row that is the first of its group has its own.
-    """
-
-    feature: int
-    cage_feature: int
-    angle: float
-    is_around: bool
-    gap: float
-    normal: Annotated[FloatArray, 3]
-    place: Annotated[FloatArray, 3]
-    group: int
-
-
-class Meetings(NamedTuple):
-    """What touches at one pose.
-
-    Attributes
-    ----------
-    used
-        How many rows count, (1,); -1: there are more than there is memory for.
-    rows
-        One for each meeting.
-    pairs
-        Memory for pairs of nodes, (MOST_PAIRS, 2).
-    places, kept
-        Memory for the places of a circle, and for those of them that touch.
-    heights
-        Memory for how far a vertex is above faces, (n_features,) of the body that has more, metres.
-    """
-
-    used: IntArray
-    rows: Rows[Touching]
-    pairs: IntArray
-    places: Rows[Place]
-    kept: Rows[Place]
-    heights: FloatArray
-
-
-def empty_meetings(n_features: int) -> Meetings:
-    """Return memory for the meetings of two boundaries, of which none has more features (plain Python)."""
-    pairs, places = np.zeros((MOST_PAIRS, 2), np.int64), empty_rows(Place, MOST_PLACES)
-    return Meetings(
-        np.zeros(1, np.int64),
-        empty_rows(Touching, MOST_MEETINGS),
-        pairs,
-        places,
-        np.array(places),
-        np.zeros(n_features),
-    )
 
 
 @kernel
@@ -137,6 +68,8 @@ def find_meetings(held: PlacedBoundary, cage: PlacedBoundary, touch_m: float, fo
         for other in range(3):
             if found.used[0] >= 0 and may_touch(own, held.own.nodes[own], other, cage.own.nodes[other]):
                 descend(held, own, cage, other, touch_m, found)
+    drop_far_sides(touch_m, found)
+    found.used[1] = found.used[0]
 
 
 @kernel
@@ -197,7 +130,7 @@ def meet_leaves(
             if is_seated(held.features[i], cage.features[j]) or is_seated(cage.features[j], held.features[i]):
                 meet_seat(held, i, cage, j, touch_m, found)
                 continue
-            append_touching(held, i, cage, j, 0.0, False, meeting(held, i, cage, j), touch_m, found)
+            append_touching(held, i, cage, j, AT_ONE_PLACE, meeting(held, i, cage, j), touch_m, found)
 
 
 @kernel
@@ -241,7 +174,7 @@ def meet_vertices(
                 held, cage = (faces, vertices) if of_cage else (vertices, faces)
                 at, cage_at = (j, i) if of_cage else (i, j)
                 met = meeting(held, at, cage, cage_at)
-                append_touching(held, at, cage, cage_at, 0.0, False, met, touch_m, found)
+                append_touching(held, at, cage, cage_at, AT_ONE_PLACE, met, touch_m, found)
 
 
 @kernel
@@ -276,15 +209,90 @@ def meet_circle(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, touc
     one, other = held.features[i], cage.features[j]
     circle = one if one.kind == CIRCLE else other
     n_places = find_circle_places(one, other, touch_m, found.places)
-    is_around = n_places == WHOLE
-    if is_around and one.kind == CIRCLE and other.kind == CIRCLE:
+    if n_places == WHOLE:
+        if one.kind == FACE or other.kind == FACE:
+            meet_flat(held, i, cage, j, touch_m, found)
+        elif one.kind != other.kind:
+            meet_around(held, i, cage, j, touch_m, found)
         return
-    for k in range(PLACES_AROUND if is_around else n_places):
+    for k in range(n_places):
         place = found.places[k]
         if place.kind in (GREATEST, SADDLE) or not is_on_arc(circle, place.angle, 2.0 * touch_m):
             continue
         met = meeting_at(held, i, cage, j, place)
-        append_touching(held, i, cage, j, place.angle, is_around, met, touch_m, found)
+        append_touching(held, i, cage, j, Along(place.angle, 0.0, 0.0), met, touch_m, found)
+
+
+@kernel
+def meet_around(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, touch_m: float, found: Meetings) -> None:
+    """Append the meetings of a circle and of what all of it lies on."""
+    circle = held.features[i] if held.features[i].kind == CIRCLE else cage.features[j]
+    if circle.width < WHOLE_TURN:
+        append_arc(held, i, cage, j, Arc(circle.start, circle.start + circle.width), circle.length, touch_m, found)
+        return
+    for k in range(PLACES_AROUND):
+        angle = math.pi * (2 * k + 1) / PLACES_AROUND
+        append_along(held, i, cage, j, Along(angle, HALF_SECTOR, HALF_SECTOR), touch_m, found)
+
+
+@kernel
+def append_along(
+    held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, along: Along, touch_m: float, found: Meetings
+) -> None:
+    """Append the meeting of a circle at one of its places, if it touches there."""
+    place = found.places[0]
+    write_place(place, along.angle, 0.0, 0, True)
+    there = Along(place.angle, along.before, along.after)
+    append_touching(held, i, cage, j, there, meeting_at(held, i, cage, j, place), touch_m, found)
+
+
+@kernel
+def meet_flat(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, touch_m: float, found: Meetings) -> None:
+    """Append the meetings of a circle that lies flat on a face: of each arc over the face both ends, and places between
+    them that are no farther apart than `HALF_SECTOR`.
+    """
+    of_cage = held.features[i].kind == FACE
+    circle, body, at = (cage.features[j], held, i) if of_cage else (held.features[i], cage, j)
+    face, slack_m = body.features[at], 2.0 * touch_m
+    height = dot(vector_from(face.direction), minus(vector_from(circle.point), vector_from(face.point)))
+    if height - face.radius - circle.radius > (1.0 + FLAT) * touch_m:
+        return
+    part = part_to_ask(circle, body, at, slack_m)
+    if part.last - part.first >= WHOLE_TURN:
+        meet_around(held, i, cage, j, touch_m, found)
+        return
+    begin, counts = part.first, True
+    while begin <= part.last < math.inf:
+        arc = next_arc(circle, body, at, begin, part.last, counts, slack_m)
+        if arc.first == math.inf:
+            return
+        append_arc(held, i, cage, j, arc, circle.length, touch_m, found)
+        begin, counts = arc.last, False
+
+
+@kernel
+def append_arc(
+    held: PlacedBoundary,
+    i: int,
+    cage: PlacedBoundary,
+    j: int,
+    arc: Arc,
+    radius: float,
+    touch_m: float,
+    found: Meetings,
+) -> None:
+    """Append the meetings of an arc that touches all along; one that is straight to the slack is one place, as where a
+    circle leads over an edge that has its tangent.
+    """
+    span = arc.last - arc.first
+    if span < math.pi and radius * (1.0 - math.cos(0.5 * span)) <= 2.0 * touch_m:
+        append_along(held, i, cage, j, Along(arc.first + 0.5 * span, 0.0, 0.0), touch_m, found)
+        return
+    n_between = math.ceil(span / HALF_SECTOR - LEAST_SLACK)
+    for k in range(n_between + 1):
+        before = span * k / n_between
+        ends = min(before, HALF_SECTOR), min(span - before, HALF_SECTOR)
+        append_along(held, i, cage, j, Along(arc.first + before, ends[0], ends[1]), touch_m, found)
 
 
 @kernel
@@ -294,7 +302,7 @@ def meet_seat(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, touch_
     for k in range(PLACES_AROUND):
         angle = math.pi * (2 * k + 1) / PLACES_AROUND
         met = seated(one, other, angle) if one.kind == VERTEX else swapped(seated(other, one, angle))
-        append_touching(held, i, cage, j, angle, True, met, touch_m, found)
+        append_touching(held, i, cage, j, Along(angle, HALF_SECTOR, HALF_SECTOR), met, touch_m, found)
 
 
 @kernel
@@ -303,43 +311,17 @@ def append_touching(
     i: int,
     cage: PlacedBoundary,
     j: int,
-    angle: float,
-    is_around: bool,
+    along: Along,
     met: Meeting,
     touch_m: float,
     found: Meetings,
 ) -> None:
-    """Append a meeting, if two features touch there: they are near, not on far sides of a part, and both reach."""
+    """Append a meeting, if two features touch there: they are near, not on far sides of a part, and both reach; what is
+    deep, well within its borders.
+    """
     one, other = held.own.features[i], cage.own.features[j]
     if not met.is_one or not -DEEPEST_OF_LEAST * min(one.least, other.least) <= met.gap <= touch_m:
         return
-    if both_reach(held, i, cage, j, met, slack_of(one, other, touch_m), 2.0 * touch_m):
-        append_meeting(i, j, angle, is_around, met, touch_m, found)
-
-
-@kernel
-def append_meeting(
-    i: int, j: int, angle: float, is_around: bool, met: Meeting, touch_m: float, found: Meetings
-) -> None:
-    """Append a meeting, unless one with this normal is at this place."""
-    at = found.used[0]
-    if at == len(found.rows):
-        found.used[0] = -1
-        return
-    row = found.rows[at]
-    row.feature, row.cage_feature, row.angle, row.is_around = i, j, angle, is_around
-    row.gap, row.group = met.gap, at
-    for k in range(3):
-        row.normal[k], row.place[k] = met.normal[k], met.place[k]
-    for before in range(at):
-        turned = norm(minus(vector_from(found.rows[before].normal), met.normal))
-        if turned <= SAME_NORMAL and is_at_place(found, before, at, touch_m):
-            return
-    found.used[0] = at + 1
-
-
-@kernel
-def is_at_place(found: Meetings, one: int, other: int, touch_m: float) -> bool:
-    """Whether two meetings are at one place."""
-    between = minus(vector_from(found.rows[one].place), vector_from(found.rows[other].place))
-    return norm(between) <= SAME_PLACE * touch_m
+    slack_m = 2.0 * touch_m if met.gap >= -touch_m else -touch_m
+    if both_reach(held, i, cage, j, met, slack_of(one, other, touch_m), slack_m):
+        append_meeting(held, i, cage, j, along, met, touch_m, found)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cagepose.kernels.algebra.motion import Motion, velocity_at
 from cagepose.kernels.algebra.vector import Vector, minus, norm, vector_from
 from cagepose.kernels.collision.first_of_features import (
     Reached,
@@ -23,7 +24,6 @@ from cagepose.kernels.shapes.along_motion import ahead, is_near_part, safe_step
 from cagepose.kernels.shapes.body import place_asked
 from cagepose.kernels.shapes.features import HOLE, SOLID, Shapes, is_end
 from cagepose.kernels.shapes.meetings import balls_apart, slack_of
-from cagepose.kernels.shapes.motion import Motion, velocity_at
 from cagepose.kernels.shapes.touching import Meetings
 
 SAFE = 1.0 + 1e-9

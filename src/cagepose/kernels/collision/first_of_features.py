@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cagepose.kernels.algebra.motion import Motion, velocity_at
 from cagepose.kernels.algebra.vector import cross, dot, minus, norm, vector_from
 from cagepose.kernels.collision.waiting import Waiting, write_waiting
 from cagepose.kernels.native.kernel import kernel
@@ -22,7 +23,6 @@ from cagepose.kernels.shapes.advancement import (
 from cagepose.kernels.shapes.along_motion import ahead, can_touch, clear_step, first_touch, safe_step
 from cagepose.kernels.shapes.features import EDGE, RIM, Feature, Shapes, is_of_mouth
 from cagepose.kernels.shapes.meeting import SAME_PLACE, Meeting, both_reach, meeting
-from cagepose.kernels.shapes.motion import Motion, velocity_at
 from cagepose.kernels.shapes.rims import lie_flat
 from cagepose.kernels.shapes.touching import Meetings
 

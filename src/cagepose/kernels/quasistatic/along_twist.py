@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cagepose.kernels.algebra.motion import motion_of
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.algebra.vector import (
     Vector,
@@ -43,7 +44,6 @@ from cagepose.kernels.quasistatic.pushing_out import (
 )
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.straying import STRAYED, strayed
-from cagepose.kernels.shapes.motion import motion_of
 from cagepose.kernels.shapes.rims import is_rim_on_wall
 
 MAY_SLIP = 0.01

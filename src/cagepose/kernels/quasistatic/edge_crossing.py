@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from cagepose.kernels.algebra.motion import Motion, motion_of
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled, vector_from
 from cagepose.kernels.collision.geometry import Geometry, Placement, box_point, point_in_box, vector_in_box
@@ -16,7 +17,6 @@ from cagepose.kernels.shapes.along_motion import place_moved
 from cagepose.kernels.shapes.flat_rims import SAME_WAY
 from cagepose.kernels.shapes.meeting import both_reach, meeting, twin_pair
 from cagepose.kernels.shapes.meetings import slack_of
-from cagepose.kernels.shapes.motion import Motion, motion_of
 
 CLEAR = 2.0
 """In touch tolerances: how far beyond the edge a contact is let go, so that it does not touch the next face too."""

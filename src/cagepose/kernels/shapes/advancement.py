@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cagepose.kernels.algebra.motion import Motion, velocity_at
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.along_motion import (
@@ -25,7 +26,6 @@ from cagepose.kernels.shapes.along_motion import (
 from cagepose.kernels.shapes.features import EDGE, FACE, RIM, Feature, Shapes
 from cagepose.kernels.shapes.feet import clearance_of_arc, distance_from_arc, foot_on
 from cagepose.kernels.shapes.meeting import Meeting, meeting, twin_pair
-from cagepose.kernels.shapes.motion import Motion, velocity_at
 from cagepose.kernels.shapes.rims import distance_at, middle_of_arc, reach_of_arc
 
 ADVANCES = 6000

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cagepose.kernels.algebra.motion import Motion, moved_point, turned, turned_by_amount, velocity_at
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.features import (
@@ -28,7 +29,6 @@ from cagepose.kernels.shapes.features import (
     write_fence,
 )
 from cagepose.kernels.shapes.meeting import PARALLEL, both_reach, meeting
-from cagepose.kernels.shapes.motion import Motion, moved_point, turned, turned_by_amount, velocity_at
 from cagepose.kernels.shapes.rims import middle_of_arc, reach_of_arc
 
 EVALUATIONS = 400
