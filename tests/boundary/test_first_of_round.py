@@ -81,15 +81,6 @@ def test_a_peg_goes_into_a_hole_and_turns_until_it_touches(cage, radius):
         assert hit.amount < 1.0
 
 
-def test_a_rim_that_grazes_a_wall():
-    """The rim's farthest point is as far from the middle of the turn as the wall: it touches there or passes."""
-    cage, peg, pose = [Hole(0.5, 1.0)], Cylinder(0.4, 2.0), Pose((0, 0, 0.7))
-    motion = motion_of(np.zeros(3), np.zeros(3), 1.0, np.array((0.0, 1.0, 0.0)))
-    plate = plate_of(cage[0], True, WIDE)
-    _, told = check(Asked([peg], cage, 3e-9), pose, motion, 1.0, lambda at: pierced_plate.gap(peg, at, plate)[0])
-    assert not told
-
-
 def test_a_ball_falls_on_the_rim_of_a_hole_and_a_bar_into_its_chamfer():
     cage = [Hole(0.5, 2.0, Chamfer(0.1, math.pi / 4))]
     lands = first_amount(Sphere(0.9), cage, Pose((0, 0, 3.0)), travel(0, 0, -1), 5.0)
