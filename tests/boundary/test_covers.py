@@ -151,7 +151,7 @@ def grazes(body: list[Shape], place: np.ndarray) -> bool:
 def test_points_first_touch_where_there_is_material(name, cases, say):
     rng, body = np.random.default_rng(1), BODIES[name]()
     asked, wrong, met = Asked([POINT], body, TOUCH_M), [], 0
-    n_cases = cases(20, 200)
+    n_cases = cases(8, 40)
     for _ in range(n_cases):
         way = rng.normal(size=3) if rng.random() < 0.7 else np.eye(3)[rng.integers(3)] * rng.choice([-1.0, 1.0])
         way /= np.linalg.norm(way)
@@ -171,7 +171,7 @@ def test_points_first_touch_where_there_is_material(name, cases, say):
 
 def test_bodies_of_solids_first_touch_with_one_of_their_parts(cases, say):
     rng, wrong, met = np.random.default_rng(2), [], 0
-    n_cases = cases(15, 100)
+    n_cases = cases(6, 30)
     for _ in range(n_cases):
         body = [random_part(rng, f"part{number}", KINDS) for number in range(rng.integers(2, 4))]
         held, pose, motion = random_approach(rng)
@@ -214,7 +214,7 @@ def test_contacts_are_on_the_surface_and_none_is_passed_over(name, cases, say):
     rng, body, wrong, n_contacts, met = np.random.default_rng(3), BODIES[name](), [], 0, 0
     places = rng.uniform(-1.1, 1.1, (4_000, 3))
     places = places[is_material(body, places)]
-    n_cases = cases(15, 100)
+    n_cases = cases(6, 30)
     for _ in range(n_cases):
         held, pose, motion = random_approach(rng)
         asked = Asked([held], body, TOUCH_M)

@@ -40,7 +40,7 @@ def check(part, cage_part, pose: Pose, motion: Motion, end: float) -> Hit | None
 
 def test_motions_of_sharp_and_rounded_parts(cases, say):
     rng, tally = np.random.default_rng(3), Tally()
-    for _ in range(cases(30, 300)):
+    for _ in range(cases(8, 40)):
         scale = float(rng.choice([1.0, 1.0, 1e-3, 1e3]))
         part, cage_part = (changed(random_part(rng), scale) for _ in range(2))
         body, other = body_of(part), body_of(cage_part)

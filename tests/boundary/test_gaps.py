@@ -42,7 +42,7 @@ def told_of(found: Meetings, touch_m: float, away: float, farthest: float) -> st
 
 def test_gaps_of_sharp_and_rounded_parts(cases, say):
     rng, wrong = np.random.default_rng(2), []
-    n_pairs = cases(100, 1_000)
+    n_pairs = cases(30, 150)
     for _ in range(n_pairs):
         parts = convex_bodies.random_part(rng), convex_bodies.random_part(rng)
         one, other = (convex_bodies.body_of(part) for part in parts)
@@ -116,7 +116,7 @@ def told_of_turned(asked: Asked, bodies: tuple[Circles, Circles], pose: Pose, aw
 
 def test_gaps_of_turned_parts(cases, say):
     rng, wrong = np.random.default_rng(5), []
-    n_pairs = cases(100, 1_000)
+    n_pairs = cases(30, 150)
     for _ in range(n_pairs):
         parts = random_turned(rng), random_turned(rng)
         asked, bodies, touch_m = asked_of(*parts)

@@ -80,7 +80,7 @@ def tolerances(rng: np.random.Generator) -> float:
 
 def test_round_and_sharp_parts_that_graze(cases, say):
     rng, tally, steps = np.random.default_rng(17), Tally(), Steps()
-    for _ in range(cases(3, 20)):
+    for _ in range(cases(2, 10)):
         part, cage_part = turned_bodies.random_turned(rng), turned_bodies.random_turned(rng)
         body, other = turned_bodies.circles_of(part), turned_bodies.circles_of(cage_part)
         size = max(body.size, other.size)
@@ -111,7 +111,7 @@ def test_round_and_sharp_parts_that_graze(cases, say):
 
 def test_parts_that_graze_in_and_over_holes(cases, say):
     rng, tally, steps = np.random.default_rng(18), Tally(), Steps()
-    for _ in range(cases(3, 20)):
+    for _ in range(cases(2, 10)):
         cage, plate, radius = random_plate(rng)
         part: Shape = random_peg(rng, radius)
         turn = np.array([1.0, *(rng.normal(size=3) * rng.choice([0.0, 0.02, 0.1]))])

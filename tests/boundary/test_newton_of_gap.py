@@ -39,7 +39,7 @@ def test_newtons_method_ends_at_a_root_but_for_rounding(cases):
     circles, lines = (
         np.flatnonzero(body.own.features["kind"] == kind) for body, kind in ((held, CIRCLE), (cage, LINE))
     )
-    while found < cases(8, 60):
+    while found < cases(4, 20):
         asked.place(Pose(rng.uniform(-1.0, 1.0, 3), random_turn(rng)))
         i, j = int(rng.choice(circles)), int(rng.choice(lines))
         place_feature(held, i)

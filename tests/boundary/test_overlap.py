@@ -55,7 +55,7 @@ def test_convex_bodies_overlap_if_no_plane_is_between_them(cases):
     rng = np.random.default_rng(51)
     ways = rng.standard_normal((50, 3))
     ways /= np.linalg.norm(ways, axis=1)[:, None]
-    for k in range(cases(20, 150)):
+    for k in range(cases(8, 40)):
         one, other = drawn_convex(rng), drawn_convex(rng)
         turn, way = rng.standard_normal(4), rng.standard_normal(3)
         way /= np.linalg.norm(way)
@@ -78,7 +78,7 @@ def test_convex_bodies_overlap_if_no_plane_is_between_them(cases):
 def test_unions_of_boxes_overlap_if_they_share_a_cell(cases):
     """Flush faces, edges and corners are ordinary on a grid; shifted by rounding or by less than what touches."""
     rng = np.random.default_rng(52)
-    for _ in range(cases(60, 400)):
+    for _ in range(cases(20, 100)):
         size = int(rng.integers(2, 7))
         held, cage = (drawn_boxes(rng, int(rng.integers(1, 6)), size) for _ in range(2))
         start = Start(*([_box(corners) for corners in boxes] for boxes in (held, cage)), drawn_turn(rng))
@@ -100,7 +100,7 @@ def _share_cells(held: list[Any], cage: list[Any], shift: np.ndarray) -> bool:
 
 def test_unions_of_hulls_overlap_if_their_intersection_has_a_volume(cases):
     rng = np.random.default_rng(53)
-    for _ in range(cases(30, 200)):
+    for _ in range(cases(10, 50)):
         held, cage = (_drawn_union(rng) for _ in range(2))
         start, own, other = Start(held, cage), _solid(held), _solid(cage)
         for _ in range(4):
@@ -123,7 +123,7 @@ def _solid(parts: Sequence[Convex]) -> Any:
 def test_what_is_in_or_over_a_hole_overlaps_if_a_place_of_it_is_in_the_material(cases):
     """Sharp and chamfered holes, through and blind; of 5,000 places, and of a million where these say otherwise."""
     rng = np.random.default_rng(54)
-    for _ in range(cases(60, 400)):
+    for _ in range(cases(20, 100)):
         hole, held = _drawn_hole(rng), drawn_convex(rng, 0.55)
         start = Start([held], [Box((4, 4, 1), Pose((0, 0, -0.5)), name="plate"), hole], drawn_turn(rng))
         for _ in range(4):
@@ -222,7 +222,7 @@ INSIDE: dict[str, tuple[Parts, Parts, Pose, float]] = {
 def test_what_touches_is_in_nothing(name, cases):
     held, cage, pose = TOUCHING[name]
     rng = np.random.default_rng(55)
-    for at in (Pose(), *(drawn_turn(rng) for _ in range(cases(3, 20)))):
+    for at in (Pose(), *(drawn_turn(rng) for _ in range(cases(2, 10)))):
         assert Start(held, cage, at).asked(pose) == (-1, -1, 0.0)
         assert Start(cage, held, at @ pose).asked(pose.inverse()) == (-1, -1, 0.0)
 
@@ -231,7 +231,7 @@ def test_what_touches_is_in_nothing(name, cases):
 def test_what_is_in_each_other_is_told_with_a_depth_that_is_not_too_much(name, cases):
     held, cage, pose, most = INSIDE[name]
     rng = np.random.default_rng(56)
-    for at in (Pose(), *(drawn_turn(rng) for _ in range(cases(3, 20)))):
+    for at in (Pose(), *(drawn_turn(rng) for _ in range(cases(2, 10)))):
         start = Start(held, cage, at)
         found = start.asked(pose)
         assert 0.0 < found.depth_m <= most * (1.0 + 1e-5)
