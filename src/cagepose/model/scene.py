@@ -11,7 +11,8 @@ import numpy as np
 
 from cagepose.errors import Key, key_path
 from cagepose.kernels.collision.contacts import deepest_boxes
-from cagepose.kernels.collision.geometry import Geometry, empty_placement, place_object
+from cagepose.kernels.collision.geometry import Geometry, empty_placement
+from cagepose.kernels.collision.start import overlap_at
 from cagepose.model.above import from_above
 from cagepose.model.apart import are_in_each_other
 from cagepose.model.cage import Cage
@@ -319,7 +320,7 @@ def _check_distance(held: Object, cage: Cage, size_m: float, problems: ProblemLi
 def _check_points_outside(
     held: Object, cage: Cage, geometry: Geometry, touch_m: float, size_m: float, problems: ProblemList
 ) -> None:
-    if not held.boxes or not cage.names:
+    if len(geometry.half_sizes) == 0 or not cage.names:
         return
     depths, boxes = deepest_boxes(geometry, *held.pose_world_object.as_tuples())
     for point_index in np.nonzero(depths > touch_m)[0].tolist():
@@ -341,21 +342,23 @@ def _check_points_outside(
 
 def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: ProblemList) -> None:
     """Tell of each part of the object that starts in a part of the cage; of boxes and points is told above."""
-    if len(geometry.held.parts) == 0:
+    if len(geometry.held.features) == 0:
         return
-    placement = empty_placement(geometry)
-    place_object(geometry, *held.pose_world_object.as_tuples(), placement)
-    gaps, n_points = placement.meetings.gaps, len(cage.names)
-    for one, other in np.argwhere(gaps < -geometry.touch_m).tolist():
-        part = key_path(("object", *held.part_paths[one][:2]))
-        is_point = other < n_points
-        path: tuple[Key, ...] = ("points", cage.names[other]) if is_point else cage.shape_paths[other - n_points][:2]
-        what = "" if is_point else f"{cage.element_names[other]} "
-        problems.add(
-            ("cage", *path),
-            f"{what}starts {millimetres(-gaps[one, other])} inside {part} ({held.element_names[one]}); move it out or"
-            " move the object's start pose",
-        )
+    feature, cage_feature, depth_m = overlap_at(
+        geometry, *held.pose_world_object.as_tuples(), empty_placement(geometry)
+    )
+    if feature < 0:
+        return
+    one, other = geometry.held.features[feature].part, geometry.cage.own.features[cage_feature].part
+    part, n_points = key_path(("object", *held.part_paths[one][:2])), len(cage.names)
+    is_point = other < n_points
+    path: tuple[Key, ...] = ("points", cage.names[other]) if is_point else cage.shape_paths[other - n_points][:2]
+    what = "" if is_point else f"{cage.element_names[other]} "
+    problems.add(
+        ("cage", *path),
+        f"{what}starts {millimetres(depth_m)} inside {part} ({held.element_names[one]}); move it out or"
+        " move the object's start pose",
+    )
 
 
 def _check_pierced_apart(held: Object, cage: Cage, problems: ProblemList) -> None:

@@ -107,11 +107,29 @@ class Bound:
     limit: float
 
 
+class BodyPart:
+    """One part of a body: it has a name, and a friction of its own; a record.
+
+    Attributes
+    ----------
+    middle, reach
+        A ball around it, in the frame of the body, metres.
+    point
+        Of a single point, the feature that it is; else -1.
+    """
+
+    middle: Annotated[FloatArray, 3]
+    reach: float
+    point: int
+
+
 class Boundary(NamedTuple):
     """The features of one body, and the trees that find those that are near.
 
     Attributes
     ----------
+    parts
+        Those of the body.
     features
         Vertices first, then lines and circles, then faces.
     bounds
@@ -123,14 +141,27 @@ class Boundary(NamedTuple):
         of the body: in this order a processor works out how far a vertex is from several faces at once.
     """
 
+    parts: Rows[BodyPart]
     features: Rows[Feature]
     bounds: Rows[Bound]
     nodes: Rows[Node]
     planes: FloatArray
 
 
-NO_BOUNDARY = Boundary(empty_rows(Feature, 0), empty_rows(Bound, 0), empty_rows(Node, 0), np.zeros((5, 0)))
+NO_BOUNDARY = Boundary(
+    empty_rows(BodyPart, 0), empty_rows(Feature, 0), empty_rows(Bound, 0), empty_rows(Node, 0), np.zeros((5, 0))
+)
 """A body without features."""
+
+
+class Placing(NamedTuple):
+    """Memory for a boundary at a pose; see `PlacedBoundary`."""
+
+    features: Rows[Feature]
+    is_placed: NDArray[np.bool_]
+    boxes: FloatArray
+    is_boxed: NDArray[np.bool_]
+    pose: FloatArray
 
 
 class PlacedBoundary(NamedTuple):
@@ -159,17 +190,27 @@ class PlacedBoundary(NamedTuple):
     pose: FloatArray
 
 
-def empty_placed(own: Boundary) -> PlacedBoundary:
+def empty_placing(own: Boundary) -> Placing:
     """Return memory for a boundary at a pose (plain Python)."""
     n_features, n_nodes = len(own.features), len(own.nodes)
-    return PlacedBoundary(
-        own,
-        np.array(own.features),
+    return Placing(
+        empty_rows(Feature, n_features),
         np.zeros(n_features, np.bool_),
         np.zeros((n_nodes, 2, 3)),
         np.zeros(n_nodes, np.bool_),
         np.zeros((4, 3)),
     )
+
+
+def empty_placed(own: Boundary) -> PlacedBoundary:
+    """Return a boundary with memory for a pose (plain Python)."""
+    return PlacedBoundary(own, *empty_placing(own))
+
+
+@kernel
+def placed_in(own: Boundary, memory: Placing) -> PlacedBoundary:
+    """Return a boundary as it is placed in some memory."""
+    return PlacedBoundary(own, memory.features, memory.is_placed, memory.boxes, memory.is_boxed, memory.pose)
 
 
 @kernel
@@ -180,10 +221,8 @@ def place_boundary(body: PlacedBoundary, position: Vector, quaternion: Quaternio
         body.pose[0, k] = position[k]
         for j in range(3):
             body.pose[1 + j, k] = rotation[j][k]
-    for i in range(len(body.is_placed)):
-        body.is_placed[i] = False
-    for i in range(len(body.is_boxed)):
-        body.is_boxed[i] = False
+    body.is_placed[:] = False
+    body.is_boxed[:] = False
 
 
 @kernel
@@ -214,7 +253,19 @@ def place_feature(body: PlacedBoundary, i: int) -> None:
     if body.is_placed[i]:
         return
     body.is_placed[i] = True
+    body.features[i] = body.own.features[i]  # type: ignore[index]
     write_placed(body.own.features[i], position_of(body), rotation_of(body), body.features[i])
+
+
+@kernel
+def place_feature_at(body: PlacedBoundary, i: int, position: Vector, rotation: Matrix) -> None:
+    """Place one feature, and the pose of its body, where a pose is tried."""
+    for k in range(3):
+        body.pose[0, k] = position[k]
+        for j in range(3):
+            body.pose[1 + j, k] = rotation[j][k]
+    body.features[i] = body.own.features[i]  # type: ignore[index]
+    write_placed(body.own.features[i], position, rotation, body.features[i])
 
 
 @kernel
@@ -228,6 +279,12 @@ def write_placed(feature: Feature, position: Vector, rotation: Matrix, out: Feat
         toward = times(rotation, vector_from(feature.toward))
         for k in range(3):
             out.toward[k] = toward[k]
+
+
+@kernel
+def middle_of_part(body: PlacedBoundary, part: int) -> Vector:
+    """Return the middle of the ball around a part, in the world."""
+    return plus(position_of(body), times(rotation_of(body), vector_from(body.own.parts[part].middle)))
 
 
 @kernel

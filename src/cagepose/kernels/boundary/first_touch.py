@@ -49,6 +49,7 @@ def place_after(body: PlacedBoundary, i: int, motion: Motion, amount: float, mov
         column = turned(motion, (r[0][k], r[1][k], r[2][k]), so_far)
         moved.pose[0, k] = position[k]
         moved.pose[1, k], moved.pose[2, k], moved.pose[3, k] = column
+    moved.features[i] = body.own.features[i]  # type: ignore[index]
     write_placed(body.own.features[i], position_of(moved), rotation_of(moved), moved.features[i])
 
 

@@ -127,13 +127,15 @@ def is_seated(ball: Feature, wall: Feature) -> bool:
 
 @kernel
 def seated(ball: Feature, wall: Feature, angle: float) -> Meeting:
-    """Return how a ball of the object on the axis of a hole's slanted wall meets it at an angle around the axis."""
+    """Return how a ball of the object and a hole's slanted wall meet at an angle around the wall's axis: the gap to the
+    plane that touches the wall there. A ball on the axis is as far from the wall itself, all around.
+    """
     axis, toward, center = vector_from(wall.direction), vector_from(wall.toward), vector_from(ball.point)
     out = plus(scaled(toward, math.cos(angle)), scaled(cross(axis, toward), math.sin(angle)))
     slant = math.sqrt(1.0 - wall.taper * wall.taper)
     normal = minus(scaled(out, slant), scaled(axis, wall.taper))  # out of the ball, into the wall
-    height = dot(axis, minus(center, vector_from(wall.point)))
-    gap = wall.taper * height - wall.radius - ball.radius
+    seen = minus(center, vector_from(wall.point))
+    gap = -dot(normal, seen) - wall.radius - ball.radius
     return Meeting(True, gap, normal, plus(center, scaled(normal, ball.radius)))
 
 

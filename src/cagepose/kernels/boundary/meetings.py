@@ -34,8 +34,10 @@ DEEPEST_OF_LEAST = 0.05
 """Of the shortest edge: features that are deeper in each other are on far sides of a part, and do not touch."""
 LEAST_SLACK, MOST_SLACK = 1e-9, 0.1
 """Sines that normals may be beyond those of a feature."""
-MOST_MEETINGS, MOST_PAIRS, MOST_PLACES = 4096, 256, 16
-"""Meetings that there is memory for; pairs of nodes that wait while two trees are descended; places of one circle."""
+MOST_OF_PARTS, MOST_MEETINGS = 128, 4096
+"""Meetings that there is memory for: of each pair of parts, and of all."""
+MOST_PAIRS, MOST_PLACES = 256, 16
+"""Pairs of nodes that wait while two trees are descended; places of one circle."""
 PLACES_AROUND = 8
 """Of a circle that is equally far all around, which stand for it."""
 FLAT, EQUALLY_FAR = 2.0, 0.5
@@ -96,12 +98,17 @@ class Meetings(NamedTuple):
     heights: FloatArray
 
 
-def empty_meetings(n_features: int) -> Meetings:
-    """Return memory for the meetings of two boundaries, of which none has more features (plain Python)."""
+def most_meetings(n_parts: int, n_cage_parts: int) -> int:
+    """Return how many meetings of so many parts there is memory for (plain Python)."""
+    return min(MOST_OF_PARTS * n_parts * n_cage_parts, MOST_MEETINGS)
+
+
+def empty_meetings(n_features: int, n_rows: int = MOST_MEETINGS) -> Meetings:
+    """Return memory for so many meetings of two boundaries, of which none has more features (plain Python)."""
     pairs, places = np.zeros((MOST_PAIRS, 2), np.int64), empty_rows(Place, MOST_PLACES)
     return Meetings(
         np.zeros(1, np.int64),
-        empty_rows(Touching, MOST_MEETINGS),
+        empty_rows(Touching, n_rows),
         pairs,
         places,
         np.array(places),

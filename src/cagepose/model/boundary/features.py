@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ from cagepose.kernels.boundary.features import (
     Feature,
 )
 from cagepose.kernels.boundary.tree import EDGES, FACES, VERTICES, Node
+from cagepose.model.boundary.body_parts import body_parts
 from cagepose.model.boundary.convex_pieces import ConvexPiece, piece_of_box, piece_of_hull
 from cagepose.model.boundary.trimmed import Edges, TrimmedUnion
 from cagepose.model.boundary.union import union_of
@@ -101,7 +102,7 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
     trees: list[list[_Row]] = [[], [], []]
     for row in rows:
         trees[VERTICES if row.kind == VERTEX else FACES if row.kind == FACE else EDGES].append(row)
-    return _packed(trees)
+    return _packed(trees, body_parts(every), [isinstance(part, np.ndarray) for part in every])
 
 
 def _piece_of(part: Shape | FloatArray, number: int) -> ConvexPiece | None:
@@ -339,8 +340,8 @@ def _outward_across(corners: FloatArray, normal: FloatArray) -> FloatArray:
     return unit_rows(np.cross(np.roll(corners, -1, axis=0) - corners, normal))
 
 
-def _packed(trees: Sequence[Sequence[_Row]]) -> Boundary:
-    """Return features in the order of their trees' leaves, with their bounds and the trees."""
+def _packed(trees: Sequence[Sequence[_Row]], parts: Any, are_points: Sequence[bool]) -> Boundary:
+    """Return features in the order of their trees' leaves, with their bounds and the trees, and the body's parts."""
     nodes: list[tuple[object, ...]] = [(NOWHERE, NOWHERE, -1, -1, 0, 0, False, False)] * 3
     features, bounds = list[tuple[object, ...]](), list[tuple[int, FloatArray, FloatArray, float]]()
     for root, rows in enumerate(trees):
@@ -360,7 +361,9 @@ def _packed(trees: Sequence[Sequence[_Row]]) -> Boundary:
     made = np.array(features, dtype_of(Feature))
     heights = (made["point"] * made["direction"]).sum(axis=1) + made["radius"]
     planes = np.ascontiguousarray(np.column_stack([made["direction"], heights, made["least"]]).T)
-    return Boundary(made, np.array(bounds, dtype_of(Bound)), np.array(nodes, dtype_of(Node)), planes)
+    for index in np.nonzero(np.array(are_points, np.bool_)[made["part"]])[0].tolist():
+        parts["point"][made["part"][index]] = index
+    return Boundary(parts, made, np.array(bounds, dtype_of(Bound)), np.array(nodes, dtype_of(Node)), planes)
 
 
 def _divide(
