@@ -35,7 +35,8 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     from cagepose.kernels.boundary.circle_places import Circle, Place
     from cagepose.kernels.boundary.features import NO_BOUNDARY, empty_placed, place_boundary
     from cagepose.kernels.boundary.groups import number_groups
-    from cagepose.kernels.boundary.meetings import empty_meetings, find_meetings
+    from cagepose.kernels.boundary.meetings import find_meetings
+    from cagepose.kernels.boundary.touching import empty_meetings
     from cagepose.kernels.collision.first_meeting import first_meeting
     from cagepose.kernels.collision.geometry import Geometry, empty_placement
     from cagepose.kernels.contact.cone import ConeWorkspace, cone_residual

@@ -37,12 +37,12 @@ from cagepose.kernels.boundary.first_touch import (
 from cagepose.kernels.boundary.meeting import both_reach, meeting
 from cagepose.kernels.boundary.meetings import (
     PLACES_AROUND,
-    Meetings,
     can_touch,
     find_circle_places,
     meeting_at,
     slack_of,
 )
+from cagepose.kernels.boundary.touching import Meetings
 from cagepose.kernels.boundary.tree import Node, may_touch, span_of_overlap
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.along_motion import safe_step

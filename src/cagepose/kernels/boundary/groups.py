@@ -19,8 +19,9 @@ from cagepose.kernels.boundary.features import (
     rotation_of,
     seen_from_feature,
 )
-from cagepose.kernels.boundary.meetings import Meetings, is_at_place, slack_of
+from cagepose.kernels.boundary.meetings import slack_of
 from cagepose.kernels.boundary.reach import beyond_bound, beyond_normals, distance_from_segment
+from cagepose.kernels.boundary.touching import Meetings, is_at_place
 from cagepose.kernels.native.kernel import kernel
 
 NEAR = 4.0

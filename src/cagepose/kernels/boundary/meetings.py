@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, NamedTuple
 
-import numpy as np
-
-from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
+from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import minus, norm, vector_from
 from cagepose.kernels.boundary.circle import is_on_arc
 from cagepose.kernels.boundary.circle_meeting import circle_meeting, find_places
@@ -25,6 +22,7 @@ from cagepose.kernels.boundary.features import (
     position_of,
 )
 from cagepose.kernels.boundary.meeting import both_reach, is_seated, meeting, seated
+from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, Along, Meetings, is_at_place
 from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.meeting import SAME_PLACE, Meeting, swapped
@@ -34,86 +32,10 @@ DEEPEST_OF_LEAST = 0.05
 """Of the shortest edge: features that are deeper in each other are on far sides of a part, and do not touch."""
 LEAST_SLACK, MOST_SLACK = 1e-9, 0.1
 """Sines that normals may be beyond those of a feature."""
-MOST_OF_PARTS, MOST_MEETINGS = 128, 4096
-"""Meetings that there is memory for: of each pair of parts, and of all."""
-MOST_PAIRS, MOST_PLACES = 256, 16
-"""Pairs of nodes that wait while two trees are descended; places of one circle."""
 PLACES_AROUND = 8
 """Of a circle that is equally far all around, which stand for it."""
 FLAT, EQUALLY_FAR = 2.0, 0.5
 """In touch tolerances: by how much less the gap changes along a circle that lies flat on a face, or on a round side."""
-
-
-class Touching:
-    """Two features that touch; a record.
-
-    Attributes
-    ----------
-    feature, cage_feature
-        Indices.
-    angle
-        Where on a circle, if one of them is one, radians; of two, on the object's.
-    is_around
-        Whether all of the circle is equally far there, to the touch tolerance, and this is one of the places that stand
-        for it.
-    gap, normal, place
-        As in `Meeting`.
-    group
-        Index of the first row that it is an alternative to: the object is out of the cage there if it is along one of
-        the normals of a group. A row that is the first of its group has its own.
-    """
-
-    feature: int
-    cage_feature: int
-    angle: float
-    is_around: bool
-    gap: float
-    normal: Annotated[FloatArray, 3]
-    place: Annotated[FloatArray, 3]
-    group: int
-
-
-class Meetings(NamedTuple):
-    """What touches at one pose.
-
-    Attributes
-    ----------
-    used
-        How many rows count, (1,); -1: there are more than there is memory for.
-    rows
-        One for each meeting.
-    pairs
-        Memory for pairs of nodes, (MOST_PAIRS, 2).
-    places, kept
-        Memory for the places of a circle, and for those of them that touch.
-    heights
-        Memory for how far a vertex is above faces, (n_features,) of the body that has more, metres.
-    """
-
-    used: IntArray
-    rows: Rows[Touching]
-    pairs: IntArray
-    places: Rows[Place]
-    kept: Rows[Place]
-    heights: FloatArray
-
-
-def most_meetings(n_parts: int, n_cage_parts: int) -> int:
-    """Return how many meetings of so many parts there is memory for (plain Python)."""
-    return min(MOST_OF_PARTS * n_parts * n_cage_parts, MOST_MEETINGS)
-
-
-def empty_meetings(n_features: int, n_rows: int = MOST_MEETINGS) -> Meetings:
-    """Return memory for so many meetings of two boundaries, of which none has more features (plain Python)."""
-    pairs, places = np.zeros((MOST_PAIRS, 2), np.int64), empty_rows(Place, MOST_PLACES)
-    return Meetings(
-        np.zeros(1, np.int64),
-        empty_rows(Touching, n_rows),
-        pairs,
-        places,
-        np.array(places),
-        np.zeros(n_features),
-    )
 
 
 @kernel
@@ -204,7 +126,7 @@ def meet_leaves(
             if is_seated(held.features[i], cage.features[j]) or is_seated(cage.features[j], held.features[i]):
                 meet_seat(held, i, cage, j, touch_m, found)
                 continue
-            append_touching(held, i, cage, j, 0.0, False, meeting(held, i, cage, j), touch_m, found)
+            append_touching(held, i, cage, j, AT_ONE_PLACE, meeting(held, i, cage, j), touch_m, found)
 
 
 @kernel
@@ -248,7 +170,7 @@ def meet_vertices(
                 held, cage = (faces, vertices) if of_cage else (vertices, faces)
                 at, cage_at = (j, i) if of_cage else (i, j)
                 met = meeting(held, at, cage, cage_at)
-                append_touching(held, at, cage, cage_at, 0.0, False, met, touch_m, found)
+                append_touching(held, at, cage, cage_at, AT_ONE_PLACE, met, touch_m, found)
 
 
 @kernel
@@ -291,7 +213,8 @@ def meet_circle(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, touc
         if place.kind in (GREATEST, SADDLE) or not is_on_arc(circle, place.angle, 2.0 * touch_m):
             continue
         met = meeting_at(held, i, cage, j, place)
-        append_touching(held, i, cage, j, place.angle, is_around, met, touch_m, found)
+        sector = HALF_SECTOR if is_around else 0.0
+        append_touching(held, i, cage, j, Along(place.angle, sector, sector), met, touch_m, found)
 
 
 @kernel
@@ -301,7 +224,7 @@ def meet_seat(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, touch_
     for k in range(PLACES_AROUND):
         angle = math.pi * (2 * k + 1) / PLACES_AROUND
         met = seated(one, other, angle) if one.kind == VERTEX else swapped(seated(other, one, angle))
-        append_touching(held, i, cage, j, angle, True, met, touch_m, found)
+        append_touching(held, i, cage, j, Along(angle, HALF_SECTOR, HALF_SECTOR), met, touch_m, found)
 
 
 @kernel
@@ -310,8 +233,7 @@ def append_touching(
     i: int,
     cage: PlacedBoundary,
     j: int,
-    angle: float,
-    is_around: bool,
+    along: Along,
     met: Meeting,
     touch_m: float,
     found: Meetings,
@@ -321,20 +243,19 @@ def append_touching(
     if not met.is_one or not -DEEPEST_OF_LEAST * min(one.least, other.least) <= met.gap <= touch_m:
         return
     if both_reach(held, i, cage, j, met, slack_of(one, other, touch_m), 2.0 * touch_m):
-        append_meeting(i, j, angle, is_around, met, touch_m, found)
+        append_meeting(i, j, along, met, touch_m, found)
 
 
 @kernel
-def append_meeting(
-    i: int, j: int, angle: float, is_around: bool, met: Meeting, touch_m: float, found: Meetings
-) -> None:
+def append_meeting(i: int, j: int, along: Along, met: Meeting, touch_m: float, found: Meetings) -> None:
     """Append a meeting, unless one with this normal is at this place."""
     at = found.used[0]
     if at == len(found.rows):
         found.used[0] = -1
         return
     row = found.rows[at]
-    row.feature, row.cage_feature, row.angle, row.is_around = i, j, angle, is_around
+    row.feature, row.cage_feature = i, j
+    row.angle, row.before, row.after = along.angle, along.before, along.after
     row.gap, row.group = met.gap, at
     for k in range(3):
         row.normal[k], row.place[k] = met.normal[k], met.place[k]
@@ -343,10 +264,3 @@ def append_meeting(
         if turned <= SAME_NORMAL and is_at_place(found, before, at, touch_m):
             return
     found.used[0] = at + 1
-
-
-@kernel
-def is_at_place(found: Meetings, one: int, other: int, touch_m: float) -> bool:
-    """Whether two meetings are at one place."""
-    between = minus(vector_from(found.rows[one].place), vector_from(found.rows[other].place))
-    return norm(between) <= SAME_PLACE * touch_m

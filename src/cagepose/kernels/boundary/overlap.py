@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from cagepose.kernels.boundary.features import PlacedBoundary
-from cagepose.kernels.boundary.meetings import Meetings
+from cagepose.kernels.boundary.touching import Meetings
 from cagepose.kernels.native.kernel import kernel
 
 

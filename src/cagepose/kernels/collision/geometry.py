@@ -25,7 +25,8 @@ from cagepose.kernels.boundary.features import (
 )
 from cagepose.kernels.boundary.first_meeting import Queue, Waiting, empty_queue
 from cagepose.kernels.boundary.groups import number_groups
-from cagepose.kernels.boundary.meetings import Meetings, empty_meetings, find_meetings, most_meetings
+from cagepose.kernels.boundary.meetings import find_meetings
+from cagepose.kernels.boundary.touching import Meetings, empty_meetings, most_meetings
 from cagepose.kernels.boundary.tree import Node
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import entry, kernel

@@ -1,10 +1,10 @@
 """A circle that lies flat touches with all its points, of which some are listed: others are added where they count.
 
 Of a cylinder that stands on a floor, or of a ball in a round hole, eight contacts are listed. If they do not hold the
-load, the motion that begins goes in deepest at some point of the around, in closed form; this is added, and the question
-asked again, until no point goes in: the exchange method of semi-infinite programs. The points close in on the two
-between which the circle carries, halving the angle each time. Of a balance with friction it is the point whose force would
-take the most power from the twist that is left.
+load, the motion that begins goes in deepest at some point of the circle, in closed form; this is added, and the
+question asked again, until no point goes in: the exchange method of semi-infinite programs. The points close in on the
+two between which the circle carries, halving the angle each time. Of a balance with friction it is the point whose
+force would take the most power from the twist that is left.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ def is_under_circle(contacts: ContactSet, i: int, touch_m: float) -> bool:
 
 @kernel
 def is_along_wall(contacts: ContactSet, i: int) -> bool:
-    """Whether a contact is of a circle that lies along the wall of a hole. One that lies around a cone is held by it as by
-    a wedge, and one around a ball stays where it is.
+    """Whether a contact is of a circle that lies along the wall of a hole. One that lies around a cone is held by it as
+    by a wedge, and one around a ball stays where it is.
     """
     if contacts.rows[i].feature < 0:
         return False
@@ -60,8 +60,8 @@ def is_of_same_circle(contacts: ContactSet, i: int, other: int) -> bool:
     row, one = contacts.rows[i], contacts.rows[other]
     if row.feature < 0 or one.feature != row.feature or one.cage_feature != row.cage_feature:
         return False
-    around, other_around = contacts.bends[i].on_circle, contacts.bends[other].on_circle
-    return bool(around.length != 0.0 and around.length != 0.0 and around.is_on_ball and around.is_on_ball)
+    around, beside = contacts.bends[i].on_circle, contacts.bends[other].on_circle
+    return bool(around.length != 0.0 and beside.length != 0.0 and around.is_on_ball and beside.is_on_ball)
 
 
 @kernel
@@ -122,7 +122,7 @@ def place_on_circle(contacts: ContactSet, i: int, angle: float) -> tuple[Vector,
 def angle_of_deepest(
     contacts: ContactSet, i: int, friction: float, velocity: Vector, spin: Vector, start: float
 ) -> float:
-    """Return the angle along the around, from a place of it that touches, to where a contact would resist a motion most:
+    """Return the angle along the circle, from a place of it that touches, to where a contact would resist a motion most:
     a maximum of n . v + mu |v_t|, uphill from the slip at ``start``.
 
     With the direction of the slip given, that is in closed form; the direction follows from where it is.

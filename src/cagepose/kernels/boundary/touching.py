@@ -1,0 +1,120 @@
+"""What touches at one pose: rows of meetings."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
+from cagepose.kernels.algebra.vector import minus, norm, vector_from
+from cagepose.kernels.boundary.circle_places import Place
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.meeting import SAME_PLACE
+
+MOST_OF_PARTS, MOST_MEETINGS = 128, 4096
+"""Meetings that there is memory for: of each pair of parts, and of all."""
+MOST_PAIRS, MOST_PLACES = 256, 16
+"""Pairs of nodes that wait while two trees are descended; places of one circle."""
+HALF_SECTOR = math.pi / 4.0
+"""Radians."""
+
+
+class Along(NamedTuple):
+    """Where on a circle two features meet: see `Touching`."""
+
+    angle: float
+    before: float
+    after: float
+
+
+AT_ONE_PLACE = Along(0.0, 0.0, 0.0)
+"""Of features without a circle."""
+
+
+class Touching:
+    """Two features that touch; a record.
+
+    Attributes
+    ----------
+    feature, cage_feature
+        Indices.
+    angle
+        Where on a circle, if one of them is one, radians; of two, on the object's.
+    before, after
+        How far to either side along that circle, about its axis, it touches as it does there, radians, up to
+        `HALF_SECTOR`; both zero: nowhere else. A ball seated in a hole's slanted wall touches it along a circle about
+        the wall's axis.
+    gap, normal, place
+        As in `Meeting`.
+    group
+        Index of the first row that it is an alternative to: the object is out of the cage there if it is along one of
+        the normals of a group. A row that is the first of its group has its own.
+    """
+
+    feature: int
+    cage_feature: int
+    angle: float
+    before: float
+    after: float
+    gap: float
+    normal: Annotated[FloatArray, 3]
+    place: Annotated[FloatArray, 3]
+    group: int
+
+
+class Meetings(NamedTuple):
+    """What touches at one pose.
+
+    Attributes
+    ----------
+    used
+        How many rows count, (1,); -1: there are more than there is memory for.
+    rows
+        One for each meeting.
+    pairs
+        Memory for pairs of nodes, (MOST_PAIRS, 2).
+    places, kept
+        Memory for the places of a circle, and for those of them that touch.
+    heights
+        Memory for how far a vertex is above faces, (n_features,) of the body that has more, metres.
+    """
+
+    used: IntArray
+    rows: Rows[Touching]
+    pairs: IntArray
+    places: Rows[Place]
+    kept: Rows[Place]
+    heights: FloatArray
+
+
+def most_meetings(n_parts: int, n_cage_parts: int) -> int:
+    """Return how many meetings of so many parts there is memory for (plain Python)."""
+    return min(MOST_OF_PARTS * n_parts * n_cage_parts, MOST_MEETINGS)
+
+
+def empty_meetings(n_features: int, n_rows: int = MOST_MEETINGS) -> Meetings:
+    """Return memory for so many meetings of two boundaries, of which none has more features (plain Python)."""
+    pairs, places = np.zeros((MOST_PAIRS, 2), np.int64), empty_rows(Place, MOST_PLACES)
+    return Meetings(
+        np.zeros(1, np.int64),
+        empty_rows(Touching, n_rows),
+        pairs,
+        places,
+        np.array(places),
+        np.zeros(n_features),
+    )
+
+
+@kernel
+def is_around(row: Touching) -> bool:
+    """Whether a circle touches along an arc as it does at the place of a meeting."""
+    return bool(row.before + row.after > 0.0)
+
+
+@kernel
+def is_at_place(found: Meetings, one: int, other: int, touch_m: float) -> bool:
+    """Whether two meetings are at one place."""
+    between = minus(vector_from(found.rows[one].place), vector_from(found.rows[other].place))
+    return norm(between) <= SAME_PLACE * touch_m
