@@ -23,7 +23,7 @@ from cagepose.kernels.boundary.features import (
     place_boundary,
     placed_in,
 )
-from cagepose.kernels.boundary.first_meeting import Queue, Waiting, empty_queue
+from cagepose.kernels.boundary.first_meeting import MOST_WAITING, Queue, empty_queue
 from cagepose.kernels.boundary.groups import number_groups
 from cagepose.kernels.boundary.meetings import find_meetings
 from cagepose.kernels.boundary.touching import Meetings, empty_meetings, most_meetings
@@ -121,8 +121,13 @@ def empty_placement(geometry: Geometry) -> Placement:
         empty_placing(geometry.held),
         empty_placing(geometry.held),
         empty_meetings(max(len(geometry.held.features), len(geometry.cage.features)), most_rows(geometry)),
-        empty_queue() if is_shaped(geometry) else Queue(empty_rows(Waiting, 0), np.zeros(2, np.int64)),
+        empty_queue(most_waiting(geometry)),
     )
+
+
+def most_waiting(geometry: Geometry) -> int:
+    """Return how many pairs of nodes may wait (plain Python): none without boundaries."""
+    return MOST_WAITING if len(geometry.held.features) > 0 else 0
 
 
 def most_rows(geometry: Geometry) -> int:

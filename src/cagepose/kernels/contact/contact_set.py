@@ -14,7 +14,7 @@ import numpy as np
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import Vector, cross, norm, scaled
 from cagepose.kernels.boundary.bend import Bend
-from cagepose.kernels.collision.geometry import Geometry, is_shaped, most_rows
+from cagepose.kernels.collision.geometry import Geometry, most_rows
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.native.kernel import kernel
 
@@ -128,13 +128,13 @@ def empty_contact_set(n_rows: int, n_bends: int = 0) -> ContactSet:
 
 def most_contacts(geometry: Geometry) -> int:
     """Return how many contacts there may be at one pose (plain Python)."""
-    return most_rows(geometry) if is_shaped(geometry) else CONTACTS_PER_POINT * len(geometry.points_world)
+    return most_rows(geometry) + CONTACTS_PER_POINT * len(geometry.points_world)
 
 
 def contact_set_for(geometry: Geometry) -> ContactSet:
     """Return a set with memory for all contacts that there may be at one pose (plain Python)."""
     n_rows = most_contacts(geometry)
-    return empty_contact_set(n_rows, n_rows if is_shaped(geometry) else 0)
+    return empty_contact_set(n_rows, most_rows(geometry))
 
 
 @kernel

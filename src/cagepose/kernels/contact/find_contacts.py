@@ -7,6 +7,7 @@ import math
 from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, row, scaled, vector_from
 from cagepose.kernels.boundary.bend import curvatures, write_bend, write_twin
 from cagepose.kernels.boundary.on_circle import write_on_circle
+from cagepose.kernels.boundary.touching import is_around
 from cagepose.kernels.collision.contacts import face_normal, is_hidden, touches_face
 from cagepose.kernels.collision.geometry import Geometry, Placement, box_point, held_at, is_shaped
 from cagepose.kernels.contact.contact_set import ContactSet, choose, write_directions
@@ -148,10 +149,8 @@ def append_meeting(
     normal, arm = vector_from(row.normal), minus(vector_from(row.place), center)
     write_directions(contact, normal, arm, friction_share(friction, cage_part, part), frame)
     met = Meeting(True, row.gap, normal, vector_from(row.place))
-    found = curvatures(held, row.feature, cage, row.cage_feature, met)
+    found = curvatures(held, row.feature, cage, row.cage_feature, met, is_around(row))
     write_bend(found, normal, arm, frame.axes, frame.radii, contacts.bends[place])
-    if row.twin >= 0:
-        found = curvatures(held, row.twin, cage, row.cage_twin, met)
-        write_twin(found, normal, arm, frame.axes, frame.radii, contacts.bends[place])
+    # TWIN
     write_on_circle(held, row.feature, cage, row.cage_feature, row, center, contacts.bends[place].on_circle)
     contacts.used[0] += 1

@@ -122,8 +122,8 @@ def place_on_circle(contacts: ContactSet, i: int, angle: float) -> tuple[Vector,
 def angle_of_deepest(
     contacts: ContactSet, i: int, friction: float, velocity: Vector, spin: Vector, start: float
 ) -> float:
-    """Return the angle along the circle, from a place of it that touches, to where a contact would resist a motion most:
-    a maximum of n . v + mu |v_t|, uphill from the slip at ``start``.
+    """Return the angle along the circle, from a place of it that touches, to where a contact would resist a motion
+    most: a maximum of n . v + mu |v_t|, uphill from the slip at ``start``.
 
     With the direction of the slip given, that is in closed form; the direction follows from where it is.
     """
@@ -151,7 +151,9 @@ def angle_of_deepest(
 
 @kernel
 def write_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
-    """Write the row of the contact at an angle along the circle from a place of it that touches, behind all that count."""
+    """Write the row of the contact at an angle along the circle from a place of it that touches, behind all that
+    count.
+    """
     row, place = contacts.rows[i], contacts.used[0]
     arm, normal = place_on_circle(contacts, i, angle)
     new = contacts.rows[place]
@@ -173,7 +175,8 @@ def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
         state.forces[k] = state.kept_forces[k] = 0.0
     contacts.bends[place] = contacts.bends[i]  # type: ignore[index]
     contacts.bends[place].on_circle.length = 0.0
-    by, normal = matrix_from_quaternion(quaternion_about(vector_from(around.axis), angle)), vector_from(new.directions[0])
+    by = matrix_from_quaternion(quaternion_about(vector_from(around.axis), angle))
+    normal = vector_from(new.directions[0])
     write_turned(contacts.bends[i], by, normal, vector_from(new.arm), frame.axes, frame.radii, contacts.bends[place])
     contacts.used[0] = place + 1
 
