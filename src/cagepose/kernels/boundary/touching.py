@@ -15,6 +15,8 @@ from cagepose.kernels.shapes.meeting import SAME_PLACE
 
 MOST_MEETINGS, MOST_PAIRS, MOST_PLACES = 4096, 256, 16
 """Meetings that there is memory for; pairs of nodes that wait while two trees are descended; places of one circle."""
+SAME_NORMAL = 1e-9
+"""Radians. Meetings at one place with normals nearer than this are one."""
 HALF_SECTOR = math.pi / 4.0
 """Radians."""
 
@@ -38,6 +40,8 @@ class Touching:
     ----------
     feature, cage_feature
         Indices.
+    twin, cage_twin
+        Features that meet at the same place with the same normal and bend more; -1: none do.
     angle
         Where on a circle, if one of them is one, radians; of two, on the object's.
     before, after
@@ -53,6 +57,8 @@ class Touching:
 
     feature: int
     cage_feature: int
+    twin: int
+    cage_twin: int
     angle: float
     before: float
     after: float
