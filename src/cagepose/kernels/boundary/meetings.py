@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.record import FloatArray, Rows
-from cagepose.kernels.algebra.vector import minus, norm, vector_from
-from cagepose.kernels.boundary.circle import is_on_arc
+from cagepose.kernels.algebra.vector import dot, minus, vector_from
+from cagepose.kernels.boundary.circle import WHOLE_TURN, is_on_arc
 from cagepose.kernels.boundary.circle_meeting import circle_meeting, find_places
 from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE, Place, write_place
 from cagepose.kernels.boundary.features import (
@@ -21,12 +21,13 @@ from cagepose.kernels.boundary.features import (
     place_feature,
     position_of,
 )
+from cagepose.kernels.boundary.flat_circle import Arc, next_arc, part_to_ask
 from cagepose.kernels.boundary.meeting import both_reach, is_seated, meeting, seated
-from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, Along, Meetings, is_at_place
+from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, Along, Meetings
 from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
+from cagepose.kernels.boundary.twins import append_meeting
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.meeting import SAME_PLACE, Meeting, swapped
-from cagepose.kernels.shapes.touching import SAME_NORMAL
 
 DEEPEST_OF_LEAST = 0.05
 """Of the shortest edge: features that are deeper in each other are on far sides of a part, and do not touch."""
@@ -205,16 +206,88 @@ def meet_circle(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, touc
     one, other = held.features[i], cage.features[j]
     circle = one if one.kind == CIRCLE else other
     n_places = find_circle_places(one, other, touch_m, found.places)
-    is_around = n_places == WHOLE
-    if is_around and one.kind == CIRCLE and other.kind == CIRCLE:
+    if n_places == WHOLE:
+        if one.kind == FACE or other.kind == FACE:
+            meet_flat(held, i, cage, j, touch_m, found)
+        elif one.kind != other.kind:
+            meet_around(held, i, cage, j, touch_m, found)
         return
-    for k in range(PLACES_AROUND if is_around else n_places):
+    for k in range(n_places):
         place = found.places[k]
         if place.kind in (GREATEST, SADDLE) or not is_on_arc(circle, place.angle, 2.0 * touch_m):
             continue
         met = meeting_at(held, i, cage, j, place)
-        sector = HALF_SECTOR if is_around else 0.0
-        append_touching(held, i, cage, j, Along(place.angle, sector, sector), met, touch_m, found)
+        append_touching(held, i, cage, j, Along(place.angle, 0.0, 0.0), met, touch_m, found)
+
+
+@kernel
+def meet_around(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, touch_m: float, found: Meetings) -> None:
+    """Append the meetings of a circle and of what all of it lies on."""
+    circle = held.features[i] if held.features[i].kind == CIRCLE else cage.features[j]
+    if circle.width < WHOLE_TURN:
+        append_arc(held, i, cage, j, Arc(circle.start, circle.start + circle.width), circle.length, touch_m, found)
+        return
+    for k in range(PLACES_AROUND):
+        angle = math.pi * (2 * k + 1) / PLACES_AROUND
+        append_along(held, i, cage, j, Along(angle, HALF_SECTOR, HALF_SECTOR), touch_m, found)
+
+
+@kernel
+def append_along(
+    held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, along: Along, touch_m: float, found: Meetings
+) -> None:
+    """Append the meeting of a circle at one of its places, if it touches there."""
+    place = found.places[0]
+    write_place(place, along.angle, 0.0, 0, True)
+    there = Along(place.angle, along.before, along.after)
+    append_touching(held, i, cage, j, there, meeting_at(held, i, cage, j, place), touch_m, found)
+
+
+@kernel
+def meet_flat(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, touch_m: float, found: Meetings) -> None:
+    """Append the meetings of a circle that lies flat on a face: of each arc over the face both ends, and places between
+    them that are no farther apart than `HALF_SECTOR`.
+    """
+    of_cage = held.features[i].kind == FACE
+    circle, body, at = (cage.features[j], held, i) if of_cage else (held.features[i], cage, j)
+    face, slack_m = body.features[at], 2.0 * touch_m
+    height = dot(vector_from(face.direction), minus(vector_from(circle.point), vector_from(face.point)))
+    if height - face.radius - circle.radius > (1.0 + FLAT) * touch_m:
+        return
+    part = part_to_ask(circle, body, at, slack_m)
+    if part.last - part.first >= WHOLE_TURN:
+        meet_around(held, i, cage, j, touch_m, found)
+        return
+    begin, counts = part.first, True
+    while begin <= part.last < math.inf:
+        arc = next_arc(circle, body, at, begin, part.last, counts, slack_m)
+        if arc.first == math.inf:
+            return
+        append_arc(held, i, cage, j, arc, circle.length, touch_m, found)
+        begin, counts = arc.last, False
+
+
+@kernel
+def append_arc(
+    held: PlacedBoundary,
+    i: int,
+    cage: PlacedBoundary,
+    j: int,
+    arc: Arc,
+    radius: float,
+    touch_m: float,
+    found: Meetings,
+) -> None:
+    """Append the meetings of an arc that lies flat on a face; a short one is one place."""
+    span = arc.last - arc.first
+    if span * radius <= SAME_PLACE * touch_m:
+        append_along(held, i, cage, j, Along(arc.first + 0.5 * span, 0.0, 0.0), touch_m, found)
+        return
+    n_between = math.ceil(span / HALF_SECTOR - LEAST_SLACK)
+    for k in range(n_between + 1):
+        before = span * k / n_between
+        ends = min(before, HALF_SECTOR), min(span - before, HALF_SECTOR)
+        append_along(held, i, cage, j, Along(arc.first + before, ends[0], ends[1]), touch_m, found)
 
 
 @kernel
@@ -243,24 +316,4 @@ def append_touching(
     if not met.is_one or not -DEEPEST_OF_LEAST * min(one.least, other.least) <= met.gap <= touch_m:
         return
     if both_reach(held, i, cage, j, met, slack_of(one, other, touch_m), 2.0 * touch_m):
-        append_meeting(i, j, along, met, touch_m, found)
-
-
-@kernel
-def append_meeting(i: int, j: int, along: Along, met: Meeting, touch_m: float, found: Meetings) -> None:
-    """Append a meeting, unless one with this normal is at this place."""
-    at = found.used[0]
-    if at == len(found.rows):
-        found.used[0] = -1
-        return
-    row = found.rows[at]
-    row.feature, row.cage_feature = i, j
-    row.angle, row.before, row.after = along.angle, along.before, along.after
-    row.gap, row.group = met.gap, at
-    for k in range(3):
-        row.normal[k], row.place[k] = met.normal[k], met.place[k]
-    for before in range(at):
-        turned = norm(minus(vector_from(found.rows[before].normal), met.normal))
-        if turned <= SAME_NORMAL and is_at_place(found, before, at, touch_m):
-            return
-    found.used[0] = at + 1
+        append_meeting(held, i, cage, j, along, met, touch_m, found)

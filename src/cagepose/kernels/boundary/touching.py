@@ -17,6 +17,8 @@ MOST_OF_PARTS, MOST_MEETINGS = 128, 4096
 """Meetings that there is memory for: of each pair of parts, and of all."""
 MOST_PAIRS, MOST_PLACES = 256, 16
 """Pairs of nodes that wait while two trees are descended; places of one circle."""
+SAME_NORMAL = 1e-9
+"""Radians. Meetings at one place with normals nearer than this are one."""
 HALF_SECTOR = math.pi / 4.0
 """Radians."""
 
@@ -40,6 +42,8 @@ class Touching:
     ----------
     feature, cage_feature
         Indices.
+    twin, cage_twin
+        Features that meet at the same place with the same normal and bend more; -1: none do.
     angle
         Where on a circle, if one of them is one, radians; of two, on the object's.
     before, after
@@ -55,6 +59,8 @@ class Touching:
 
     feature: int
     cage_feature: int
+    twin: int
+    cage_twin: int
     angle: float
     before: float
     after: float

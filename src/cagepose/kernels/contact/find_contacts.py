@@ -151,6 +151,8 @@ def append_meeting(
     met = Meeting(True, row.gap, normal, vector_from(row.place))
     found = curvatures(held, row.feature, cage, row.cage_feature, met, is_around(row))
     write_bend(found, normal, arm, frame.axes, frame.radii, contacts.bends[place])
-    # TWIN
+    if row.twin >= 0:
+        found = curvatures(held, row.twin, cage, row.cage_twin, met, False)
+        write_twin(found, normal, arm, frame.axes, frame.radii, contacts.bends[place])
     write_on_circle(held, row.feature, cage, row.cage_feature, row, center, contacts.bends[place].on_circle)
     contacts.used[0] += 1

@@ -1,0 +1,78 @@
+"""Each place and normal once: of features that meet at one place with one normal, those that bend least and most."""
+
+from __future__ import annotations
+
+from cagepose.kernels.algebra.vector import minus, norm, vector_from
+from cagepose.kernels.boundary.bend import bends_by, curvatures
+from cagepose.kernels.boundary.features import CIRCLE, PlacedBoundary
+from cagepose.kernels.boundary.touching import SAME_NORMAL, Along, Meetings, Touching, is_around, is_at_place
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.shapes.meeting import Meeting
+
+
+@kernel
+def append_meeting(
+    held: PlacedBoundary,
+    i: int,
+    cage: PlacedBoundary,
+    j: int,
+    along: Along,
+    met: Meeting,
+    touch_m: float,
+    found: Meetings,
+) -> None:
+    """Append a meeting, or note it beside one that has its normal at its place."""
+    at = found.used[0]
+    if at == len(found.rows):
+        found.used[0] = -1
+        return
+    row = found.rows[at]
+    row.twin, row.cage_twin, row.gap, row.group = -1, -1, met.gap, at
+    write_features(i, j, along, row)
+    for k in range(3):
+        row.normal[k], row.place[k] = met.normal[k], met.place[k]
+    for before in range(at):
+        turned = norm(minus(vector_from(found.rows[before].normal), met.normal))
+        if turned <= SAME_NORMAL and is_at_place(found, before, at, touch_m):
+            note_twin(held, cage, found.rows[before], row)
+            return
+    found.used[0] = at + 1
+
+
+@kernel
+def write_features(i: int, j: int, along: Along, out: Touching) -> None:
+    out.feature, out.cage_feature = i, j
+    out.angle, out.before, out.after = along.angle, along.before, along.after
+
+
+@kernel
+def bends_of(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, row: Touching, around: bool) -> float:
+    met = Meeting(True, row.gap, vector_from(row.normal), vector_from(row.place))
+    return bends_by(curvatures(held, i, cage, j, met, around))
+
+
+@kernel
+def note_twin(held: PlacedBoundary, cage: PlacedBoundary, told: Touching, new: Touching) -> None:
+    """Keep, of features that meet at one place with one normal, those that bend least, and beside them those that bend
+    most; but a circle that touches along an arc there is kept in any case.
+    """
+    if is_around(told) and is_around(new) and are_of_one_circle(held, cage, told, new):
+        told.before, told.after = max(told.before, new.before), max(told.after, new.after)
+        return
+    least = bends_of(held, told.feature, cage, told.cage_feature, told, is_around(told))
+    bend = bends_of(held, new.feature, cage, new.cage_feature, new, is_around(new))
+    most = least if told.twin < 0 else bends_of(held, told.twin, cage, told.cage_twin, told, False)
+    if bend < least if is_around(told) == is_around(new) else is_around(new):
+        if told.twin < 0 and least > bend:
+            told.twin, told.cage_twin = told.feature, told.cage_feature
+        write_features(new.feature, new.cage_feature, Along(new.angle, new.before, new.after), told)
+    elif bend > most:
+        told.twin, told.cage_twin = new.feature, new.cage_feature
+
+
+@kernel
+def are_of_one_circle(held: PlacedBoundary, cage: PlacedBoundary, one: Touching, other: Touching) -> bool:
+    """Whether two meetings are of the same circle, as on two faces that are flush."""
+    if one.feature == other.feature and held.own.features[one.feature].kind == CIRCLE:
+        return True
+    return bool(one.cage_feature == other.cage_feature and cage.own.features[one.cage_feature].kind == CIRCLE)
