@@ -176,6 +176,23 @@ def test_where_an_arc_ends_the_edge_that_crosses_it_tells_nothing_new():
     assert (asked.cage.features[down["cage_feature"]]["kind"] == FACE).all()
 
 
+@pytest.mark.parametrize("beyond", [-1.5e-9, 0.0, 1e-13, 1e-10, 1e-8])
+def test_a_place_where_a_circle_reaches_an_edge_is_one_by_itself(beyond):
+    """The edge has the circle's tangent, so that the two do not cross: the place is on the face, and no arc is."""
+    asked = Asked([ROD], [under(1.5 - beyond, 0.0, 2.0, 2.0)], TOUCH_M)
+    found = asked.place(STANDING)
+    rows = found.rows[: found.used[0]]
+    down = rows[rows["normal"] @ TILT.rotation[:, 2] < -0.9]
+    places = TILT.inverse_transform(down["place"])
+    if beyond == 1e-8:  # the arc is 2e-4 m long
+        assert len(down) == 2
+        np.testing.assert_allclose(down["before"] + down["after"], 2.0 * math.acos(1.0 - beyond / 0.5), rtol=1e-5)
+    else:
+        assert len(down) == (3 if beyond == 1e-10 else 1)  # where it crosses the edge counts by itself
+        assert (down["before"] + down["after"] == 0.0).all()
+        np.testing.assert_allclose(places, [(0.5, 0.0, 0.0)] * len(down), atol=3e-5)
+
+
 def test_a_place_where_a_circle_reaches_a_corner_is_one_by_itself():
     """The corner of the box is on the circle, which passes it outside of the box."""
     asked = Asked([ROD], [under(0.5 / math.sqrt(2.0) + 1.0, 0.5 / math.sqrt(2.0) + 1.0, 2.0, 2.0)], TOUCH_M)

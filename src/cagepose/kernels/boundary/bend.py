@@ -45,6 +45,8 @@ from cagepose.kernels.shapes.meeting import CENTRED, Meeting
 
 FLAT = 1e-9
 """Sine between a circle's axis and the normal: less, it is straight as an edge along its tangent."""
+SIDE_BY_SIDE = 1e-6
+"""Sine between edges: by less they do not cross."""
 RANK_ONE = 1e-13
 """Fraction of the square of radii of curvature."""
 NOTHING: Matrix = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -190,7 +192,9 @@ def product(a: Matrix, b: Matrix) -> Matrix:
 
 @kernel
 def of_finite(one: Side, other: Side, normal: Vector, gap: float) -> Curvatures:
-    """Return those of two features, one of them an edge at most: what the one without an edge moves by is finite."""
+    """Return those of two features, one of them an edge at most: what the one without an edge moves by is finite.
+    Of two edges side by side, as a flat disc's rim is along a roller, one counts.
+    """
     c_one, c_other = finite(one, normal), added(finite(other, normal), across(normal, gap))
     both = added(c_one, c_other)
     if one.is_edge or other.is_edge:
@@ -224,7 +228,7 @@ def curvatures(a: PlacedBoundary, i: int, b: PlacedBoundary, j: int, met: Meetin
         parallel = added(finite(side, normal), across(normal, met.gap))
         return Curvatures(NOTHING, across(normal, 1.0), parallel)
     own = side_at(a, i, normal, core, is_around)
-    if own.is_edge and side.is_edge:
+    if own.is_edge and side.is_edge and norm(cross(own.line, side.line)) > SIDE_BY_SIDE:
         return of_crossing_edges(own, side, normal, met.gap)
     return of_finite(own, side, normal, met.gap)
 

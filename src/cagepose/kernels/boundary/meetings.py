@@ -278,9 +278,11 @@ def append_arc(
     touch_m: float,
     found: Meetings,
 ) -> None:
-    """Append the meetings of an arc that lies flat on a face; a short one is one place."""
+    """Append the meetings of an arc that touches all along; one that is straight to the slack is one place, as where a
+    circle leads over an edge that has its tangent.
+    """
     span = arc.last - arc.first
-    if span * radius <= SAME_PLACE * touch_m:
+    if span < math.pi and radius * (1.0 - math.cos(0.5 * span)) <= 2.0 * touch_m:
         append_along(held, i, cage, j, Along(arc.first + 0.5 * span, 0.0, 0.0), touch_m, found)
         return
     n_between = math.ceil(span / HALF_SECTOR - LEAST_SLACK)
