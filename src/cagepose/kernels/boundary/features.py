@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
-from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
+from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import (
     Matrix,
     Vector,
@@ -35,6 +35,8 @@ VERTEX, LINE, FACE, CIRCLE = 0, 1, 2, 3
 """Kinds of features."""
 HALF_SPACE, INSIDE, OUTSIDE, SEGMENT = 0, 1, 2, 3
 """Kinds of bounds."""
+HULL, TURNED = 0, 1
+"""Kinds of covers."""
 
 
 class Feature:
@@ -68,6 +70,8 @@ class Feature:
     least
         Length of the shortest edge at a vertex or of a line, the radius of a circle, metres; inf: there is none. What
         touches along it is told by the touch tolerance up to a tilt of one over the other.
+    first_cover, last_cover
+        What may cover it, in `Boundary.cover_list`, the last one not included.
     """
 
     kind: int
@@ -85,6 +89,8 @@ class Feature:
     first_bound: int
     last_bound: int
     least: float
+    first_cover: int
+    last_cover: int
 
 
 class Bound:
@@ -123,6 +129,47 @@ class BodyPart:
     point: int
 
 
+class Cover:
+    """A convex solid of a body, or a part of what a hole takes away; a record.
+
+    Attributes
+    ----------
+    kind
+        HULL: what lies within half-spaces, and no farther than a radius from there. TURNED: a straight line turned
+        about an axis, between flat ends.
+    point
+        Of a hull, what its bounds are seen from; of what is turned, the middle of its first end; in the frame of the
+        body, metres.
+    axis
+        Unit vector from the first to the second end.
+    radius, other_radius
+        Of a hull, what is added on all sides; of what is turned, of its two ends, metres.
+    length
+        From end to end, metres.
+    reach
+        No point of it is farther from ``point``, metres.
+    first_bound, last_bound
+        Of a hull: its half-spaces and its edges, which are segments; the last one not included.
+    first_opening, last_opening
+        Which covers take material away from it, in `Boundary.cover_list`.
+    touch_m
+        What is this close touches, metres.
+    """
+
+    kind: int
+    point: Annotated[FloatArray, 3]
+    axis: Annotated[FloatArray, 3]
+    radius: float
+    other_radius: float
+    length: float
+    reach: float
+    first_bound: int
+    last_bound: int
+    first_opening: int
+    last_opening: int
+    touch_m: float
+
+
 class Boundary(NamedTuple):
     """The features of one body, and the trees that find those that are near.
 
@@ -133,7 +180,9 @@ class Boundary(NamedTuple):
     features
         Vertices first, then lines and circles, then faces.
     bounds
-        Theirs.
+        Theirs, and those of the covers.
+    covers, cover_list
+        What may cover features, or takes away from what does; and their indices, one range after the other.
     nodes
         The trees, see `cagepose.kernels.boundary.tree`.
     planes
@@ -144,12 +193,20 @@ class Boundary(NamedTuple):
     parts: Rows[BodyPart]
     features: Rows[Feature]
     bounds: Rows[Bound]
+    covers: Rows[Cover]
+    cover_list: IntArray
     nodes: Rows[Node]
     planes: FloatArray
 
 
 NO_BOUNDARY = Boundary(
-    empty_rows(BodyPart, 0), empty_rows(Feature, 0), empty_rows(Bound, 0), empty_rows(Node, 0), np.zeros((5, 0))
+    empty_rows(BodyPart, 0),
+    empty_rows(Feature, 0),
+    empty_rows(Bound, 0),
+    empty_rows(Cover, 0),
+    np.zeros(0, np.int64),
+    empty_rows(Node, 0),
+    np.zeros((5, 0)),
 )
 """A body without features."""
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.boundary.covered import is_covered
 from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, VERTEX, Feature, PlacedBoundary
 from cagepose.kernels.boundary.reach import beyond_normals, reaches
 from cagepose.kernels.native.kernel import kernel
@@ -30,13 +31,15 @@ from cagepose.kernels.shapes.rims import OnAxis, nearest_on_edge
 def both_reach(
     a: PlacedBoundary, i: int, b: PlacedBoundary, j: int, met: Meeting, slack: float, slack_m: float
 ) -> bool:
-    """Whether two features can touch where they meet, equation (2.11)."""
+    """Whether two features can touch where they meet, equation (2.11): both reach there, and neither is covered."""
     if not met.is_one:
         return False
     one = minus(met.place, scaled(met.normal, a.features[i].radius))
     other = plus(met.place, scaled(met.normal, met.gap + b.features[j].radius))
     back = scaled(met.normal, -1.0)
-    return reaches(a, i, met.normal, one, slack, slack_m) and reaches(b, j, back, other, slack, slack_m)
+    if not (reaches(a, i, met.normal, one, slack, slack_m) and reaches(b, j, back, other, slack, slack_m)):
+        return False
+    return not (is_covered(a, i, met.normal, one) or is_covered(b, j, back, other))
 
 
 @kernel

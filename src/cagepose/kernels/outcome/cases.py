@@ -177,7 +177,16 @@ def own_boundary(boundary: Boundary, points: FloatArray, cage: PlacedCage) -> Bo
         cage.parts[i] = boundary.parts[i]  # type: ignore[index]
     for i in range(len(boundary.nodes)):
         cage.nodes[i] = boundary.nodes[i]  # type: ignore[index]
-    own, is_elsewhere = Boundary(cage.parts, cage.features, boundary.bounds, cage.nodes, boundary.planes), False
+    own = Boundary(
+        cage.parts,
+        cage.features,
+        boundary.bounds,
+        boundary.covers,
+        boundary.cover_list,
+        cage.nodes,
+        boundary.planes,
+    )
+    is_elsewhere = False
     for point in range(len(points) if len(own.parts) > 0 else 0):
         feature = own.features[own.parts[point].point]
         for k in range(3):

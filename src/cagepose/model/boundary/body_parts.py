@@ -47,5 +47,6 @@ def shifted(boundary: Boundary, by: FloatArray) -> Boundary:
     moved.features["point"] += by
     moved.nodes["middle"] += by
     moved.parts["middle"] += by
+    moved.covers["point"] += by
     moved.planes[3] += moved.planes[:3].T @ by
     return Boundary(*moved)

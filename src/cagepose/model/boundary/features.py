@@ -27,6 +27,7 @@ from cagepose.kernels.boundary.features import (
 from cagepose.kernels.boundary.tree import EDGES, FACES, VERTICES, Node
 from cagepose.model.boundary.body_parts import body_parts
 from cagepose.model.boundary.convex_pieces import ConvexPiece, piece_of_box, piece_of_hull
+from cagepose.model.boundary.covers import covers_of, united
 from cagepose.model.boundary.trimmed import Edges, TrimmedUnion
 from cagepose.model.boundary.union import union_of
 from cagepose.model.box import Box
@@ -49,7 +50,7 @@ AROUND = 50.0
 
 
 class _Row(NamedTuple):
-    """A feature, its bounds apart, and a box around its core: lowest and highest coordinates."""
+    """A feature, its bounds apart, a box around it: lowest and highest coordinates; and which parts do not cover it."""
 
     kind: int
     part: int
@@ -66,13 +67,14 @@ class _Row(NamedTuple):
     bounds: list[tuple[int, FloatArray, FloatArray, float]]
     least: float
     box: FloatArray
+    apart_from: frozenset[int] = frozenset()
 
 
 def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary:
     """Return the boundary of a body in its frame; a single point (3,) is a part, too.
 
     Of polyhedra it is that of their union: what lies inside another one is no feature, and a seam between flush faces
-    is no edge. Round parts and holes have their features, whatever other parts cover them.
+    is no edge. Round parts and holes have all of their features, and these have covers.
 
     Parameters
     ----------
@@ -83,26 +85,33 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
     """
     every = list(parts)
     solids = [part for part in every if isinstance(part, Shape) and not isinstance(part, Hole)]
-    rows, pieces = list[_Row](), list[ConvexPiece]()
+    holes = [part for part in every if isinstance(part, Hole)]
+    rows, pieces = list[_Row](), dict[int, ConvexPiece]()
     for number, part in enumerate(every):
         if isinstance(part, Hole):
             within = [solid for solid in solids if solid.name in part.in_]
-            rows += _hole_rows(part, within, number)
+            own = frozenset(other for other, solid in enumerate(every) if any(solid is each for each in within))
+            rows += _apart(_hole_rows(part, within, number), own)
             if not within:
                 rows += [_pierced(row, part) for row in _rows_of(_plate_of(part), number)]
         elif (piece := _piece_of(part, number)) is not None:
-            pieces.append(piece)
+            pieces[number] = piece
         else:
-            rows += _rows_of(part, number)
-    if pieces:
-        rows += _union_rows(union_of(pieces, touch_m))
+            rows += _apart(_rows_of(part, number), frozenset((number,)))
+    for group in united({number: part for number, part in enumerate(every) if number in pieces}, holes, touch_m):
+        rows += _apart(_union_rows(union_of([pieces[number] for number in sorted(group)], touch_m)), group)
     names = [part.name if isinstance(part, Shape) else None for part in every]
-    for hole in (part for part in every if isinstance(part, Hole)):
+    for hole in holes:
         rows = [_pierced(row, hole) if names[row.part] in hole.in_ else row for row in rows]
     trees: list[list[_Row]] = [[], [], []]
     for row in rows:
         trees[VERTICES if row.kind == VERTEX else FACES if row.kind == FACE else EDGES].append(row)
-    return _packed(trees, body_parts(every), [isinstance(part, np.ndarray) for part in every])
+    return _packed(trees, every, touch_m)
+
+
+def _apart(rows: Sequence[_Row], parts: frozenset[int]) -> list[_Row]:
+    """Return features that these parts do not cover."""
+    return [row._replace(apart_from=parts) for row in rows]
 
 
 def _piece_of(part: Shape | FloatArray, number: int) -> ConvexPiece | None:
@@ -340,10 +349,11 @@ def _outward_across(corners: FloatArray, normal: FloatArray) -> FloatArray:
     return unit_rows(np.cross(np.roll(corners, -1, axis=0) - corners, normal))
 
 
-def _packed(trees: Sequence[Sequence[_Row]], parts: Any, are_points: Sequence[bool]) -> Boundary:
-    """Return features in the order of their trees' leaves, with their bounds and the trees, and the body's parts."""
+def _packed(trees: Sequence[Sequence[_Row]], parts: Sequence[Shape | FloatArray], touch_m: float) -> Boundary:
+    """Return features in the order of their trees' leaves, with their bounds, what covers them, and the trees."""
     nodes: list[tuple[object, ...]] = [(NOWHERE, NOWHERE, -1, -1, 0, 0, False, False)] * 3
     features, bounds = list[tuple[object, ...]](), list[tuple[int, FloatArray, FloatArray, float]]()
+    ordered = list[_Row]()
     for root, rows in enumerate(trees):
         first = len(features)
         boxes = np.array([row.box for row in rows]).reshape(-1, 2, 3)
@@ -355,15 +365,32 @@ def _packed(trees: Sequence[Sequence[_Row]], parts: Any, are_points: Sequence[bo
             any(row.kind == CIRCLE for row in rows),
         )
         for row in (rows[index] for index in order.tolist()):
-            numbers = row[:-3]
-            features.append((*numbers, len(bounds), len(bounds) + len(row.bounds), row.least))
+            numbers = row[: _Row._fields.index("bounds")]
+            features.append((*numbers, len(bounds), len(bounds) + len(row.bounds), row.least, 0, 0))
             bounds.extend(row.bounds)
+            ordered.append(row)
     made = np.array(features, dtype_of(Feature))
+    boxes = np.array([row.box for row in ordered]).reshape(-1, 2, 3)
+    covers: Any = covers_of(parts, boxes, [row.apart_from for row in ordered], touch_m)
+    made["first_cover"], made["last_cover"] = covers.first, covers.last
+    covers.rows["first_bound"] += len(bounds)
+    covers.rows["last_bound"] += len(bounds)
+    bounds += covers.bounds
     heights = (made["point"] * made["direction"]).sum(axis=1) + made["radius"]
     planes = np.ascontiguousarray(np.column_stack([made["direction"], heights, made["least"]]).T)
-    for index in np.nonzero(np.array(are_points, np.bool_)[made["part"]])[0].tolist():
-        parts["point"][made["part"][index]] = index
-    return Boundary(parts, made, np.array(bounds, dtype_of(Bound)), np.array(nodes, dtype_of(Node)), planes)
+    of_body = body_parts(parts)
+    for index in np.nonzero(made["kind"] == VERTEX)[0].tolist():
+        if isinstance(parts[made["part"][index]], np.ndarray):
+            of_body["point"][made["part"][index]] = index
+    return Boundary(
+        of_body,
+        made,
+        np.array(bounds, dtype_of(Bound)),
+        covers.rows,
+        np.array(covers.indices, np.int64),
+        np.array(nodes, dtype_of(Node)),
+        planes,
+    )
 
 
 def _divide(

@@ -1,0 +1,198 @@
+"""What may cover features of a body: its other parts, and what holes take away from these.
+
+A union of polyhedra knows by itself what its pieces cover. So only round parts and holes have covers, and polyhedra
+beside them; and pieces that a hole of another one is open to, which are united apart from it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.kernels.algebra.record import dtype_of
+from cagepose.kernels.boundary.features import HALF_SPACE, HULL, SEGMENT, TURNED, Cover
+from cagepose.model.box import Box
+from cagepose.model.checks import FloatArray, unit_rows
+from cagepose.model.hole import Hole
+from cagepose.model.hull import Hull, hull_of
+from cagepose.model.pose import Pose
+from cagepose.model.shapes import Convex, Disc, Rounded, Shape, Turned
+
+BoundRow = tuple[int, FloatArray, FloatArray, float]
+
+NEAR = 8.0
+"""In touch tolerances: a cover whose box is no farther from that of a feature may cover it."""
+BEYOND_MOUTH = 80.0
+"""In touch tolerances: how far openings lead on beyond their mouths, where there is no material."""
+NOWHERE = np.zeros(3)
+
+
+class Covers(NamedTuple):
+    """Rows of `kernels.boundary.features.Cover`, the bounds of hulls, and which there are of each feature.
+
+    Attributes
+    ----------
+    rows, bounds
+        The first bound is number zero here.
+    indices
+        Of covers, one range after the other.
+    first, last
+        The range of each feature, (n_features,).
+    """
+
+    rows: NDArray[np.void]
+    bounds: list[BoundRow]
+    indices: list[int]
+    first: NDArray[np.int64]
+    last: NDArray[np.int64]
+
+
+def united(solids: Mapping[int, Shape], holes: Iterable[Hole], touch_m: float) -> list[frozenset[int]]:
+    """Return the numbers of polyhedra in groups that can be united: in none is one that a hole of another is open to.
+
+    Parameters
+    ----------
+    solids
+        Sharp polyhedra by their numbers.
+    holes
+        Of the same body.
+    """
+    boxes, in_conflict = {number: solid.limits_m() for number, solid in solids.items()}, set[tuple[int, int]]()
+    for hole in holes:
+        low, high = hole.limits_m() + NEAR * touch_m * np.array(((-1.0,), (1.0,)))
+        opened = [number for number, solid in solids.items() if solid.name in hole.in_]
+        for number, box in boxes.items():
+            if opened and number not in opened and (box[0] <= high).all() and (box[1] >= low).all():
+                in_conflict |= {pair for other in opened for pair in ((number, other), (other, number))}
+    groups = list[set[int]]()
+    for number in solids:
+        for group in groups:
+            if not in_conflict or not any((number, other) in in_conflict for other in group):
+                group.add(number)
+                break
+        else:
+            groups.append({number})
+    return [frozenset(group) for group in groups]
+
+
+def covers_of(
+    parts: Sequence[Shape | FloatArray], boxes: FloatArray, apart_from: Sequence[frozenset[int]], touch_m: float
+) -> Covers:
+    """Return what may cover each feature.
+
+    Parameters
+    ----------
+    parts
+        Those of the body.
+    boxes
+        Around the features, (n, 2, 3), metres.
+    apart_from
+        Numbers of the parts that do not cover each feature: its own, and those that it is united with.
+    touch_m
+        What is this close touches, metres.
+    """
+    owners = {owner: index for index, owner in enumerate(dict.fromkeys(apart_from))}
+    owner_of = np.array([owners[owner] for owner in apart_from], np.int64)
+    of_features = [list[int]() for _ in apart_from]
+    rows, bounds, of_parts = list[tuple[object, ...]](), list[BoundRow](), dict[int, list[int]]()
+    for number, part in enumerate(parts):
+        if isinstance(part, np.ndarray | Hole | Disc) or all(number in owner for owner in owners):
+            continue
+        may_cover = np.array([number not in owner for owner in owners])
+        low, high = part.limits_m() + NEAR * touch_m * np.array(((-1.0,), (1.0,)))
+        is_near = may_cover[owner_of] & (boxes[:, 0] <= high).all(axis=1) & (boxes[:, 1] >= low).all(axis=1)
+        if not is_near.any():
+            continue
+        for feature in np.flatnonzero(is_near).tolist():
+            of_features[feature].append(len(rows))
+        of_parts.setdefault(number, []).append(len(rows))
+        rows.append(_solid(part, bounds, touch_m))
+    indices = [index for of_feature in of_features for index in of_feature]
+    last = np.cumsum([len(of_feature) for of_feature in of_features], dtype=np.int64)
+    first = last - [len(of_feature) for of_feature in of_features]
+    made = _with_openings(parts, rows, of_parts, indices, touch_m)
+    return Covers(made, bounds, indices, first, last)
+
+
+def _with_openings(
+    parts: Sequence[Shape | FloatArray],
+    rows: list[tuple[object, ...]],
+    of_parts: Mapping[int, list[int]],
+    indices: list[int],
+    touch_m: float,
+) -> NDArray[np.void]:
+    """Return the rows of solids, and behind them those of what holes take away from them; append their indices."""
+    openings, solids = dict[int, list[int]](), [part for part in parts if isinstance(part, Shape)]
+    for number, hole in enumerate(parts):
+        if isinstance(hole, Hole):
+            within = [solid for solid in solids if not isinstance(solid, Hole) and solid.name in hole.in_]
+            opened = [index for index in of_parts if (part := parts[index]) in within]
+            if opened:
+                found = _openings(hole, within, touch_m)
+                openings[number] = list(range(len(rows), len(rows) + len(found)))
+                rows += found
+    made: Any = np.array(rows, dtype_of(Cover))
+    for number, covers in of_parts.items():
+        part = parts[number]
+        mine = [each for hole, of_hole in openings.items() if part.name in parts[hole].in_ for each in of_hole]  # type: ignore[union-attr]
+        made["first_opening"][covers], made["last_opening"][covers] = len(indices), len(indices) + len(mine)
+        indices += mine
+    found_rows: NDArray[np.void] = made
+    return found_rows
+
+
+def _solid(part: Shape, bounds: list[BoundRow], touch_m: float) -> tuple[object, ...]:
+    """Return a solid part as a row; append its bounds."""
+    if isinstance(part, Turned):
+        (low, radius), (high, other) = part.rims[0], part.rims[-1]
+        return _turned(part.pose_body_shape, (low, radius), (high, other), touch_m)
+    if isinstance(part, Box):
+        return _hull(hull_of(part.corners_object()), Pose(), 0.0, bounds, touch_m)
+    if not isinstance(part, Rounded):
+        raise TypeError(f"nothing is known that a {part.kind} covers")
+    hull = part.hull if isinstance(part, Convex) else hull_of(part.core())
+    return _hull(hull, part.pose_body_shape, part.radius_m, bounds, touch_m)
+
+
+def _turned(pose: Pose, low: tuple[float, float], high: tuple[float, float], touch_m: float) -> tuple[object, ...]:
+    """Return what is turned about the z axis between two heights with their radii as a row."""
+    (start, radius), (end, other) = low, high
+    point = pose.transform(np.array((0.0, 0.0, start)))
+    reach = math.hypot(end - start, max(radius, other))
+    return TURNED, point, pose.rotation[:, 2], radius, other, end - start, reach, 0, 0, 0, 0, touch_m
+
+
+def _hull(hull: Hull, pose: Pose, radius_m: float, bounds: list[BoundRow], touch_m: float) -> tuple[object, ...]:
+    """Return a hull, blown up by a radius, as a row; append its half-spaces and its edges."""
+    vertices = pose.transform(hull.vertices_m)
+    middle, first = vertices.mean(axis=0), len(bounds)
+    seen = vertices - middle
+    for loop, normal in zip(hull.faces, hull.normals @ pose.rotation.T, strict=True):
+        corners = seen[list(loop)]
+        bounds.append((HALF_SPACE, normal, NOWHERE, float((corners @ normal).max())))
+        if len(hull.faces) == 2:
+            sides = unit_rows(np.cross(np.roll(corners, -1, axis=0) - corners, normal))
+            bounds += [(HALF_SPACE, side, NOWHERE, float(side @ at)) for side, at in zip(sides, corners, strict=True)]
+    edges = hull.edges.tolist() or [(0, 0)]
+    bounds += [(SEGMENT, seen[start], seen[end], 0.0) for start, end in edges]
+    reach = float(np.linalg.norm(seen, axis=1).max()) + radius_m
+    return HULL, middle, NOWHERE, radius_m, 0.0, 0.0, reach, first, len(bounds), 0, 0, touch_m
+
+
+def _openings(hole: Hole, within: Sequence[Shape], touch_m: float) -> list[tuple[object, ...]]:
+    """Return what a hole takes away, beyond its mouths where it has such; one within the other, as what is between two
+    of them is open.
+    """
+    depth, is_open = hole.run_through(within)
+    beyond = BEYOND_MOUTH * touch_m
+    bottom = -depth - (beyond if is_open else 0.0)
+    found = [_turned(hole.pose_body_shape, (bottom, hole.radius_m), (beyond, hole.radius_m), touch_m)]
+    for (low, radius), (high, wide) in pairwise(hole.rims[1:]):
+        further = wide + (wide - radius) / (high - low) * beyond
+        found.append(_turned(hole.pose_body_shape, (low, radius), (high + beyond, further), touch_m))
+    return found
