@@ -15,6 +15,7 @@ from cagepose.kernels.boundary.features import (
     LINE,
     SEGMENT,
     Bound,
+    Boundary,
     PlacedBoundary,
     in_body,
     seen_from_feature,
@@ -51,11 +52,16 @@ def beyond_normals(body: PlacedBoundary, i: int, normal: Vector, core: Vector) -
 @kernel
 def beyond_face(body: PlacedBoundary, i: int, place: Vector) -> float:
     """Return how far a place in the plane of a face is beyond its bounds, metres; below zero: how far within."""
-    feature = body.own.features[i]
-    seen = seen_from_feature(body, i, place)
+    return beyond_borders(body.own, i, seen_from_feature(body, i, place))
+
+
+@kernel
+def beyond_borders(own: Boundary, i: int, seen: Vector) -> float:
+    """Return how far a place is beyond the bounds of a face, as seen from its point, in the frame of the body."""
+    feature = own.features[i]
     farthest, nearest, is_within, has_segments = -math.inf, math.inf, False, False
     for k in range(feature.first_bound, feature.last_bound):
-        bound = body.own.bounds[k]
+        bound = own.bounds[k]
         if bound.kind != SEGMENT:
             farthest = max(farthest, beyond_bound(bound, seen))
             continue
