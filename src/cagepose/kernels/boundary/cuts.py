@@ -18,8 +18,6 @@ from cagepose.kernels.native.kernel import kernel
 
 MOST_CUTS = 1024
 """Of one strand: more are not noted."""
-FLATTEST = 1e-6
-"""Cosine between a strand and a normal: a flatter crossing is looked for no farther beyond the strand's ends."""
 HALVINGS = 60
 """Of the arc in which a circle enters or leaves a round side."""
 
@@ -54,11 +52,8 @@ def find_cuts(
                     n_cuts = _cut_arc(strand, solid, i, slack_m, places, cuts, n_cuts)
                     continue
                 for which in range(2):
-                    met = crossing(solid, i, strand.point, strand.way, which)
-                    if not met.is_one or met.beyond > slack_m:
-                        continue
-                    room = slack_m / max(abs(met.slope), FLATTEST)
-                    if -room <= met.along <= strand.end + room:
+                    met = crossing(solid, i, strand.point, strand.way, strand.end, slack_m, which)
+                    if met.is_one and met.beyond <= slack_m:
                         meets = True
                         n_cuts = _noted(strand, met.along, cuts, n_cuts)
     return n_cuts, meets or n_cuts > 0
@@ -93,11 +88,9 @@ def _is_beside(node: Node, strand: Strand, middle: Vector, half: Vector, slack_m
         return False
     aside, way = cross(away, strand.way), strand.way
     x, y, z = node.half[0] + slack_m, node.half[1] + slack_m, node.half[2] + slack_m
-    return (
-        abs(aside[0]) > y * abs(way[2]) + z * abs(way[1])
-        or abs(aside[1]) > x * abs(way[2]) + z * abs(way[0])
-        or abs(aside[2]) > x * abs(way[1]) + y * abs(way[0])
-    )
+    if abs(aside[0]) > y * abs(way[2]) + z * abs(way[1]) or abs(aside[1]) > x * abs(way[2]) + z * abs(way[0]):
+        return True
+    return bool(abs(aside[2]) > x * abs(way[1]) + y * abs(way[0]))
 
 
 @kernel
@@ -160,6 +153,8 @@ def _cut_by_side(
     """Note where an arc crosses a round side: between places of a stationary distance it crosses once or not."""
     feature, circle = solid.features[i], circle_under(strand)
     side = Round(vector_from(feature.point), vector_from(feature.direction), feature.radius, feature.taper)
+    if _is_far(circle, side, feature.length, slack_m):
+        return n_cuts
     n_places = places_by_round(circle, side, 0.5 * slack_m, places)
     for k in range(n_places):
         begin, end = places[k].angle, begin_of_next(places, n_places, k)
@@ -181,6 +176,18 @@ def _cut_by_side(
         if beyond <= slack_m:
             n_cuts = _noted(strand, begin, cuts, n_cuts)
     return n_cuts
+
+
+@kernel
+def _is_far(circle: Circle, side: Round, length: float, slack_m: float) -> bool:
+    """Whether a circle's centre is farther from a round side than its radius, or the circle beyond the side's ends."""
+    seen, square = minus(circle.centre, side.point), 1.0 - side.taper * side.taper
+    level = dot(seen, side.direction)
+    rho = norm(minus(seen, scaled(side.direction, level)))
+    gap = math.copysign(math.sqrt(square), side.radius) * rho + side.taper * level - side.radius
+    cosine = dot(circle.axis, side.direction)
+    reach, foot = circle.radius * math.sqrt(max(0.0, 1.0 - cosine * cosine)), level - side.taper * side.radius
+    return abs(gap) > circle.radius or foot + reach < -slack_m or foot - reach > square * length + slack_m
 
 
 @kernel

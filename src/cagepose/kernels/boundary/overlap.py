@@ -45,8 +45,8 @@ SLACK, LEAST_SPAN, BESIDE = 2.0, 1e-3, 4.0
 from the faces beside a strand the first place is that is asked where it lies in a surface."""
 LEAST_SINE = 1e-3
 """Of half the angle of an edge: of a sharper one places that are as far inward are asked as of one with this."""
-STEPS = 40
-"""Farther and farther from a strand places are asked, each twice as far."""
+STEPS, FARTHER = 20, 4.0
+"""Farther and farther from a strand places are asked, so many, each so many times as far."""
 
 
 class Overlap(NamedTuple):
@@ -201,7 +201,7 @@ def probe_span(
         if at == strand.begin or at == strand.end:
             best = deeper(best, i, depth_in(sides.solid, on_strand(strand, at), touch_m, work.waiting))
     inward = inward_at(strand, middle)
-    step = BESIDE * touch_m / max(strand.sine, LEAST_SINE)
+    step = max(BESIDE * touch_m, best.depth_m) / max(strand.sine, LEAST_SINE)  # there the depths may add up to more
     for _ in range(STEPS):
         beside = plus(place, scaled(inward, step))
         other = depth_in(sides.solid, beside, touch_m, work.waiting)
@@ -211,7 +211,7 @@ def probe_span(
         if own.distance <= 0.0:
             break
         best = deeper(best, i, Nearest(own.distance + other.distance, other.feature))
-        step *= 2.0
+        step *= FARTHER
     return best
 
 

@@ -15,6 +15,8 @@ from cagepose.kernels.native.kernel import kernel
 
 PARALLEL = 1e-14
 """A line that makes a smaller sine with a plane does not cross it."""
+FLATTEST = 1e-6
+"""Cosine between a line and a normal: a flatter crossing is looked for no farther beyond the line's ends."""
 
 
 class Crossing(NamedTuple):
@@ -76,15 +78,19 @@ def out_of_axis(line: Feature, seen: Vector) -> Vector:
 
 
 @kernel
-def distance_from(own: Boundary, i: int, place: Vector) -> float:
-    """Return how far a place is at least from a surface, metres: exactly so where its foot is within the bounds."""
+def distance_from(own: Boundary, i: int, place: Vector, within_m: float) -> float:
+    """Return how far a place is at least from a surface, metres: exactly so where its foot is within the bounds. Not
+    exact if it is farther than a length.
+    """
     feature = own.features[i]
     seen = minus(place, vector_from(feature.point))
     if feature.kind == FACE:
         normal = vector_from(feature.direction)
         height = dot(normal, seen)
-        beyond = beyond_borders(own, i, minus(seen, scaled(normal, height)))
-        return math.hypot(height - feature.radius, max(0.0, beyond))
+        gap = abs(height - feature.radius)
+        if gap >= within_m:
+            return gap
+        return math.hypot(gap, max(0.0, beyond_borders(own, i, minus(seen, scaled(normal, height)))))
     if feature.kind == VERTEX:
         rho, along = norm(seen), 0.0
         normal = scaled(seen, 1.0 / rho) if rho > 0.0 else (1.0, 0.0, 0.0)
@@ -98,14 +104,16 @@ def distance_from(own: Boundary, i: int, place: Vector) -> float:
         other = abs(rho - slant * gap)
         foot = height - feature.taper * (gap + feature.radius)
         along = max(0.0, -foot, foot - feature.length * slant * slant)
+    if abs(gap) >= within_m:
+        return abs(gap)
     aside = max(0.0, beyond_cone(own, i, normal))
     return math.sqrt(gap * gap + along * along + aside * aside * rho * other)
 
 
 @kernel
-def crossing(own: Boundary, i: int, start: Vector, way: Vector, which: int) -> Crossing:
+def crossing(own: Boundary, i: int, start: Vector, way: Vector, end: float, slack_m: float, which: int) -> Crossing:
     """Return where a straight line from a place along a unit vector crosses a surface for the first or the second time,
-    ``which`` 0 or 1, in no order.
+    ``which`` 0 or 1, in no order: up to a length from there, or where it is less than a slack above the surface.
     """
     feature = own.features[i]
     seen = minus(start, vector_from(feature.point))
@@ -115,11 +123,20 @@ def crossing(own: Boundary, i: int, start: Vector, way: Vector, which: int) -> C
         if which == 1 or abs(slope) < PARALLEL:
             return NO_CROSSING
         along = (feature.radius - dot(seen, normal)) / slope
+        if _is_off(along, slope, end, slack_m):
+            return NO_CROSSING
         core = minus(plus(seen, scaled(way, along)), scaled(normal, feature.radius))
         return Crossing(True, along, beyond_borders(own, i, core), slope)
     if feature.kind == VERTEX:
-        return _through_ball(own, i, seen, way, which)
-    return _through_side(own, i, seen, way, which)
+        return _through_ball(own, i, seen, way, end, slack_m, which)
+    return _through_side(own, i, seen, way, end, slack_m, which)
+
+
+@kernel
+def _is_off(along: float, slope: float, end: float, slack_m: float) -> bool:
+    """Whether a crossing is beyond the ends of a line and higher above it than a slack."""
+    room = slack_m / max(abs(slope), FLATTEST)
+    return along < -room or along > end + room
 
 
 @kernel
@@ -135,17 +152,20 @@ def _root(a: float, half_b: float, c: float, which: int) -> tuple[bool, float]:
 
 
 @kernel
-def _through_ball(own: Boundary, i: int, seen: Vector, way: Vector, which: int) -> Crossing:
+def _through_ball(own: Boundary, i: int, seen: Vector, way: Vector, end: float, slack_m: float, which: int) -> Crossing:
     radius = own.features[i].radius
     is_one, along = _root(1.0, dot(seen, way), dot(seen, seen) - radius * radius, which)
     if not is_one:
         return NO_CROSSING
     normal = scaled(plus(seen, scaled(way, along)), 1.0 / radius)
-    return Crossing(True, along, radius * beyond_cone(own, i, normal), dot(way, normal))
+    slope = dot(way, normal)
+    if _is_off(along, slope, end, slack_m):
+        return NO_CROSSING
+    return Crossing(True, along, radius * beyond_cone(own, i, normal), slope)
 
 
 @kernel
-def _through_side(own: Boundary, i: int, seen: Vector, way: Vector, which: int) -> Crossing:
+def _through_side(own: Boundary, i: int, seen: Vector, way: Vector, end: float, slack_m: float, which: int) -> Crossing:
     """On a side, slant rho + taper height = radius."""
     line = own.features[i]
     axis, slant = vector_from(line.direction), slant_of_side(line)
@@ -166,6 +186,9 @@ def _through_side(own: Boundary, i: int, seen: Vector, way: Vector, which: int) 
         return NO_CROSSING
     out = out_of_axis(line, there)
     normal = plus(scaled(out, slant), scaled(axis, taper))
+    slope = dot(way, normal)
+    if _is_off(along, slope, end, slack_m):
+        return NO_CROSSING
     foot = level - taper * line.radius
     beyond = max(-foot, foot - line.length * square)
-    return Crossing(True, along, max(beyond, dot(out, there) * beyond_cone(own, i, normal)), dot(way, normal))
+    return Crossing(True, along, max(beyond, dot(out, there) * beyond_cone(own, i, normal)), slope)

@@ -79,7 +79,7 @@ def nearest_surface(own: Boundary, place: Vector, within_m: float, waiting: IntA
                 continue
             for i in range(node.first, node.last):
                 if has_surface(own.features[i]):
-                    distance = distance_from(own, i, place)
+                    distance = distance_from(own, i, place, best)
                     if distance < best:
                         best, feature = distance, i
     return Nearest(best, feature)
@@ -125,8 +125,8 @@ def winding_along(own: Boundary, start: Vector, way: Vector, slack_m: float, wai
                 if not has_surface(own.features[i]):
                     continue
                 for which in range(2):
-                    met = crossing(own, i, start, way, which)
-                    if not met.is_one or met.along < 0.0 or met.beyond > slack_m:
+                    met = crossing(own, i, start, way, math.inf, 0.0, which)
+                    if not met.is_one or met.beyond > slack_m:
                         continue
                     if met.beyond >= -slack_m or abs(met.slope) < LEAST_SLOPE:
                         return False, 0
