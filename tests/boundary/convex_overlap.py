@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import nnls
 
-from cagepose import Pose
-from cagepose.model.shapes import Rounded, Shape, Turned
+from cagepose import Box, Pose
+from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Rounded, Shape, Sphere, Turned
 
 FloatArray = np.ndarray
 
@@ -54,3 +54,40 @@ def distance(one: Shape, pose: Pose, other: Shape, other_pose: Pose, tolerance_m
 def least_extent(one: Shape, pose: Pose, other: Shape, other_pose: Pose, ways: FloatArray) -> float:
     """How far one has to go along some of these directions until it is out of the other."""
     return min(float((support(other, other_pose, way) - support(one, pose, -way)) @ way) for way in ways)
+
+
+def drawn_convex(rng: np.random.Generator, widest_m: float = 1.5) -> Shape:
+    """A box, hull, rounded hull, cylinder, cone, ball or capsule, as wide as this at most or somewhat wider."""
+    kind, wide, long = int(rng.integers(7)), widest_m * rng.uniform(0.2, 1.0), rng.uniform(0.2, 3.0)
+    pose = Pose(0.2 * widest_m * rng.uniform(-1.0, 1.0, 3), rng.standard_normal(4) if widest_m > 1.0 else None)
+    if kind == 0:
+        return Box(wide * rng.uniform(0.1, 1.3, 3), pose)
+    if kind == 1:
+        return Convex(0.5 * wide * rng.standard_normal((int(rng.integers(4, 20)), 3)), 0.0, pose)
+    if kind == 2:
+        points = 0.4 * wide * rng.standard_normal((int(rng.integers(1, 9)), 3))
+        return Convex(points, wide * rng.uniform(0.05, 0.5), pose)
+    if kind == 3:
+        return Cylinder(wide, long, pose)
+    if kind == 4:
+        return Cone(wide, wide * rng.choice([0.0, 0.5, 1.2]), long, pose)
+    return Sphere(wide, pose) if kind == 5 else Capsule(0.5 * wide, long, pose)
+
+
+def samples(shape: Shape, n: int, rng: np.random.Generator) -> FloatArray:
+    """Places of a convex shape in the frame of its body, (n, 3), most of them on its surface and its edges."""
+    if isinstance(shape, Turned):
+        (low, wide), (high, narrow) = shape.rims[0], shape.rims[-1]
+        share, angles = np.clip(rng.uniform(-0.5, 1.5, n), 0.0, 1.0), rng.uniform(0.0, 2.0 * np.pi, n)
+        out = (wide + share * (narrow - wide)) * np.clip(rng.uniform(0.0, 3.0, n), 0.0, 1.0)
+        places = np.stack([out * np.cos(angles), out * np.sin(angles), low + share * (high - low)], axis=1)
+        return shape.pose_body_shape.transform(places)
+    core, rounded = (shape.core(), shape.radius_m) if isinstance(shape, Rounded) else (_corners(shape), 0.0)
+    shares = rng.dirichlet((0.3, 0.3, 0.3), n)
+    shares[: n // 5] = (1.0, 0.0, 0.0)
+    shares[n // 5 : 3 * n // 5, 2] = 0.0
+    shares /= shares.sum(axis=1)[:, None]
+    ways = rng.standard_normal((n, 3))
+    ways *= rounded / np.linalg.norm(ways, axis=1)[:, None]
+    places = np.einsum("ij,ijk->ik", shares, core[rng.integers(len(core), size=(n, 3))]) + ways
+    return shape.pose_body_shape.transform(places)

@@ -128,9 +128,9 @@ def probe(sides: Sides, touch_m: float, best: Overlap, work: OverlapWork) -> Ove
     """Return the deepest witness on one body that is in the other, if it is deeper than the best one."""
     own, waiting = sides.own, work.own_waiting
     low, high = limits_of(sides.solid)
-    middle, half = scaled(plus(low, high), 0.5), scaled(minus(high, low), 0.5)
-    if not half[0] >= 0.0:  # no surfaces
+    if low[0] > high[0]:  # no surfaces
         return best
+    middle, half = scaled(plus(low, high), 0.5), plus(scaled(minus(high, low), 0.5), (touch_m, touch_m, touch_m))
     for root in (VERTICES, EDGES):
         if own.nodes[root].first == own.nodes[root].last:
             continue

@@ -48,13 +48,13 @@ def beyond_box(node: Node, place: Vector) -> float:
 
 
 @kernel
-def is_beyond_all(own: Boundary, place: Vector) -> bool:
-    """Whether a place is outside of the boxes around all features of a body that have a surface."""
+def is_beyond_all(own: Boundary, place: Vector, touch_m: float) -> bool:
+    """Whether a place is farther than what touches from the boxes around all features that have a surface."""
     least = math.inf
     for root in range(3):
         if root_has_surfaces(own, root):
             least = min(least, beyond_box(own.nodes[root], place))
-    return least > 0.0
+    return least > touch_m
 
 
 @kernel
@@ -167,7 +167,7 @@ def limits_of(own: Boundary) -> tuple[Vector, Vector]:
 @kernel
 def depth_in(own: Boundary, place: Vector, touch_m: float, waiting: IntArray) -> Nearest:
     """Return how deep a place is in a body at least, and the surface that it is nearest to; `OUTSIDE`, `AT_SURFACE`."""
-    if is_beyond_all(own, place):
+    if is_beyond_all(own, place, touch_m):
         return Nearest(OUTSIDE, -1)
     near = nearest_surface(own, place, touch_m, waiting)
     if near.feature >= 0:
