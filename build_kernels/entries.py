@@ -22,6 +22,7 @@ from cagepose.kernels.boundary.features import NO_BOUNDARY, empty_placed
 from cagepose.kernels.boundary.inside import is_in_face
 from cagepose.kernels.boundary.lines import empty_fan_work
 from cagepose.kernels.boundary.loops import Border, Loop, find_loops
+from cagepose.kernels.boundary.overlap import empty_overlap_work
 from cagepose.kernels.boundary.pieces import Piece, PieceEdge, PieceFace, Pieces, Plane, find_planes
 from cagepose.kernels.boundary.places import find_groups, merge_places, settle_vertices
 from cagepose.kernels.collision.geometry import Geometry, empty_cage, empty_placement, place_object
@@ -93,7 +94,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     cage = empty_cage(geometry)
     outcome, endings = empty_outcome(geometry, 1, 1, 1), empty_endings(1, 1, 1)
     proof = empty_proof_workspace(geometry)
-    yield overlap_at, (geometry, ORIGIN, (1.0, 0.0, 0.0, 0.0), empty_placement(geometry))
+    yield overlap_at, (geometry, ORIGIN, UPRIGHT, empty_placement(geometry), empty_overlap_work())
     yield judge_start, (0, part, cases, cage, proof, outcome)
     yield critical_friction, (0, part, cases, cage, proof)
     yield balance_with_faces, (0.0, proof)

@@ -37,6 +37,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     from cagepose.kernels.boundary.groups import number_groups
     from cagepose.kernels.boundary.meetings import find_meetings
     from cagepose.kernels.boundary.touching import empty_meetings
+    from cagepose.kernels.boundary.overlap import empty_overlap_work, find_overlap
     from cagepose.kernels.collision.first_meeting import first_meeting
     from cagepose.kernels.collision.geometry import Geometry, empty_placement
     from cagepose.kernels.contact.cone import ConeWorkspace, cone_residual
@@ -64,6 +65,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield place_boundary, (body, origin, (1.0, 0.0, 0.0, 0.0))
     yield find_meetings, (body, body, 0.0, found)
     yield number_groups, (body, body, 0.0, found)
+    yield find_overlap, (body, body, 0.0, empty_overlap_work())
     search = of_boundaries.Search(motion, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     yield of_boundaries.first_to_meet, (body, body, search, found, of_boundaries.empty_queue(), body)
     yield first_meeting, (geometry, empty_placement(geometry), motion, 0.0, 0.0, 0.0)

@@ -12,6 +12,7 @@ import numpy as np
 from cagepose.errors import Key, key_path
 from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.kernels.collision.geometry import Geometry, empty_placement
+from cagepose.kernels.boundary.overlap import empty_overlap_work
 from cagepose.kernels.collision.start import overlap_at
 from cagepose.model.above import from_above
 from cagepose.model.apart import are_in_each_other
@@ -345,7 +346,7 @@ def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: 
     if len(geometry.held.features) == 0:
         return
     feature, cage_feature, depth_m = overlap_at(
-        geometry, *held.pose_world_object.as_tuples(), empty_placement(geometry)
+        geometry, *held.pose_world_object.as_tuples(), empty_placement(geometry), empty_overlap_work()
     )
     if feature < 0:
         return

@@ -26,6 +26,7 @@ from cagepose.kernels.boundary.features import (
 from cagepose.kernels.boundary.first_meeting import MOST_WAITING, Queue, empty_queue
 from cagepose.kernels.boundary.groups import number_groups
 from cagepose.kernels.boundary.meetings import find_meetings
+from cagepose.kernels.boundary.overlap import OverlapWork, empty_overlap_work
 from cagepose.kernels.boundary.touching import Meetings, empty_meetings, most_meetings
 from cagepose.kernels.boundary.tree import Node
 from cagepose.kernels.native.interrupt import heed_interrupt
@@ -141,8 +142,8 @@ def most_elements(geometry: Geometry) -> int:
 
 
 class PlacedCage(NamedTuple):
-    """Memory for the cage of a case, in the world: its points, (n_points, 3), metres; its boundary at a pose; and, as
-    single points may be elsewhere from case to case, features, parts and trees of its own.
+    """Memory for the cage of a case, in the world: its points, (n_points, 3), metres; its boundary at a pose; as single
+    points may be elsewhere from case to case, features, parts and trees of its own; and for the start check.
     """
 
     points_world: FloatArray
@@ -150,6 +151,7 @@ class PlacedCage(NamedTuple):
     features: Rows[Feature]
     parts: Rows[BodyPart]
     nodes: Rows[Node]
+    overlap: OverlapWork
 
 
 def empty_cage(geometry: Geometry) -> PlacedCage:
@@ -161,6 +163,7 @@ def empty_cage(geometry: Geometry) -> PlacedCage:
         empty_rows(Feature, len(own.features)),
         empty_rows(BodyPart, len(own.parts)),
         empty_rows(Node, len(own.nodes)),
+        empty_overlap_work(),
     )
 
 

@@ -198,7 +198,7 @@ def own_boundary(boundary: Boundary, points: FloatArray, cage: PlacedCage) -> Bo
 
 
 @kernel
-def is_valid(start: Start, farthest: float, points_vary: bool, placement: Placement) -> bool:
+def is_valid(start: Start, farthest: float, points_vary: bool, placement: Placement, cage: PlacedCage) -> bool:
     """Whether the object starts within ``farthest`` sizes of the cage, nothing of it is inside it, and no two points
     that vary are one. The placement is that of the start afterwards.
     """
@@ -208,7 +208,7 @@ def is_valid(start: Start, farthest: float, points_vary: bool, placement: Placem
     place_object(geometry, start.position, start.quaternion, placement)
     if is_shaped(geometry):
         held = held_at(geometry, placement)
-        if find_overlap(held, geometry.cage, touch_m, placement.meetings).feature >= 0:
+        if find_overlap(held, geometry.cage, touch_m, cage.overlap).feature >= 0:
             return False
         return not points_vary or are_single(geometry, touch_m)
     points = geometry.points_world
