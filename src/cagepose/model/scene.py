@@ -10,9 +10,9 @@ from typing import Any, get_args
 import numpy as np
 
 from cagepose.errors import Key, key_path
+from cagepose.kernels.boundary.overlap import empty_overlap_work
 from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.kernels.collision.geometry import Geometry, empty_placement
-from cagepose.kernels.boundary.overlap import empty_overlap_work
 from cagepose.kernels.collision.start import overlap_at
 from cagepose.model.above import from_above
 from cagepose.model.apart import are_in_each_other

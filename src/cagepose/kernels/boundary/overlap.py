@@ -23,7 +23,6 @@ from cagepose.kernels.boundary.circle_places import Place
 from cagepose.kernels.boundary.cuts import MOST_CUTS, find_cuts
 from cagepose.kernels.boundary.dents import find_dents
 from cagepose.kernels.boundary.features import VERTEX, Boundary, PlacedBoundary, position_of, rotation_of
-from cagepose.kernels.boundary.meetings import MOST_PAIRS, MOST_PLACES
 from cagepose.kernels.boundary.strands import (
     Frame,
     Strand,
@@ -34,6 +33,7 @@ from cagepose.kernels.boundary.strands import (
     seen_in,
     strand_of,
 )
+from cagepose.kernels.boundary.touching import MOST_PAIRS, MOST_PLACES
 from cagepose.kernels.boundary.tree import EDGES, VERTICES, Node
 from cagepose.kernels.boundary.within import AT_SURFACE, Nearest, depth_in, limits_of
 from cagepose.kernels.native.kernel import kernel

@@ -120,9 +120,7 @@ def constrain_contacts(
         if contacts.states[i].forces[0] > 0.0 and contacts.states[i].is_sticking:
             for turn in range(1, 3):
                 if contact.feature >= 0:
-                    constrain_features(
-                        constraints, contact.feature, contact.cage_feature, contact.angle, turn, 0.0
-                    )
+                    constrain_features(constraints, contact.feature, contact.cage_feature, contact.angle, turn, 0.0)
                     continue
                 axis = (contact.axis + turn) % 3
                 at = placement.points_box[contact.box, axis, contact.point]
