@@ -11,7 +11,7 @@ from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_ro
 from cagepose.kernels.algebra.vector import minus, norm, vector_from
 from cagepose.kernels.boundary.circle import is_on_arc
 from cagepose.kernels.boundary.circle_meeting import circle_meeting, find_places
-from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE, Place, write_place
+from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE, Kept, Place, write_place
 from cagepose.kernels.boundary.features import (
     CIRCLE,
     FACE,
@@ -92,7 +92,7 @@ class Meetings(NamedTuple):
     rows: Rows[Touching]
     pairs: IntArray
     places: Rows[Place]
-    kept: Rows[Place]
+    kept: Rows[Kept]
     heights: FloatArray
 
 
@@ -104,7 +104,7 @@ def empty_meetings(n_features: int) -> Meetings:
         empty_rows(Touching, MOST_MEETINGS),
         pairs,
         places,
-        np.array(places),
+        empty_rows(Kept, MOST_PLACES),
         np.zeros(n_features),
     )
 
