@@ -32,6 +32,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     from cagepose.kernels.boundary import first_meeting as of_boundaries
     from cagepose.kernels.boundary.circle_and_circle import follow_by_circle, places_by_circle
     from cagepose.kernels.boundary.circle_and_round import Round, follow_by_round, places_by_round
+    from cagepose.kernels.boundary.circle_first import first_touch_of_curved
     from cagepose.kernels.boundary.circle_places import Circle, Place
     from cagepose.kernels.boundary.features import NO_BOUNDARY, empty_placed, place_boundary
     from cagepose.kernels.boundary.groups import number_groups
@@ -68,6 +69,8 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield find_overlap, (body, body, 0.0, empty_overlap_work())
     search = of_boundaries.Search(motion, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     yield of_boundaries.first_to_meet, (body, body, search, found, of_boundaries.empty_queue(), body)
+    one = (body, 0, body, 0, motion, 0.0, 0.0, 0.0, body, found.places, found.kept, 0)
+    yield first_touch_of_curved, one
     yield first_meeting, (geometry, empty_placement(geometry), motion, 0.0, 0.0, 0.0)
 
 

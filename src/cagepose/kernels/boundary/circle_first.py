@@ -14,16 +14,18 @@ from typing import NamedTuple
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.circle import circle_of, outward_at
+from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE, clear_ahead
 from cagepose.kernels.boundary.circle_places import (
     GREATEST,
     SADDLE,
     WHOLE,
+    Kept,
     Place,
     on_circle,
     within_turn,
     write_place,
 )
-from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, Feature, PlacedBoundary
+from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, VERTEX, Feature, PlacedBoundary
 from cagepose.kernels.boundary.first_touch import place_after
 from cagepose.kernels.boundary.meeting import both_reach
 from cagepose.kernels.boundary.meetings import PLACES_AROUND, find_circle_places, meeting_at
@@ -32,15 +34,15 @@ from cagepose.kernels.shapes.advancement import speed_toward_round, speed_toward
 from cagepose.kernels.shapes.along_motion import BEHIND, LEAST_STEP, between_segments, gone_on
 from cagepose.kernels.shapes.motion import Motion, velocity_at
 
-ADVANCES = 2000
+ADVANCES = 1000
 """Steps for one pair of features; only where they graze each other more than some tens are taken."""
+COARSE_STEPS = 8
+"""After so many steps by a speed they graze, and it is worth the while to ask how each gap closes and bends."""
 NEWTON_STEPS = 12
 ROOT_OF_TOUCH, CONVERGES = 1e-3, 0.5
 """Of the touch tolerance: a gap that is less is a root; and of such a gap: a step that leaves more no longer helps."""
 KEPT_STEP = 1.0 / 32.0
 """In amounts of the whole motion: a place that touches is looked at at least so often, whether it is still there."""
-SAME_ANGLE = 0.3
-"""Radians: a place that touches now is the one that is nearer to where it was, as the motion goes on."""
 
 
 class Closing(NamedTuple):
@@ -60,7 +62,9 @@ def closing_of(one: Feature, other: Feature, motion: Motion) -> Closing:
     way, along, spread = velocity_at(motion, middle), vector_from(wide.direction), motion.rate * reach
     fastest, growth = norm(way) + spread, motion.rate * (norm(way) + spread)
     if wide.kind == FACE:
-        return Closing(abs(dot(way, along)) + spread * norm(cross(motion.axis, along)), growth)
+        lean = norm(cross(motion.axis, along))
+        spun = norm(cross(motion.axis, vector_from(small.direction)))  # a circle goes nowhere by turning about its axis
+        return Closing(abs(dot(way, along)) + spread * min(lean, spun), growth * lean)
     speed, grows = fastest, 0.0
     if small.kind == CIRCLE:  # which goes nowhere by turning about its own axis
         speed = norm(way) + spread * norm(cross(motion.axis, vector_from(small.direction)))
@@ -77,7 +81,9 @@ def closing_of(one: Feature, other: Feature, motion: Motion) -> Closing:
 
 @kernel
 def is_smaller(one: Feature, other: Feature) -> bool:
-    """Whether the first of two features is the circle, or the smaller circle, or the shorter line."""
+    """Whether the first of two features is a vertex, or the circle, or the smaller circle, or the shorter line."""
+    if one.kind == VERTEX or other.kind == VERTEX:
+        return bool(one.kind == VERTEX)
     if one.kind != other.kind:
         return bool(one.kind == CIRCLE)
     return bool(one.length <= other.length)
@@ -85,8 +91,8 @@ def is_smaller(one: Feature, other: Feature) -> bool:
 
 @kernel
 def middle_of(feature: Feature) -> Vector:
-    """Return the centre of a circle, or the middle of a line."""
-    if feature.kind == CIRCLE:
+    """Return a vertex, the centre of a circle, or the middle of a line."""
+    if feature.kind != LINE:
         return vector_from(feature.point)
     return plus(vector_from(feature.point), scaled(vector_from(feature.direction), 0.5 * feature.length))
 
@@ -108,12 +114,13 @@ def place_touches(
     j: int,
     place: Place,
     motion: Motion,
+    depth_m: float,
     slack: float,
     slack_m: float,
 ) -> bool:
     """Whether two features, as they are placed, reach where they meet at a place and come nearer."""
     met = meeting_at(a, i, b, j, place)
-    if met.gap < -slack_m or not both_reach(a, i, b, j, met, slack, slack_m):
+    if met.gap < -depth_m - slack_m or not both_reach(a, i, b, j, met, slack, slack_m):
         return False
     return dot(met.normal, velocity_at(motion, met.place)) > 0.0
 
@@ -149,11 +156,12 @@ def root_of_gap(
     motion: Motion,
     amount: float,
     angle: float,
+    depth_m: float,
     touch_m: float,
     moved: PlacedBoundary,
     places: Rows[Place],
 ) -> Root:
-    """Return where Newton's method leads on the gap at the place of a circle that is near an angle."""
+    """Return where Newton's method leads on the gap, to a depth, at the place of a circle that is near an angle."""
     root, least = Root(math.inf, angle), ROOT_OF_TOUCH * touch_m / CONVERGES
     for _ in range(NEWTON_STEPS):
         place_after(a, i, motion, amount, moved)
@@ -165,13 +173,34 @@ def root_of_gap(
         closing = dot(met.normal, velocity_at(motion, met.place))
         if not met.is_one or closing <= 0.0:
             break
-        left = abs(met.gap)
+        left = abs(met.gap + depth_m)
         if left <= ROOT_OF_TOUCH * touch_m:
             if left >= CONVERGES * least:
                 break
             root, least = Root(amount, angle), left
-        amount += met.gap / closing
+        amount += (met.gap + depth_m) / closing
     return root
+
+
+class Reached(NamedTuple):
+    """Where two features touch first.
+
+    Attributes
+    ----------
+    amount
+        Of the motion; inf: they do not touch.
+    angle
+        Of the place on the object's circle, or else on the cage's, radians; zero: there is none.
+    n_steps
+        How many were taken.
+    is_open
+        All of them are used up: what comes behind the amount is not known, and nothing is before it.
+    """
+
+    amount: float
+    angle: float
+    n_steps: int
+    is_open: bool
 
 
 @kernel
@@ -186,11 +215,10 @@ def first_touch_of_curved(
     touch_m: float,
     moved: PlacedBoundary,
     places: Rows[Place],
-    kept: Rows[Place],
+    kept: Rows[Kept],
     n_kept: int,
-) -> float:
-    """Return the amount, up to ``end``, after which two curved features touch; inf: they do not, or it
-    is not known: all steps are used up where they stay a hundred touch tolerances apart on the way.
+) -> Reached:
+    """Return where two curved features touch first, up to an end.
 
     Parameters
     ----------
@@ -203,62 +231,73 @@ def first_touch_of_curved(
     moved, places
         Memory.
     kept, n_kept
-        Places that touch now and do not come nearer, or have been in each other: they count again once they have been
-        apart. They are written over.
+        Places that touch now. They are written over.
     """
-    amount, behind = 0.0, BEHIND * end
-    for _ in range(ADVANCES):
+    amount, before, behind = 0.0, 0.0, BEHIND * end
+    for n_steps in range(ADVANCES):
         place_after(a, i, motion, amount, moved)
         one, other = moved.features[i], b.features[j]
         closing = closing_of(one, other, motion)
         n_places = find_circle_places(one, other, touch_m, places)
         is_around = n_places == WHOLE
-        least, is_past = math.inf, False
+        least, is_past, nearest, facing = math.inf, False, 0, (0.0, 0.0, 0.0)
         if is_around and one.kind == CIRCLE and other.kind == CIRCLE:
             least, n_places = circles_apart(one, other), 0
             is_past, is_around = least <= touch_m, False
         for k in range(PLACES_AROUND if is_around else n_places):
             place = places[k]
             if place.kind in (GREATEST, SADDLE):
+                if n_kept > 0:  # what goes on around a place that touches is on all of the circle at one moment
+                    least = min(least, max(abs(meeting_at(moved, i, b, j, place).gap), touch_m))
                 continue
             met = meeting_at(moved, i, b, j, place)
             if met.gap == math.inf:  # lines without a common normal
                 least = min(least, max(lines_apart(one, other), 0.0))
                 continue
-            at = kept_at(place.angle, kept, n_kept)
+            at, depth = kept_at(place.angle, kept, n_kept), 0.0
             if at >= 0:
                 # One that touched: it is followed until it is apart.
-                kept[at].angle = place.angle
-                if met.gap > touch_m:
-                    n_kept = dropped(kept, n_kept, at)
-                if abs(met.gap) > touch_m:
-                    least = min(least, abs(met.gap))
-                continue
-            if -ROOT_OF_TOUCH * touch_m <= met.gap <= touch_m:
-                angle = place.angle
-                root = root_of_gap(a, i, b, j, motion, amount, angle, touch_m, moved, places)
-                reached = max(root.amount, amount)
+                kept[at].angle, kept[at].other_angle = place.angle, place.other_angle
+                depth = kept[at].depth_m
+                if met.gap > touch_m and (met.gap > depth or depth == math.inf):
+                    n_kept, depth = dropped(kept, n_kept, at), 0.0
+                elif depth == math.inf:
+                    if abs(met.gap) > touch_m:
+                        least = min(least, abs(met.gap))
+                    continue
+            gap = met.gap + depth
+            is_through = n_kept > 0 and gap < -ROOT_OF_TOUCH * touch_m
+            if is_through and at >= 0:  # counts again once apart
+                kept[at].depth_m = math.inf
+            if is_through or -ROOT_OF_TOUCH * touch_m <= gap <= touch_m:
+                root = root_of_gap(a, i, b, j, motion, amount, place.angle, depth, touch_m, moved, places)
+                reached = max(root.amount, before if is_through else amount)
                 if reached <= end:
                     place_after(a, i, motion, reached, moved)
                     at_root = place_near(moved.features[i], b.features[j], root.angle, touch_m, places)
-                    if at_root >= 0 and place_touches(moved, i, b, j, places[at_root], motion, slack, touch_m):
-                        return reached
+                    if at_root >= 0 and place_touches(moved, i, b, j, places[at_root], motion, depth, slack, touch_m):
+                        return Reached(reached, places[at_root].angle, n_steps, False)
                 is_past = True
                 place_after(a, i, motion, amount, moved)
                 find_circle_places(moved.features[i], b.features[j], touch_m, places)
-            least = min(least, abs(met.gap))
+            if abs(gap) < least:
+                least, nearest, facing = abs(gap), k, scaled(met.normal, math.copysign(1.0, gap))
         step = surely_clear(closing, least)
+        if step < end - amount and n_steps >= COARSE_STEPS:
+            found = places[nearest]
+            step = clear_ahead(one, other, motion, touch_m, found, facing, kept, n_kept, step, end - amount)
         if is_past and closing.speed > 0.0:  # a root that is no contact: on so short a way none is hidden that counts
             step = max(step, touch_m / closing.speed)
         if n_kept > 0:
             step = min(step, end * KEPT_STEP)
         if step >= end - amount:
-            return math.inf
+            return Reached(math.inf, 0.0, n_steps, False)
+        before = amount
         if step > LEAST_STEP * end:
             amount += step
         else:
             amount, behind = gone_on(amount, step, end, behind)
-    return math.inf
+    return Reached(amount, 0.0, ADVANCES, True)
 
 
 @kernel
@@ -282,7 +321,7 @@ def lines_apart(one: Feature, other: Feature) -> float:
 
 
 @kernel
-def kept_at(angle: float, kept: Rows[Place], n_kept: int) -> int:
+def kept_at(angle: float, kept: Rows[Kept], n_kept: int) -> int:
     """Return which of the places that touched is near an angle; -1: none."""
     for k in range(n_kept):
         if abs(within_turn(kept[k].angle - angle)) < SAME_ANGLE:
@@ -291,7 +330,8 @@ def kept_at(angle: float, kept: Rows[Place], n_kept: int) -> int:
 
 
 @kernel
-def dropped(kept: Rows[Place], n_kept: int, at: int) -> int:
+def dropped(kept: Rows[Kept], n_kept: int, at: int) -> int:
     """Drop a place from those that touched; return how many are left."""
-    kept[at].angle = kept[n_kept - 1].angle
+    last = kept[n_kept - 1]
+    kept[at].angle, kept[at].other_angle, kept[at].depth_m = last.angle, last.other_angle, last.depth_m
     return n_kept - 1

@@ -63,6 +63,22 @@ class Place:
     is_near: bool
 
 
+class Kept:
+    """A place that features may be in each other at, as they touch there now; a record.
+
+    Attributes
+    ----------
+    angle, other_angle
+        As in `Place`, where it is after a motion.
+    depth_m
+        So deep, until they have been farther apart than that and than they touch, metres; inf: any.
+    """
+
+    angle: float
+    other_angle: float
+    depth_m: float
+
+
 class OnCircle(NamedTuple):
     """A place of a circle.
 

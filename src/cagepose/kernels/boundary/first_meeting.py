@@ -128,15 +128,22 @@ class Hit(NamedTuple):
         Indices; -1: nothing.
     gap
         How far apart they are now, metres.
+    angle
+        Where on a circle, if one of them is one, radians; of two, on the object's. Else zero.
+    is_open
+        They are not reached, but graze each other so long that what comes behind the amount is not known. Nothing is
+        reached before it: ask again from there.
     """
 
     amount: float
     feature: int
     cage_feature: int
     gap: float
+    angle: float
+    is_open: bool
 
 
-NO_HIT = Hit(math.inf, -1, -1, math.inf)
+NO_HIT = Hit(math.inf, -1, -1, math.inf, 0.0, False)
 
 
 @kernel
@@ -347,7 +354,7 @@ def sooner(
         return hit
     met = meeting(held, i, cage, j)
     amount = first_of_features(held, i, cage, j, met, until, search, meetings, moved)
-    return Hit(amount, i, j, met.gap) if amount < until else hit
+    return Hit(amount, i, j, met.gap, 0.0, False) if amount < until else hit
 
 
 @kernel
@@ -387,6 +394,7 @@ def first_of_curved(
     """Return what two curved features reach before an amount, see `is_curved`, or ``hit``."""
     one, other, touch_m = held.features[i], cage.features[j], search.touch_m
     slack, slowest, n_kept, least = slack_of(one, other, touch_m), LEAVES_OF_SPEED * search.speed, 0, math.inf
+    deepest = min(search.near_depth_m, THIN_OF_LEAST * min(one.least, other.least))
     n_places = find_circle_places(one, other, touch_m, meetings.places)
     for k in range(PLACES_AROUND if n_places == WHOLE else n_places):
         place = meetings.places[k]
@@ -396,17 +404,28 @@ def first_of_curved(
         least = min(least, met.gap)
         if met.gap > max(touch_m, search.near_m):
             continue
-        closing = dot(met.normal, velocity_at(search.motion, met.place))
+        touches = abs(met.gap) <= touch_m
         reaches_there = both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
-        is_beside = not reaches_there and abs(closing) <= slowest and is_there(meetings, met, touch_m)
-        if (reaches_there or is_beside or met.gap < -touch_m) and n_kept < len(meetings.kept):
-            meetings.kept[n_kept].angle = place.angle
+        depth = deepest if abs(met.gap) <= search.near_m or (touches and reaches_there) else 0.0
+        depth = max(depth, 2.0 * touch_m)  # they may not reach there now, but might
+        is_passed = reaches_there and met.gap < -depth
+        if touches:
+            closing = dot(met.normal, velocity_at(search.motion, met.place))
+            if reaches_there:  # a contact that carries, or it would not go into it
+                is_passed = closing >= -slowest
+            else:  # that of features next to them
+                is_passed = abs(closing) <= slowest and is_there(meetings, met, touch_m)
+        if is_passed or met.gap >= -depth:
+            row = meetings.kept[n_kept]
+            row.angle, row.other_angle, row.depth_m = place.angle, place.other_angle, math.inf if is_passed else depth
             n_kept += 1
+            if n_kept == len(meetings.kept):
+                break
     exact = max(LEAST_SLACK, touch_m / search.size_m)
-    amount = first_touch_of_curved(
+    found = first_touch_of_curved(
         held, i, cage, j, search.motion, until, exact, touch_m, moved, meetings.places, meetings.kept, n_kept
     )
-    return Hit(amount, i, j, least) if amount < until else hit
+    return Hit(found.amount, i, j, least, found.angle, found.is_open) if found.amount < until else hit
 
 
 @kernel

@@ -9,7 +9,7 @@ import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import minus, norm, vector_from
-from cagepose.kernels.boundary.circle_places import Place
+from cagepose.kernels.boundary.circle_places import Kept, Place
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.shapes.meeting import SAME_PLACE
 
@@ -91,7 +91,7 @@ class Meetings(NamedTuple):
     rows: Rows[Touching]
     pairs: IntArray
     places: Rows[Place]
-    kept: Rows[Place]
+    kept: Rows[Kept]
     heights: FloatArray
 
 
@@ -108,7 +108,7 @@ def empty_meetings(n_features: int, n_rows: int = MOST_MEETINGS) -> Meetings:
         empty_rows(Touching, n_rows),
         pairs,
         places,
-        np.array(places),
+        empty_rows(Kept, MOST_PLACES),
         np.zeros(n_features),
     )
 
