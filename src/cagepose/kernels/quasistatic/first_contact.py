@@ -117,6 +117,8 @@ def first_of_boundaries(
         found = first_to_meet(held, geometry.cage, search, placement.meetings, placement.queue, moved)
         if found.feature < 0:
             return NO_HIT
+        if found.is_open:  # nothing is reached before; the next step asks from there
+            return Hit(found.amount, -1, -1, -1, -1, 0.0)
         hit = Hit(found.amount, -1, -1, found.feature, found.cage_feature, found.angle)
         if found.gap <= near or motion.rate == 0.0:
             break
