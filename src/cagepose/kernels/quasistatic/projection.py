@@ -318,6 +318,26 @@ def has_slips(constraints: Constraints) -> bool:
 
 
 @kernel
+def slip_on_the_way(
+    geometry: Geometry,
+    constraints: Constraints,
+    position: Vector,
+    quaternion: Quaternion,
+    frame: Frame,
+    placement: Placement,
+) -> float:
+    """Return how far what is not to slip does in the shortest motion that makes up for gaps, metres."""
+    work, slipped = constraints.scratch[0], 0.0
+    for i in range(work.used):
+        if is_slip(constraints.rows[i]):
+            slip = lack(geometry, constraints.rows[i], position, quaternion, placement)
+            write_scaled_wrench(slip.direction, cross(slip.arm, slip.direction), frame, work.column)
+            on_the_way = inner(work.column, work.y, 6)
+            slipped += on_the_way * on_the_way
+    return math.sqrt(slipped)
+
+
+@kernel
 def projected(
     geometry: Geometry,
     body: Body,
@@ -330,11 +350,12 @@ def projected(
 ) -> tuple[bool, Vector, Quaternion]:
     """Move the object so that all constraints hold; return (whether they do, position, quaternion).
 
-    Those that depend on others follow from them: where they do not, that shows as a point inside the object later. Or,
-    if what sticks ``may_slip``, gaps alone are made to hold, and it slips as little as that needs.
+    Those that depend on others follow from them: where they do not, that shows as a point inside the object later, or
+    as what sticks slips by more than it may. Or, if it ``may_slip``, gaps alone are made to hold, and it slips as little
+    as that needs.
     """
     work, rows, values = constraints.scratch[0], constraints.rows, constraints.scratch[0].values
-    worst_before = math.inf
+    worst_before, slipped_m = math.inf, 0.0
     for _ in range(ROUNDS):
         frame = frame_at(body, quaternion)
         clear(work.basis, WRENCH, 1.0)
@@ -345,7 +366,7 @@ def projected(
             write_scaled_wrench(force, moment, frame, work.column)
             values[work.basis.used] = 0.0
             append_column(work.basis, work.column, i, 0.0)
-        worst = 0.0
+        worst, n_left_out = 0.0, 0
         n_rounds = 1 if may_slip else 2  # gaps first: what must not slip only says which way is left to close them
         for at in range(n_rounds * work.used):
             slips, i = at >= work.used, at % work.used
@@ -361,10 +382,16 @@ def projected(
             if append_column(work.basis, work.column, i, 0.0):
                 values[place] = lacks.value
                 worst = max(worst, abs(values[place]))
+            elif slips:
+                n_left_out += 1
         if worst <= ON_FACE * size_m or worst >= worst_before:
             return worst <= 1e3 * ON_FACE * size_m, position, quaternion
         worst_before = worst
         write_shortest(work)
+        if n_left_out > 0:
+            slipped_m += slip_on_the_way(geometry, constraints, position, quaternion, frame, placement)
+        if slipped_m > work.may_slip_m:
+            return False, position, quaternion
         if may_slip and not add_least_slip(geometry, constraints, position, quaternion, frame, placement):
             return False, position, quaternion
         velocity, spin = twist_of(work.y, frame)
