@@ -38,7 +38,7 @@ class Start:
         self.held, self.cage = (empty_placed(boundary_of(parts, TOUCH_M)) for parts in (held, cage))
         self.at = Pose() if at is None else at
         _kernels()[0](self.cage, *self.at.as_tuples())
-        self.work = empty_overlap_work()
+        self.work = empty_overlap_work(self.held.own, self.cage.own)
 
     def asked(self, pose: Pose) -> Overlap:
         """Ask with the object at a pose seen from the cage."""
