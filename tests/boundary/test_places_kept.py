@@ -59,5 +59,6 @@ def test_where_on_a_circle_is_told():
     toward, axis = np.array(circle["toward"]), np.array(circle["direction"])
     outward = math.cos(hit.angle) * toward + math.sin(hit.angle) * np.cross(axis, toward)
     lowest = np.array([math.cos(TILT), 0.0, -math.sin(TILT)])
-    assert hit.amount == pytest.approx(0.1) and not hit.is_open
+    assert hit.amount == pytest.approx(0.1)
+    assert not hit.is_open
     np.testing.assert_allclose(outward, lowest, atol=1e-9)
