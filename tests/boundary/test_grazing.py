@@ -22,7 +22,7 @@ from shapes.test_distances import TOUCH, random_offset
 from shapes.test_first_meeting import TOLERANCE, after, motion_of, random_direction
 from shapes.test_turned_distances import random_peg, random_plate
 
-MOST_STEPS = 400
+MOST_STEPS = 1000
 """For one pair of features."""
 BEFORE = 0.5
 """Amount after which they are nearest."""

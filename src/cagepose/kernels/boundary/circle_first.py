@@ -34,7 +34,7 @@ from cagepose.kernels.shapes.advancement import speed_toward_round, speed_toward
 from cagepose.kernels.shapes.along_motion import BEHIND, LEAST_STEP, between_segments, gone_on
 from cagepose.kernels.shapes.motion import Motion, velocity_at
 
-ADVANCES = 1000
+ADVANCES = 2000
 """Steps for one pair of features; only where they graze each other more than some tens are taken."""
 COARSE_STEPS = 8
 """After so many steps by a speed they graze, and it is worth the while to ask how each gap closes and bends."""
