@@ -18,7 +18,7 @@ from cagepose.kernels.boundary.features import FACE
 from cagepose.kernels.shapes.motion import Motion
 from cagepose.model.boundary.features import boundary_of
 from cagepose.model.hole import Hole
-from cagepose.model.shapes import Capsule, Cone, Cylinder, Shape, Sphere
+from cagepose.model.shapes import Convex, Cylinder, Shape, Sphere
 from shapes.test_first_meeting import after
 
 TOUCH_M = 1e-9
@@ -28,7 +28,7 @@ AGREES_M = 1e-6
 POINT, NO_AXIS = np.zeros(3), (0.0, 0.0, 0.0)
 KINDS = ("box", "cylinder", "cone", "sphere", "capsule", "hull")
 AROUND = np.array([(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1)], np.float64)
-DOWN, UP, LEFT = (0.0, 0.0, -1.0), (0.0, 0.0, 1.0), (-1.0, 0.0, 0.0)
+DOWN, UP, LEFT, RIGHT = (0.0, 0.0, -1.0), (0.0, 0.0, 1.0), (-1.0, 0.0, 0.0), (1.0, 0.0, 0.0)
 LEDGE = [Box((1.0, 1.0, 1.0), Pose((0, 0, -0.5)), name="ledge"), Cylinder(0.25, 1.0, Pose((0, 0, 0.2)), name="post")]
 
 
@@ -55,13 +55,23 @@ def test_a_ball_under_the_head_of_a_peg_touches_both_and_no_rim():
     assert normals_at(Sphere(0.05), peg(), (0.35, 0.0, -0.05)) == {UP, LEFT}
 
 
+def needle(way: tuple[float, float, float]) -> Convex:
+    """A slender tetrahedron from its tip at the origin along a direction in the plane of x and z."""
+    along = np.array(way) / np.linalg.norm(way)
+    beside = np.array([(0, 0.02, 0), 0.02 * np.cross(along, (0, 1, 0)), (0, -0.02, 0)], np.float64)
+    return Convex(np.stack([np.zeros(3), *(0.1 * along + beside)]))
+
+
 def test_the_rim_of_a_pin_counts_only_for_normals_that_do_not_lead_into_its_head():
-    """A bar that ends in the corner under the head, aslant: its end is on pin and head, its edge on no rim there."""
-    bar = Capsule(1e-4, 0.2, Pose((0.1, 0, -0.1), euler_zyx=(0, -math.pi / 4, 0)))
-    sharp = Cone(0.05, 0.0, 0.2, Pose((0.07, 0, -0.07), euler_zyx=(0, -math.pi / 4, 0)))
-    assert normals_at(bar, peg(), (0.3, 0.0, 0.0)) <= {UP, LEFT}
-    tip = 0.1 / math.sqrt(2.0) - 0.07
-    assert normals_at(sharp, peg(), (0.3 + tip, 0.0, -tip)) == {UP, LEFT}
+    """A needle in the corner under the head: its tip is on pin and head, its edges on no rim there."""
+    assert normals_at(needle((1.0, 0.0, -1.0)), peg(), (0.3, 0.0, 0.0)) == {UP, LEFT}
+
+
+def test_the_rim_of_a_plug_in_a_hole_that_it_fits_touches_nothing():
+    """A needle in the corner between the plug and the wall of the hole."""
+    block, hole = Box((2.0, 2.0, 0.8), Pose((0, 0, -0.4)), name="block"), Hole(0.3, 0.5, in_=("block",))
+    plug = Cylinder(0.3, 0.4, Pose((0, 0, -0.3)), name="plug")
+    assert normals_at(needle((-1.0, 0.0, 1.0)), [block, hole, plug], (0.3, 0.0, -0.1)) == {DOWN, RIGHT}
 
 
 @pytest.mark.parametrize(
