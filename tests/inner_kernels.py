@@ -26,6 +26,7 @@ ROOT = Path(__file__).resolve().parents[1]
 def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     """Yield each kernel and arguments of the types that tests call it with."""
     import numpy as np
+    from cagepose.kernels.collision.first_meeting import first_meeting
 
     from cagepose.kernels.algebra.least_squares import empty_system
     from cagepose.kernels.algebra.record import empty_record, empty_rows
@@ -37,9 +38,8 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     from cagepose.kernels.boundary.features import NO_BOUNDARY, empty_placed, place_boundary
     from cagepose.kernels.boundary.groups import number_groups
     from cagepose.kernels.boundary.meetings import find_meetings
-    from cagepose.kernels.boundary.touching import empty_meetings
     from cagepose.kernels.boundary.overlap import empty_overlap_work, find_overlap
-    from cagepose.kernels.collision.first_meeting import first_meeting
+    from cagepose.kernels.boundary.touching import empty_meetings
     from cagepose.kernels.collision.geometry import Geometry, empty_placement
     from cagepose.kernels.contact.cone import ConeWorkspace, cone_residual
     from cagepose.kernels.contact.contact_set import empty_contact_set

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cagepose.kernels.collision.first_meeting import Hit, first_meeting
 from scipy.spatial import ConvexHull
 
 from cagepose import Box, Pose
-from cagepose.kernels.collision.first_meeting import Hit, first_meeting
 from cagepose.model.features import shapes_of
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Shape, Sphere
 from inner_kernels import as_machine_code

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 import pytest
+from cagepose.kernels.collision.first_meeting import Hit, first_meeting
 
 from cagepose import Box, Pose
-from cagepose.kernels.collision.first_meeting import Hit, first_meeting
 from cagepose.kernels.shapes.motion import Motion
 from cagepose.model.features import shapes_of
 from cagepose.model.shapes import Convex, Sphere

@@ -9,10 +9,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from cagepose.kernels.collision.first_meeting import Hit, first_meeting
 from scipy.optimize import brentq
 
 from cagepose import Box, Pose
-from cagepose.kernels.collision.first_meeting import Hit, first_meeting
 from cagepose.kernels.shapes.advancement import root_of_gap
 from cagepose.kernels.shapes.along_motion import place_moved
 from cagepose.kernels.shapes.features import EDGE, RIM, copied

@@ -23,7 +23,6 @@ from cagepose.kernels.boundary.circle_places import Place
 from cagepose.kernels.boundary.cuts import MOST_CUTS, find_cuts
 from cagepose.kernels.boundary.dents import find_dents
 from cagepose.kernels.boundary.features import Boundary, PlacedBoundary, position_of, rotation_of
-from cagepose.kernels.boundary.touching import MOST_PAIRS, MOST_PLACES
 from cagepose.kernels.boundary.shells import Shells, empty_shells, find_shells
 from cagepose.kernels.boundary.strands import (
     Frame,
