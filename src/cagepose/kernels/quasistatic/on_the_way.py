@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
-from cagepose.kernels.boundary.circle_first import SAME_ANGLE
+from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE
 from cagepose.kernels.boundary.circle_places import within_turn
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
