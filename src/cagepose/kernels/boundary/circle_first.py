@@ -247,8 +247,6 @@ def first_touch_of_curved(
         for k in range(PLACES_AROUND if is_around else n_places):
             place = places[k]
             if place.kind in (GREATEST, SADDLE):
-                if n_kept > 0:  # what goes on around a place that touches is on all of the circle at one moment
-                    least = min(least, max(abs(meeting_at(moved, i, b, j, place).gap), touch_m))
                 continue
             met = meeting_at(moved, i, b, j, place)
             if met.gap == math.inf:  # lines without a common normal
@@ -266,6 +264,7 @@ def first_touch_of_curved(
                         least = min(least, abs(met.gap))
                     continue
             gap = met.gap + depth
+            # Where places are kept, all of a circle may come on at one moment: the nearest place is a new one then.
             is_through = n_kept > 0 and gap < -ROOT_OF_TOUCH * touch_m
             if is_through and at >= 0:  # counts again once apart
                 kept[at].depth_m = math.inf
