@@ -18,13 +18,13 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cagepose.kernels.algebra.motion import Motion, velocity_at
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.circle_meeting import is_sharp
 from cagepose.kernels.boundary.circle_places import Kept, Place, within_turn
 from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, VERTEX, Feature
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.motion import Motion, velocity_at
 
 PIECES = 8
 """Of a circle at first."""
@@ -48,7 +48,7 @@ class Piece(NamedTuple):
     Attributes
     ----------
     point, outward, tangent
-        As in `OnCircle`; of a line, nothing is outward.
+        As in `CirclePoint`; of a line, nothing is outward.
     half
         Metres along the curve.
     bend
