@@ -94,7 +94,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     cage = empty_cage(geometry)
     outcome, endings = empty_outcome(geometry, 1, 1, 1), empty_endings(1, 1, 1)
     proof = empty_proof_workspace(geometry)
-    yield overlap_at, (geometry, ORIGIN, UPRIGHT, empty_placement(geometry), empty_overlap_work())
+    yield overlap_at, (geometry, ORIGIN, UPRIGHT, empty_placement(geometry), empty_overlap_work(none, none))
     yield judge_start, (0, part, cases, cage, proof, outcome)
     yield critical_friction, (0, part, cases, cage, proof)
     yield balance_with_faces, (0.0, proof)

@@ -75,11 +75,11 @@ def test_parts_touch_after_the_distance_that_coal_tells(cases, say):
     rng = np.random.default_rng(11)
     parts = [random_part(rng) for _ in range(N_PARTS)]
     theirs = [of_coal(part) for part in parts]
-    find, work = as_machine_code(find_overlap), empty_overlap_work()
+    find = as_machine_code(find_overlap)
     request, result = coal.DistanceRequest(), coal.DistanceResult()
     request.gjk_tolerance = request.epa_tolerance = 1e-10
     request.gjk_max_iterations = request.epa_max_iterations = 1000
-    n_pairs, n_apart, n_past, n_missed, n_lost, n_in = cases(2000, 50_000), 0, 0, 0, 0, 0
+    n_pairs, n_apart, n_past, n_missed, n_lost, n_in = cases(500, 20_000), 0, 0, 0, 0, 0
     worst, wrong = 0.0, []
     for _ in range(n_pairs):
         i, j = rng.integers(N_PARTS, size=2)
@@ -114,6 +114,7 @@ def test_parts_touch_after_the_distance_that_coal_tells(cases, say):
         elif away < -ACCURACY:
             n_in += 1
             asked.place(pose)
+            work = empty_overlap_work(asked.held.own, asked.cage.own)
             depth = Overlap(*find(asked.held, asked.cage, TOUCH, work)).depth_m
             if not depth > 0.0:
                 wrong.append(f"{told} by coal, {depth} by us")
@@ -121,9 +122,9 @@ def test_parts_touch_after_the_distance_that_coal_tells(cases, say):
         f"{n_pairs} pairs against coal: {n_apart} apart, worst {worst:.1e} where they meet, {n_past} glance off,"
         f" {n_missed} are missed, {n_lost} times coal lost itself; {n_in} in each other; {len(wrong)} wrong"
     )
-    assert n_past < n_apart // 50
+    assert n_past <= n_apart // 50
     assert n_missed <= KNOWN_MISSED * n_apart
-    assert n_lost < n_apart // 500
+    assert n_lost <= n_apart // 500
     assert n_apart > n_pairs // 4
     assert n_in > n_pairs // 20
     assert not wrong, "\n".join([f"{len(wrong)} wrong", *wrong[:15]])

@@ -92,14 +92,20 @@ def tip_is_at_rim(one: Circles, other: Circles, touch_m: float) -> bool:
     return False
 
 
-def told_of_turned(parts: tuple[Shape, Shape], bodies: tuple[Circles, Circles], pose: Pose, away: float) -> str:
+def asked_of(one: Shape, other: Shape) -> tuple[Asked, tuple[Circles, Circles], float]:
+    """Return two parts, as both know them, and the touch tolerance."""
+    bodies = circles_of(one), circles_of(other)
+    touch_m = TOUCH * max(body.size for body in bodies)
+    return Asked([one], [other], touch_m), bodies, touch_m
+
+
+def told_of_turned(asked: Asked, bodies: tuple[Circles, Circles], pose: Pose, away: float) -> str:
     """Return what is wrong with what touches of two parts, the first at a pose with this gap."""
-    size = max(body.size for body in bodies)
-    one, other, asked = bodies[0].at(pose), bodies[1], Asked(parts[:1], parts[1:], TOUCH * size)
+    one, other, size = bodies[0].at(pose), bodies[1], asked.touch_m / TOUCH
     found = asked.place(pose)
     least = max([away, *(separation_along(one, other, row["normal"]) for row in found.rows[: found.used[0]])])
     told = told_of(asked, pose, away, least + RESOLUTION * size)
-    if told == "nothing touches" and tip_is_at_rim(one, other, TOUCH * size):
+    if told == "nothing touches" and tip_is_at_rim(one, other, asked.touch_m):
         return ""
     return told_of(asked, pose, away, greatest_separation(one, other) + RESOLUTION * size) if told else ""
 
@@ -109,10 +115,10 @@ def test_gaps_of_turned_parts(cases, say):
     n_pairs = cases(200, 4000)
     for _ in range(n_pairs):
         parts = random_turned(rng), random_turned(rng)
-        bodies = circles_of(parts[0]), circles_of(parts[1])
-        away = float(rng.choice(GAPS)) * TOUCH * max(body.size for body in bodies)
+        asked, bodies, touch_m = asked_of(*parts)
+        away = float(rng.choice(GAPS)) * touch_m
         pose = turned_bodies.placed_at(*bodies, random_turn(rng), random_offset(rng), away)
-        told = told_of_turned(parts, bodies, pose, away)
+        told = told_of_turned(asked, bodies, pose, away)
         if told:
             wrong.append(f"{told}: {parts[0]} at {pose}, {parts[1]}")
     say(f"gaps of {n_pairs} pairs of turned parts: {len(wrong)} wrong")
@@ -144,17 +150,19 @@ WAYS = [(0, 0, 1), (1, 0, 0), (0, 1, 1), (0.5, 0, 1)]
 @pytest.mark.parametrize("away", [0.5, 1e5])
 def test_gaps_at_symmetric_poses(away):
     """Flat on flat, side on side and across, rim on edge, tip on rim, axes in line: in round numbers."""
-    wrong, n_pairs = [], 0
-    for one, other, turn, way in product(SYMMETRIC, SYMMETRIC, TURNS, WAYS):
+    wrong, n_poses = [], 0
+    for one, other in product(SYMMETRIC, SYMMETRIC):
         if not (isinstance(one, Turned) or isinstance(other, Turned)):
             continue
-        bodies, n_pairs = (circles_of(one), circles_of(other)), n_pairs + 1
-        gap = away * TOUCH * max(body.size for body in bodies)
-        pose = turned_bodies.placed_at(*bodies, Pose((0, 0, 0), euler_zyx=turn).quaternion_wxyz, np.array(way), gap)
-        told = told_of_turned((one, other), bodies, pose, gap)
-        if told:
-            wrong.append(f"{told}: {one} at {pose}, {other}")
-    assert not wrong, "\n".join([f"{len(wrong)} of {n_pairs} wrong", *wrong[:5]])
+        asked, bodies, touch_m = asked_of(one, other)
+        for turn, way in product(TURNS, WAYS):
+            turned = Pose(euler_zyx=turn).quaternion_wxyz
+            pose = turned_bodies.placed_at(*bodies, turned, np.array(way), away * touch_m)
+            told = told_of_turned(asked, bodies, pose, away * touch_m)
+            n_poses += 1
+            if told:
+                wrong.append(f"{told}: {one} at {pose}, {other}")
+    assert not wrong, "\n".join([f"{len(wrong)} of {n_poses} wrong", *wrong[:5]])
 
 
 def test_gaps_in_and_over_holes(cases, say):

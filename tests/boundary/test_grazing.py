@@ -21,7 +21,7 @@ from cagepose.model.shapes import Shape
 from inner_kernels import as_machine_code
 from shapes import convex_bodies, pierced_plate, turned_bodies
 
-MOST_STEPS = 400
+MOST_STEPS = 1000
 """For one pair of features."""
 BEFORE = 0.5
 """Amount after which they are nearest."""

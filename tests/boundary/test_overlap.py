@@ -38,7 +38,7 @@ class Start:
         self.held, self.cage = (empty_placed(boundary_of(parts, TOUCH_M)) for parts in (held, cage))
         self.at = Pose() if at is None else at
         _kernels()[0](self.cage, *self.at.as_tuples())
-        self.work = empty_overlap_work()
+        self.work = empty_overlap_work(self.held.own, self.cage.own)
 
     def asked(self, pose: Pose) -> Overlap:
         """Ask with the object at a pose seen from the cage."""
@@ -159,6 +159,8 @@ BLIND = (PLATE, Hole(0.5, 0.5, in_=("plate",)))
 SUNK = (PLATE, Hole(0.5, 1.0, Chamfer(0.2, np.pi / 4.0), in_=("plate",)))
 COMB = [Box((0.1, 4, 1), Pose((x, 0, 0.5)), name=f"c{k}") for k, x in enumerate(np.arange(-2.0, 2.1, 0.4))]
 COMB.append(Box((5, 5, 0.2), Pose((0, 0, -0.1))))
+STUD = (PLATE, Cylinder(0.5, 2.0, name="stud"))
+CROSS = (PIN, Cylinder(0.5, 2.0, LYING, name="lying"))
 
 TOUCHING: dict[str, tuple[Parts, Parts, Pose]] = {
     "faces": ([CUBE], [CUBE], Pose((1, 0, 0))),
@@ -183,6 +185,8 @@ TOUCHING: dict[str, tuple[Parts, Parts, Pose]] = {
     "crossed bars": ([ROD], [ROD], Pose((0, 0, 0.2)) @ ACROSS),
     "a point on a plate": ([np.zeros(3)], [PLATE], Pose((0.2, 0.1, 0))),
     "a plate on points": ([PLATE], [np.array((x, y, -1.0)) for x in (-1, 1) for y in (-1, 1)], Pose()),
+    "a block at a stud in a plate": ([CUBE], STUD, Pose((1, 0, 0.5))),
+    "a ball in the corner of a cross of pins": ([Sphere(0.2)], CROSS, Pose((0.7, 0, 0.7))),
     "a comb in a comb": (COMB, COMB, Pose((0.1, 0, 1), euler_zyx=(0, 0, np.pi))),
 }
 INSIDE: dict[str, tuple[Parts, Parts, Pose, float]] = {
@@ -206,6 +210,8 @@ INSIDE: dict[str, tuple[Parts, Parts, Pose, float]] = {
     "a block in a plate": ([CUBE], [PLATE], Pose((0.3, 0.1, -0.5)), 1.0),
     "a boss in a ball": ([Sphere(0.9)], [PLATE, Box((0.2, 0.2, 0.4), name="boss")], Pose((0, 0, 0.5)), 1.0),
     "a hole with a box around": ([Box((1, 1, 0.5))], [PLATE, Hole(0.4, 1.0, in_=("plate",))], Pose((0, 0, -0.5)), 0.75),
+    "a box in two pins at once": ([Box((0.1, 0.1, 0.1))], CROSS, Pose((0.05, 0.03, 0.02)), 0.6),
+    "a box in a stud": ([Box((0.1, 0.1, 0.1))], STUD, Pose((0.05, 0.03, 0.5)), 0.6),
     "a point in a plate": ([np.zeros(3)], [PLATE], Pose((0.2, 0.1, -0.1)), 0.1),
     "sunk by a little": ([CUBE], [PLATE], Pose((0.2, 0.1, 0.5 - 1.5 * TOUCH_M)), 1.5 * TOUCH_M),
     "combs": (COMB, COMB, Pose((0.05, 0, 1), euler_zyx=(0, 0, np.pi)), 0.05),

@@ -346,7 +346,10 @@ def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: 
     if len(geometry.held.features) == 0:
         return
     feature, cage_feature, depth_m = overlap_at(
-        geometry, *held.pose_world_object.as_tuples(), empty_placement(geometry), empty_overlap_work()
+        geometry,
+        *held.pose_world_object.as_tuples(),
+        empty_placement(geometry),
+        empty_overlap_work(geometry.held, geometry.cage.own),
     )
     if feature < 0:
         return

@@ -34,7 +34,7 @@ from cagepose.kernels.boundary.meeting import both_reach
 from cagepose.kernels.boundary.meetings import PLACES_AROUND, find_circle_places, meeting_at
 from cagepose.kernels.native.kernel import kernel
 
-ADVANCES = 1000
+ADVANCES = 2000
 """Steps for one pair of features; only where they graze each other more than some tens are taken."""
 COARSE_STEPS = 8
 """After so many steps by a speed they graze, and it is worth the while to ask how each gap closes and bends."""

@@ -63,7 +63,7 @@ def beyond_end(own: Boundary, i: int, place: Vector, normal: Vector) -> float:
     feature = own.features[i]
     seen = minus(place, vector_from(feature.point))
     if feature.kind == FACE and feature.radius == 0.0:
-        return beyond_borders(own, i, seen)
+        return beyond_borders(own, i, seen, math.inf)
     if feature.kind == LINE and feature.first_bound == feature.last_bound:
         along = dot(vector_from(feature.direction), minus(seen, scaled(normal, feature.radius)))
         along /= 1.0 - feature.taper * feature.taper

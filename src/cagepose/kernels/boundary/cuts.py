@@ -11,8 +11,8 @@ from cagepose.kernels.boundary.circle_places import Circle, Place, on_circle
 from cagepose.kernels.boundary.features import FACE, VERTEX, Boundary
 from cagepose.kernels.boundary.reach import beyond_borders
 from cagepose.kernels.boundary.strands import Strand, circle_under, on_strand
-from cagepose.kernels.boundary.surfaces import beyond_cone, crossing, has_surface
-from cagepose.kernels.boundary.tree import Node
+from cagepose.kernels.boundary.surfaces import beyond_cone, crossing, has_surface, height_over, normal_of_face
+from cagepose.kernels.boundary.tree import FACES, Node
 from cagepose.kernels.boundary.within import root_has_surfaces
 from cagepose.kernels.native.kernel import kernel
 
@@ -51,12 +51,22 @@ def find_cuts(
                 if strand.is_arc:
                     n_cuts = _cut_arc(strand, solid, i, slack_m, places, cuts, n_cuts)
                     continue
-                for which in range(2):
+                if root == FACES and _is_on_one_side(strand, solid, i, slack_m):
+                    continue
+                for which in range(1 if root == FACES else 2):
                     met = crossing(solid, i, strand.point, strand.way, strand.end, slack_m, which)
                     if met.is_one and met.beyond <= slack_m:
                         meets = True
                         n_cuts = _noted(strand, met.along, cuts, n_cuts)
     return n_cuts, meets or n_cuts > 0
+
+
+@kernel
+def _is_on_one_side(line: Strand, solid: Boundary, i: int, slack_m: float) -> bool:
+    """Whether a straight strand is on one side of the plane of a face, farther away than a length."""
+    start = height_over(solid, i, line.point)
+    end = start + line.end * dot(normal_of_face(solid, i), line.way)
+    return min(start, end) > slack_m or max(start, end) < -slack_m
 
 
 @kernel
@@ -142,7 +152,7 @@ def _beyond_at(solid: Boundary, i: int, there: Vector) -> float:
     """Return how far a place on a plane or a ball, seen from its feature's point, is beyond its bounds."""
     feature = solid.features[i]
     if feature.kind == FACE:
-        return beyond_borders(solid, i, minus(there, scaled(vector_from(feature.direction), feature.radius)))
+        return beyond_borders(solid, i, minus(there, scaled(vector_from(feature.direction), feature.radius)), math.inf)
     return feature.radius * beyond_cone(solid, i, scaled(there, 1.0 / norm(there)))
 
 

@@ -202,7 +202,7 @@ def first_touch(
                 step, is_over = max(step, min(narrow, span)), narrow >= span
                 span *= NARROWER
             place_after(a, i, motion, amount, moved)
-            clear = clear_step(moved, i, b, j, motion)
+            clear = clear_step(moved, i, b, j, motion) if level == 0.0 else 0.0  # that does not tell how deep they are
             step, is_jump = max(step, clear), clear > step
             if stay_parallel(moved.features[i], other, motion, rest):
                 return math.inf

@@ -9,6 +9,7 @@ from cagepose.kernels.algebra.vector import dot, minus, vector_from
 from cagepose.kernels.boundary.circle import WHOLE_TURN, is_on_arc
 from cagepose.kernels.boundary.circle_meeting import circle_meeting, find_places
 from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE, Place, write_place
+from cagepose.kernels.boundary.far_sides import drop_far_sides
 from cagepose.kernels.boundary.features import (
     CIRCLE,
     FACE,
@@ -67,6 +68,7 @@ def find_meetings(held: PlacedBoundary, cage: PlacedBoundary, touch_m: float, fo
         for other in range(3):
             if found.used[0] >= 0 and may_touch(own, held.own.nodes[own], other, cage.own.nodes[other]):
                 descend(held, own, cage, other, touch_m, found)
+    drop_far_sides(touch_m, found)
 
 
 @kernel
@@ -313,9 +315,12 @@ def append_touching(
     touch_m: float,
     found: Meetings,
 ) -> None:
-    """Append a meeting, if two features touch there: they are near, not on far sides of a part, and both reach."""
+    """Append a meeting, if two features touch there: they are near, not on far sides of a part, and both reach; what is
+    deep, well within its borders.
+    """
     one, other = held.own.features[i], cage.own.features[j]
     if not met.is_one or not -DEEPEST_OF_LEAST * min(one.least, other.least) <= met.gap <= touch_m:
         return
-    if both_reach(held, i, cage, j, met, slack_of(one, other, touch_m), 2.0 * touch_m):
+    slack_m = 2.0 * touch_m if met.gap >= -touch_m else -touch_m
+    if both_reach(held, i, cage, j, met, slack_of(one, other, touch_m), slack_m):
         append_meeting(held, i, cage, j, along, met, touch_m, found)

@@ -22,11 +22,11 @@ from cagepose.kernels.algebra.vector import Vector, minus, plus, scaled, transpo
 from cagepose.kernels.boundary.circle_places import Place
 from cagepose.kernels.boundary.cuts import MOST_CUTS, find_cuts
 from cagepose.kernels.boundary.dents import find_dents
-from cagepose.kernels.boundary.features import VERTEX, Boundary, PlacedBoundary, position_of, rotation_of
+from cagepose.kernels.boundary.features import Boundary, PlacedBoundary, position_of, rotation_of
+from cagepose.kernels.boundary.shells import Shells, empty_shells, find_shells
 from cagepose.kernels.boundary.strands import (
     Frame,
     Strand,
-    has_strand,
     inward_at,
     length_of,
     on_strand,
@@ -69,8 +69,10 @@ NO_OVERLAP = Overlap(-1, -1, 0.0)
 
 
 class OverlapWork(NamedTuple):
-    """Memory for one question."""
+    """Memory for questions about two bodies at whatever poses, and what hangs together of each of them."""
 
+    held: Shells
+    cage: Shells
     own_waiting: IntArray
     waiting: IntArray
     pairs: IntArray
@@ -78,11 +80,19 @@ class OverlapWork(NamedTuple):
     places: Rows[Place]
 
 
-def empty_overlap_work() -> OverlapWork:
-    """Return memory for a question (plain Python)."""
+def empty_overlap_work(held: Boundary, cage: Boundary) -> OverlapWork:
+    """Return memory for questions about two bodies (plain Python)."""
     waiting = np.zeros(MOST_WAITING, np.int64)
     pairs, places = np.zeros((MOST_PAIRS, 2), np.int64), empty_rows(Place, MOST_PLACES)
-    return OverlapWork(waiting, np.array(waiting), pairs, np.zeros(MOST_CUTS), places)
+    return OverlapWork(
+        empty_shells(held), empty_shells(cage), waiting, np.array(waiting), pairs, np.zeros(MOST_CUTS), places
+    )
+
+
+@kernel
+def forget_shells(work: OverlapWork) -> None:
+    """Let the memory be of other bodies than before."""
+    work.held.is_known[0] = work.cage.is_known[0] = False
 
 
 class Sides(NamedTuple):
@@ -102,14 +112,27 @@ def find_overlap(held: PlacedBoundary, cage: PlacedBoundary, touch_m: float, wor
     place in both bodies is from the two together. It is no more than how far the object has to go back, and may be much
     less, as where a bar is thrust through a plate.
     """
+    find_shells(held.own, work.held, work.waiting)
+    find_shells(cage.own, work.cage, work.waiting)
     to_cage, to_held = frame_of(held, cage), frame_of(cage, held)
-    found = probe(Sides(held.own, cage.own, to_cage, to_held), touch_m, NO_OVERLAP, work)
-    swapped = Overlap(found.cage_feature, found.feature, found.depth_m)
-    swapped = probe(Sides(cage.own, held.own, to_held, to_cage), touch_m, swapped, work)
-    dent = find_dents(held, cage, touch_m, swapped.depth_m, work.pairs, work.waiting)
-    if dent.depth_m > swapped.depth_m:
-        return Overlap(dent.feature, dent.cage_feature, dent.depth_m)
-    return Overlap(swapped.cage_feature, swapped.feature, swapped.depth_m)
+    one, other = Sides(held.own, cage.own, to_cage, to_held), Sides(cage.own, held.own, to_held, to_cage)
+    best = NO_OVERLAP
+    for asks_all in (False, True):
+        best = probe(one, work.held.first, asks_all, touch_m, best, work)
+        best = swapped(probe(other, work.cage.first, asks_all, touch_m, swapped(best), work))
+        if not asks_all:
+            dent = find_dents(held, cage, touch_m, best.depth_m, work.pairs, work.waiting)
+            if dent.feature >= 0:
+                best = Overlap(dent.feature, dent.cage_feature, dent.depth_m)
+        if best.depth_m == 0.0:
+            break
+    return best
+
+
+@kernel
+def swapped(found: Overlap) -> Overlap:
+    """Return an overlap as seen from the other body."""
+    return Overlap(found.cage_feature, found.feature, found.depth_m)
 
 
 @kernel
@@ -124,15 +147,17 @@ def frame_of(one: PlacedBoundary, other: PlacedBoundary) -> Frame:
 
 
 @kernel
-def probe(sides: Sides, touch_m: float, best: Overlap, work: OverlapWork) -> Overlap:
-    """Return the deepest witness on one body that is in the other, if it is deeper than the best one."""
+def probe(sides: Sides, first: IntArray, asks_all: bool, touch_m: float, best: Overlap, work: OverlapWork) -> Overlap:
+    """Return the deepest witness on one body that is in the other, if it is deeper than the best one: of strands, and
+    of the first vertex of each shell; or of all vertices, as deeper ones may be among these.
+    """
     own, waiting = sides.own, work.own_waiting
     low, high = limits_of(sides.solid)
     if low[0] > high[0]:  # no surfaces
         return best
     middle, half = scaled(plus(low, high), 0.5), plus(scaled(minus(high, low), 0.5), (touch_m, touch_m, touch_m))
     for root in (VERTICES, EDGES):
-        if own.nodes[root].first == own.nodes[root].last:
+        if own.nodes[root].first == own.nodes[root].last or (asks_all and root == EDGES):
             continue
         waiting[0], n_waiting = root, 1
         while n_waiting > 0:
@@ -145,7 +170,11 @@ def probe(sides: Sides, touch_m: float, best: Overlap, work: OverlapWork) -> Ove
                 n_waiting += 2
                 continue
             for i in range(node.first, node.last):
-                best = probe_feature(sides, i, touch_m, best, work)
+                if root == EDGES:
+                    best = probe_strand(sides, i, first[i] == i, touch_m, best, work)
+                elif asks_all or first[i] == i:
+                    place = seen_in(sides.to_solid, vector_from(own.features[i].point))
+                    best = deeper(best, i, depth_in(sides.solid, place, touch_m, work.waiting))
     return best
 
 
@@ -161,17 +190,13 @@ def is_apart(node: Node, frame: Frame, middle: Vector, half: Vector) -> bool:
 
 
 @kernel
-def probe_feature(sides: Sides, i: int, touch_m: float, best: Overlap, work: OverlapWork) -> Overlap:
-    """Return the better of a witness and those on a feature."""
-    feature = sides.own.features[i]
-    if feature.kind == VERTEX:
-        place = seen_in(sides.to_solid, vector_from(feature.point))
-        return deeper(best, i, depth_in(sides.solid, place, touch_m, work.waiting))
-    if not has_strand(feature):
-        return best
+def probe_strand(sides: Sides, i: int, stands_alone: bool, touch_m: float, best: Overlap, work: OverlapWork) -> Overlap:
+    """Return the better of a witness and those on a strand: of one that is not cut, its shell or its ends tell, unless
+    it stands alone.
+    """
     strand = strand_of(sides.own, i, sides.to_solid)
     n_cuts, meets = find_cuts(strand, sides.solid, SLACK * touch_m, work.waiting, work.places, work.cuts)
-    if not (meets or strand.is_arc or strand.is_generator):  # its ends tell
+    if not (meets or stands_alone or strand.is_generator):
         return best
     cuts, last = work.cuts, n_cuts - 1
     for k in range(n_cuts + 1):

@@ -52,18 +52,22 @@ def beyond_normals(body: PlacedBoundary, i: int, normal: Vector, core: Vector) -
 @kernel
 def beyond_face(body: PlacedBoundary, i: int, place: Vector) -> float:
     """Return how far a place in the plane of a face is beyond its bounds, metres; below zero: how far within."""
-    return beyond_borders(body.own, i, seen_from_feature(body, i, place))
+    return beyond_borders(body.own, i, seen_from_feature(body, i, place), math.inf)
 
 
 @kernel
-def beyond_borders(own: Boundary, i: int, seen: Vector) -> float:
-    """Return how far a place, seen from the point of a face in the frame of its body, is beyond its bounds, metres."""
+def beyond_borders(own: Boundary, i: int, seen: Vector, enough_m: float) -> float:
+    """Return how far a place is beyond the bounds of a face, as seen from its point, in the frame of the body; how far
+    at least, if that is farther than enough.
+    """
     feature = own.features[i]
     farthest, nearest, is_within, has_segments = -math.inf, math.inf, False, False
     for k in range(feature.first_bound, feature.last_bound):
         bound = own.bounds[k]
         if bound.kind != SEGMENT:
             farthest = max(farthest, beyond_bound(bound, seen))
+            if farthest > enough_m:
+                return farthest
             continue
         has_segments = True
         nearest = min(nearest, distance_from_segment(bound, seen))

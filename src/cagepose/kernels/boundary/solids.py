@@ -104,7 +104,9 @@ def depth_in_openings(own: Boundary, which: int, point: Vector) -> float:
     """Return how deep a point is in what holes take away from a solid, metres; -inf: it has none."""
     depth = -math.inf
     for k in range(own.covers[which].first_opening, own.covers[which].last_opening):
-        depth = max(depth, nearest_in(own, own.cover_list[k], point).depth)
+        opening = own.covers[own.cover_list[k]]
+        if opening.reach - norm(minus(point, vector_from(opening.point))) > depth:
+            depth = max(depth, nearest_in(own, own.cover_list[k], point).depth)
     return depth
 
 

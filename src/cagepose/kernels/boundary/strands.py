@@ -11,7 +11,7 @@ from typing import NamedTuple
 from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, minus, norm, plus, scaled, times, vector_from
 from cagepose.kernels.boundary.circle import WHOLE_TURN
 from cagepose.kernels.boundary.circle_places import Circle, on_circle
-from cagepose.kernels.boundary.features import CIRCLE, LINE, Boundary, Feature
+from cagepose.kernels.boundary.features import CIRCLE, Boundary
 from cagepose.kernels.boundary.surfaces import out_of_axis, slant_of_side
 from cagepose.kernels.native.kernel import kernel
 
@@ -59,11 +59,6 @@ class Strand(NamedTuple):
     inward: Vector
     middle: float
     sine: float
-
-
-@kernel
-def has_strand(feature: Feature) -> bool:
-    return feature.kind == LINE or feature.kind == CIRCLE
 
 
 @kernel

@@ -49,6 +49,18 @@ def has_surface(feature: Feature) -> bool:
 
 
 @kernel
+def normal_of_face(own: Boundary, i: int) -> Vector:
+    planes = own.planes
+    return (planes[0, i], planes[1, i], planes[2, i])
+
+
+@kernel
+def height_over(own: Boundary, i: int, place: Vector) -> float:
+    """Return how far a place is above the plane of a face, metres."""
+    return dot(normal_of_face(own, i), place) - float(own.planes[3, i])
+
+
+@kernel
 def beyond_cone(own: Boundary, i: int, normal: Vector) -> float:
     """Return how far a direction is beyond the outward normals of a vertex or a line, a sine; -1: all are."""
     farthest = -1.0
@@ -90,7 +102,7 @@ def distance_from(own: Boundary, i: int, place: Vector, within_m: float) -> floa
         gap = abs(height - feature.radius)
         if gap >= within_m:
             return gap
-        return math.hypot(gap, max(0.0, beyond_borders(own, i, minus(seen, scaled(normal, height)))))
+        return math.hypot(gap, max(0.0, beyond_borders(own, i, minus(seen, scaled(normal, height)), within_m)))
     if feature.kind == VERTEX:
         rho, along = norm(seen), 0.0
         normal = scaled(seen, 1.0 / rho) if rho > 0.0 else (1.0, 0.0, 0.0)
@@ -126,7 +138,7 @@ def crossing(own: Boundary, i: int, start: Vector, way: Vector, end: float, slac
         if _is_off(along, slope, end, slack_m):
             return NO_CROSSING
         core = minus(plus(seen, scaled(way, along)), scaled(normal, feature.radius))
-        return Crossing(True, along, beyond_borders(own, i, core), slope)
+        return Crossing(True, along, beyond_borders(own, i, core, slack_m), slope)
     if feature.kind == VERTEX:
         return _through_ball(own, i, seen, way, end, slack_m, which)
     return _through_side(own, i, seen, way, end, slack_m, which)

@@ -10,9 +10,9 @@ import math
 from typing import NamedTuple
 
 from cagepose.kernels.algebra.record import IntArray
-from cagepose.kernels.algebra.vector import Vector, vector_from
+from cagepose.kernels.algebra.vector import Vector, dot, vector_from
 from cagepose.kernels.boundary.features import Boundary
-from cagepose.kernels.boundary.surfaces import crossing, distance_from, has_surface
+from cagepose.kernels.boundary.surfaces import crossing, distance_from, has_surface, height_over, normal_of_face
 from cagepose.kernels.boundary.tree import FACES, Node
 from cagepose.kernels.native.kernel import kernel
 
@@ -78,6 +78,8 @@ def nearest_surface(own: Boundary, place: Vector, within_m: float, waiting: IntA
                 n_waiting += 2
                 continue
             for i in range(node.first, node.last):
+                if root == FACES and abs(height_over(own, i, place)) >= best:
+                    continue
                 if has_surface(own.features[i]):
                     distance = distance_from(own, i, place, best)
                     if distance < best:
@@ -122,9 +124,11 @@ def winding_along(own: Boundary, start: Vector, way: Vector, slack_m: float, wai
                 n_waiting += 2
                 continue
             for i in range(node.first, node.last):
+                if root == FACES and height_over(own, i, start) * dot(normal_of_face(own, i), way) >= 0.0:
+                    continue
                 if not has_surface(own.features[i]):
                     continue
-                for which in range(2):
+                for which in range(1 if root == FACES else 2):
                     met = crossing(own, i, start, way, math.inf, 0.0, which)
                     if not met.is_one or met.beyond > slack_m:
                         continue

@@ -163,7 +163,7 @@ def empty_cage(geometry: Geometry) -> PlacedCage:
         empty_rows(Feature, len(own.features)),
         empty_rows(BodyPart, len(own.parts)),
         empty_rows(Node, len(own.nodes)),
-        empty_overlap_work(),
+        empty_overlap_work(geometry.held, own),
     )
 
 

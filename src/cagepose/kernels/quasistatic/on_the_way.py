@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
+from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE
 from cagepose.kernels.boundary.circle_places import within_turn
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
@@ -57,10 +56,10 @@ def find_touched_before(
 
 @kernel
 def place_before(contacts: ContactSet, one: ContactRow) -> int:
-    """Return which of the contacts is of the same point and box, or features, of a circle at the nearest place; -1:
-    none is.
+    """Return which of the contacts is of the same point and box, or features, of a circle at the nearest place that one
+    goes to in a step; -1: none is.
     """
-    found, least = -1, math.inf
+    found, least = -1, SAME_ANGLE
     for i in range(contacts.used[0]):
         row = contacts.rows[i]
         if (row.point, row.box, row.feature, row.cage_feature) == (one.point, one.box, one.feature, one.cage_feature):

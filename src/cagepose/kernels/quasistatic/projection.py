@@ -351,8 +351,8 @@ def projected(
     """Move the object so that all constraints hold; return (whether they do, position, quaternion).
 
     Those that depend on others follow from them: where they do not, that shows as a point inside the object later, or
-    as what sticks slips by more than it may. Or, if it ``may_slip``, gaps alone are made to hold, and it slips as little
-    as that needs.
+    as what sticks slips by more than it may. Or, if it ``may_slip``, gaps alone are made to hold, and it slips as
+    little as that needs.
     """
     work, rows, values = constraints.scratch[0], constraints.rows, constraints.scratch[0].values
     worst_before, slipped_m = math.inf, 0.0

@@ -99,7 +99,7 @@ def covers_of(
     owners = {owner: index for index, owner in enumerate(dict.fromkeys(apart_from))}
     owner_of = np.array([owners[owner] for owner in apart_from], np.int64)
     of_features = [list[int]() for _ in apart_from]
-    rows, bounds, of_parts = list[tuple[object, ...]](), list[BoundRow](), dict[int, list[int]]()
+    rows, bounds, of_parts = list[tuple[object, ...]](), list[BoundRow](), dict[int, int]()
     for number, part in enumerate(parts):
         if isinstance(part, np.ndarray | Hole | Disc) or all(number in owner for owner in owners):
             continue
@@ -110,37 +110,46 @@ def covers_of(
             continue
         for feature in np.flatnonzero(is_near).tolist():
             of_features[feature].append(len(rows))
-        of_parts.setdefault(number, []).append(len(rows))
+        of_parts[number] = len(rows)
         rows.append(_solid(part, bounds, touch_m))
     indices = [index for of_feature in of_features for index in of_feature]
-    last = np.cumsum([len(of_feature) for of_feature in of_features], dtype=np.int64)
-    first = last - [len(of_feature) for of_feature in of_features]
+    counts = np.array([len(of_feature) for of_feature in of_features], np.int64)
+    last = np.cumsum(counts)
     made = _with_openings(parts, rows, of_parts, indices, touch_m)
-    return Covers(made, bounds, indices, first, last)
+    return Covers(made, bounds, indices, last - counts, last)
 
 
 def _with_openings(
     parts: Sequence[Shape | FloatArray],
     rows: list[tuple[object, ...]],
-    of_parts: Mapping[int, list[int]],
+    of_parts: Mapping[int, int],
     indices: list[int],
     touch_m: float,
 ) -> NDArray[np.void]:
-    """Return the rows of solids, and behind them those of what holes take away from them; append their indices."""
-    openings, solids = dict[int, list[int]](), [part for part in parts if isinstance(part, Shape)]
-    for number, hole in enumerate(parts):
-        if isinstance(hole, Hole):
-            within = [solid for solid in solids if not isinstance(solid, Hole) and solid.name in hole.in_]
-            opened = [index for index in of_parts if (part := parts[index]) in within]
-            if opened:
-                found = _openings(hole, within, touch_m)
-                openings[number] = list(range(len(rows), len(rows) + len(found)))
-                rows += found
+    """Return the rows of solids, and behind them those of what holes take away from them; append their indices.
+
+    Parameters
+    ----------
+    rows
+        Of solids.
+    of_parts
+        Which row each part has that may cover something.
+    indices
+        See `Covers`.
+    """
+    solids = [part for part in parts if isinstance(part, Shape) and not isinstance(part, Hole)]
+    names = [part.name if isinstance(part, Shape) else None for part in parts]
+    openings = dict[int, list[int]]()
+    for hole in (part for part in parts if isinstance(part, Hole)):
+        opened = [row for number, row in of_parts.items() if names[number] in hole.in_]
+        if opened:
+            found = _openings(hole, [solid for solid in solids if solid.name in hole.in_], touch_m)
+            for row in opened:
+                openings.setdefault(row, []).extend(range(len(rows), len(rows) + len(found)))
+            rows += found
     made: Any = np.array(rows, dtype_of(Cover))
-    for number, covers in of_parts.items():
-        part = parts[number]
-        mine = [each for hole, of_hole in openings.items() if part.name in parts[hole].in_ for each in of_hole]  # type: ignore[union-attr]
-        made["first_opening"][covers], made["last_opening"][covers] = len(indices), len(indices) + len(mine)
+    for row, mine in openings.items():
+        made["first_opening"][row], made["last_opening"][row] = len(indices), len(indices) + len(mine)
         indices += mine
     found_rows: NDArray[np.void] = made
     return found_rows

@@ -86,7 +86,7 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
     every = list(parts)
     solids = [part for part in every if isinstance(part, Shape) and not isinstance(part, Hole)]
     holes = [part for part in every if isinstance(part, Hole)]
-    rows, pieces = list[_Row](), dict[int, ConvexPiece]()
+    rows, polyhedra, pieces = list[_Row](), dict[int, Shape](), dict[int, ConvexPiece]()
     for number, part in enumerate(every):
         if isinstance(part, Hole):
             within = [solid for solid in solids if solid.name in part.in_]
@@ -94,11 +94,11 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
             rows += _apart(_hole_rows(part, within, number), own)
             if not within:
                 rows += [_pierced(row, part) for row in _rows_of(_plate_of(part), number)]
-        elif (piece := _piece_of(part, number)) is not None:
-            pieces[number] = piece
+        elif isinstance(part, Shape) and (piece := _piece_of(part, number)) is not None:
+            polyhedra[number], pieces[number] = part, piece
         else:
             rows += _apart(_rows_of(part, number), frozenset((number,)))
-    for group in united({number: part for number, part in enumerate(every) if number in pieces}, holes, touch_m):
+    for group in united(polyhedra, holes, touch_m):
         rows += _apart(_union_rows(union_of([pieces[number] for number in sorted(group)], touch_m)), group)
     names = [part.name if isinstance(part, Shape) else None for part in every]
     for hole in holes:
