@@ -12,6 +12,7 @@ from boundary.asked import Asked
 from boundary.drawn_plates import WIDE, random_peg, random_plate
 from boundary.motions import TOUCH, random_offset
 from cagepose import Box, Pose
+from cagepose.kernels.boundary.touching import Meetings
 from cagepose.model.hole import Hole
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Disc, Shape, Sphere, Turned
 from shapes import convex_bodies, pierced_plate, turned_bodies
@@ -28,11 +29,10 @@ GAPS = np.array([0, 0, 0.5, -0.5, 0.9, -0.9, 1, -1, 3, 100, 1e4, 1e6, 1e8, 3e8])
 HOLE_TOUCH = 3e-9
 
 
-def told_of(asked: Asked, pose: Pose, away: float, farthest: float) -> str:
-    """Return what is wrong with what touches at a pose of bodies this far apart; no gap is greater than ``farthest``,
+def told_of(found: Meetings, touch_m: float, away: float, farthest: float) -> str:
+    """Return what is wrong with what touches of bodies this far apart; no gap is greater than ``farthest``,
     if anything touches.
     """
-    found, touch_m = asked.place(pose), asked.touch_m
     gaps = found.rows[: found.used[0]]["gap"]
     if len(gaps) == 0:
         return "nothing touches" if abs(away) <= 0.9 * touch_m else ""
@@ -51,7 +51,9 @@ def test_gaps_of_sharp_and_rounded_parts(cases, say):
             one, other, random_turn(rng), random_offset(rng), float(rng.choice(GAPS)) * TOUCH * size
         )
         away = convex_bodies.gap(one.at(pose), other)
-        told = told_of(Asked(parts[:1], parts[1:], TOUCH * size), pose, away, away + RESOLUTION * size)
+        told = told_of(
+            Asked(parts[:1], parts[1:], TOUCH * size).place(pose), TOUCH * size, away, away + RESOLUTION * size
+        )
         if told:
             wrong.append(f"{told}: {parts[0]} at {pose}, {parts[1]}")
     say(f"gaps of {n_pairs} pairs of sharp and rounded parts: {len(wrong)} wrong")
@@ -104,10 +106,12 @@ def told_of_turned(asked: Asked, bodies: tuple[Circles, Circles], pose: Pose, aw
     one, other, size = bodies[0].at(pose), bodies[1], asked.touch_m / TOUCH
     found = asked.place(pose)
     least = max([away, *(separation_along(one, other, row["normal"]) for row in found.rows[: found.used[0]])])
-    told = told_of(asked, pose, away, least + RESOLUTION * size)
+    told = told_of(found, asked.touch_m, away, least + RESOLUTION * size)
     if told == "nothing touches" and tip_is_at_rim(one, other, asked.touch_m):
         return ""
-    return told_of(asked, pose, away, greatest_separation(one, other) + RESOLUTION * size) if told else ""
+    if not told:
+        return ""
+    return told_of(found, asked.touch_m, away, greatest_separation(one, other) + RESOLUTION * size)
 
 
 def test_gaps_of_turned_parts(cases, say):
@@ -180,7 +184,7 @@ def test_gaps_in_and_over_holes(cases, say):
         if pose is None:
             continue
         n_seen += 1
-        told = told_of(Asked([part], cage, HOLE_TOUCH), pose, away, away + 1e-11)
+        told = told_of(Asked([part], cage, HOLE_TOUCH).place(pose), HOLE_TOUCH, away, away + 1e-11)
         if told:
             wrong.append(f"{told}: {part} at {pose}, {cage}")
     say(f"gaps of {n_seen} parts in and over holes: {len(wrong)} wrong")
@@ -212,7 +216,8 @@ LONE, BLIND = [Hole(0.5, 1.0)], [Box((8.0, 8.0, 2.0), Pose((0, 0, -1)), name="pl
     ],
 )
 def test_gaps_of_what_is_in_line_with_a_hole(cage, part, position, away):
-    assert told_of(Asked([part], cage, HOLE_TOUCH), Pose(position), away, away + 1e-11) == ""
+    found = Asked([part], cage, HOLE_TOUCH).place(Pose(position))
+    assert told_of(found, HOLE_TOUCH, away, away + 1e-11) == ""
     plate = plate_of(cage[-1], cage is LONE, WIDE)
     if not isinstance(part, Disc):
         assert pierced_plate.gap(part, Pose(position), plate)[0] == pytest.approx(away, abs=1e-12)
