@@ -24,7 +24,6 @@ from cagepose.model.boundary.features import boundary_of
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Disc, Shape, Sphere
 from shapes.convex_bodies import CUBE
-from shapes.test_bends import length, turned, vector
 from shapes.turned_bodies import circles_of, placed_at
 
 TOUCH_M, FARTHEST = 1e-9, 1.0
@@ -40,6 +39,20 @@ PAIRS |= {"vertex-tapered wall"}
 def digits():
     with localcontext(prec=60):
         yield
+
+
+def vector(values) -> np.ndarray:
+    return np.array([Decimal(float(value)) for value in values])
+
+
+def length(a):
+    return (a @ a).sqrt()
+
+
+def turned(spin, point):
+    """A point after a turn by the small vector ``spin``, to second order; what is left cancels or is 1e-30."""
+    along = np.cross(spin, point)
+    return point + along + np.cross(spin, along) / 2
 
 
 def parts(pose: Pose | None = None) -> list[Shape]:

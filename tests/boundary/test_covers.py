@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 from boundary.asked import Asked
+from boundary.motions import after
 from boundary.union_oracle import BODIES, first_material, is_material, peg, random_part, stack, tiles
 from cagepose import Box, Pose
+from cagepose.kernels.algebra.motion import Motion
 from cagepose.kernels.boundary.features import FACE
-from cagepose.kernels.shapes.motion import Motion
 from cagepose.model.boundary.features import boundary_of
 from cagepose.model.hole import Hole
 from cagepose.model.shapes import Convex, Cylinder, Shape, Sphere
-from shapes.test_first_meeting import after
 
 TOUCH_M = 1e-9
 BESIDE_M = 1e-6

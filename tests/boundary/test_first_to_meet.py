@@ -8,14 +8,13 @@ import numpy as np
 from scipy.optimize import minimize
 
 from boundary.asked import Asked, ball_around
+from boundary.drawn_plates import random_peg, random_plate
+from boundary.motions import TOLERANCE, TOUCH, after, leaves, random_motion, random_offset
 from cagepose import Pose
+from cagepose.kernels.algebra.motion import Motion
 from cagepose.kernels.boundary.first_meeting import Hit
-from cagepose.kernels.shapes.motion import Motion
 from cagepose.model.shapes import Shape
 from shapes import convex_bodies, pierced_plate, turned_bodies
-from shapes.test_distances import TOUCH, random_offset
-from shapes.test_first_meeting import TOLERANCE, after, leaves, random_motion
-from shapes.test_turned_distances import random_peg, random_plate
 from shapes.turned_bodies import Circles
 
 SHORTEST = 2e-3

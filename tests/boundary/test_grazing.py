@@ -9,18 +9,17 @@ from collections.abc import Callable
 import numpy as np
 
 from boundary.asked import Asked
+from boundary.drawn_plates import random_peg, random_plate
+from boundary.motions import TOLERANCE, TOUCH, after, motion_of, random_direction, random_offset
 from boundary.test_first_to_meet import STARTS, Tally, check, greatest_separation
 from cagepose import Pose
+from cagepose.kernels.algebra.motion import Motion
 from cagepose.kernels.boundary.circle_first import Reached, first_touch_of_curved
 from cagepose.kernels.boundary.first_meeting import is_curved
 from cagepose.kernels.boundary.meetings import can_touch
-from cagepose.kernels.shapes.motion import Motion
 from cagepose.model.shapes import Shape
 from inner_kernels import as_machine_code
 from shapes import convex_bodies, pierced_plate, turned_bodies
-from shapes.test_distances import TOUCH, random_offset
-from shapes.test_first_meeting import TOLERANCE, after, motion_of, random_direction
-from shapes.test_turned_distances import random_peg, random_plate
 
 MOST_STEPS = 1000
 """For one pair of features."""

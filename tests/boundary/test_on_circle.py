@@ -11,8 +11,8 @@ from boundary.asked import Asked
 from cagepose import Box, Pose
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.boundary.bend import Bend, curvatures, write_bend
+from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.boundary.on_circle import OnCircle, write_on_circle
-from cagepose.kernels.shapes.meeting import Meeting
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.shapes import Cylinder, Disc, Sphere
 

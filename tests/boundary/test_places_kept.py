@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from boundary.asked import Asked
+from boundary.motions import motion_of
 from cagepose import Box, Disc, Pose
 from cagepose.kernels.boundary.first_meeting import Hit
 from cagepose.model.shapes import Shape
-from shapes.test_first_meeting import motion_of
 
 TOUCH = 1e-9
 TILT = 0.4

@@ -8,7 +8,7 @@ import pytest
 from boundary.asked import Asked
 from cagepose import Box, Pose
 from cagepose.kernels.boundary.bend import bends_by, curvatures
-from cagepose.kernels.shapes.meeting import Meeting
+from cagepose.kernels.boundary.met import Meeting
 from cagepose.model.shapes import Capsule, Convex, Disc, Sphere
 from shapes.convex_bodies import CUBE
 

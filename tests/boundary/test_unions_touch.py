@@ -6,7 +6,7 @@ import numpy as np
 
 from boundary.asked import Asked
 from cagepose import Box, Pose
-from cagepose.kernels.shapes.motion import Motion
+from cagepose.kernels.algebra.motion import Motion
 from cagepose.model.hull import hull_of
 from cagepose.model.shapes import Convex, Sphere
 from shapes.convex_bodies import random_turn

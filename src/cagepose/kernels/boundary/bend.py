@@ -39,9 +39,9 @@ from cagepose.kernels.algebra.vector import (
 )
 from cagepose.kernels.boundary.circle import outward_at
 from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, PlacedBoundary
+from cagepose.kernels.boundary.met import CENTRED, Meeting
 from cagepose.kernels.boundary.on_circle import OnCircle
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.meeting import CENTRED, Meeting
 
 FLAT = 1e-9
 """Sine between a circle's axis and the normal: less, it is straight as an edge along its tangent."""

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import math
 
+from cagepose.kernels.algebra.motion import Motion, velocity_at
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, norm, scaled
 from cagepose.kernels.boundary.circle_meeting import is_sharp
@@ -32,7 +33,6 @@ from cagepose.kernels.boundary.curve_beside import (
 )
 from cagepose.kernels.boundary.features import CIRCLE, VERTEX, Feature
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.motion import Motion, velocity_at
 
 PIECES = 8
 """Of a circle at first."""

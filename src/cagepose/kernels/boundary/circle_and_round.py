@@ -26,8 +26,8 @@ from cagepose.kernels.boundary.circle_equation import (
 from cagepose.kernels.boundary.circle_places import (
     WHOLE,
     Circle,
+    CirclePoint,
     Common,
-    OnCircle,
     Place,
     common_of_sharp,
     on_circle,
@@ -127,7 +127,7 @@ def common_with_round(circle: Circle, other: Round, angle: float) -> Common:
 
 
 @kernel
-def some_across(here: OnCircle, direction: Vector) -> Vector:
+def some_across(here: CirclePoint, direction: Vector) -> Vector:
     """Return a unit vector across a direction, and across the tangent of a circle's place if that is not along it."""
     crossed = cross(here.tangent, direction)
     sine = norm(crossed)

@@ -11,8 +11,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cagepose.kernels.algebra.motion import Motion, velocity_at
 from cagepose.kernels.algebra.record import Rows
-from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.algebra.vector import dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.boundary.along_motion import BEHIND, LEAST_STEP, between_segments, gone_on
 from cagepose.kernels.boundary.circle import circle_of, outward_at
 from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE, clear_ahead
 from cagepose.kernels.boundary.circle_places import (
@@ -25,14 +27,12 @@ from cagepose.kernels.boundary.circle_places import (
     within_turn,
     write_place,
 )
-from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, VERTEX, Feature, PlacedBoundary
+from cagepose.kernels.boundary.closing import closing_of, surely_clear
+from cagepose.kernels.boundary.features import CIRCLE, Feature, PlacedBoundary
 from cagepose.kernels.boundary.first_touch import place_after
 from cagepose.kernels.boundary.meeting import both_reach
 from cagepose.kernels.boundary.meetings import PLACES_AROUND, find_circle_places, meeting_at
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.advancement import speed_toward_round, speed_toward_side
-from cagepose.kernels.shapes.along_motion import BEHIND, LEAST_STEP, between_segments, gone_on
-from cagepose.kernels.shapes.motion import Motion, velocity_at
 
 ADVANCES = 2000
 """Steps for one pair of features; only where they graze each other more than some tens are taken."""
@@ -43,67 +43,6 @@ ROOT_OF_TOUCH, CONVERGES = 1e-3, 0.5
 """Of the touch tolerance: a gap that is less is a root; and of such a gap: a step that leaves more no longer helps."""
 KEPT_STEP = 1.0 / 32.0
 """In amounts of the whole motion: a place that touches is looked at at least so often, whether it is still there."""
-
-
-class Closing(NamedTuple):
-    """The gap falls no faster than ``speed``, metres for each unit of the amount, and how fast this may grow."""
-
-    speed: float
-    growth: float
-
-
-@kernel
-def closing_of(one: Feature, other: Feature, motion: Motion) -> Closing:
-    """Return how fast a feature of the object, at its place on the way, and one of the cage may come nearer, of which
-    one is a circle: the velocity of the object's material at the circle, without what leads along the other one.
-    """
-    small, wide = (one, other) if is_smaller(one, other) else (other, one)
-    middle, reach = middle_of(small), small.length if small.kind == CIRCLE else 0.5 * small.length
-    way, along, spread = velocity_at(motion, middle), vector_from(wide.direction), motion.rate * reach
-    fastest, growth = norm(way) + spread, motion.rate * (norm(way) + spread)
-    if wide.kind == FACE:
-        lean = norm(cross(motion.axis, along))
-        spun = norm(cross(motion.axis, vector_from(small.direction)))  # a circle goes nowhere by turning about its axis
-        return Closing(abs(dot(way, along)) + spread * min(lean, spun), growth * lean)
-    speed, grows = fastest, 0.0
-    if small.kind == CIRCLE:  # which goes nowhere by turning about its own axis
-        speed = norm(way) + spread * norm(cross(motion.axis, vector_from(small.direction)))
-    if wide.kind == LINE:
-        across = speed_toward_side(wide, way) + spread  # type: ignore[arg-type]
-        if across < speed:
-            speed, grows = across, growth
-    if wide.kind == LINE or wide.kind == CIRCLE:
-        slower, slower_grows = speed_toward_round(wide, motion, middle, reach, fastest)  # type: ignore[arg-type]
-        if slower < speed:
-            speed, grows = slower, slower_grows
-    return Closing(speed, grows)
-
-
-@kernel
-def is_smaller(one: Feature, other: Feature) -> bool:
-    """Whether the first of two features is a vertex, or the circle, or the smaller circle, or the shorter line."""
-    if one.kind == VERTEX or other.kind == VERTEX:
-        return bool(one.kind == VERTEX)
-    if one.kind != other.kind:
-        return bool(one.kind == CIRCLE)
-    return bool(one.length <= other.length)
-
-
-@kernel
-def middle_of(feature: Feature) -> Vector:
-    """Return a vertex, the centre of a circle, or the middle of a line."""
-    if feature.kind != LINE:
-        return vector_from(feature.point)
-    return plus(vector_from(feature.point), scaled(vector_from(feature.direction), 0.5 * feature.length))
-
-
-@kernel
-def surely_clear(now: Closing, gap: float) -> float:
-    """Return for how long features do not touch that are so far apart."""
-    if gap == math.inf:
-        return math.inf
-    root = math.sqrt(now.speed * now.speed + 2.0 * now.growth * gap) + now.speed
-    return 2.0 * gap / root if root > 0.0 else math.inf
 
 
 @kernel

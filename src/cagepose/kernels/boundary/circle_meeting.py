@@ -16,9 +16,11 @@ from cagepose.kernels.boundary.circle_and_round import Round, common_with_line, 
 from cagepose.kernels.boundary.circle_places import Common, Place
 from cagepose.kernels.boundary.features import CIRCLE, FACE, VERTEX, Feature, PlacedBoundary
 from cagepose.kernels.boundary.meeting import is_turned
+from cagepose.kernels.boundary.met import SHARP, Meeting, without_normal
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.meeting import SHARP, Meeting, without_normal
-from cagepose.kernels.shapes.side_by_side import SIDE_BY_SIDE
+
+SIDE_BY_SIDE = 1e-6
+"""Sine between tangents: a lesser one is none."""
 
 
 @kernel

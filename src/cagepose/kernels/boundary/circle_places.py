@@ -79,7 +79,7 @@ class Kept:
     depth_m: float
 
 
-class OnCircle(NamedTuple):
+class CirclePoint(NamedTuple):
     """A place of a circle.
 
     Attributes
@@ -122,13 +122,13 @@ class Common(NamedTuple):
 
 
 @kernel
-def on_circle(circle: Circle, angle: float) -> OnCircle:
+def on_circle(circle: Circle, angle: float) -> CirclePoint:
     """Return the place of a circle at an angle."""
     cosine, sine = math.cos(angle), math.sin(angle)
     aside = cross(circle.axis, circle.toward)
     outward = plus(scaled(circle.toward, cosine), scaled(aside, sine))
     tangent = minus(scaled(aside, cosine), scaled(circle.toward, sine))
-    return OnCircle(plus(circle.centre, scaled(outward, circle.radius)), outward, tangent)
+    return CirclePoint(plus(circle.centre, scaled(outward, circle.radius)), outward, tangent)
 
 
 @kernel
@@ -162,7 +162,7 @@ def write_place(out: Place, angle: float, other_angle: float, kind: int, is_near
 
 
 @kernel
-def common_of_sharp(here: OnCircle, size: float, other_point: Vector, other_tangent: Vector) -> Common:
+def common_of_sharp(here: CirclePoint, size: float, other_point: Vector, other_tangent: Vector) -> Common:
     """Return the common normal of a circle of a size and another sharp curve, at places where they have one.
 
     The normal is across both tangents; where those are parallel, along the way between the two places; and where there

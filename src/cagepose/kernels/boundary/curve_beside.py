@@ -21,7 +21,7 @@ class Piece(NamedTuple):
     Attributes
     ----------
     point, outward, tangent
-        As in `OnCircle`; of a line, nothing is outward.
+        As in `CirclePoint`; of a line, nothing is outward.
     half
         Metres along the curve.
     bend

@@ -11,8 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from cagepose.kernels.algebra.motion import Motion, velocity_at
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import cross, dot, minus, norm, scaled, vector_from
+from cagepose.kernels.boundary.along_motion import ahead, safe_step
 from cagepose.kernels.boundary.circle_first import first_touch_of_curved, lines_apart
 from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE
 from cagepose.kernels.boundary.features import (
@@ -31,7 +33,6 @@ from cagepose.kernels.boundary.first_touch import (
     clear_step,
     distance_from,
     first_touch,
-    gap_ahead,
     keeps_radius,
 )
 from cagepose.kernels.boundary.meeting import both_reach, meeting
@@ -42,12 +43,10 @@ from cagepose.kernels.boundary.meetings import (
     meeting_at,
     slack_of,
 )
-from cagepose.kernels.boundary.touching import Meetings
+from cagepose.kernels.boundary.met import Meeting
+from cagepose.kernels.boundary.touching import SAME_PLACE, Meetings
 from cagepose.kernels.boundary.tree import Node, may_touch, span_of_overlap
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.along_motion import safe_step
-from cagepose.kernels.shapes.meeting import SAME_PLACE, Meeting
-from cagepose.kernels.shapes.motion import Motion, velocity_at
 
 MOST_WAITING = 4096
 """Pairs of nodes; of more, some are asked to the end at once."""
@@ -346,7 +345,7 @@ def sooner(
         if (curved_apart(held, i, cage, j) - search.touch_m) >= until * search.speed:
             return hit
         return first_of_curved(held, i, cage, j, until, search, meetings, moved, hit)
-    if safe_step(gap_ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
+    if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
         return hit
     clear = clear_step(held, i, cage, j, motion)
     is_near = clear * search.speed <= SAME_PLACE * max(search.near_m, search.touch_m)  # and may be deep already

@@ -1,15 +1,24 @@
 """When two features touch first while the object moves at a constant twist.
 
-The smooth functions of the amount that say so, with bounds on their second derivatives, are those of `along_motion`:
-steps are known that jump over no root, and near one they become Newton's. Where the function is zero it is asked
-whether both features reach there; if not, the search goes on behind.
+A smooth function F of the amount says so, with bounds on its second derivative: see `along_motion`. Where it is zero it
+is asked whether both features reach there; if not, the search goes on behind.
 """
 
 from __future__ import annotations
 
 import math
 
+from cagepose.kernels.algebra.motion import Motion, moved_point, turned, turned_by_amount, velocity_at
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.boundary.along_motion import (
+    BEHIND,
+    LEAST_STEP,
+    Ahead,
+    ahead,
+    between_segments,
+    gone_on,
+    safe_step,
+)
 from cagepose.kernels.boundary.features import (
     CIRCLE,
     FACE,
@@ -22,22 +31,20 @@ from cagepose.kernels.boundary.features import (
     write_placed,
 )
 from cagepose.kernels.boundary.meeting import both_reach, meeting
+from cagepose.kernels.boundary.met import PARALLEL
 from cagepose.kernels.boundary.reach import beyond_face
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.along_motion import (
-    BEHIND,
-    EVALUATIONS,
-    LEAST_STEP,
-    NARROWER,
-    NEAR_ROOT,
-    Ahead,
-    ahead,
-    between_segments,
-    gone_on,
-    safe_step,
-)
-from cagepose.kernels.shapes.meeting import PARALLEL
-from cagepose.kernels.shapes.motion import Motion, moved_point, turned, turned_by_amount, velocity_at
+
+EVALUATIONS = 400
+"""F is evaluated at most so many times for one pair of features. A contact that grazes may need them all. Then it
+counts where the search has come, if the features reach there."""
+NEAR_ROOT = 1e-12
+"""In amounts of the whole motion: features that stay apart for longer are at no contact, though F has changed sides in
+a step by how far apart they are, as where the lines of edges that were parallel cross.
+"""
+NARROWER = 4.0
+"""Bounds over the rest of the motion are too wide where only a small part of it is stepped over: they are asked again
+over so many times that part, and over ever more while all of it is stepped over."""
 
 
 @kernel
@@ -135,24 +142,6 @@ def touches_after(
 
 
 @kernel
-def gap_ahead(
-    a: PlacedBoundary,
-    i: int,
-    b: PlacedBoundary,
-    j: int,
-    motion: Motion,
-    amount: float,
-    level: float,
-    side: float,
-    span: float,
-) -> Ahead:
-    """Return the function of the amount whose root is a contact of two features that are no circles, with its slope and
-    bounds; see `cagepose.kernels.shapes.along_motion.ahead`, which reads of features what those of both packages have.
-    """
-    return ahead(a, i, b, j, motion, amount, level, side, span)  # type: ignore[arg-type]
-
-
-@kernel
 def first_touch(
     a: PlacedBoundary,
     i: int,
@@ -177,7 +166,7 @@ def first_touch(
     level
         How deep they may be in each other until they have been well apart, metres: more than they are.
     side
-        Of sharp lines that touch: see `edges_ahead`.
+        Of sharp lines that touch: see `lines_ahead`.
     slack, slack_m
         How far beyond its end a feature still counts, the sine of an angle and metres.
     moved
@@ -186,11 +175,11 @@ def first_touch(
     one, other = a.features[i], b.features[j]
     is_sharp = one.kind == LINE and other.kind == LINE and one.radius + other.radius == 0.0
     if is_sharp and side == 0.0:
-        side = math.copysign(1.0, gap_ahead(a, i, b, j, motion, 0.0, 0.0, 1.0, end).value)
+        side = math.copysign(1.0, ahead(a, i, b, j, motion, 0.0, 0.0, 1.0, end).value)
     amount, was_apart, is_jump, behind = 0.0, False, False, BEHIND * end
     for _ in range(EVALUATIONS):
         rest = end - amount
-        now = gap_ahead(a, i, b, j, motion, amount, level, side, rest)
+        now = ahead(a, i, b, j, motion, amount, level, side, rest)
         if level > 0.0 and now.is_clear:
             level = 0.0
             continue
@@ -209,7 +198,7 @@ def first_touch(
         if NARROWER * step < rest:
             span, is_over = NARROWER * step, True
             while is_over and 0.0 < span < rest:
-                narrow = safe_step(gap_ahead(a, i, b, j, motion, amount, level, side, span))
+                narrow = safe_step(ahead(a, i, b, j, motion, amount, level, side, span))
                 step, is_over = max(step, min(narrow, span)), narrow >= span
                 span *= NARROWER
             place_after(a, i, motion, amount, moved)

@@ -8,8 +8,8 @@ from cagepose.kernels.boundary.circle_places import Place, write_place
 from cagepose.kernels.boundary.features import CIRCLE, LINE, VERTEX, PlacedBoundary
 from cagepose.kernels.boundary.meeting import meeting, seated
 from cagepose.kernels.boundary.meetings import meeting_at
+from cagepose.kernels.boundary.met import Meeting, apart, swapped
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.meeting import Meeting, apart, swapped
 
 
 @kernel

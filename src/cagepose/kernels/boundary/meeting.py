@@ -12,19 +12,10 @@ import math
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.covered import is_covered
 from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, VERTEX, Feature, PlacedBoundary
+from cagepose.kernels.boundary.met import CENTRED, PARALLEL, SHARP, Meeting, apart, swapped, without_normal
 from cagepose.kernels.boundary.reach import beyond_normals, reaches
+from cagepose.kernels.boundary.tapered import nearest_on_axis, tapered_lines
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.meeting import (
-    CENTRED,
-    PARALLEL,
-    SHARP,
-    Meeting,
-    apart,
-    swapped,
-    tapered_edges,
-    without_normal,
-)
-from cagepose.kernels.shapes.rims import OnAxis, nearest_on_edge
 
 
 @kernel
@@ -48,12 +39,6 @@ def vertex_over_face(vertex: Feature, face: Feature) -> Meeting:
     point, normal = vector_from(vertex.point), scaled(vector_from(face.direction), -1.0)
     gap = dot(normal, minus(vector_from(face.point), point)) - vertex.radius - face.radius
     return Meeting(True, gap, normal, plus(point, scaled(normal, vertex.radius)))
-
-
-@kernel
-def nearest_on_axis(line: Feature, point: Vector) -> OnAxis:
-    """Return what of a line, as far as its axis leads, is nearest to a point."""
-    return nearest_on_edge(line, point)  # type: ignore[arg-type]
 
 
 @kernel
@@ -94,7 +79,7 @@ def line_across_line(a: PlacedBoundary, i: int, b: PlacedBoundary, j: int) -> Me
         return apart()
     start = minus(vector_from(other.point), vector_from(one.point))
     if one.taper != 0.0 or other.taper != 0.0:
-        return tapered_edges(one, other, start, crossed, sine)  # type: ignore[arg-type]
+        return tapered_lines(one, other, start, crossed, sine)
     s = dot(cross(start, w), crossed) / (sine * sine)  # start + t w - s u is along the normal
     normal = scaled(crossed, 1.0 / sine)
     distance = dot(start, normal)

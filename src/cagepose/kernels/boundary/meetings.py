@@ -24,11 +24,11 @@ from cagepose.kernels.boundary.features import (
 )
 from cagepose.kernels.boundary.flat_circle import Arc, next_arc, part_to_ask
 from cagepose.kernels.boundary.meeting import both_reach, is_seated, meeting, seated
-from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, Along, Meetings
+from cagepose.kernels.boundary.met import Meeting, swapped
+from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, SAME_PLACE, Along, Meetings
 from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
 from cagepose.kernels.boundary.twins import append_meeting
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.meeting import SAME_PLACE, Meeting, swapped
 
 DEEPEST_OF_LEAST = 0.05
 """Of the shortest edge: features that are deeper in each other are on far sides of a part, and do not touch."""

@@ -8,7 +8,7 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.circle import outward_at
 from cagepose.kernels.boundary.features import CIRCLE, FACE, VERTEX, Feature, PlacedBoundary
-from cagepose.kernels.boundary.meeting import nearest_on_axis
+from cagepose.kernels.boundary.tapered import nearest_on_axis
 from cagepose.kernels.boundary.touching import Touching, is_around
 from cagepose.kernels.native.kernel import kernel
 

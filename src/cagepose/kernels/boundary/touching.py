@@ -11,12 +11,13 @@ from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_ro
 from cagepose.kernels.algebra.vector import minus, norm, vector_from
 from cagepose.kernels.boundary.circle_places import Kept, Place
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.meeting import SAME_PLACE
 
 MOST_OF_PARTS, MOST_MEETINGS = 128, 4096
 """Meetings that there is memory for: of each pair of parts, and of all."""
 MOST_PAIRS, MOST_PLACES = 256, 16
 """Pairs of nodes that wait while two trees are descended; places of one circle."""
+SAME_PLACE = 4.0
+"""In touch tolerances: meetings nearer to each other are at one place."""
 SAME_NORMAL = 1e-9
 """Radians. Meetings at one place with normals nearer than this are one."""
 HALF_SECTOR = math.pi / 4.0

@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
+from cagepose.kernels.algebra.motion import Motion, velocity_at
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Matrix, Vector, dot, minus, norm, plus, scaled, times, vector_from
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.motion import Motion, velocity_at
 
 VERTICES, EDGES, FACES = 0, 1, 2
 """The first three nodes: the roots of the trees. Lines and circles are edges."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from cagepose.kernels.algebra.vector import minus, norm, vector_from
 from cagepose.kernels.boundary.bend import bends_by, curvatures
 from cagepose.kernels.boundary.features import CIRCLE, PlacedBoundary
+from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.boundary.touching import SAME_NORMAL, Along, Meetings, Touching, is_around, is_at_place
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.meeting import Meeting
 
 
 @kernel

@@ -6,6 +6,7 @@ import math
 
 from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, row, scaled, vector_from
 from cagepose.kernels.boundary.bend import curvatures, write_bend, write_twin
+from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.boundary.on_circle import write_on_circle
 from cagepose.kernels.boundary.touching import is_around
 from cagepose.kernels.collision.contacts import face_normal, is_hidden, touches_face
@@ -16,7 +17,6 @@ from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.contact.seats import seat_circles
 from cagepose.kernels.contact.tolerances import SAME_NORMAL_RAD
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.meeting import Meeting
 
 
 @kernel

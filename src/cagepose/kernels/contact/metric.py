@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import Annotated, NamedTuple
 
+from cagepose.kernels.algebra.motion import motion_of, moved_point, turned_by_amount
 from cagepose.kernels.algebra.pose import Quaternion, quaternion_about, quaternion_product, rotated
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import (
@@ -19,7 +20,6 @@ from cagepose.kernels.algebra.vector import (
     transposed_times,
 )
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.motion import motion_of, moved_point, turned_by_amount
 
 WRENCH = 6
 """Numbers of a wrench or twist."""

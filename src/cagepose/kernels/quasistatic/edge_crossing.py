@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from cagepose.kernels.algebra.motion import Motion, motion_of
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled, vector_from
 from cagepose.kernels.boundary.first_touch import place_after
@@ -26,7 +27,6 @@ from cagepose.kernels.contact.tolerances import SAME_WAY
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.pushing_out import is_fixed
 from cagepose.kernels.quasistatic.straying import STRAYED, strayed
-from cagepose.kernels.shapes.motion import Motion, motion_of
 
 CLEAR = 2.0
 """In touch tolerances: how far beyond the edge a contact is let go, so that it does not touch the next face too."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cagepose.kernels.algebra.motion import motion_of
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, scaled
 from cagepose.kernels.boundary.features import middle_of_part
@@ -15,7 +16,6 @@ from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.straying import STRAYED, strayed
-from cagepose.kernels.shapes.motion import motion_of
 
 LOOKED_AT_AGAIN = 64
 """Features that are met because contacts stray are passed over so many times at most."""

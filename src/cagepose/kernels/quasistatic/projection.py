@@ -28,6 +28,7 @@ from cagepose.kernels.algebra.vector import (
 from cagepose.kernels.boundary.circle_places import within_turn
 from cagepose.kernels.boundary.features import LINE, place_feature, place_feature_at
 from cagepose.kernels.boundary.kept import meeting_kept
+from cagepose.kernels.boundary.met import PARALLEL
 from cagepose.kernels.collision.geometry import Geometry, Placement, held_moved
 from cagepose.kernels.contact.contact_set import tangents_to
 from cagepose.kernels.contact.metric import (
@@ -41,7 +42,6 @@ from cagepose.kernels.contact.metric import (
     write_scaled_wrench,
 )
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.meeting import PARALLEL
 
 ROUNDS = 12
 ON_FACE = 4e-16

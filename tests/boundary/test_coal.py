@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from cagepose.kernels.collision.first_meeting import Hit, first_meeting
 from scipy.spatial import ConvexHull
 
+from boundary.asked import Asked
+from boundary.motions import TOUCH, motion_of
 from cagepose import Box, Pose
-from cagepose.model.features import shapes_of
+from cagepose.kernels.boundary.overlap import Overlap, empty_overlap_work, find_overlap
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Shape, Sphere
 from inner_kernels import as_machine_code
 from shapes.convex_bodies import random_turn
-from shapes.test_distances import TOUCH, geometry_of, placed
-from shapes.test_first_meeting import motion_of
 
 coal = pytest.importorskip("coal")  # has no wheels for Windows
 
@@ -73,13 +72,14 @@ def of_coal(part: Shape):
 
 
 def test_parts_touch_after_the_distance_that_coal_tells(cases, say):
-    rng, first = np.random.default_rng(11), as_machine_code(first_meeting)
+    rng = np.random.default_rng(11)
     parts = [random_part(rng) for _ in range(N_PARTS)]
-    theirs, ours = [of_coal(part) for part in parts], [shapes_of([part]) for part in parts]
+    theirs = [of_coal(part) for part in parts]
+    find = as_machine_code(find_overlap)
     request, result = coal.DistanceRequest(), coal.DistanceResult()
     request.gjk_tolerance = request.epa_tolerance = 1e-10
     request.gjk_max_iterations = request.epa_max_iterations = 1000
-    n_pairs, n_apart, n_past, n_missed, n_lost, n_in = cases(2000, 50_000), 0, 0, 0, 0, 0
+    n_pairs, n_apart, n_past, n_missed, n_lost, n_in = cases(500, 20_000), 0, 0, 0, 0, 0
     worst, wrong = 0.0, []
     for _ in range(n_pairs):
         i, j = rng.integers(N_PARTS, size=2)
@@ -89,13 +89,14 @@ def test_parts_touch_after_the_distance_that_coal_tells(cases, say):
         away = coal.distance(
             theirs[i], coal.Transform3s(pose.rotation, offset), theirs[j], coal.Transform3s(), request, result
         )
-        geometry = geometry_of(ours[i], ours[j], TOUCH)
+        asked = Asked([parts[i]], [parts[j]], TOUCH)
         told = f"{parts[i]} at {pose}, {parts[j]}: {away}"
         if away > ACCURACY:
             n_apart += 1
             motion = motion_of(np.zeros(3), np.array(result.normal), 0.0, np.zeros(3))
             beside = Pose(offset + ASIDE * rng.normal(size=3), pose.quaternion_wxyz)
-            hit = Hit(*first(geometry, placed(geometry, beside), motion, 2.0 * away + 1.0, 0.0, 0.0))
+            asked.place(beside)
+            hit = asked.first(motion, 2.0 * away + 1.0)
             on = away + ON if hit.amount == np.inf else hit.amount
             there = coal.Transform3s(pose.rotation, beside.position_m + on * np.array(result.normal))
             result.clear()
@@ -112,16 +113,18 @@ def test_parts_touch_after_the_distance_that_coal_tells(cases, say):
                 n_missed += 1
         elif away < -ACCURACY:
             n_in += 1
-            gap = float(placed(geometry, pose).meetings.gaps[0, 0])
-            if not gap < 0.0:
-                wrong.append(f"{told} by coal, {gap} by us")
+            asked.place(pose)
+            work = empty_overlap_work(asked.held.own, asked.cage.own)
+            depth = Overlap(*find(asked.held, asked.cage, TOUCH, work)).depth_m
+            if not depth > 0.0:
+                wrong.append(f"{told} by coal, {depth} by us")
     say(
         f"{n_pairs} pairs against coal: {n_apart} apart, worst {worst:.1e} where they meet, {n_past} glance off,"
         f" {n_missed} are missed, {n_lost} times coal lost itself; {n_in} in each other; {len(wrong)} wrong"
     )
-    assert n_past < n_apart // 50
+    assert n_past <= n_apart // 50
     assert n_missed <= KNOWN_MISSED * n_apart
-    assert n_lost < n_apart // 500
+    assert n_lost <= n_apart // 500
     assert n_apart > n_pairs // 4
     assert n_in > n_pairs // 20
     assert not wrong, "\n".join([f"{len(wrong)} wrong", *wrong[:15]])
