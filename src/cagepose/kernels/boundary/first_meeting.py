@@ -410,10 +410,12 @@ def first_of_curved(
         is_passed = reaches_there and met.gap < -depth
         if touches:
             closing = dot(met.normal, velocity_at(search.motion, met.place))
-            if reaches_there:  # a contact that carries, or it would not go into it
+            if is_there(meetings, met, True, touch_m):  # it is put back there
+                is_passed = True
+            elif reaches_there:  # a contact that carries, or it would not go into it
                 is_passed = closing >= -slowest
             else:  # that of features next to them
-                is_passed = abs(closing) <= slowest and is_there(meetings, met, touch_m)
+                is_passed = abs(closing) <= slowest and is_there(meetings, met, False, touch_m)
         if is_passed or met.gap >= -depth:
             row = meetings.kept[n_kept]
             row.angle, row.other_angle, row.depth_m = place.angle, place.other_angle, math.inf if is_passed else depth
@@ -428,12 +430,12 @@ def first_of_curved(
 
 
 @kernel
-def is_there(meetings: Meetings, met: Meeting, touch_m: float) -> bool:
-    """Whether features meet where there is a contact."""
+def is_there(meetings: Meetings, met: Meeting, is_kept: bool, touch_m: float) -> bool:
+    """Whether features meet where there is a contact, or one that the motion keeps."""
     for at in range(meetings.used[0]):
         row = meetings.rows[at]
         is_near = norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
-        if is_near and dot(vector_from(row.normal), met.normal) > 0.0:
+        if is_near and (row.is_kept or not is_kept) and dot(vector_from(row.normal), met.normal) > 0.0:
             return True
     return False
 
@@ -459,8 +461,10 @@ def first_of_features(
     is_hollow = one.radius < 0.0 or other.radius < 0.0
     closing = dot(met.normal, velocity_at(motion, met.place)) if touches else -math.inf
     slowest = LEAVES_OF_SPEED * search.speed
+    if touches and is_there(meetings, met, True, touch_m):  # it is put back there
+        return math.inf
     if touches and not leaves:
-        if abs(closing) <= slowest and is_there(meetings, met, touch_m):  # that of features next to them
+        if abs(closing) <= slowest and is_there(meetings, met, False, touch_m):  # that of features next to them
             return math.inf
         closing = -math.inf
     if leaves and motion.rate == 0.0 and not is_hollow:

@@ -53,6 +53,8 @@ class Touching:
         the wall's axis.
     gap, normal, place
         As in `Meeting`.
+    is_kept
+        Whether a contact there carries, so that a motion keeps it.
     group
         Index of the first row that it is an alternative to: the object is out of the cage there if it is along one of
         the normals of a group. A row that is the first of its group has its own.
@@ -68,6 +70,7 @@ class Touching:
     gap: float
     normal: Annotated[FloatArray, 3]
     place: Annotated[FloatArray, 3]
+    is_kept: bool
     group: int
 
 

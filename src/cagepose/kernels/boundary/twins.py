@@ -27,7 +27,7 @@ def append_meeting(
         found.used[0] = -1
         return
     row = found.rows[at]
-    row.twin, row.cage_twin, row.gap, row.group = -1, -1, met.gap, at
+    row.twin, row.cage_twin, row.gap, row.is_kept, row.group = -1, -1, met.gap, False, at
     write_features(i, j, along, row)
     for k in range(3):
         row.normal[k], row.place[k] = met.normal[k], met.place[k]

@@ -13,6 +13,7 @@ from cagepose.kernels.boundary.first_meeting import Search, first_to_meet
 from cagepose.kernels.collision.first_contact import first_contact_screw, first_contact_travel
 from cagepose.kernels.collision.geometry import Placement, held_at, held_moved, is_shaped
 from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.on_circle import is_kept
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.straying import STRAYED, strayed
@@ -87,6 +88,18 @@ def until_past(setting: Setting, position: Vector, velocity: Vector) -> float:
 
 
 @kernel
+def note_kept(placement: Placement, contacts: ContactSet) -> None:
+    """Note which meetings a motion keeps."""
+    for at in range(placement.meetings.used[0]):
+        row = placement.meetings.rows[at]
+        row.is_kept = False
+        for i in range(contacts.used[0]):
+            contact = contacts.rows[i]
+            is_same = contact.feature == row.feature and contact.cage_feature == row.cage_feature
+            row.is_kept = row.is_kept or (is_same and contact.angle == row.angle and is_kept(contacts, i))
+
+
+@kernel
 def first_of_boundaries(
     setting: Setting,
     placement: Placement,
@@ -106,6 +119,7 @@ def first_of_boundaries(
     end = until_past(setting, position, velocity) if twist.end == math.inf else twist.end
     if end == 0.0:
         return NO_HIT
+    note_kept(placement, contacts)
     astray, near = 0.0, 0.0
     if motion.rate > 0.0:
         astray = strayed(geometry, placement, contacts, position, quaternion, velocity, spin, end, 0.0)
