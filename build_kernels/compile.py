@@ -147,7 +147,10 @@ class _Kept:
         content = kept.read(path)
         if content is None:
             return None
-        found = kept.KeptKernel(*pickle.loads(content))
+        try:
+            found = kept.KeptKernel(*pickle.loads(content))
+        except (AttributeError, ImportError):  # it takes a type that has another name now
+            return None
         called = list[KernelLibrary]()
         for call in found.calls:
             dispatcher = kernels.get(call.name)
