@@ -195,6 +195,8 @@ def first_touch_of_curved(
             if at >= 0:
                 # One that touched: it is followed until it is apart.
                 kept[at].angle, kept[at].other_angle = place.angle, place.other_angle
+                if kept[at].is_held:
+                    continue
                 depth = kept[at].depth_m
                 if met.gap > touch_m and (met.gap > depth or depth == math.inf):
                     n_kept, depth = dropped(kept, n_kept, at), 0.0
@@ -271,5 +273,6 @@ def kept_at(angle: float, kept: Rows[Kept], n_kept: int) -> int:
 def dropped(kept: Rows[Kept], n_kept: int, at: int) -> int:
     """Drop a place from those that touched; return how many are left."""
     last = kept[n_kept - 1]
-    kept[at].angle, kept[at].other_angle, kept[at].depth_m = last.angle, last.other_angle, last.depth_m
+    kept[at].angle, kept[at].other_angle = last.angle, last.other_angle
+    kept[at].depth_m, kept[at].is_held = last.depth_m, last.is_held
     return n_kept - 1

@@ -72,11 +72,15 @@ class Kept:
         As in `Place`, where it is after a motion.
     depth_m
         So deep, until they have been farther apart than that and than they touch, metres; inf: any.
+    is_held
+        Whether the motion keeps them there: they are put back afterwards, however far they come apart or into each
+        other on the way.
     """
 
     angle: float
     other_angle: float
     depth_m: float
+    is_held: bool
 
 
 class CirclePoint(NamedTuple):

@@ -400,25 +400,29 @@ def first_of_curved(
         met = meeting_at(held, i, cage, j, place)
         if place.kind in (GREATEST, SADDLE) or not met.is_one:
             continue
-        least = min(least, met.gap)
         if met.gap > max(touch_m, search.near_m):
+            least = min(least, met.gap)
             continue
         touches = abs(met.gap) <= touch_m
         reaches_there = both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
         depth = deepest if abs(met.gap) <= search.near_m or (touches and reaches_there) else 0.0
         depth = max(depth, 2.0 * touch_m)  # they may not reach there now, but might
-        is_passed = reaches_there and met.gap < -depth
+        is_passed, is_held = reaches_there and met.gap < -depth, False
         if touches:
             closing = dot(met.normal, velocity_at(search.motion, met.place))
-            if is_there(meetings, met, True, touch_m):  # it is put back there
+            is_held = is_there(meetings, met, True, touch_m)
+            if is_held:
                 is_passed = True
             elif reaches_there:  # a contact that carries, or it would not go into it
                 is_passed = closing >= -slowest
             else:  # that of features next to them
                 is_passed = abs(closing) <= slowest and is_there(meetings, met, False, touch_m)
+        if not is_held:
+            least = min(least, met.gap)
         if is_passed or met.gap >= -depth:
             row = meetings.kept[n_kept]
-            row.angle, row.other_angle, row.depth_m = place.angle, place.other_angle, math.inf if is_passed else depth
+            row.angle, row.other_angle, row.is_held = place.angle, place.other_angle, is_held
+            row.depth_m = math.inf if is_passed else depth
             n_kept += 1
             if n_kept == len(meetings.kept):
                 break
