@@ -15,7 +15,7 @@ from cagepose.kernels.algebra.motion import Motion, velocity_at
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import cross, dot, minus, norm, scaled, vector_from
 from cagepose.kernels.boundary.along_motion import ahead, safe_step
-from cagepose.kernels.boundary.circle_first import first_touch_of_curved, lines_apart
+from cagepose.kernels.boundary.circle_first import first_touch_of_curved, kept_at, lines_apart
 from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE
 from cagepose.kernels.boundary.features import (
     CIRCLE,
@@ -394,11 +394,12 @@ def first_of_curved(
     one, other, touch_m = held.features[i], cage.features[j], search.touch_m
     slack, slowest, n_kept, least = slack_of(one, other, touch_m), LEAVES_OF_SPEED * search.speed, 0, math.inf
     deepest = min(search.near_depth_m, THIN_OF_LEAST * min(one.least, other.least))
+    n_kept = hold_places(i, j, meetings)
     n_places = find_circle_places(one, other, touch_m, meetings.places)
     for k in range(PLACES_AROUND if n_places == WHOLE else n_places):
         place = meetings.places[k]
         met = meeting_at(held, i, cage, j, place)
-        if place.kind in (GREATEST, SADDLE) or not met.is_one:
+        if place.kind in (GREATEST, SADDLE) or not met.is_one or kept_at(place.angle, meetings.kept, n_kept) >= 0:
             continue
         if met.gap > max(touch_m, search.near_m):
             least = min(least, met.gap)
@@ -424,8 +425,8 @@ def first_of_curved(
             row.angle, row.other_angle, row.is_held = place.angle, place.other_angle, is_held
             row.depth_m = math.inf if is_passed else depth
             n_kept += 1
-            if n_kept == len(meetings.kept):
-                break
+        if n_kept == len(meetings.kept):
+            break
     exact = max(LEAST_SLACK, touch_m / search.size_m)
     found = first_touch_of_curved(
         held, i, cage, j, search.motion, until, exact, touch_m, moved, meetings.places, meetings.kept, n_kept
@@ -434,9 +435,22 @@ def first_of_curved(
 
 
 @kernel
+def hold_places(i: int, j: int, meetings: Meetings) -> int:
+    """Write the places of two features that the motion keeps; return how many there are."""
+    n_kept = 0
+    for at in range(meetings.used[1]):
+        row = meetings.rows[at]
+        if row.is_kept and row.feature == i and row.cage_feature == j and n_kept < len(meetings.kept):
+            kept = meetings.kept[n_kept]
+            kept.angle, kept.other_angle, kept.depth_m, kept.is_held = row.angle, 0.0, math.inf, True
+            n_kept += 1
+    return n_kept
+
+
+@kernel
 def is_there(meetings: Meetings, met: Meeting, is_kept: bool, touch_m: float) -> bool:
     """Whether features meet where there is a contact, or one that the motion keeps."""
-    for at in range(meetings.used[0]):
+    for at in range(meetings.used[1]):
         row = meetings.rows[at]
         is_near = norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
         if is_near and (row.is_kept or not is_kept) and dot(vector_from(row.normal), met.normal) > 0.0:

@@ -69,6 +69,7 @@ def find_meetings(held: PlacedBoundary, cage: PlacedBoundary, touch_m: float, fo
             if found.used[0] >= 0 and may_touch(own, held.own.nodes[own], other, cage.own.nodes[other]):
                 descend(held, own, cage, other, touch_m, found)
     drop_far_sides(touch_m, found)
+    found.used[1] = found.used[0]
 
 
 @kernel

@@ -80,7 +80,8 @@ class Meetings(NamedTuple):
     Attributes
     ----------
     used
-        How many rows count, (1,); -1: there are more than there is memory for.
+        How many rows count, -1: there are more than there is memory for; and how many there are with those behind them
+        that a motion keeps at other places of a circle than are listed, (2,).
     rows
         One for each meeting.
     pairs
@@ -108,7 +109,7 @@ def empty_meetings(n_features: int, n_rows: int = MOST_MEETINGS) -> Meetings:
     """Return memory for so many meetings of two boundaries, of which none has more features (plain Python)."""
     pairs, places = np.zeros((MOST_PAIRS, 2), np.int64), empty_rows(Place, MOST_PLACES)
     return Meetings(
-        np.zeros(1, np.int64),
+        np.zeros(2, np.int64),
         empty_rows(Touching, n_rows),
         pairs,
         places,

@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 from cagepose.kernels.algebra.motion import motion_of
 from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, scaled
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.features import middle_of_part
 from cagepose.kernels.boundary.first_meeting import Search, first_to_meet
+from cagepose.kernels.boundary.touching import Meetings
 from cagepose.kernels.collision.first_contact import first_contact_screw, first_contact_travel
 from cagepose.kernels.collision.geometry import Placement, held_at, held_moved, is_shaped
 from cagepose.kernels.contact.contact_set import ContactSet
@@ -88,15 +89,27 @@ def until_past(setting: Setting, position: Vector, velocity: Vector) -> float:
 
 
 @kernel
-def note_kept(placement: Placement, contacts: ContactSet) -> None:
-    """Note which meetings a motion keeps."""
-    for at in range(placement.meetings.used[0]):
-        row = placement.meetings.rows[at]
-        row.is_kept = False
+def note_kept(meetings: Meetings, contacts: ContactSet, center: Vector) -> None:
+    """Note which meetings a motion keeps, also at places of circles that were added to those that are listed."""
+    rows, last = meetings.rows, max(meetings.used[0], 0)
+    for at in range(last):
+        rows[at].is_kept = False
         for i in range(contacts.used[0]):
             contact = contacts.rows[i]
-            is_same = contact.feature == row.feature and contact.cage_feature == row.cage_feature
-            row.is_kept = row.is_kept or (is_same and contact.angle == row.angle and is_kept(contacts, i))
+            is_same = contact.feature == rows[at].feature and contact.cage_feature == rows[at].cage_feature
+            rows[at].is_kept = rows[at].is_kept or (
+                is_same and contact.angle == rows[at].angle and is_kept(contacts, i)
+            )
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        if contact.is_added and is_kept(contacts, i) and last < len(rows):
+            row, place = rows[last], plus(center, vector_from(contact.arm))
+            row.feature, row.cage_feature, row.angle = contact.feature, contact.cage_feature, contact.angle
+            row.gap, row.is_kept = contact.gap, True
+            for k in range(3):
+                row.place[k], row.normal[k] = place[k], contact.directions[0, k]
+            last += 1
+    meetings.used[1] = last
 
 
 @kernel
@@ -119,7 +132,7 @@ def first_of_boundaries(
     end = until_past(setting, position, velocity) if twist.end == math.inf else twist.end
     if end == 0.0:
         return NO_HIT
-    note_kept(placement, contacts)
+    note_kept(placement.meetings, contacts, position)
     astray, near = 0.0, 0.0
     if motion.rate > 0.0:
         astray = strayed(geometry, placement, contacts, position, quaternion, velocity, spin, end, 0.0)
