@@ -15,7 +15,6 @@ from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.kernels.collision.geometry import Geometry, empty_placement
 from cagepose.kernels.collision.start import overlap_at
 from cagepose.model.above import from_above
-from cagepose.model.apart import are_in_each_other
 from cagepose.model.cage import Cage
 from cagepose.model.checks import (
     ProblemList,
@@ -27,10 +26,11 @@ from cagepose.model.checks import (
     duplicates,
     is_finite,
 )
-from cagepose.model.geometry import object_seams, scene_geometry, scene_size
+from cagepose.model.geometry import has_shapes, object_seams, scene_geometry, scene_size
 from cagepose.model.load import Load
 from cagepose.model.methods import METHODS, Metric
 from cagepose.model.parts import Object
+from cagepose.model.seams import Seams
 from cagepose.model.shapes import Shape
 from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
 from cagepose.model.wording import few
@@ -155,12 +155,11 @@ class Scene:
         touch_m = tolerances.touch * size_m
         _check_thickness(object, cage, touch_m, problems)
         _check_points_apart(cage, touch_m, problems)
-        seams = object_seams(object, touch_m)
+        seams = Seams([], []) if has_shapes(object, cage) else object_seams(object, touch_m)
         geometry = scene_geometry(object, cage, seams.bridges, touch_m)
         _check_distance(object, cage, size_m, problems)
         _check_points_outside(object, cage, geometry, touch_m, size_m, problems)
         _check_shapes_apart(object, cage, geometry, problems)
-        _check_pierced_apart(object, cage, problems)
         _check_loads(object, loads, touch_m, problems)
         problems.raise_if_any()
         named = object.boxes
@@ -327,10 +326,6 @@ def _check_points_outside(
     for point_index in np.nonzero(depths > touch_m)[0].tolist():
         box = int(boxes[point_index])
         if box < len(held.boxes):
-            point_object = held.pose_world_object.inverse_transform(geometry.points_world[point_index])
-            holes = [hole for hole in held.holes if held.boxes[box].name in hole.in_]
-            if any(hole.holds(point_object[None])[0] for hole in holes):
-                continue
             path = key_path(("object", *held.part_paths[box][:2]))
             where = f"starts {millimetres(depths[point_index])} inside {path} ({held.boxes[box].name})"
         else:
@@ -363,20 +358,6 @@ def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: 
         f"{what}starts {millimetres(depth_m)} inside {part} ({held.element_names[one]}); move it out or"
         " move the object's start pose",
     )
-
-
-def _check_pierced_apart(held: Object, cage: Cage, problems: ProblemList) -> None:
-    """Tell of each part with holes, or beside one with holes, that starts in the other: gaps do not show it."""
-    if not held.holes and not cage.holes:
-        return
-    pose = cage.pose_world_cage.inverse() @ held.pose_world_object
-    for part, part_path in zip(held.parts, held.part_paths, strict=False):
-        holes = [hole for hole in held.holes if part.name in hole.in_]
-        for shape, path in zip(cage.shapes, cage.shape_paths, strict=False):
-            others = [hole for hole in cage.holes if shape.name in hole.in_]
-            if (holes or others) and are_in_each_other(part, shape, pose, holes, others):
-                where = f"{shape.name} starts inside {key_path(('object', *part_path[:2]))} ({part.name})"
-                problems.add(("cage", *path[:2]), f"{where}; move it out or move the object's start pose")
 
 
 def _check_loads(held: Object, loads: tuple[Load, ...], touch_m: float, problems: ProblemList) -> None:

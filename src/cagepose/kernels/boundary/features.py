@@ -68,7 +68,8 @@ class Feature:
     first_bound, last_bound
         Its bounds, the last one not included.
     least
-        Length of the shortest edge at a vertex or of a line, the radius of a circle, metres; inf: there is none. What
+        Length of the shortest edge at a vertex or of a line, the radius of a circle, metres; inf: there is none. Of the
+        tip of a cone, the radius of its wide end. What
         touches along it is told by the touch tolerance up to a tilt of one over the other.
     first_cover, last_cover
         What may cover it, in `Boundary.cover_list`, the last one not included.

@@ -210,7 +210,7 @@ def _turned_rows(part: Turned, number: int) -> list[_Row]:
     for height, radius, out in ((low, wide, -1.0), (high, narrow, 1.0)):
         sine = slant * out
         if radius == 0.0:
-            rows.append(_tip(pose, height, out, slant, number))
+            rows.append(_tip(pose, height, out, slant, max(wide, narrow), number))
             continue
         if isinstance(part, Disc):
             sine = -0.5 * math.pi
@@ -264,12 +264,14 @@ def _round_face(pose: Pose, height: float, radius: float, out: float, number: in
     return circle._replace(kind=FACE, length=0.0, width=0.0, bounds=bounds, least=radius)
 
 
-def _tip(pose: Pose, height: float, out: float, slant: float, number: int) -> _Row:
-    """Return the tip of a cone, whose normals lead up (``out`` 1) or down (-1) at least as far as those of its side."""
+def _tip(pose: Pose, height: float, out: float, slant: float, wide: float, number: int) -> _Row:
+    """Return the tip of a cone, whose normals lead up (``out`` 1) or down (-1) at least as far as those of its side;
+    what touches along the side is told as of the wide end, with this radius.
+    """
     place = pose.transform(np.array((0.0, 0.0, height)))
     bounds = [(HALF_SPACE, -out * pose.rotation[:, 2], NOWHERE, -math.sin(slant * out))]
     numbers = (0.0,) * 7
-    return _Row(VERTEX, number, place, NOWHERE, NOWHERE, *numbers, bounds, math.inf, np.stack([place, place]))
+    return _Row(VERTEX, number, place, NOWHERE, NOWHERE, *numbers, bounds, wide, np.stack([place, place]))
 
 
 def _side(pose: Pose, low: tuple[float, float], high: tuple[float, float], number: int) -> _Row:
