@@ -46,8 +46,8 @@ class TouchFinder:
 
     def __init__(self, scene: Scene) -> None:
         geometry = scene.geometry._replace(cage=placed_cage(scene.object, scene.cage, scene.touch_m))
-        parts = geometry.held.features["part"], geometry.cage.own.features["part"]
-        self._parts, self._cage_parts = (np.array(of_features) for of_features in parts)
+        held, cage = np.asarray(geometry.held.features), np.asarray(geometry.cage.own.features)
+        self._parts, self._cage_parts = np.array(held["part"]), np.array(cage["part"])
         self._geometry = Slots(geometry)
         self._placement: Placement = empty_placement(geometry)
         self._written = Slots(self._placement)
