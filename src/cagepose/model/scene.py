@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, get_args
 
@@ -27,6 +27,7 @@ from cagepose.model.checks import (
     is_finite,
 )
 from cagepose.model.geometry import has_shapes, object_seams, scene_geometry, scene_size
+from cagepose.model.hole import Hole
 from cagepose.model.load import Load
 from cagepose.model.methods import METHODS, Metric
 from cagepose.model.parts import Object
@@ -348,16 +349,25 @@ def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: 
     )
     if feature < 0:
         return
-    one, other = geometry.held.features[feature].part, geometry.cage.own.features[cage_feature].part
+    one = _solid_of(held.holes, held.element_names, geometry.held.features[feature].part)
+    other = _solid_of(cage.holes, cage.element_names, geometry.cage.own.features[cage_feature].part)
     part, n_points = key_path(("object", *held.part_paths[one][:2])), len(cage.names)
     is_point = other < n_points
     path: tuple[Key, ...] = ("points", cage.names[other]) if is_point else cage.shape_paths[other - n_points][:2]
-    what = "" if is_point else f"{cage.element_names[other]} "
+    what, remedy = ("", "move the point") if is_point else (f"{cage.element_names[other]} ", "move it")
     problems.add(
         ("cage", *path),
-        f"{what}starts {millimetres(depth_m)} inside {part} ({held.element_names[one]}); move it out or"
-        " move the object's start pose",
+        f"{what}starts {millimetres(depth_m)} inside {part} ({held.element_names[one]}); {remedy} out or move the"
+        " object's start pose",
     )
+
+
+def _solid_of(holes: Sequence[Hole], names: Sequence[str], which: int) -> int:
+    """Return the part that is in the way where an element of a body is: of a hole, the first that it is cut out of."""
+    first_hole = len(names) - len(holes)
+    if which < first_hole or not holes[which - first_hole].in_:
+        return which
+    return names.index(holes[which - first_hole].in_[0])
 
 
 def _check_loads(held: Object, loads: tuple[Load, ...], touch_m: float, problems: ProblemList) -> None:
