@@ -100,15 +100,6 @@ def end_of_meeting(
 
 
 @kernel
-def is_end_of_arc(contacts: ContactSet, i: int) -> bool:
-    """Whether a contact is where a circle that stays flat comes out from under a face: the arc ends elsewhere then."""
-    if contacts.rows[i].feature < 0 or not contacts.states[i].stays_flat:
-        return False
-    around = contacts.bends[i].on_circle
-    return bool(around.length > 0.0 and not around.is_on_ball and min(around.before, around.after) == 0.0)
-
-
-@kernel
 def first_edge_crossing(
     geometry: Geometry,
     placement: Placement,
@@ -129,7 +120,7 @@ def first_edge_crossing(
     rate = norm(spin)
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
-        if not is_kept(contacts, i) or is_end_of_arc(contacts, i):
+        if not is_kept(contacts, i):
             continue
         if contact.feature >= 0:
             motion = motion_of(center, velocity, spin)
