@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE
@@ -59,12 +61,13 @@ def place_before(contacts: ContactSet, one: ContactRow) -> int:
     """Return which of the contacts is of the same point and box, or features, of a circle at the nearest place that one
     goes to in a step; -1: none is.
     """
-    found, least = -1, SAME_ANGLE
+    found, least = -1, math.pi
     for i in range(contacts.used[0]):
         row = contacts.rows[i]
         if (row.point, row.box, row.feature, row.cage_feature) == (one.point, one.box, one.feature, one.cage_feature):
             away = abs(within_turn(row.angle - one.angle))
-            if away < least:
+            goes_on = row.feature >= 0 and contacts.bends[i].on_circle.is_crossing
+            if away < least and (goes_on or away < SAME_ANGLE):
                 found, least = i, away
     return found
 
