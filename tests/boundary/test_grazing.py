@@ -111,7 +111,7 @@ def test_round_and_sharp_parts_that_graze(cases, say):
 
 def test_parts_that_graze_in_and_over_holes(cases, say):
     rng, tally, steps = np.random.default_rng(18), Tally(), Steps()
-    for _ in range(cases(2, 10)):
+    for _ in range(cases(5, 25)):
         cage, plate, radius = random_plate(rng)
         part: Shape = random_peg(rng, radius)
         turn = np.array([1.0, *(rng.normal(size=3) * rng.choice([0.0, 0.02, 0.1]))])
