@@ -29,12 +29,7 @@ from cagepose.kernels.boundary.features import (
     place_feature,
     position_of,
 )
-from cagepose.kernels.boundary.first_touch import (
-    clear_step,
-    distance_from,
-    first_touch,
-    keeps_radius,
-)
+from cagepose.kernels.boundary.first_touch import clear_step, distance_from, first_touch, keeps_radius
 from cagepose.kernels.boundary.meeting import both_reach, meeting
 from cagepose.kernels.boundary.meetings import (
     PLACES_AROUND,
@@ -87,9 +82,9 @@ class Queue(NamedTuple):
     used: IntArray
 
 
-def empty_queue(n_pairs: int = MOST_WAITING) -> Queue:
-    """Return memory for so many pairs that wait (plain Python)."""
-    return Queue(empty_rows(Waiting, n_pairs), np.zeros(2, np.int64))
+def empty_queue() -> Queue:
+    """Return memory for pairs that wait (plain Python)."""
+    return Queue(empty_rows(Waiting, MOST_WAITING), np.zeros(2, np.int64))
 
 
 class Search(NamedTuple):
@@ -392,11 +387,13 @@ def first_of_curved(
 ) -> Hit:
     """Return what two curved features reach before an amount, see `is_curved`, or ``hit``."""
     one, other, touch_m = held.features[i], cage.features[j], search.touch_m
-    slack, slowest, n_kept, least = slack_of(one, other, touch_m), LEAVES_OF_SPEED * search.speed, 0, math.inf
+    slack, slowest, least = slack_of(one, other, touch_m), LEAVES_OF_SPEED * search.speed, math.inf
     deepest = min(search.near_depth_m, THIN_OF_LEAST * min(one.least, other.least))
     n_kept = hold_places(i, j, meetings)
     n_places = find_circle_places(one, other, touch_m, meetings.places)
     for k in range(PLACES_AROUND if n_places == WHOLE else n_places):
+        if n_kept == len(meetings.kept):
+            break
         place = meetings.places[k]
         met = meeting_at(held, i, cage, j, place)
         if place.kind in (GREATEST, SADDLE) or not met.is_one or kept_at(place.angle, meetings.kept, n_kept) >= 0:
@@ -408,10 +405,10 @@ def first_of_curved(
         reaches_there = both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
         depth = deepest if abs(met.gap) <= search.near_m or (touches and reaches_there) else 0.0
         depth = max(depth, 2.0 * touch_m)  # they may not reach there now, but might
-        is_passed, is_held = reaches_there and met.gap < -depth, False
+        is_passed = reaches_there and met.gap < -depth
+        is_held = touches and is_there(meetings, met, True, touch_m)
         if touches:
             closing = dot(met.normal, velocity_at(search.motion, met.place))
-            is_held = is_there(meetings, met, True, touch_m)
             if is_held:
                 is_passed = True
             elif reaches_there:  # a contact that carries, or it would not go into it
@@ -425,8 +422,6 @@ def first_of_curved(
             row.angle, row.other_angle, row.is_held = place.angle, place.other_angle, is_held
             row.depth_m = math.inf if is_passed else depth
             n_kept += 1
-        if n_kept == len(meetings.kept):
-            break
     exact = max(LEAST_SLACK, touch_m / search.size_m)
     found = first_touch_of_curved(
         held, i, cage, j, search.motion, until, exact, touch_m, moved, meetings.places, meetings.kept, n_kept
