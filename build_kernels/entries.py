@@ -18,12 +18,15 @@ from cagepose.kernels.boundary.arcs import Arc
 from cagepose.kernels.boundary.candidates import find_pairs
 from cagepose.kernels.boundary.corners import find_corners
 from cagepose.kernels.boundary.fans import find_arcs
+from cagepose.kernels.boundary.features import NO_BOUNDARY, empty_placed
 from cagepose.kernels.boundary.inside import is_in_face
 from cagepose.kernels.boundary.lines import empty_fan_work
 from cagepose.kernels.boundary.loops import Border, Loop, find_loops
+from cagepose.kernels.boundary.overlap import empty_overlap_work
 from cagepose.kernels.boundary.pieces import Piece, PieceEdge, PieceFace, Pieces, Plane, find_planes
 from cagepose.kernels.boundary.places import find_groups, merge_places, settle_vertices
 from cagepose.kernels.collision.geometry import Geometry, empty_cage, empty_placement, place_object
+from cagepose.kernels.collision.start import overlap_at
 from cagepose.kernels.contact.loads import Action
 from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.outcome.at_pose import critical_friction, judge_start
@@ -44,7 +47,6 @@ from cagepose.kernels.quasistatic.run import (
     run_quasistatic_cases,
 )
 from cagepose.kernels.quasistatic.workspace import empty_quasistatic_workspace
-from cagepose.kernels.shapes.features import NO_SHAPES
 from cagepose.kernels.stability.proof import empty_proof_workspace
 from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
 from cagepose.kernels.stepwise.run import (
@@ -64,22 +66,22 @@ UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     """Yield each entry and its arguments; only their types count."""
     vectors, quaternions, numbers = np.zeros((1, 3)), np.zeros((1, 4)), np.zeros(1)
-    shapes = NO_SHAPES
-    geometry = Geometry(vectors, vectors, np.zeros((1, 3, 3)), 1, vectors, shapes, shapes, 0.0)
+    none = NO_BOUNDARY
+    geometry = Geometry(vectors, vectors, np.zeros((1, 3, 3)), 1, vectors, none, empty_placed(none), 0.0)
     tolerances = kernel_tolerances(1.0, 1e-9)
 
     yield write_quaternions, (vectors, quaternions)
     yield write_euler_zyx, (quaternions, vectors)
     yield place_object, (geometry, ORIGIN, UPRIGHT, empty_placement(geometry))
 
-    part = Part(vectors, vectors, np.zeros((1, 3, 3)), 1, shapes, empty_record(Body), ORIGIN)
+    part = Part(vectors, vectors, np.zeros((1, 3, 3)), 1, none, empty_record(Body), ORIGIN)
     actions = np.zeros((1, 1, 1), dtype_of(Action))
     points = np.zeros((1, 1, 3))
     cases = Cases(
         vectors,
         quaternions,
         points,
-        shapes,
+        none,
         vectors,
         quaternions,
         numbers,
@@ -92,6 +94,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     cage = empty_cage(geometry)
     outcome, endings = empty_outcome(geometry, 1, 1, 1), empty_endings(1, 1, 1)
     proof = empty_proof_workspace(geometry)
+    yield overlap_at, (geometry, ORIGIN, UPRIGHT, empty_placement(geometry), empty_overlap_work(none, none))
     yield judge_start, (0, part, cases, cage, proof, outcome)
     yield critical_friction, (0, part, cases, cage, proof)
     yield balance_with_faces, (0.0, proof)

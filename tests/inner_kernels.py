@@ -40,13 +40,10 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     from cagepose.kernels.boundary.meetings import find_meetings
     from cagepose.kernels.boundary.overlap import empty_overlap_work, find_overlap
     from cagepose.kernels.boundary.touching import empty_meetings
-    from cagepose.kernels.collision.first_meeting import first_meeting
-    from cagepose.kernels.collision.geometry import Geometry, empty_placement
     from cagepose.kernels.contact.cone import ConeWorkspace, cone_residual
     from cagepose.kernels.contact.contact_set import empty_contact_set
     from cagepose.kernels.contact.coulomb import coulomb_onset
     from cagepose.kernels.contact.coulomb_newton import NewtonWorkspace
-    from cagepose.kernels.shapes.features import NO_SHAPES
     from cagepose.kernels.stability.relaxation import N_COLUMNS
     from cagepose.kernels.stability.strong import ModeTree, other_onset
 
@@ -55,8 +52,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield cone_residual, (contacts, 0.0, cone)
     yield coulomb_onset, (contacts, 0.0, load, cone, load, newton)
     yield other_onset, (contacts, 0.0, load, tree, newton, empty_system(N_COLUMNS))
-    vectors, origin = np.zeros((1, 3)), (0.0, 0.0, 0.0)
-    geometry = Geometry(vectors, vectors, np.zeros((1, 3, 3)), 1, vectors, NO_SHAPES, NO_SHAPES, 0.0)
+    origin = (0.0, 0.0, 0.0)
     circle, line, places = Circle(origin, origin, origin, 0.0), Round(origin, origin, 0.0, 0.0), empty_rows(Place, 1)
     yield places_by_round, (circle, line, 0.0, places)
     yield places_by_circle, (circle, circle, 0.0, places)
@@ -71,7 +67,6 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield of_boundaries.first_to_meet, (body, body, search, found, of_boundaries.empty_queue(), body)
     one = (body, 0, body, 0, motion, 0.0, 0.0, 0.0, body, found.places, found.kept, 0)
     yield first_touch_of_curved, one
-    yield first_meeting, (geometry, empty_placement(geometry), motion, 0.0, 0.0, 0.0)
 
 
 def as_machine_code(inner: Any) -> Any:

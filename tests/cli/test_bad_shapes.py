@@ -309,4 +309,4 @@ def test_a_part_that_starts_in_a_plate_beside_its_hole_is_refused(command: Calla
         (in_folder / "scene.yaml").write_text(SCENE.format(peg, f"{plate}}}\n    - {{{hole}"))
         answer = command("check", "scene.yaml")
         assert answer.code == code, answer.err
-        assert ("starts inside object.shapes[0]" in answer.err) == (code == 2)
+        assert ("plate starts 0.5 mm inside object.shapes[0]" in answer.err) == (code == 2)

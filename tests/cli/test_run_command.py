@@ -476,7 +476,7 @@ def test_of_one_name_at_several_places_forces_and_margins_say_which(command: Com
         assert f"lying plank at {edge} {carried} (" in shown
         (row,) = (row for row in forces(out) if row[2] == edge)
         assert float(row[3].split()[0]) == carried
-    assert ", floor 0.3487 (" in shown
+    assert "floor 0.3487 (" in shown
     margin = json.loads(command("run", planks, "--margin", "--json").out)["phases"][0]["proof"]["margin"]
     assert margin["contacts"][0]["at"] == pytest.approx([70.0, -94.1623, 45.0], abs=1e-4)
 

@@ -115,19 +115,19 @@ UNIONS = {
     "cavity": ((PLATE,), (Box((40, 20, 6)),), "box box box box box box"),
     "boss": ((PLATE, Cylinder(8, 20, Pose((5, 0, 10)))), (), "box cylinder"),
     "apart": ((PLATE, Sphere(5, Pose((0, 0, 40)))), (), "box sphere"),
-    "through": ((PLATE,), (Cylinder(5, 30),), "convex hole"),
-    "blind": ((PLATE,), (Cylinder(5, 10, Pose((9, 0, 5))),), "convex hole"),
+    "through": ((PLATE,), (Cylinder(5, 30),), "box hole"),
+    "blind": ((PLATE,), (Cylinder(5, 10, Pose((9, 0, 5))),), "box hole"),
     "ring": ((Cylinder(20, 10),), (Cylinder(10, 30),), "cylinder hole"),
     "bored boss": (
         (PLATE, Cylinder(8, 20, Pose((5, 0, 10)))),
         (Cylinder(5, 60, Pose((5, 0, 0))),),
-        "convex cylinder hole",
+        "box cylinder hole",
     ),
-    "counterbore": ((PLATE,), (Cylinder(5, 60), Cylinder(9, 8, Pose((0, 0, 5)))), "convex convex hole hole"),
+    "counterbore": ((PLATE,), (Cylinder(5, 60), Cylinder(9, 8, Pose((0, 0, 5)))), "box box hole hole"),
     "two holes": (
         (PLATE,),
         (Cylinder(5, 30, Pose((12, 0, 0))), Cylinder(6, 30, Pose((-12, 0, 0)))),
-        "convex hole hole",
+        "box hole hole",
     ),
 }
 
@@ -273,7 +273,7 @@ def test_holes_of_a_finely_divided_plate_are_recognised():
     """Corners lie throughout its faces and along the edges of its walls, of which one pass leaves some."""
     plate = body(PLATE, without=tuple(Cylinder(5, 30, Pose((x, 0, 0))) for x in (-15.0, 15.0)))
     found = shapes_of(plate.refine_to_length(0.6), single=True)
-    assert [shape.kind for shape in found.shapes] == ["convex", "hole", "hole"]
+    assert [shape.kind for shape in found.shapes] == ["box", "hole", "hole"]
     assert found.error == pytest.approx(5 * (1 - math.cos(math.pi / SEGMENTS)), rel=0.01)
 
 

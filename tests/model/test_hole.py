@@ -170,4 +170,4 @@ def test_a_cage_point_may_start_in_a_hole_but_not_beside_it():
     held = Object([Box((4, 4, 4), name="a")], shapes=[hole(1, 2, Pose((0, 0, 2)), "a")], pose=Pose((0, 0, 5)))
     make = lambda x: Scene(held, Cage([(x, 0, 6), (9, 9, 0), (-9, 0, 0)]), [Load("g", gravity=(0, 0, -1))])  # noqa: E731
     make(0.9)
-    assert found(lambda: make(1.1))[0].startswith("cage.points.C1: starts 900 mm inside object.boxes[0] (a)")
+    assert found(lambda: make(1.1))[0].startswith("cage.points.C1: starts 100 mm inside object.boxes[0] (a)")

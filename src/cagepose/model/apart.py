@@ -1,22 +1,15 @@
-"""Whether two convex shapes share no volume, shown by a plane between them; and parts with holes, by samples."""
+"""Whether two convex shapes share no volume, shown by a plane between them."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
 
 import numpy as np
 
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
-from cagepose.model.hole import Hole
 from cagepose.model.nearest import core_of, nearest_points
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Convex, Shape, Turned
-from cagepose.model.surface import shape_mesh
-from cagepose.model.tolerances import OVERLAP_OF_TOUCH, PARALLEL_SINE, SHARE_SHRUNK
-
-CHORDS_OF_SAMPLES = 64
-"""Samples lie on so many chords of a circle."""
+from cagepose.model.tolerances import OVERLAP_OF_TOUCH, PARALLEL_SINE
 
 
 def are_apart(one: Shape, other: Shape) -> bool:
@@ -48,30 +41,6 @@ def are_apart(one: Shape, other: Shape) -> bool:
 def _largest_gap(one: Shape, other: Shape, directions: FloatArray) -> float:
     """Return how far apart two planes across one of the directions (n, 3) are, with a shape behind each, at most."""
     return float((-one.heights_m(directions) - other.heights_m(-directions)).max(initial=-np.inf))
-
-
-def are_in_each_other(
-    one: Shape, other: Shape, pose_other_one: Pose, holes: Sequence[Hole], other_holes: Sequence[Hole]
-) -> bool:
-    """Return whether samples on the surface of either part lie in the other one, and in none of its holes; a part may
-    touch the other one. ``pose_other_one`` is that of the first part's body in the frame of the second one's.
-    """
-    one_in_other = _is_in(one, other, pose_other_one, holes, other_holes)
-    return one_in_other or _is_in(other, one, pose_other_one.inverse(), other_holes, holes)
-
-
-def _is_in(one: Shape, other: Shape, pose_other_one: Pose, holes: Sequence[Hole], other_holes: Sequence[Hole]) -> bool:
-    mesh = shape_mesh(one, CHORDS_OF_SAMPLES)
-    points = np.concatenate([mesh.vertices_m, mesh.vertices_m[mesh.triangles].mean(axis=1)])
-    middle = points.mean(axis=0)
-    points = middle + (1.0 - SHARE_SHRUNK) * (points - middle)
-    seen = pose_other_one.transform(points)
-    held = other.holds(seen)
-    for hole in holes:
-        held &= ~hole.holds(points)
-    for hole in other_holes:
-        held &= ~hole.holds(seen)
-    return bool(held.any())
 
 
 def _directions(vectors: FloatArray) -> FloatArray:

@@ -8,11 +8,17 @@ from functools import lru_cache
 
 import numpy as np
 
+from cagepose.kernels.boundary.features import (
+    NO_BOUNDARY,
+    Boundary,
+    PlacedBoundary,
+    empty_placed,
+    place_boundary,
+)
 from cagepose.kernels.collision.geometry import Geometry
-from cagepose.kernels.shapes.features import NO_SHAPES, Shapes
+from cagepose.model.boundary.features import boundary_of
 from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
-from cagepose.model.features import placed_shapes, shapes_of
 from cagepose.model.hole import Hole
 from cagepose.model.parts import Object
 from cagepose.model.seams import PlacedBox, Seams, close_seams
@@ -36,31 +42,42 @@ def _seams_of(boxes: bytes, touch_m: float) -> Seams:
 
 
 def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox], touch_m: float) -> Geometry:
-    """Return the boxes in the object's frame, its own first and then the bridges, and the cage points in the world;
-    with shapes, all parts of both as features.
+    """Return the boxes in the object's frame, its own first and then the bridges, and the cage points in the world; or,
+    with other shapes, the boundaries of both.
     """
-    placed = _placed(held) + bridges
+    is_shaped = has_shapes(held, cage)
+    placed = [] if is_shaped else _placed(held) + bridges
+    points = np.zeros((0, 3)) if is_shaped else cage.points_world()
     return Geometry(
         half_sizes=np.array([box.half_size for box in placed]).reshape(-1, 3),
         box_positions=np.array([box.position for box in placed]).reshape(-1, 3),
         box_rotations=np.array([box.rotation for box in placed]).reshape(-1, 3, 3),
-        n_own_boxes=len(held.boxes),
-        points_world=np.ascontiguousarray(cage.points_world()),
-        held=_features((*held.parts, *held.holes)) if _has_shapes(held, cage) else NO_SHAPES,
-        cage=placed_shapes(cage_shapes(held, cage), cage.pose_world_cage),
+        n_own_boxes=0 if is_shaped else len(held.boxes),
+        points_world=np.ascontiguousarray(points),
+        held=_boundary((*held.parts, *held.holes), touch_m) if is_shaped else NO_BOUNDARY,
+        cage=placed_cage(held, cage, touch_m),
         touch_m=touch_m,
     )
 
 
-def cage_shapes(held: Object, cage: Cage) -> Shapes:
-    """Return all parts of the cage as features, its points first, in its frame; none where there are boxes and points
-    alone.
+def placed_cage(held: Object, cage: Cage, touch_m: float) -> PlacedBoundary:
+    """Return the boundary of the cage in the world, with memory of its own."""
+    placed = empty_placed(cage_boundary(held, cage, touch_m))
+    place_boundary(placed, *cage.pose_world_cage.as_tuples())
+    return placed
+
+
+def cage_boundary(held: Object, cage: Cage, touch_m: float) -> Boundary:
+    """Return the boundary of all parts of the cage, its points first, in its frame; that of none where there are boxes
+    and points alone.
     """
-    return _features((*cage.points_cage, *cage.shapes, *cage.holes)) if _has_shapes(held, cage) else NO_SHAPES
+    if not has_shapes(held, cage):
+        return NO_BOUNDARY
+    return _boundary((*cage.points_cage, *cage.shapes, *cage.holes), touch_m)
 
 
-def _features(parts: tuple[Shape | FloatArray, ...]) -> Shapes:
-    """Return the features of a body. Those of the last few bodies are remembered, as seams are."""
+def _boundary(parts: tuple[Shape | FloatArray, ...], touch_m: float) -> Boundary:
+    """Return the boundary of a body. Those of the last few bodies are remembered, as seams are."""
     keys = (
         part.tobytes()
         if isinstance(part, np.ndarray)
@@ -68,23 +85,23 @@ def _features(parts: tuple[Shape | FloatArray, ...]) -> Shapes:
         for part in parts
     )
     holes = tuple(part.in_ for part in parts if isinstance(part, Hole))
-    return _features_of(_Body((*keys, *holes), parts))
+    return _boundary_of(_Body((*keys, *holes), parts), touch_m)
 
 
 @dataclass(frozen=True)
 class _Body:
-    """The parts of a body, and all that their features depend on."""
+    """The parts of a body, and all that their boundary depends on."""
 
     key: tuple[object, ...]
     parts: tuple[Shape | FloatArray, ...] = field(compare=False)
 
 
 @lru_cache(maxsize=8)
-def _features_of(body: _Body) -> Shapes:
-    return shapes_of(body.parts)
+def _boundary_of(body: _Body, touch_m: float) -> Boundary:
+    return boundary_of(body.parts, touch_m)
 
 
-def _has_shapes(held: Object, cage: Cage) -> bool:
+def has_shapes(held: Object, cage: Cage) -> bool:
     """Whether a scene has other shapes than boxes and points."""
     return bool(held.shapes or held.holes or cage.shapes or cage.holes)
 

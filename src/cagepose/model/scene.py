@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, get_args
 
 import numpy as np
 
 from cagepose.errors import Key, key_path
+from cagepose.kernels.boundary.overlap import empty_overlap_work
 from cagepose.kernels.collision.contacts import deepest_boxes
-from cagepose.kernels.collision.geometry import Geometry, empty_placement, place_object
+from cagepose.kernels.collision.geometry import Geometry, empty_placement
+from cagepose.kernels.collision.start import overlap_at
 from cagepose.model.above import from_above
-from cagepose.model.apart import are_in_each_other
 from cagepose.model.cage import Cage
 from cagepose.model.checks import (
     ProblemList,
@@ -25,10 +26,12 @@ from cagepose.model.checks import (
     duplicates,
     is_finite,
 )
-from cagepose.model.geometry import object_seams, scene_geometry, scene_size
+from cagepose.model.geometry import has_shapes, object_seams, scene_geometry, scene_size
+from cagepose.model.hole import Hole
 from cagepose.model.load import Load
 from cagepose.model.methods import METHODS, Metric
 from cagepose.model.parts import Object
+from cagepose.model.seams import Seams
 from cagepose.model.shapes import Shape
 from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
 from cagepose.model.wording import few
@@ -153,12 +156,11 @@ class Scene:
         touch_m = tolerances.touch * size_m
         _check_thickness(object, cage, touch_m, problems)
         _check_points_apart(cage, touch_m, problems)
-        seams = object_seams(object, touch_m)
+        seams = Seams([], []) if has_shapes(object, cage) else object_seams(object, touch_m)
         geometry = scene_geometry(object, cage, seams.bridges, touch_m)
         _check_distance(object, cage, size_m, problems)
         _check_points_outside(object, cage, geometry, touch_m, size_m, problems)
         _check_shapes_apart(object, cage, geometry, problems)
-        _check_pierced_apart(object, cage, problems)
         _check_loads(object, loads, touch_m, problems)
         problems.raise_if_any()
         named = object.boxes
@@ -319,16 +321,12 @@ def _check_distance(held: Object, cage: Cage, size_m: float, problems: ProblemLi
 def _check_points_outside(
     held: Object, cage: Cage, geometry: Geometry, touch_m: float, size_m: float, problems: ProblemList
 ) -> None:
-    if not held.boxes or not cage.names:
+    if len(geometry.half_sizes) == 0 or not cage.names:
         return
     depths, boxes = deepest_boxes(geometry, *held.pose_world_object.as_tuples())
     for point_index in np.nonzero(depths > touch_m)[0].tolist():
         box = int(boxes[point_index])
         if box < len(held.boxes):
-            point_object = held.pose_world_object.inverse_transform(geometry.points_world[point_index])
-            holes = [hole for hole in held.holes if held.boxes[box].name in hole.in_]
-            if any(hole.holds(point_object[None])[0] for hole in holes):
-                continue
             path = key_path(("object", *held.part_paths[box][:2]))
             where = f"starts {millimetres(depths[point_index])} inside {path} ({held.boxes[box].name})"
         else:
@@ -341,35 +339,35 @@ def _check_points_outside(
 
 def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: ProblemList) -> None:
     """Tell of each part of the object that starts in a part of the cage; of boxes and points is told above."""
-    if len(geometry.held.parts) == 0:
+    if len(geometry.held.features) == 0:
         return
-    placement = empty_placement(geometry)
-    place_object(geometry, *held.pose_world_object.as_tuples(), placement)
-    gaps, n_points = placement.meetings.gaps, len(cage.names)
-    for one, other in np.argwhere(gaps < -geometry.touch_m).tolist():
-        part = key_path(("object", *held.part_paths[one][:2]))
-        is_point = other < n_points
-        path: tuple[Key, ...] = ("points", cage.names[other]) if is_point else cage.shape_paths[other - n_points][:2]
-        what = "" if is_point else f"{cage.element_names[other]} "
-        problems.add(
-            ("cage", *path),
-            f"{what}starts {millimetres(-gaps[one, other])} inside {part} ({held.element_names[one]}); move it out or"
-            " move the object's start pose",
-        )
+    feature, cage_feature, depth_m = overlap_at(
+        geometry,
+        *held.pose_world_object.as_tuples(),
+        empty_placement(geometry),
+        empty_overlap_work(geometry.held, geometry.cage.own),
+    )
+    if feature < 0:
+        return
+    one = _solid_of(held.holes, held.element_names, geometry.held.features[feature].part)
+    other = _solid_of(cage.holes, cage.element_names, geometry.cage.own.features[cage_feature].part)
+    part, n_points = key_path(("object", *held.part_paths[one][:2])), len(cage.names)
+    is_point = other < n_points
+    path: tuple[Key, ...] = ("points", cage.names[other]) if is_point else cage.shape_paths[other - n_points][:2]
+    what, remedy = ("", "move the point") if is_point else (f"{cage.element_names[other]} ", "move it")
+    problems.add(
+        ("cage", *path),
+        f"{what}starts {millimetres(depth_m)} inside {part} ({held.element_names[one]}); {remedy} out or move the"
+        " object's start pose",
+    )
 
 
-def _check_pierced_apart(held: Object, cage: Cage, problems: ProblemList) -> None:
-    """Tell of each part with holes, or beside one with holes, that starts in the other: gaps do not show it."""
-    if not held.holes and not cage.holes:
-        return
-    pose = cage.pose_world_cage.inverse() @ held.pose_world_object
-    for part, part_path in zip(held.parts, held.part_paths, strict=False):
-        holes = [hole for hole in held.holes if part.name in hole.in_]
-        for shape, path in zip(cage.shapes, cage.shape_paths, strict=False):
-            others = [hole for hole in cage.holes if shape.name in hole.in_]
-            if (holes or others) and are_in_each_other(part, shape, pose, holes, others):
-                where = f"{shape.name} starts inside {key_path(('object', *part_path[:2]))} ({part.name})"
-                problems.add(("cage", *path[:2]), f"{where}; move it out or move the object's start pose")
+def _solid_of(holes: Sequence[Hole], names: Sequence[str], which: int) -> int:
+    """Return the part that is in the way where an element of a body is: of a hole, the first that it is cut out of."""
+    first_hole = len(names) - len(holes)
+    if which < first_hole or not holes[which - first_hole].in_:
+        return which
+    return names.index(holes[which - first_hole].in_[0])
 
 
 def _check_loads(held: Object, loads: tuple[Load, ...], touch_m: float, problems: ProblemList) -> None:

@@ -23,9 +23,6 @@ def unknown_shapes(scene: Scene) -> list[Problem]:
         solids = tuple(solid for solid in (*_boxes_of(body), *body.shapes) if solid.name in hole.in_)
         if says := _unknown_in(hole, solids):
             found.append(Problem(path, says))
-        elif scene.cage.names and isinstance(body, Object) and any(isinstance(solid, Box) for solid in solids):
-            says = f"is a hole ({hole.name}) in a box of the object, and points of the cage see no holes in boxes"
-            found.append(Problem(path, f"{says}; make the box a convex shape, or the points small spheres"))
     return found
 
 

@@ -88,5 +88,6 @@ def _workspace(scene: Scene, method: Method, step_limit: int) -> _Workspace:
 
 
 def _sizes(scene: Scene) -> tuple[int, ...]:
-    """How many parts, features and fences the shapes of a scene have."""
-    return tuple(len(rows) for shapes in (scene.geometry.held, scene.geometry.cage) for rows in shapes)
+    """How many parts, features and nodes the boundaries of a scene have."""
+    bodies = (scene.geometry.held, scene.geometry.cage.own)
+    return tuple(len(rows) for body in bodies for rows in (body.parts, body.features, body.nodes))

@@ -66,7 +66,9 @@ class Touch(NamedTuple):
 
 
 def touched_faces(scene: Scene, pose: Pose) -> list[Touch]:
-    """Return the contacts of the cage's points with the object's boxes."""
+    """Return the contacts of the cage's points with the object's boxes; none where there are other shapes."""
+    if scene.has_other_shapes:
+        return []
     points, half_sizes = scene.cage.points_world(), scene.geometry.half_sizes
     rotations = pose.rotation @ scene.geometry.box_rotations
     middles = pose.transform(scene.geometry.box_positions)

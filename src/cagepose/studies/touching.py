@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 from cagepose.kernels.collision.geometry import Placement, empty_placement, place_object
 from cagepose.kernels.native.slots import Slots
 from cagepose.model.checks import FloatArray
+from cagepose.model.geometry import placed_cage
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 
 
 class PlacesOfContact(NamedTuple):
-    """Where n pairs of parts touch, those of boxes with points left out.
+    """Where n pairs of parts touch.
 
     Attributes
     ----------
@@ -44,8 +45,11 @@ class TouchFinder:
     """Finds contacts of one scene, at pose after pose, in the same memory."""
 
     def __init__(self, scene: Scene) -> None:
-        self._geometry = Slots(scene.geometry)
-        self._placement: Placement = empty_placement(scene.geometry)
+        geometry = scene.geometry._replace(cage=placed_cage(scene.object, scene.cage, scene.touch_m))
+        held, cage = np.asarray(geometry.held.features), np.asarray(geometry.cage.own.features)
+        self._parts, self._cage_parts = np.array(held["part"]), np.array(cage["part"])
+        self._geometry = Slots(geometry)
+        self._placement: Placement = empty_placement(geometry)
         self._written = Slots(self._placement)
 
     def at(self, pose_world_object: Pose) -> PlacesOfContact:
@@ -54,8 +58,10 @@ class TouchFinder:
         meetings = self._placement.meetings
         rows: Any = meetings.rows
         rows = rows[: max(int(meetings.used[0]), 0)]
-        rows = rows[~rows["is_hidden"]]
         # The object's own point; the cage's is within the touch tolerance of it.
         return PlacesOfContact(
-            np.array(rows["cage_part"]), np.array(rows["part"]), np.array(rows["place"]), np.array(rows["normal"])
+            self._cage_parts[rows["cage_feature"]],
+            self._parts[rows["feature"]],
+            np.array(rows["place"]),
+            np.array(rows["normal"]),
         )

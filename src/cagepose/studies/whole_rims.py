@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cagepose.kernels.shapes.meeting import SAME_PLACE
+from cagepose.kernels.boundary.touching import SAME_PLACE
 from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
 from cagepose.model.parts import Object

@@ -113,8 +113,6 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str, decompose: Decompose) -> 
     names = [name] if len(found) == 1 else [f"{name}/{index + 1}" for index in range(len(found))]
     pieces_named = [one.shape.renamed(each) for one, each in zip(found, names, strict=True)]
     cuts = [_in_pieces(one.hole, pieces_named, f"{name}/hole {k + 1}") for k, one in enumerate(holes)]
-    bored = {name for cut in cuts for name in cut.in_}  # points of a cage see no holes in boxes
-    pieces_named = [_as_convex(piece) if piece.name in bored else piece for piece in pieces_named]
     shapes = [tidied(shape, scale, middle) for shape in (*pieces_named, *cuts)]
     return MeshShapes(tuple(shapes), error, tuple(notes))
 
@@ -139,10 +137,6 @@ def tidied(shape: Shape, scale: float, origin: FloatArray) -> Shape:
         return Hole(**numbers, chamfer=chamfer, in_=shape.in_, pose_body_shape=pose, name=shape.name)
     assert isinstance(shape, Sphere | Capsule | Cylinder | Cone)
     return type(shape)(**numbers, pose_body_shape=pose, name=shape.name)
-
-
-def _as_convex(shape: Shape) -> Shape:
-    return Convex(shape.nodes_body(), 0.0, None, shape.name) if isinstance(shape, Box) else shape
 
 
 def _in_pieces(hole: Hole, pieces: Sequence[Shape], name: str) -> Hole:

@@ -212,6 +212,16 @@ NO_BOUNDARY = Boundary(
 """A body without features."""
 
 
+class Placing(NamedTuple):
+    """Memory for a boundary at a pose; see `PlacedBoundary`."""
+
+    features: Rows[Feature]
+    is_placed: NDArray[np.bool_]
+    boxes: FloatArray
+    is_boxed: NDArray[np.bool_]
+    pose: FloatArray
+
+
 class PlacedBoundary(NamedTuple):
     """A boundary at a pose. Features are placed when they are asked for, as most are far from everything.
 
@@ -238,17 +248,27 @@ class PlacedBoundary(NamedTuple):
     pose: FloatArray
 
 
-def empty_placed(own: Boundary) -> PlacedBoundary:
-    """Return a boundary with memory for a pose (plain Python)."""
+def empty_placing(own: Boundary) -> Placing:
+    """Return memory for a boundary at a pose (plain Python)."""
     n_features, n_nodes = len(own.features), len(own.nodes)
-    return PlacedBoundary(
-        own,
+    return Placing(
         empty_rows(Feature, n_features),
         np.zeros(n_features, np.bool_),
         np.zeros((n_nodes, 2, 3)),
         np.zeros(n_nodes, np.bool_),
         np.zeros((4, 3)),
     )
+
+
+def empty_placed(own: Boundary) -> PlacedBoundary:
+    """Return a boundary with memory for a pose (plain Python)."""
+    return PlacedBoundary(own, *empty_placing(own))
+
+
+@kernel
+def placed_in(own: Boundary, memory: Placing) -> PlacedBoundary:
+    """Return a boundary as it is placed in some memory."""
+    return PlacedBoundary(own, memory.features, memory.is_placed, memory.boxes, memory.is_boxed, memory.pose)
 
 
 @kernel
@@ -296,6 +316,17 @@ def place_feature(body: PlacedBoundary, i: int) -> None:
 
 
 @kernel
+def place_feature_at(body: PlacedBoundary, i: int, position: Vector, rotation: Matrix) -> None:
+    """Place one feature, and the pose of its body, where a pose is tried."""
+    for k in range(3):
+        body.pose[0, k] = position[k]
+        for j in range(3):
+            body.pose[1 + j, k] = rotation[j][k]
+    body.features[i] = body.own.features[i]  # type: ignore[index]
+    write_placed(body.own.features[i], position, rotation, body.features[i])
+
+
+@kernel
 def write_placed(feature: Feature, position: Vector, rotation: Matrix, out: Feature) -> None:
     """Write a feature as it is in the world with its body at a pose; what does not change with the pose is there."""
     point = plus(position, times(rotation, vector_from(feature.point)))
@@ -306,6 +337,12 @@ def write_placed(feature: Feature, position: Vector, rotation: Matrix, out: Feat
         toward = times(rotation, vector_from(feature.toward))
         for k in range(3):
             out.toward[k] = toward[k]
+
+
+@kernel
+def middle_of_part(body: PlacedBoundary, part: int) -> Vector:
+    """Return the middle of the ball around a part, in the world."""
+    return plus(position_of(body), times(rotation_of(body), vector_from(body.own.parts[part].middle)))
 
 
 @kernel

@@ -82,9 +82,9 @@ class Queue(NamedTuple):
     used: IntArray
 
 
-def empty_queue() -> Queue:
-    """Return memory for pairs that wait (plain Python)."""
-    return Queue(empty_rows(Waiting, MOST_WAITING), np.zeros(2, np.int64))
+def empty_queue(n_pairs: int = MOST_WAITING) -> Queue:
+    """Return memory for so many pairs that wait (plain Python)."""
+    return Queue(empty_rows(Waiting, n_pairs), np.zeros(2, np.int64))
 
 
 class Search(NamedTuple):

@@ -12,8 +12,10 @@ from cagepose.kernels.algebra.vector import minus, norm, vector_from
 from cagepose.kernels.boundary.circle_places import Kept, Place
 from cagepose.kernels.native.kernel import kernel
 
-MOST_MEETINGS, MOST_PAIRS, MOST_PLACES = 4096, 256, 16
-"""Meetings that there is memory for; pairs of nodes that wait while two trees are descended; places of one circle."""
+MOST_OF_PARTS, MOST_MEETINGS = 128, 4096
+"""Meetings that there is memory for: of each pair of parts, and of all."""
+MOST_PAIRS, MOST_PLACES = 256, 16
+"""Pairs of nodes that wait while two trees are descended; places of one circle."""
 SAME_PLACE = 4.0
 """In touch tolerances: meetings nearer to each other are at one place."""
 SAME_NORMAL = 1e-9
@@ -41,6 +43,8 @@ class Touching:
     ----------
     feature, cage_feature
         Indices.
+    face
+        Where a sharp edge crosses a circle that lies flat: the face beside the edge that it lies on; else -1.
     twin, cage_twin
         Features that meet at the same place with the same normal and bend more; -1: none do.
     angle
@@ -60,6 +64,7 @@ class Touching:
 
     feature: int
     cage_feature: int
+    face: int
     twin: int
     cage_twin: int
     angle: float
@@ -98,12 +103,17 @@ class Meetings(NamedTuple):
     heights: FloatArray
 
 
-def empty_meetings(n_features: int) -> Meetings:
-    """Return memory for the meetings of two boundaries, of which none has more features (plain Python)."""
+def most_meetings(n_parts: int, n_cage_parts: int) -> int:
+    """Return how many meetings of so many parts there is memory for (plain Python)."""
+    return min(MOST_OF_PARTS * n_parts * n_cage_parts, MOST_MEETINGS)
+
+
+def empty_meetings(n_features: int, n_rows: int = MOST_MEETINGS) -> Meetings:
+    """Return memory for so many meetings of two boundaries, of which none has more features (plain Python)."""
     pairs, places = np.zeros((MOST_PAIRS, 2), np.int64), empty_rows(Place, MOST_PLACES)
     return Meetings(
         np.zeros(2, np.int64),
-        empty_rows(Touching, MOST_MEETINGS),
+        empty_rows(Touching, n_rows),
         pairs,
         places,
         empty_rows(Kept, MOST_PLACES),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.vector import minus, norm, vector_from
 from cagepose.kernels.boundary.bend import bends_by, curvatures
-from cagepose.kernels.boundary.features import CIRCLE, PlacedBoundary
+from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, PlacedBoundary
 from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.boundary.touching import SAME_NORMAL, Along, Meetings, Touching, is_around, is_at_place
 from cagepose.kernels.native.kernel import kernel
@@ -27,7 +27,7 @@ def append_meeting(
         found.used[0] = -1
         return
     row = found.rows[at]
-    row.twin, row.cage_twin, row.gap, row.is_kept, row.group = -1, -1, met.gap, False, at
+    row.face, row.twin, row.cage_twin, row.gap, row.is_kept, row.group = -1, -1, -1, met.gap, False, at
     write_features(i, j, along, row)
     for k in range(3):
         row.normal[k], row.place[k] = met.normal[k], met.place[k]
@@ -54,9 +54,14 @@ def bends_of(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, row: To
 @kernel
 def note_twin(held: PlacedBoundary, cage: PlacedBoundary, told: Touching, new: Touching) -> None:
     """Keep, of features that meet at one place with one normal, those that bend least, and beside them those that bend
-    most; but a circle that touches along an arc there is kept in any case.
+    most; but a circle that touches along an arc there is kept in any case. Where it comes out from under a face, its
+    meeting with the edge of this is kept, which goes along both, and told where the arc leads.
     """
-    if is_around(told) and is_around(new) and are_of_one_circle(held, cage, told, new):
+    is_same = are_of_one_circle(held, cage, told, new)
+    if is_same and is_around(new) and (is_around(told) or is_crossing(held, cage, told)):
+        if is_crossing(held, cage, told):
+            is_of_held = held.own.features[new.feature].kind == FACE
+            told.face = new.feature if is_of_held else new.cage_feature
         told.before, told.after = max(told.before, new.before), max(told.after, new.after)
         return
     least = bends_of(held, told.feature, cage, told.cage_feature, told, is_around(told))
@@ -68,6 +73,14 @@ def note_twin(held: PlacedBoundary, cage: PlacedBoundary, told: Touching, new: T
         write_features(new.feature, new.cage_feature, Along(new.angle, new.before, new.after), told)
     elif bend > most:
         told.twin, told.cage_twin = new.feature, new.cage_feature
+
+
+@kernel
+def is_crossing(held: PlacedBoundary, cage: PlacedBoundary, row: Touching) -> bool:
+    """Whether a meeting is of a circle and a sharp line."""
+    one, other = held.own.features[row.feature], cage.own.features[row.cage_feature]
+    line = one if one.kind == LINE else other
+    return bool(line.kind == LINE and line.radius == 0.0 and (one.kind == CIRCLE or other.kind == CIRCLE))
 
 
 @kernel

@@ -1,7 +1,7 @@
 """What does not change during a run (`Geometry`), and what follows from one pose (`Placement`).
 
-Cage points against boxes are told by the boxes' faces, here; all other pairs of parts by their features, in
-`cagepose.kernels.shapes`.
+Cage points against boxes are told by the boxes' faces, here; where there are other shapes, all parts by their features,
+in `cagepose.kernels.boundary`.
 """
 
 from __future__ import annotations
@@ -11,19 +11,30 @@ from typing import NamedTuple
 import numpy as np
 
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
-from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import Matrix, Vector, matrix, minus, plus, row, times, transposed_times
-from cagepose.kernels.collision.waiting import Queue, empty_queue
+from cagepose.kernels.boundary.features import (
+    BodyPart,
+    Boundary,
+    Feature,
+    PlacedBoundary,
+    Placing,
+    empty_placing,
+    place_boundary,
+    placed_in,
+)
+from cagepose.kernels.boundary.first_meeting import MOST_WAITING, Queue, empty_queue
+from cagepose.kernels.boundary.groups import number_groups
+from cagepose.kernels.boundary.meetings import find_meetings
+from cagepose.kernels.boundary.overlap import OverlapWork, empty_overlap_work
+from cagepose.kernels.boundary.touching import Meetings, empty_meetings, most_meetings
+from cagepose.kernels.boundary.tree import Node
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import entry, kernel
-from cagepose.kernels.shapes.body import PlacedBody, empty_body, place_body
-from cagepose.kernels.shapes.features import Shapes, copied
-from cagepose.kernels.shapes.meetings import find_meetings
-from cagepose.kernels.shapes.touching import Meetings, empty_meetings
 
 
 class Geometry(NamedTuple):
-    """Boxes and shapes in the object's frame, cage points and shapes in the world.
+    """Boxes in the object's frame and cage points in the world; or, where there are other shapes, two boundaries.
 
     Where two boxes meet flush, the plane between them belongs to the inside of the object, but to the inside of
     neither box. A further box bridges each such seam (see `cagepose.model.seams`): it lies within the two, so it
@@ -40,8 +51,8 @@ class Geometry(NamedTuple):
     points_world
         (n_points, 3), metres.
     held, cage
-        All parts of the object, its own boxes first, and of the cage, its points first; empty where there are only
-        boxes and points.
+        All parts of the object, its own boxes first, in its frame, and of the cage, its points first, in the world.
+        Boxes and points are not listed then; where there are only these, both are empty.
     touch_m
         Parts within this distance touch.
     """
@@ -51,8 +62,8 @@ class Geometry(NamedTuple):
     box_rotations: FloatArray
     n_own_boxes: int
     points_world: FloatArray
-    held: Shapes
-    cage: Shapes
+    held: Boundary
+    cage: PlacedBoundary
     touch_m: float
 
 
@@ -74,13 +85,13 @@ class Placement(NamedTuple):
     arms
         Memory for the squared distance of each point from the axis of a turn, (n_points,), square metres.
     body
-        The object's shapes.
+        Memory for the object's boundary, see `held_at`.
     moved
-        Memory for them at a pose that is tried.
+        Memory for it at a pose that is tried, see `held_moved`.
     meetings
-        Where they touch the cage's.
+        Where it touches the cage's.
     queue
-        Memory for pairs of them that may touch on the way.
+        Memory for pairs of nodes that may touch on the way.
     """
 
     box_positions: FloatArray
@@ -90,8 +101,8 @@ class Placement(NamedTuple):
     gaps: FloatArray
     depths: FloatArray
     arms: FloatArray
-    body: PlacedBody
-    moved: Shapes
+    body: Placing
+    moved: Placing
     meetings: Meetings
     queue: Queue
 
@@ -108,28 +119,70 @@ def empty_placement(geometry: Geometry) -> Placement:
         np.empty((n_boxes, n_points)),
         np.empty(n_points),
         np.empty(n_points),
-        empty_body(geometry.held),
-        copied(geometry.held),
-        empty_meetings(geometry.held, geometry.cage),
-        empty_queue(len(geometry.held.parts) * len(geometry.cage.parts)),
+        empty_placing(geometry.held),
+        empty_placing(geometry.held),
+        empty_meetings(max(len(geometry.held.features), len(geometry.cage.features)), most_rows(geometry)),
+        empty_queue(most_waiting(geometry)),
     )
+
+
+def most_waiting(geometry: Geometry) -> int:
+    """Return how many pairs of nodes may wait (plain Python): none without boundaries."""
+    return MOST_WAITING if len(geometry.held.features) > 0 else 0
+
+
+def most_rows(geometry: Geometry) -> int:
+    """Return how many meetings of the two boundaries there is memory for (plain Python)."""
+    return most_meetings(len(geometry.held.parts), len(geometry.cage.own.parts))
 
 
 def most_elements(geometry: Geometry) -> int:
     """Return how many points and shapes the cage has (plain Python)."""
-    return max(len(geometry.points_world), len(geometry.cage.parts))
+    return max(len(geometry.points_world), len(geometry.cage.own.parts))
 
 
 class PlacedCage(NamedTuple):
-    """Memory for the cage of a case, in the world: its points, (n_points, 3), metres, and its shapes."""
+    """Memory for the cage of a case, in the world: its points, (n_points, 3), metres; its boundary at a pose; as single
+    points may be elsewhere from case to case, features, parts and trees of its own; and for the start check.
+    """
 
     points_world: FloatArray
-    shapes: Shapes
+    placing: Placing
+    features: Rows[Feature]
+    parts: Rows[BodyPart]
+    nodes: Rows[Node]
+    overlap: OverlapWork
 
 
 def empty_cage(geometry: Geometry) -> PlacedCage:
     """Return memory for the cage of a case (plain Python)."""
-    return PlacedCage(np.empty_like(geometry.points_world), copied(geometry.cage))
+    own = geometry.cage.own
+    return PlacedCage(
+        np.empty_like(geometry.points_world),
+        empty_placing(own),
+        empty_rows(Feature, len(own.features)),
+        empty_rows(BodyPart, len(own.parts)),
+        empty_rows(Node, len(own.nodes)),
+        empty_overlap_work(geometry.held, own),
+    )
+
+
+@kernel
+def is_shaped(geometry: Geometry) -> bool:
+    """Whether the object and the cage are two boundaries."""
+    return len(geometry.held.features) > 0
+
+
+@kernel
+def held_at(geometry: Geometry, placement: Placement) -> PlacedBoundary:
+    """Return the object's boundary at its pose."""
+    return placed_in(geometry.held, placement.body)
+
+
+@kernel
+def held_moved(geometry: Geometry, placement: Placement) -> PlacedBoundary:
+    """Return memory for the object's boundary at a pose that is tried."""
+    return placed_in(geometry.held, placement.moved)
 
 
 @kernel
@@ -212,17 +265,11 @@ def place_points(geometry: Geometry, position: Vector, quaternion: Quaternion, p
 def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, placement: Placement) -> None:
     """Fill ``placement`` for the object at the given pose."""
     place_points(geometry, position, quaternion, placement)
-    if len(geometry.held.parts) > 0:
-        place_body(geometry.held, position, quaternion, placement.body)
-        find_meetings(
-            geometry.held,
-            placement.body,
-            geometry.cage,
-            geometry.n_own_boxes,
-            len(geometry.points_world),
-            geometry.touch_m,
-            placement.meetings,
-        )
+    if is_shaped(geometry):
+        held = held_at(geometry, placement)
+        place_boundary(held, position, quaternion)
+        find_meetings(held, geometry.cage, geometry.touch_m, placement.meetings)
+        number_groups(held, geometry.cage, geometry.touch_m, placement.meetings)
 
 
 @kernel

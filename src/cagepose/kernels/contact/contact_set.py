@@ -13,11 +13,10 @@ import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import Vector, cross, norm, scaled
-from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.boundary.bend import Bend
+from cagepose.kernels.collision.geometry import Geometry, most_rows
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.bend import Bend
-from cagepose.kernels.shapes.touching import most_meetings
 
 CONTACTS_PER_POINT = 12
 """Faces that a point may touch, taken over all points. More: the run stalls, by name."""
@@ -34,13 +33,15 @@ class ContactRow:
         Of the box's face over a point: index of the axis, and +1 or -1.
     feature, cage_feature
         Of shapes that touch: indices of their features; -1: they are a point and a box.
+    angle
+        Of shapes: where along a circle, if one of the features is one, radians.
     gap
         Distance, below zero: how deep, metres.
     group
         The first row of the same point and box; -1: the row does not count, as flush faces of another box say all
         that it does.
     is_added
-        Whether it is a point of a flat rim that was not listed at first, see `on_rim`.
+        Whether it is a place of a circle that was not listed at first, see `on_circle`.
     directions, arm
         Outward unit normal and two tangents, rows, and the place as seen from the centre of gravity, in the world. The
         tangents are as long as the contact's coefficient of friction is of the greatest one, so that one coefficient
@@ -56,6 +57,7 @@ class ContactRow:
     side: float
     feature: int
     cage_feature: int
+    angle: float
     gap: float
     group: int
     is_added: bool
@@ -126,15 +128,13 @@ def empty_contact_set(n_rows: int, n_bends: int = 0) -> ContactSet:
 
 def most_contacts(geometry: Geometry) -> int:
     """Return how many contacts there may be at one pose (plain Python)."""
-    return CONTACTS_PER_POINT * len(geometry.points_world) + most_meetings(
-        len(geometry.held.parts), len(geometry.cage.parts)
-    )
+    return most_rows(geometry) + CONTACTS_PER_POINT * len(geometry.points_world)
 
 
 def contact_set_for(geometry: Geometry) -> ContactSet:
     """Return a set with memory for all contacts that there may be at one pose (plain Python)."""
     n_rows = most_contacts(geometry)
-    return empty_contact_set(n_rows, n_rows if len(geometry.held.parts) > 0 else 0)
+    return empty_contact_set(n_rows, most_rows(geometry))
 
 
 @kernel

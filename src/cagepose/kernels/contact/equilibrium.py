@@ -21,7 +21,7 @@ from cagepose.kernels.contact.edges import (
     return_to_kept,
 )
 from cagepose.kernels.contact.metric import WRENCH, Frame
-from cagepose.kernels.contact.on_rim import MOST_ADDED_POINTS, add_on_rims
+from cagepose.kernels.contact.on_circle import MOST_ADDED_POINTS, add_on_circles
 from cagepose.kernels.contact.self_stress import (
     begin_unlocked,
     carry_by_locked,
@@ -177,7 +177,7 @@ def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness:
     """As `equilibrium_of_listed`; where rims lie flat, with all their points that a motion would go in at."""
     code = equilibrium_of_listed(contacts, frame, friction, strictness, work)
     for _ in range(MOST_ADDED_POINTS):
-        if code != MOVES or not add_on_rims(contacts, frame, friction, work.cone.passive.residual, work.load_terms):
+        if code != MOVES or not add_on_circles(contacts, frame, friction, work.cone.passive.residual, work.load_terms):
             break
         forget_locked(contacts, frame, work)
         code = equilibrium_of_listed(contacts, frame, friction, strictness, work)

@@ -21,9 +21,9 @@ from cagepose.kernels.contact.equilibrium import (
     return_to_choice,
 )
 from cagepose.kernels.contact.metric import Frame, twist_of
-from cagepose.kernels.contact.on_rim import MOST_ADDED_POINTS, add_on_rims, drop_idle, keeps_on_rim
+from cagepose.kernels.contact.on_circle import MOST_ADDED_POINTS, add_on_circles, drop_idle, keeps_on_circle
 from cagepose.kernels.contact.self_stress import carry_by_locked, forget_locked
-from cagepose.kernels.contact.tip import tips_on_rim
+from cagepose.kernels.contact.tip import tips_on_circle
 from cagepose.kernels.contact.tolerances import FASTER_MOTION
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
@@ -80,13 +80,13 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
     if code == MOVES:
         code = freest_motion(contacts, frame, friction, work)
         for _ in range(MOST_ADDED_POINTS):
-            if code != MOVES or friction == 0.0 or not add_on_rims(contacts, frame, 0.0, work.y, work.load_terms):
+            if code != MOVES or friction == 0.0 or not add_on_circles(contacts, frame, 0.0, work.y, work.load_terms):
                 break
             forget_locked(contacts, frame, work)
             code = equilibrium(contacts, frame, friction, AT_REST, work)
             if code == MOVES:
                 code = freest_motion(contacts, frame, friction, work)
-        if code == MOVES_SOMEHOW and friction > 0.0 and tips_on_rim(contacts, frame, friction, work):
+        if code == MOVES_SOMEHOW and friction > 0.0 and tips_on_circle(contacts, frame, friction, work):
             code = MOVES
         if work.locked.used > 0:
             carry_by_locked(contacts, frame, friction, work)
@@ -103,7 +103,7 @@ def find_sticking(
     for i in range(contacts.used[0]):
         columns, state = contacts.rows[i].columns, contacts.states[i]
         error = allowed_error(terms, y) * length(columns[0], 6)
-        state.stays_flat = keeps_on_rim(contacts, i, velocity, spin, touch_m, error)
+        state.stays_flat = keeps_on_circle(contacts, i, velocity, spin, touch_m, error)
         state.is_sticking = state.forces[0] > 0.0 and friction > 0.0 and not is_smooth(contacts.rows[i])
         for j in range(1, 3):
             if abs(inner(columns[j], y, 6)) > allowed_error(terms, y) * length(columns[j], 6):

@@ -1,7 +1,7 @@
 """A part that tips on a flat rim turns about one point of it, whose place is sought: in the motion with this point
 alone no other one of the rim goes in.
 
-The exchange of `on_rim` closes in on that place from both sides. Two points so near each other share their force in
+The exchange of `on_circle` closes in on that place from both sides. Two points so near each other share their force in
 many ways, and each slips a little as the other one sticks, where Newton's method ends no more.
 """
 
@@ -14,7 +14,7 @@ from cagepose.kernels.contact.cone import clear_cone, cone_residual
 from cagepose.kernels.contact.contact_set import ContactSet, count_chosen
 from cagepose.kernels.contact.coulomb import coulomb_onset, obeys
 from cagepose.kernels.contact.metric import WRENCH, Frame, ScaledVector, twist_of
-from cagepose.kernels.contact.on_rim import add_on_rims, add_point, angle_of_deepest
+from cagepose.kernels.contact.on_circle import add_on_circles, add_point, angle_of_deepest
 from cagepose.kernels.contact.tolerances import PARALLEL_COSINE, SAME_PLACE_RAD
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
@@ -26,7 +26,7 @@ WIDEST_TRIAL_RAD = 0.5
 
 
 @kernel
-def tips_on_rim(contacts: ContactSet, frame: Frame, friction: float, work: ContactWorkspace) -> bool:
+def tips_on_circle(contacts: ContactSet, frame: Frame, friction: float, work: ContactWorkspace) -> bool:
     """Find the motion about one point of a flat rim, where that of all listed points was not found.
 
     Filled, if there is one: the point is appended, and the forces, ``work.y`` and the residual are those of the motion.
@@ -43,12 +43,12 @@ def tips_on_rim(contacts: ContactSet, frame: Frame, friction: float, work: Conta
     n_before = contacts.used[0]
     left = solve_cones(contacts, friction, work)
     for i in range(n_before):
-        rim = contacts.bends[i].on_rim
-        if contacts.rows[i].feature < 0 or rim.length == 0.0 or rim.is_on_ball or is_of_rim_before(contacts, i):
+        rim = contacts.bends[i].on_circle
+        if contacts.rows[i].feature < 0 or rim.length == 0.0 or rim.is_on_ball or is_of_circle_before(contacts, i):
             continue
         solve_cones(contacts, friction, work)
         start = angle_to_deepest(contacts, i, 0.0, work.cone.passive.residual, frame)
-        leave_out_rim(contacts, i)
+        leave_out_circle(contacts, i)
         angle = angle_of_tip(contacts, n_before, i, start, frame, friction, work)
         if angle != math.inf and turns_about(contacts, n_before, i, angle, frame, friction, work):
             work.residual = left
@@ -78,7 +78,7 @@ def solve_cones(contacts: ContactSet, friction: float, work: ContactWorkspace) -
 
 
 @kernel
-def is_of_same_rim(contacts: ContactSet, i: int, j: int) -> bool:
+def is_of_same_circle(contacts: ContactSet, i: int, j: int) -> bool:
     """Whether two contacts are of the same parts, with the same normal."""
     one, other = contacts.rows[i], contacts.rows[j]
     if other.feature < 0 or one.box != other.box or one.point != other.point:
@@ -87,19 +87,19 @@ def is_of_same_rim(contacts: ContactSet, i: int, j: int) -> bool:
 
 
 @kernel
-def is_of_rim_before(contacts: ContactSet, i: int) -> bool:
+def is_of_circle_before(contacts: ContactSet, i: int) -> bool:
     """Whether a contact before this one is of the same rim."""
     found = False
     for j in range(i):
-        found = found or (contacts.bends[j].on_rim.length != 0.0 and is_of_same_rim(contacts, i, j))
+        found = found or (contacts.bends[j].on_circle.length != 0.0 and is_of_same_circle(contacts, i, j))
     return found
 
 
 @kernel
-def leave_out_rim(contacts: ContactSet, i: int) -> None:
+def leave_out_circle(contacts: ContactSet, i: int) -> None:
     """Leave the contacts of a rim out of the problem."""
     for j in range(contacts.used[0]):
-        if is_of_same_rim(contacts, i, j):
+        if is_of_same_circle(contacts, i, j):
             contacts.states[j].counts = False
             for k in range(3):
                 contacts.states[j].forces[k] = 0.0
@@ -166,28 +166,28 @@ def turns_about(
     contacts: ContactSet, n_before: int, i: int, angle: float, frame: Frame, friction: float, work: ContactWorkspace
 ) -> bool:
     """Whether the motion about a point of a rim, which is appended, is one with all contacts: none goes in."""
-    row, beyond = row_on_rim_at(contacts, n_before, i, angle)
+    row, beyond = row_on_circle_at(contacts, n_before, i, angle)
     if row < 0 or way_from_tip(contacts, n_before, row, beyond, frame, friction, work) == math.inf:
         return False
     count_chosen(contacts)
     n_all = contacts.used[0]
-    if add_on_rims(contacts, frame, 0.0, work.y, work.load_terms):
+    if add_on_circles(contacts, frame, 0.0, work.y, work.load_terms):
         contacts.used[0] = n_all
         return False
     return obeys(contacts, friction, work.load_terms, work.y)
 
 
 @kernel
-def row_on_rim_at(contacts: ContactSet, n_before: int, i: int, angle: float) -> tuple[int, float]:
+def row_on_circle_at(contacts: ContactSet, n_before: int, i: int, angle: float) -> tuple[int, float]:
     """Return the listed contact whose part of a rim holds the point at an angle, and the angle from there; -1: none
     does, as the face has ended.
     """
-    rim = contacts.bends[i].on_rim
+    rim = contacts.bends[i].on_circle
     axis, outward = vector_from(rim.axis), vector_from(rim.outward)
     aside = cross(axis, outward)
     for j in range(n_before):
-        other = contacts.bends[j].on_rim
-        if other.length == 0.0 or not is_of_same_rim(contacts, i, j):
+        other = contacts.bends[j].on_circle
+        if other.length == 0.0 or not is_of_same_circle(contacts, i, j):
             continue
         there = vector_from(other.outward)
         away = angle - math.atan2(dot(aside, there), dot(outward, there))

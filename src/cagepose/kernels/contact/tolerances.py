@@ -39,11 +39,6 @@ LAST_CHANGE = 1e-14
 """In lengths of the load. After so small a change the next one is rounding, since the digits double."""
 SHORTEST_SPRING = 1e-12
 """In sizes of the scene. A spring is taken to be no shorter, where its length limits a step."""
-SAME_CIRCLE = 1e-6
-"""In radii. Two contacts lie on one circle if its centres are no farther apart."""
-SAME_SIDE = 1e-2
-"""In radii. Two contacts lie on one side of a circle if the places that their normals lead through are no farther
-apart. The side may be tilted by so much there."""
 LAST_TURN_RAD = 1e-9
 """Radians. A smaller change of the place on a circle ends the search that follows the slip."""
 SPEED_OF_ENTRY = 1e-10
@@ -69,3 +64,5 @@ SAME_PLACE_RAD = 1e-7
 """Radians. A circle goes in less than the square of this between a point and its deepest one, if they are nearer."""
 PARALLEL_COSINE = 1.0 - 1e-12
 """Cosine of the angle between normals of one face, or axes of one circle."""
+SAME_WAY = 0.5
+"""Cosine of the angle between normals of one contact, before and after a step, or of one circle on one face."""

@@ -8,12 +8,14 @@ from cagepose.kernels.algebra.pose import Quaternion, rotated
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances, scaled_tolerances
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, row, scaled, vector_from
-from cagepose.kernels.collision.geometry import Geometry, PlacedCage, Placement, place_object
+from cagepose.kernels.boundary.features import Boundary, place_boundary, placed_in
+from cagepose.kernels.boundary.overlap import find_overlap
+from cagepose.kernels.boundary.refit import refit_vertices
+from cagepose.kernels.collision.geometry import Geometry, PlacedCage, Placement, held_at, is_shaped, place_object
 from cagepose.kernels.contact.friction import Friction, friction_of
 from cagepose.kernels.contact.loads import PhaseLoad
 from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.features import Shapes, place_shapes
 
 
 class Part(NamedTuple):
@@ -23,8 +25,8 @@ class Part(NamedTuple):
     ----------
     half_sizes, box_positions, box_rotations, n_own_boxes
         As in `Geometry`, but seen from the centre of gravity.
-    shapes
-        All its parts, its own boxes first, likewise seen; empty where it has boxes and the cage points alone.
+    boundary
+        That of all its parts, its own boxes first, likewise seen; empty where it has boxes and the cage points alone.
     body
         Its inertia.
     center_object
@@ -35,7 +37,7 @@ class Part(NamedTuple):
     box_positions: FloatArray
     box_rotations: FloatArray
     n_own_boxes: int
-    shapes: Shapes
+    boundary: Boundary
     body: Body
     center_object: Vector
 
@@ -49,8 +51,9 @@ class Cases(NamedTuple):
         The cage's pose in the world, (n, 3) metres and (n, 4).
     points_cage
         (n, n_points, 3), metres.
-    shapes_cage
-        All parts of the cage, its points first, in its frame, the same for all; empty like `Part.shapes`.
+    boundary_cage
+        That of all parts of the cage, its points first, in its frame, the same for all but for where single points are;
+        empty like `Part.boundary`.
     object_positions, object_quaternions
         The object's pose in the world at the start.
     sizes_m
@@ -68,7 +71,7 @@ class Cases(NamedTuple):
     cage_positions: FloatArray
     cage_quaternions: FloatArray
     points_cage: FloatArray
-    shapes_cage: Shapes
+    boundary_cage: Boundary
     object_positions: FloatArray
     object_quaternions: FloatArray
     sizes_m: FloatArray
@@ -86,7 +89,7 @@ class Start(NamedTuple):
     Attributes
     ----------
     geometry
-        Cage points and shapes as seen from their middle, boxes and shapes of the object from the centre of gravity.
+        The cage as seen from its middle, the object from the centre of gravity.
     position, quaternion
         Of the centre of gravity, seen from the middle of the cage, and the object's orientation.
     origin_world
@@ -120,27 +123,23 @@ def quaternion_row(quaternions: FloatArray, index: int) -> Quaternion:
 @kernel
 def start_of(case: int, part: Part, cases: Cases, cage: PlacedCage) -> Start:
     """Return how a case starts; its cage is written into ``cage``."""
-    points_world, n_elements = cage.points_world, max(len(cage.points_world), len(cage.shapes.parts))
     points = cases.points_cage[row_of(len(cases.points_cage), case)]
     turned = quaternion_row(cases.cage_quaternions, row_of(len(cases.cage_quaternions), case))
+    parts, n_points = cases.boundary_cage.parts, len(points)
     # the origin of what follows is the middle of all elements of the cage
     middle = (0.0, 0.0, 0.0)
-    for point in range(len(points)):
+    for point in range(n_points):
         middle = plus(middle, row(points, point))
-    for which in range(len(points), n_elements):
-        middle = plus(middle, vector_from(cases.shapes_cage.parts[which].middle))
-    middle = scaled(middle, 1.0 / n_elements)
-    # points and shapes, turned about it
-    for point in range(len(points)):
+    for which in range(n_points, len(parts)):
+        middle = plus(middle, vector_from(parts[which].middle))
+    middle = scaled(middle, 1.0 / max(n_points, len(parts)))
+    # points, or the boundary, turned about it
+    for point in range(len(cage.points_world)):
         placed = rotated(turned, minus(row(points, point), middle))
         for k in range(3):
-            points_world[point, k] = placed[k]
-    if len(cage.shapes.parts) > 0:
-        place_shapes(cases.shapes_cage, scaled(rotated(turned, middle), -1.0), turned, cage.shapes)
-        for point in range(len(points)):  # these may differ from case to case
-            for k in range(3):
-                cage.shapes.parts[point].middle[k] = points_world[point, k]
-                cage.shapes.features[cage.shapes.parts[point].first].point[k] = points_world[point, k]
+            cage.points_world[point, k] = placed[k]
+    placed_cage = placed_in(own_boundary(cases.boundary_cage, points, cage), cage.placing)
+    place_boundary(placed_cage, scaled(rotated(turned, middle), -1.0), turned)
     # the object beside it
     cage_position = row(cases.cage_positions, row_of(len(cases.cage_positions), case))
     origin = plus(cage_position, rotated(turned, middle))
@@ -154,9 +153,9 @@ def start_of(case: int, part: Part, cases: Cases, cage: PlacedCage) -> Start:
             part.box_positions,
             part.box_rotations,
             part.n_own_boxes,
-            points_world,
-            part.shapes,
-            cage.shapes,
+            cage.points_world,
+            part.boundary,
+            placed_cage,
             tolerances.touch_m,
         ),
         plus(minus(position, origin), rotated(quaternion, part.center_object)),
@@ -170,14 +169,49 @@ def start_of(case: int, part: Part, cases: Cases, cage: PlacedCage) -> Start:
 
 
 @kernel
-def is_valid(start: Start, farthest: float, points_vary: bool, placement: Placement) -> bool:
+def own_boundary(boundary: Boundary, points: FloatArray, cage: PlacedCage) -> Boundary:
+    """Return the boundary of a cage whose single points are elsewhere, (n_points, 3), metres."""
+    for i in range(len(boundary.features)):
+        cage.features[i] = boundary.features[i]  # type: ignore[index]
+    for i in range(len(boundary.parts)):
+        cage.parts[i] = boundary.parts[i]  # type: ignore[index]
+    for i in range(len(boundary.nodes)):
+        cage.nodes[i] = boundary.nodes[i]  # type: ignore[index]
+    own = Boundary(
+        cage.parts,
+        cage.features,
+        boundary.bounds,
+        boundary.covers,
+        boundary.cover_list,
+        cage.nodes,
+        boundary.planes,
+    )
+    is_elsewhere = False
+    for point in range(len(points) if len(own.parts) > 0 else 0):
+        feature = own.features[own.parts[point].point]
+        for k in range(3):
+            is_elsewhere = is_elsewhere or feature.point[k] != points[point, k]
+            feature.point[k] = own.parts[point].middle[k] = points[point, k]
+    if is_elsewhere:
+        refit_vertices(own)
+    return own
+
+
+@kernel
+def is_valid(start: Start, farthest: float, points_vary: bool, placement: Placement, cage: PlacedCage) -> bool:
     """Whether the object starts within ``farthest`` sizes of the cage, nothing of it is inside it, and no two points
     that vary are one. The placement is that of the start afterwards.
     """
     if norm(start.position) > farthest * start.size_m:
         return False
-    points, touch_m = start.geometry.points_world, start.tolerances.touch_m
-    place_object(start.geometry, start.position, start.quaternion, placement)
+    geometry, touch_m = start.geometry, start.tolerances.touch_m
+    place_object(geometry, start.position, start.quaternion, placement)
+    if is_shaped(geometry):
+        held = held_at(geometry, placement)
+        if find_overlap(held, geometry.cage, touch_m, cage.overlap).feature >= 0:
+            return False
+        return not points_vary or are_single(geometry, touch_m)
+    points = geometry.points_world
     for point in range(len(points)):
         if placement.depths[point] > touch_m:
             return False
@@ -185,10 +219,17 @@ def is_valid(start: Start, farthest: float, points_vary: bool, placement: Placem
             for other in range(point):
                 if norm(minus(row(points, other), row(points, point))) <= touch_m:
                     return False
-    gaps = placement.meetings.gaps
-    for one in range(gaps.shape[0]):
-        for other in range(gaps.shape[1]):
-            if gaps[one, other] < -touch_m:
+    return True
+
+
+@kernel
+def are_single(geometry: Geometry, touch_m: float) -> bool:
+    """Whether no two single points of a boundary are one."""
+    parts = geometry.cage.own.parts
+    for point in range(len(parts)):
+        for other in range(point if parts[point].point >= 0 else 0):
+            away = norm(minus(vector_from(parts[other].middle), vector_from(parts[point].middle)))
+            if parts[other].point >= 0 and away <= touch_m:
                 return False
     return True
 

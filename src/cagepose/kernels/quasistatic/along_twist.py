@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
-from cagepose.kernels.algebra.motion import motion_of
-from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
+from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import (
     Vector,
     cross,
@@ -14,12 +12,9 @@ from cagepose.kernels.algebra.vector import (
     matrix_from,
     norm,
     plus,
-    scaled,
     times,
     vector_from,
 )
-from cagepose.kernels.collision.first_contact import first_contact_screw, first_contact_travel
-from cagepose.kernels.collision.first_meeting import NO_HIT, Hit, first_meeting
 from cagepose.kernels.collision.geometry import Placement, place_object
 from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
 from cagepose.kernels.contact.loads import (
@@ -27,10 +22,9 @@ from cagepose.kernels.contact.loads import (
     work_done,
 )
 from cagepose.kernels.contact.metric import moved_along_twist
-from cagepose.kernels.contact.on_rim import is_kept
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.along_rims import goes_through_wall
 from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
+from cagepose.kernels.quasistatic.first_contact import NO_HIT, Hit, Twist, first_contact
 from cagepose.kernels.quasistatic.projection import (
     GAP,
     constrain_features,
@@ -43,8 +37,6 @@ from cagepose.kernels.quasistatic.pushing_out import (
     pushed_out,
 )
 from cagepose.kernels.quasistatic.setting import Setting
-from cagepose.kernels.quasistatic.straying import STRAYED, strayed
-from cagepose.kernels.shapes.rims import is_rim_on_wall
 
 MAY_SLIP = 0.01
 """Share of the way of a step. What sticks in two places may slip by as much, where it cannot turn without, as in a V.
@@ -58,22 +50,6 @@ STRAIGHT_TRAVEL = 1e-14
 ON_SMALL_WAYS, WIDEST = 0.04, 10.0
 """In sizes of the scene: where normals of round shapes turn by a radian on a shorter way, as in a narrow clearance,
 they may turn more in a step, as it strays less; and how many times more."""
-
-
-class Twist(NamedTuple):
-    """A motion at constant twist.
-
-    Attributes
-    ----------
-    velocity, spin
-        Of the centre of gravity, and angular, for each unit of the amount.
-    end
-        The greatest amount; inf: a travel with no end of its own.
-    """
-
-    velocity: Vector
-    spin: Vector
-    end: float
 
 
 @kernel
@@ -126,124 +102,6 @@ def longest_step(
 
 
 @kernel
-def first_contact(
-    setting: Setting,
-    placement: Placement,
-    contacts: ContactSet,
-    position: Vector,
-    quaternion: Quaternion,
-    twist: Twist,
-) -> Hit:
-    """Return the first contact along a twist, but for what touches already: of points and boxes, or of shapes."""
-    hit = first_point(setting, placement, contacts, position, quaternion, twist)
-    if len(setting.geometry.held.parts) == 0:
-        return hit
-    note_kept(placement, contacts)
-    motion = motion_of(position, twist.velocity, twist.spin)
-    end = min(hit.amount, twist.end)
-    if end == math.inf:  # straight ahead
-        other = first_meeting(setting.geometry, placement, motion, end, 0.0, 0.0)
-        return other if other.amount < hit.amount else hit
-    astray = strayed(
-        setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end, 0.0, placement.moved
-    )
-    near, other = 0.0, NO_HIT
-    for _ in range(most_pairs(placement)):
-        other = first_meeting(setting.geometry, placement, motion, end, near, STRAYED * astray)
-        if other.point < 0 or other.gap <= near:
-            break
-        reach = STRAYED * strayed(
-            setting.geometry,
-            contacts,
-            position,
-            quaternion,
-            twist.velocity,
-            twist.spin,
-            other.amount,
-            0.0,
-            placement.moved,
-        )
-        if other.gap > reach:
-            break
-        near = reach
-    return other if other.amount < hit.amount else hit
-
-
-@kernel
-def note_kept(placement: Placement, contacts: ContactSet) -> None:
-    """Note which meetings a motion keeps."""
-    for at in range(placement.meetings.used[0]):
-        row = placement.meetings.rows[at]
-        row.is_kept = False
-        for i in range(contacts.used[0]):
-            is_same = contacts.rows[i].feature == row.feature and contacts.rows[i].cage_feature == row.cage_feature
-            row.is_kept = row.is_kept or (is_same and is_kept(contacts, i))
-
-
-@kernel
-def most_pairs(placement: Placement) -> int:
-    return placement.meetings.gaps.size
-
-
-@kernel
-def first_point(
-    setting: Setting,
-    placement: Placement,
-    contacts: ContactSet,
-    position: Vector,
-    quaternion: Quaternion,
-    twist: Twist,
-) -> Hit:
-    """Return the first contact of a point and a box along a twist, but for what touches already.
-
-    Contacts that stay on their faces stray on a screw, by the square of its length, and are put back afterwards. Where
-    a point is met because of that, not because it came nearer, it is passed over: whether it is reached shows at the
-    end.
-    """
-    end = twist.end
-    touch_m = setting.tolerances.touch_m
-    rate = norm(twist.spin)
-    if rate == 0.0:
-        speed = norm(twist.velocity)
-        distance, point, box = first_contact_travel(
-            setting.geometry, placement, scaled(twist.velocity, 1.0 / speed), touch_m, setting.tolerances
-        )
-        amount = distance / speed
-    else:
-        astray = strayed(
-            setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, end, 0.0, placement.moved
-        )
-        near, near_depth = 0.0, STRAYED * astray
-        angle, point, box = math.inf, -1, -1
-        for _ in range(len(setting.geometry.points_world)):
-            angle, point, box = first_contact_screw(
-                setting.geometry,
-                placement,
-                position,
-                scaled(twist.velocity, 1.0 / rate),
-                scaled(twist.spin, 1.0 / rate),
-                end * rate,
-                touch_m,
-                near,
-                near_depth,
-                setting.tolerances,
-            )
-            if point < 0 or placement.gaps[box, point] <= near:
-                break
-            met = angle / rate
-            reach = STRAYED * strayed(
-                setting.geometry, contacts, position, quaternion, twist.velocity, twist.spin, met, 0.0, placement.moved
-            )
-            if placement.gaps[box, point] > reach:
-                break
-            near = reach
-        amount = angle / rate
-    if amount > end or point < 0:
-        return NO_HIT
-    return Hit(amount, point, box, -1, -1, placement.gaps[box, point])
-
-
-@kernel
 def stepped(
     setting: Setting,
     placement: Placement,
@@ -267,12 +125,11 @@ def stepped(
     work.constraints.scratch[0].may_slip_m = max(setting.tolerances.touch_m, MAY_SLIP * way)
     moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
     if hit.feature >= 0:
-        constrain_features(work.constraints, hit.feature, hit.cage_feature, GAP, 0.0)
+        constrain_features(work.constraints, hit.feature, hit.cage_feature, hit.angle, GAP, 0.0)
     elif hit.point >= 0:
         place_object(geometry, moved[0], moved[1], placement)
         constrain_to_face(geometry, placement, hit.point, hit.box, work.constraints)
     done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], work)
-    done = done and not go_through_walls(setting, placement, contacts, new_position, new_quaternion)
     if done:
         total = total_load(setting.load, position, quaternion, setting.size_m)
         rounding = setting.tolerances.resolution_m * total
@@ -281,19 +138,6 @@ def stepped(
         return True, new_position, new_quaternion
     place_object(geometry, position, quaternion, placement)
     return False, position, quaternion
-
-
-@kernel
-def go_through_walls(
-    setting: Setting, placement: Placement, contacts: ContactSet, position: Vector, quaternion: Quaternion
-) -> bool:
-    """Whether at a pose a rim that was on the wall of a hole is deep in it."""
-    geometry, rotation, found = setting.geometry, matrix_from_quaternion(quaternion), False
-    for i in range(contacts.used[0]):
-        feature, cage_feature = contacts.rows[i].feature, contacts.rows[i].cage_feature
-        if feature >= 0 and is_rim_on_wall(geometry.held.features[feature], geometry.cage.features[cage_feature]):
-            found = found or goes_through_wall(geometry, feature, cage_feature, position, rotation, placement.moved)
-    return found
 
 
 @kernel
@@ -311,7 +155,7 @@ def furthest_step(
     Return (amount, whether it went as far as it should, position, quaternion); amount 0: it could not move; inf:
     nothing is ahead.
     """
-    allow_depths(setting.geometry, placement, setting.tolerances, work)
+    allow_depths(placement, setting.tolerances, work)
     hit = first_contact(setting, placement, contacts, position, quaternion, twist)
     amount = hit.amount
     edge_crossing = first_edge_crossing(

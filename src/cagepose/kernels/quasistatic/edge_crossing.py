@@ -7,23 +7,29 @@ import math
 from cagepose.kernels.algebra.motion import Motion, motion_of
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled, vector_from
-from cagepose.kernels.collision.geometry import Geometry, Placement, box_point, point_in_box, vector_in_box
+from cagepose.kernels.boundary.first_touch import place_after
+from cagepose.kernels.boundary.kept import meeting_kept
+from cagepose.kernels.boundary.meeting import both_reach
+from cagepose.kernels.boundary.meetings import slack_of
+from cagepose.kernels.collision.geometry import (
+    Geometry,
+    Placement,
+    box_point,
+    held_at,
+    held_moved,
+    point_in_box,
+    vector_in_box,
+)
 from cagepose.kernels.collision.screw import next_below
-from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
-from cagepose.kernels.contact.on_rim import is_kept
+from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.on_circle import is_kept
+from cagepose.kernels.contact.tolerances import SAME_WAY
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.quasistatic.pushing_out import is_fixed
 from cagepose.kernels.quasistatic.straying import STRAYED, strayed
-from cagepose.kernels.shapes.along_motion import place_moved
-from cagepose.kernels.shapes.flat_rims import SAME_WAY
-from cagepose.kernels.shapes.meeting import both_reach, meeting, twin_pair
-from cagepose.kernels.shapes.meetings import slack_of
 
 CLEAR = 2.0
 """In touch tolerances: how far beyond the edge a contact is let go, so that it does not touch the next face too."""
-MERGED = 0.99995
-"""Cosine between the normals of a contact and of another one on the same arc that takes its place as the two come
-together: neither is at an edge.
-"""
 HALVINGS = 50
 """A motion is halved so many times to find where a contact of two shapes ends."""
 
@@ -41,42 +47,27 @@ def still_meet(
     geometry: Geometry,
     placement: Placement,
     contacts: ContactSet,
-    contact: ContactRow,
+    i: int,
     motion: Motion,
     amount: float,
     touch_m: float,
     within_m: float,
 ) -> bool:
-    """Whether two features still reach where they meet, after an amount of a motion, by so much within their ends.
+    """Whether the features of a contact still reach where they meet, after an amount of a motion, by so much within
+    their ends.
 
-    Those that do with quite another normal have come apart: an edge and the rim that lay across it.
+    Those that do with quite another normal have come apart: an edge and the circle that lay across it.
     """
-    held, cage, moved = placement.body.world, geometry.cage, placement.moved
+    contact, cage, moved = contacts.rows[i], geometry.cage, held_moved(geometry, placement)
     one, other = contact.feature, contact.cage_feature
-    place_moved(held, one, motion, amount, moved)
-    met, twins, normal = meeting(moved, one, cage, other), twin_pair(moved, one, cage, other), contact.directions[0]
-    if not met.is_one and twins[0] >= 0:
-        one, other = twins  # where the first of two places on an arc has left it, the second one is the first
-        place_moved(held, one, motion, amount, moved)
-        met = meeting(moved, one, cage, other)
-        if is_listed(contacts, one, other) and dot(met.normal, vector_from(normal)) < MERGED:
-            return False
-    if dot(met.normal, vector_from(normal)) < SAME_WAY:
+    place_after(held_at(geometry, placement), one, motion, amount, moved)
+    fixed = is_fixed(contacts, i)
+    met = meeting_kept(moved, one, cage, other, contact.angle, fixed, touch_m, placement.meetings.places)
+    if not met.is_one or dot(met.normal, vector_from(contact.directions[0])) < SAME_WAY:
         return False
-    least = min(held.parts[contact.box].least_length, cage.parts[contact.point].least_length)
-    slack = CLEAR * slack_of(held, contact.box, cage, contact.point, touch_m) - within_m / least
-    slack_m = 2.0 * CLEAR * touch_m - within_m
-    return both_reach(moved, one, cage, other, met, slack, slack_m)
-
-
-@kernel
-def is_listed(contacts: ContactSet, feature: int, cage_feature: int) -> bool:
-    """Whether there is a contact of two features."""
-    found = False
-    for i in range(contacts.used[0]):
-        row = contacts.rows[i]
-        found = found or (row.feature == feature and row.cage_feature == cage_feature)
-    return found
+    held_row, cage_row = geometry.held.features[one], cage.own.features[other]
+    slack = CLEAR * slack_of(held_row, cage_row, touch_m) - within_m / min(held_row.least, cage_row.least)
+    return both_reach(moved, one, cage, other, met, slack, 2.0 * CLEAR * touch_m - within_m)
 
 
 @kernel
@@ -84,7 +75,7 @@ def end_of_meeting(
     geometry: Geometry,
     placement: Placement,
     contacts: ContactSet,
-    contact: ContactRow,
+    i: int,
     motion: Motion,
     end: float,
     touch_m: float,
@@ -93,14 +84,15 @@ def end_of_meeting(
     inf: it does not.
     """
     if end == math.inf:
-        held, cage = placement.body.world.parts[contact.box], geometry.cage.parts[contact.point]
-        end = 2.0 * (held.reach + cage.reach + touch_m) / norm(motion.velocity)
-    if still_meet(geometry, placement, contacts, contact, motion, end, touch_m, 0.0):
+        row = contacts.rows[i]
+        apart_m = geometry.held.parts[row.box].reach + geometry.cage.own.parts[row.point].reach + touch_m
+        end = 2.0 * apart_m / norm(motion.velocity)
+    if still_meet(geometry, placement, contacts, i, motion, end, touch_m, 0.0):
         return math.inf
     low, high = 0.0, end
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        if still_meet(geometry, placement, contacts, contact, motion, middle, touch_m, 0.0):
+        if still_meet(geometry, placement, contacts, i, motion, middle, touch_m, 0.0):
             low = middle
         else:
             high = middle
@@ -132,12 +124,12 @@ def first_edge_crossing(
             continue
         if contact.feature >= 0:
             motion = motion_of(center, velocity, spin)
-            crossing = end_of_meeting(geometry, placement, contacts, contact, motion, min(end, first), touch_m)
+            crossing = end_of_meeting(geometry, placement, contacts, i, motion, min(end, first), touch_m)
             if crossing < first:
                 reach = STRAYED * strayed(
-                    geometry, contacts, center, quaternion, velocity, spin, crossing, math.inf, placement.moved
+                    geometry, placement, contacts, center, quaternion, velocity, spin, crossing, math.inf
                 )
-                if still_meet(geometry, placement, contacts, contact, motion, 0.0, touch_m, reach):
+                if still_meet(geometry, placement, contacts, i, motion, 0.0, touch_m, reach):
                     first = crossing
             continue
         box = contact.box
@@ -163,7 +155,7 @@ def first_edge_crossing(
                 crossing = next_below(wave, 0.0, end * rate) / rate
                 if crossing < first and crossing <= end:
                     reach = STRAYED * strayed(
-                        geometry, contacts, center, quaternion, velocity, spin, crossing, math.inf, placement.moved
+                        geometry, placement, contacts, center, quaternion, velocity, spin, crossing, math.inf
                     )
                     if wave[0] > reach:
                         first = crossing

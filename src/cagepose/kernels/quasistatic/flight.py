@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, row, scaled, vector_from
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, row, scaled
+from cagepose.kernels.boundary.features import middle_of_part
 from cagepose.kernels.contact.loads import BENT, BOUND, STRAIGHT, drift_and_sway, flight
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.setting import Setting
@@ -43,11 +44,11 @@ def nothing_ahead(setting: Setting, position: Vector, quaternion: Quaternion, ve
             distance += away * away
         if math.sqrt(distance) <= setting.body.reach_m + sway:
             return False
-    cage = setting.geometry.cage.parts
-    for which in range(len(setting.geometry.points_world), len(cage)):
-        arm = minus(vector_from(cage[which].middle), position)
+    cage = setting.geometry.cage
+    for part in range(len(cage.own.parts)):
+        arm = minus(middle_of_part(cage, part), position)
         away = norm(minus(arm, scaled(along, max(dot(arm, along), 0.0))))
-        if away <= setting.body.reach_m + sway + cage[which].reach:
+        if away <= setting.body.reach_m + sway + cage.own.parts[part].reach:
             return False
     return True
 
@@ -61,9 +62,9 @@ def is_out_of_reach(setting: Setting, position: Vector, velocity: Vector) -> boo
         away = norm(minus(row(setting.geometry.points_world, point), position))
         if away <= OUT_OF_REACH * setting.size_m + setting.body.reach_m:
             return False
-    cage = setting.geometry.cage.parts
-    for which in range(len(setting.geometry.points_world), len(cage)):
-        away = norm(minus(vector_from(cage[which].middle), position)) - cage[which].reach
+    cage = setting.geometry.cage
+    for part in range(len(cage.own.parts)):
+        away = norm(minus(middle_of_part(cage, part), position)) - cage.own.parts[part].reach
         if away <= OUT_OF_REACH * setting.size_m + setting.body.reach_m:
             return False
     return True

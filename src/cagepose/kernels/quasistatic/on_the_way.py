@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
+
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
-from cagepose.kernels.collision.first_meeting import NO_HIT
+from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE
+from cagepose.kernels.boundary.circle_places import within_turn
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.find_contacts import find_contacts
 from cagepose.kernels.contact.loads import write_load
 from cagepose.kernels.contact.metric import Frame
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.along_twist import Twist, stepped
+from cagepose.kernels.quasistatic.along_twist import stepped
+from cagepose.kernels.quasistatic.first_contact import NO_HIT, Twist
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
@@ -54,12 +58,18 @@ def find_touched_before(
 
 @kernel
 def place_before(contacts: ContactSet, one: ContactRow) -> int:
-    """Return which of the contacts is of the same point and box, or features; -1: none."""
+    """Return which of the contacts is of the same point and box, or features, of a circle at the nearest place that one
+    goes to in a step; -1: none is.
+    """
+    found, least = -1, math.pi
     for i in range(contacts.used[0]):
         row = contacts.rows[i]
         if (row.point, row.box, row.feature, row.cage_feature) == (one.point, one.box, one.feature, one.cage_feature):
-            return i
-    return -1
+            away = abs(within_turn(row.angle - one.angle))
+            goes_on = row.feature >= 0 and contacts.bends[i].on_circle.is_crossing
+            if away < least and (goes_on or away < SAME_ANGLE):
+                found, least = i, away
+    return found
 
 
 @kernel
@@ -70,6 +80,7 @@ def move_contact(contacts: ContactSet, source: int, target: int) -> None:
     rows = contacts.rows
     old, new = rows[source], rows[target]
     new.point, new.box, new.feature, new.cage_feature = old.point, old.box, old.feature, old.cage_feature
+    new.angle = old.angle
     new.group = -1 if old.group < 0 else old.group - source + target
     for j in range(3):
         new.arm[j] = old.arm[j]

@@ -18,12 +18,18 @@ from cagepose.kernels.algebra.vector import (
     cross,
     dot,
     minus,
+    norm,
     plus,
     row,
     scaled,
     transposed_times,
+    vector_from,
 )
-from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.boundary.circle_places import within_turn
+from cagepose.kernels.boundary.features import LINE, place_feature, place_feature_at
+from cagepose.kernels.boundary.kept import meeting_kept
+from cagepose.kernels.boundary.met import PARALLEL
+from cagepose.kernels.collision.geometry import Geometry, Placement, held_moved
 from cagepose.kernels.contact.contact_set import tangents_to
 from cagepose.kernels.contact.metric import (
     WRENCH,
@@ -36,15 +42,6 @@ from cagepose.kernels.contact.metric import (
     write_scaled_wrench,
 )
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.along_rims import (
-    is_along_axis,
-    may_be_elsewhere,
-    meeting_along_rim,
-    meeting_beside,
-)
-from cagepose.kernels.shapes.features import Shapes, place_feature
-from cagepose.kernels.shapes.meeting import apart, meeting, meeting_kept, twin_pair
-from cagepose.kernels.shapes.rims import is_rim_on_side
 
 ROUNDS = 12
 ON_FACE = 4e-16
@@ -57,9 +54,11 @@ play can be tilted by the root of rounding, and to make up for that would take l
 LEAST_SLIP = 1e-10
 """Fraction of a slip squared. A motion beside that lets nothing slip is not made."""
 
-GAP, ALONG, FLAT = 0, 1, 3
-"""Which number of two features a constraint is about: their gap; (1 and 2) the way along each tangent; the gap of a
-point of a rim that lies flat, if it is over the face at all, or of the arcs beside it, see `meeting_along_rim`."""
+GAP, ALONG, FIXED = 0, 1, 3
+"""Which number of two features a constraint is about: their gap; (1 and 2) the way along each tangent; the gap at one
+place of a circle, whether it is nearest there or not, as of a circle that lies flat."""
+SAME_ANGLE = 1e-9
+"""Radians. Two places of a circle that are nearer to each other are one."""
 
 
 class PositionConstraint:
@@ -69,8 +68,9 @@ class PositionConstraint:
     ----------
     point, box, axis, side
         Of a point and a box, as in `ContactRow`: side * (coordinate of the point along the box's axis) ...
-    feature, cage_feature, which
-        ... or of two features, -1 if they are not: their gap, or how far they slip from now on ...
+    feature, cage_feature, angle, which
+        ... or of two features, -1 if they are not: their gap, or how far they slip from now on, at an angle of a circle
+        if one of them is one ...
     target
         ... is to be this, metres: half the size of the box for a point on its face, zero for a slip.
     """
@@ -81,6 +81,7 @@ class PositionConstraint:
     side: float
     feature: int
     cage_feature: int
+    angle: float
     which: int
     target: float
 
@@ -148,19 +149,22 @@ def add_constraint(constraints: Constraints, point: int, box: int, axis: int, si
 
 
 @kernel
-def constrain_features(constraints: Constraints, feature: int, cage_feature: int, which: int, target: float) -> bool:
+def constrain_features(
+    constraints: Constraints, feature: int, cage_feature: int, angle: float, which: int, target: float
+) -> bool:
     """Constrain the gap of two features, or their slip; False: there is no room, or it is done already."""
     n = constraints.scratch[0].used
     if n == len(constraints.rows):
         return False
     for i in range(n):
         constraint = constraints.rows[i]
-        if (constraint.feature, constraint.cage_feature, constraint.which) == (feature, cage_feature, which):
+        is_same = (constraint.feature, constraint.cage_feature, constraint.which) == (feature, cage_feature, which)
+        if is_same and abs(within_turn(constraint.angle - angle)) <= SAME_ANGLE:
             return False
     constraint = constraints.rows[n]
     constraint.point = constraint.box = constraint.axis = -1
-    constraint.feature, constraint.cage_feature, constraint.which = feature, cage_feature, which
-    constraint.target = target
+    constraint.feature, constraint.cage_feature, constraint.angle = feature, cage_feature, angle
+    constraint.which, constraint.target = which, target
     constraints.scratch[0].used = n + 1
     return True
 
@@ -168,12 +172,9 @@ def constrain_features(constraints: Constraints, feature: int, cage_feature: int
 @kernel
 def drop_constraint(constraints: Constraints, i: int) -> None:
     """Drop a constraint; those behind it move up."""
-    n, rows = constraints.scratch[0].used - 1, constraints.rows
+    n = constraints.scratch[0].used - 1
     for k in range(i, n):
-        row, after = rows[k], rows[k + 1]
-        row.point, row.box, row.axis, row.side = after.point, after.box, after.axis, after.side
-        row.feature, row.cage_feature, row.which = after.feature, after.cage_feature, after.which
-        row.target = after.target
+        constraints.rows[k] = constraints.rows[k + 1]  # type: ignore[index]
     constraints.scratch[0].used = n
 
 
@@ -193,23 +194,12 @@ class Lack(NamedTuple):
 
 
 @kernel
-def is_constrained(constraints: Constraints, feature: int, cage_feature: int) -> bool:
-    """Whether there is a constraint of two features."""
-    found = False
-    for i in range(constraints.scratch[0].used):
-        row = constraints.rows[i]
-        found = found or (row.feature == feature and row.cage_feature == cage_feature)
-    return found
-
-
-@kernel
 def lack(
     geometry: Geometry,
-    constraints: Constraints,
     constraint: PositionConstraint,
     position: Vector,
     quaternion: Quaternion,
-    moved: Shapes,
+    placement: Placement,
 ) -> Lack:
     """Return what one of the constraints lacks at a pose; inf: it means nothing there."""
     if constraint.feature < 0:
@@ -218,32 +208,26 @@ def lack(
         arm = minus(row(geometry.points_world, constraint.point), position)
         from_box = minus(rotated(back, arm), row(geometry.box_positions, constraint.box))
         return Lack(dot(axis_object, from_box) - constraint.target, rotated(quaternion, axis_object), arm)
-    i, j, turned = constraint.feature, constraint.cage_feature, matrix_from_quaternion(quaternion)
-    place_feature(geometry.held, i, position, turned, moved)
-    one, other = twin_pair(moved, i, geometry.cage, j)
-    if constraint.which == FLAT and is_rim_on_side(moved.features[i], geometry.cage.features[j]):
-        met = meeting_along_rim(geometry, i, j, position, turned, moved)
-    elif one < 0 or is_constrained(constraints, one, other):
-        met = meeting(moved, i, geometry.cage, j)
-    else:
-        place_feature(geometry.held, one, position, turned, moved)
-        met = meeting_kept(moved, i, geometry.cage, j, constraint.target)
-    if not met.is_one:
-        met = meeting_beside(geometry, i, j, position, turned, moved)
-    if constraint.which == FLAT and not is_along_axis(moved.features[i], geometry.cage.features[j], met.normal):
-        met = apart()
+    i, j, is_fixed = constraint.feature, constraint.cage_feature, constraint.which == FIXED
+    moved, places = held_moved(geometry, placement), placement.meetings.places
+    place_feature_at(moved, i, position, matrix_from_quaternion(quaternion))
+    place_feature(geometry.cage, j)
+    met = meeting_kept(moved, i, geometry.cage, j, constraint.angle, is_fixed, geometry.touch_m, places)
     arm = minus(met.place, position)
     if not met.is_one:
         return Lack(math.inf, met.normal, arm)
-    if constraint.which in (GAP, FLAT):
+    if constraint.which in (GAP, FIXED):
         return Lack(met.gap - constraint.target, met.normal, arm)
     return Lack(0.0, tangents_to(met.normal)[constraint.which - ALONG], arm)
 
 
 @kernel
-def may_be_left_out(geometry: Geometry, constraint: PositionConstraint, moved: Shapes) -> bool:
-    """Whether a constraint that means nothing at a pose lets others count."""
-    return constraint.which == FLAT or may_be_elsewhere(geometry, constraint.feature, constraint.cage_feature, moved)
+def are_parallel(geometry: Geometry, constraint: PositionConstraint, placement: Placement) -> bool:
+    """Whether a constraint is of edges that have become parallel: they meet nowhere, and what else touches counts."""
+    held, cage = placement.moved.features[constraint.feature], geometry.cage.features[constraint.cage_feature]
+    if held.kind != LINE or cage.kind != LINE:
+        return False
+    return norm(cross(vector_from(held.direction), vector_from(cage.direction))) < PARALLEL
 
 
 @kernel
@@ -263,7 +247,7 @@ def keep_stopped(stopped: PassiveSet, position: Vector, frame: Frame, constraint
 @kernel
 def is_slip(constraint: PositionConstraint) -> bool:
     """Whether a constraint is that two features do not slip, which lacks nothing; of a box, it lacks the way back."""
-    return bool(constraint.feature >= 0 and constraint.which not in (GAP, FLAT))
+    return bool(constraint.feature >= 0 and constraint.which not in (GAP, FIXED))
 
 
 @kernel
@@ -287,7 +271,7 @@ def add_least_slip(
     position: Vector,
     quaternion: Quaternion,
     frame: Frame,
-    moved: Shapes,
+    placement: Placement,
 ) -> bool:
     """Add to the motion that closes gaps the one beside it with which features that stick slip least, in the sense of
     least squares; False: they would by more than they may, or a slip means nothing here.
@@ -303,7 +287,7 @@ def add_least_slip(
     for i in range(work.used):
         if not is_slip(rows[i]):
             continue
-        slip = lack(geometry, constraints, rows[i], position, quaternion, moved)
+        slip = lack(geometry, rows[i], position, quaternion, placement)
         if slip.value == math.inf:
             return False
         write_scaled_wrench(slip.direction, cross(slip.arm, slip.direction), frame, work.column)
@@ -334,6 +318,26 @@ def has_slips(constraints: Constraints) -> bool:
 
 
 @kernel
+def slip_on_the_way(
+    geometry: Geometry,
+    constraints: Constraints,
+    position: Vector,
+    quaternion: Quaternion,
+    frame: Frame,
+    placement: Placement,
+) -> float:
+    """Return how far what is not to slip does in the shortest motion that makes up for gaps, metres."""
+    work, slipped = constraints.scratch[0], 0.0
+    for i in range(work.used):
+        if is_slip(constraints.rows[i]):
+            slip = lack(geometry, constraints.rows[i], position, quaternion, placement)
+            write_scaled_wrench(slip.direction, cross(slip.arm, slip.direction), frame, work.column)
+            on_the_way = inner(work.column, work.y, 6)
+            slipped += on_the_way * on_the_way
+    return math.sqrt(slipped)
+
+
+@kernel
 def projected(
     geometry: Geometry,
     body: Body,
@@ -342,15 +346,16 @@ def projected(
     constraints: Constraints,
     size_m: float,
     may_slip: bool,
-    moved: Shapes,
+    placement: Placement,
 ) -> tuple[bool, Vector, Quaternion]:
     """Move the object so that all constraints hold; return (whether they do, position, quaternion).
 
-    Those that depend on others follow from them: where they do not, that shows as a point inside the object later. Or,
-    if what sticks ``may_slip``, gaps alone are made to hold, and it slips as little as that needs.
+    Those that depend on others follow from them: where they do not, that shows as a point inside the object later, or
+    as what sticks slips by more than it may. Or, if it ``may_slip``, gaps alone are made to hold, and it slips as
+    little as that needs.
     """
     work, rows, values = constraints.scratch[0], constraints.rows, constraints.scratch[0].values
-    worst_before = math.inf
+    worst_before, slipped_m = math.inf, 0.0
     for _ in range(ROUNDS):
         frame = frame_at(body, quaternion)
         clear(work.basis, WRENCH, 1.0)
@@ -361,14 +366,14 @@ def projected(
             write_scaled_wrench(force, moment, frame, work.column)
             values[work.basis.used] = 0.0
             append_column(work.basis, work.column, i, 0.0)
-        worst = 0.0
+        worst, n_left_out = 0.0, 0
         n_rounds = 1 if may_slip else 2  # gaps first: what must not slip only says which way is left to close them
         for at in range(n_rounds * work.used):
             slips, i = at >= work.used, at % work.used
             if is_slip(rows[i]) != slips:
                 continue
-            lacks = lack(geometry, constraints, rows[i], position, quaternion, moved)
-            if lacks.value == math.inf and may_be_left_out(geometry, rows[i], moved):
+            lacks = lack(geometry, rows[i], position, quaternion, placement)
+            if lacks.value == math.inf and are_parallel(geometry, rows[i], placement):
                 continue
             if lacks.value == math.inf:
                 return False, position, quaternion
@@ -377,11 +382,17 @@ def projected(
             if append_column(work.basis, work.column, i, 0.0):
                 values[place] = lacks.value
                 worst = max(worst, abs(values[place]))
+            elif slips:
+                n_left_out += 1
         if worst <= ON_FACE * size_m or worst >= worst_before:
             return worst <= 1e3 * ON_FACE * size_m, position, quaternion
         worst_before = worst
         write_shortest(work)
-        if may_slip and not add_least_slip(geometry, constraints, position, quaternion, frame, moved):
+        if n_left_out > 0:
+            slipped_m += slip_on_the_way(geometry, constraints, position, quaternion, frame, placement)
+        if slipped_m > work.may_slip_m:
+            return False, position, quaternion
+        if may_slip and not add_least_slip(geometry, constraints, position, quaternion, frame, placement):
             return False, position, quaternion
         velocity, spin = twist_of(work.y, frame)
         position, quaternion = moved_along_twist(position, quaternion, velocity, spin, 1.0)

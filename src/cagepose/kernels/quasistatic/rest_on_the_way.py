@@ -8,7 +8,7 @@ from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, ON_THE_WAY, equilibrium
 from cagepose.kernels.contact.metric import frame_at
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.along_twist import Twist
+from cagepose.kernels.quasistatic.first_contact import Twist
 from cagepose.kernels.quasistatic.on_the_way import find_touched_before, stepped_from
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import Vector
+from cagepose.kernels.boundary.overlap import forget_shells
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.outcome.cases import Cases, Part, Start, is_valid, start_of
 from cagepose.kernels.outcome.endings import INVALID, Endings, write_ending
@@ -138,9 +139,10 @@ def run_quasistatic_cases(
     endings
         Filled.
     """
+    forget_shells(work.cage.overlap)
     for case in range(first, last):
         start = start_of(case, part, cases, work.cage)
-        if not is_valid(start, farthest, len(cases.points_cage) > 1, work.placement):
+        if not is_valid(start, farthest, len(cases.points_cage) > 1, work.placement, work.cage):
             endings.verdicts[case, 0] = INVALID
             continue
         position, quaternion = start.position, start.quaternion

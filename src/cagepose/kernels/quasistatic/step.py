@@ -28,24 +28,25 @@ from cagepose.kernels.contact.find_contacts import find_contacts
 from cagepose.kernels.contact.load_curvature import has_circulation, write_circulation
 from cagepose.kernels.contact.loads import longest_pull, write_load
 from cagepose.kernels.contact.metric import Frame, frame_at, twist_of
-from cagepose.kernels.contact.on_rim import is_under_rim
+from cagepose.kernels.contact.on_circle import is_under_circle
 from cagepose.kernels.contact.onset import find_sticking, onset
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import ESCAPES, LET_GO, NONE, PLAIN, RESTS, SCREW, STALLED, TRAVEL, StepRecord
-from cagepose.kernels.quasistatic.along_twist import Twist, furthest_step, longest_step, straightened, turn_of_normals
+from cagepose.kernels.quasistatic.along_twist import furthest_step, longest_step, straightened, turn_of_normals
+from cagepose.kernels.quasistatic.first_contact import Twist
 from cagepose.kernels.quasistatic.flight import nothing_ahead
 from cagepose.kernels.quasistatic.implicit_step import (
     implicit_step,
     keep_along_faces,
     rho_against_circulation,
 )
-from cagepose.kernels.quasistatic.projection import GAP, ON_FACE, constrain_features, keep_stopped
+from cagepose.kernels.quasistatic.projection import FIXED, ON_FACE, constrain_features, keep_stopped
 from cagepose.kernels.quasistatic.pushing_out import allow_depths, constrain_contacts, pushed_out
 from cagepose.kernels.quasistatic.rest_on_the_way import first_rest, is_held_on_the_way
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.tipping import may_tip, tips_on_the_way
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
-from cagepose.kernels.stability.strong import OTHER_FOUND, other_onset_on_rims
+from cagepose.kernels.stability.strong import OTHER_FOUND, other_onset_on_circles
 
 RULE_NAMES = ("free", "slide", "pivot", "held", "stalled", "escapes")
 FREE, SLIDE, PIVOT, HELD, STUCK, AWAY = 0, 1, 2, 3, 4, 5
@@ -114,7 +115,7 @@ def impending_motion(setting: Setting, frame: Frame, work: QuasistaticWorkspace)
     if code != MOVES_SOMEHOW or friction == 0.0:
         return code
     tree, load, terms = proof.scratch[0].tree, solver.load, solver.load_terms
-    found = other_onset_on_rims(contacts, frame, friction, load, terms, tree, solver.newton, proof.system)
+    found = other_onset_on_circles(contacts, frame, friction, load, terms, tree, solver.newton, proof.system)
     if found != OTHER_FOUND:
         return MOVES_SOMEHOW
     for k in range(6):
@@ -182,14 +183,14 @@ def gap_left(contacts: ContactSet) -> float:
 
 
 @kernel
-def gap_under_rims(contacts: ContactSet, touch_m: float) -> float:
+def gap_under_circles(contacts: ContactSet, touch_m: float) -> float:
     """Return the greatest distance, to either side, of a rim that lies flat from what it lies on.
 
     A face is on all of a rim with its full digits or not at all: tilted by the touch tolerance it is a slope.
     """
     greatest = 0.0
     for i in range(contacts.used[0] if len(contacts.bends) > 0 else 0):
-        if is_under_rim(contacts, i, touch_m):
+        if is_under_circle(contacts, i, touch_m):
             greatest = max(greatest, abs(contacts.rows[i].gap))
     return greatest
 
@@ -202,14 +203,15 @@ def refined(
     contacts, constraints = work.contacts, work.path.constraints
     for i in range(contacts.used[0]):
         contacts.states[i].is_sticking = contacts.states[i].stays_flat = False
-    allow_depths(setting.geometry, work.placement, setting.tolerances, work.path)
+    allow_depths(work.placement, setting.tolerances, work.path)
     if is_rest:
         constrain_contacts(setting.geometry, work.placement, contacts, math.inf, constraints)
     else:
         constraints.scratch[0].used = 0
         for i in range(contacts.used[0]):
-            if is_under_rim(contacts, i, setting.tolerances.touch_m):
-                constrain_features(constraints, contacts.rows[i].feature, contacts.rows[i].cage_feature, GAP, 0.0)
+            if is_under_circle(contacts, i, setting.tolerances.touch_m):
+                row = contacts.rows[i]
+                constrain_features(constraints, row.feature, row.cage_feature, row.angle, FIXED, 0.0)
     done, new_position, new_quaternion = pushed_out(setting, work.placement, position, quaternion, work.path)
     if done:
         return new_position, new_quaternion
@@ -310,7 +312,7 @@ def next_step(
         code = impending_motion(setting, frame, work) if fits else UNSOLVED
         keep_stopped(solver.stopped, position, frame, work.path.constraints)
         is_rest = code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
-        left = gap_left(work.contacts) if is_rest else gap_under_rims(work.contacts, setting.tolerances.touch_m)
+        left = gap_left(work.contacts) if is_rest else gap_under_circles(work.contacts, setting.tolerances.touch_m)
         if n_refined == REFINEMENTS or left <= ON_FACE * setting.size_m:
             break
         position, quaternion = refined(setting, position, quaternion, is_rest, work)

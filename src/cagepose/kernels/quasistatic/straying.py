@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion, rotated
 from cagepose.kernels.algebra.vector import Vector, dot, minus, row
-from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.boundary.features import place_feature, place_feature_at
+from cagepose.kernels.boundary.kept import meeting_kept
+from cagepose.kernels.collision.geometry import Geometry, Placement, held_moved
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.metric import moved_along_twist
-from cagepose.kernels.contact.on_rim import is_along_wall, is_kept
+from cagepose.kernels.contact.on_circle import is_along_wall, is_kept
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.along_rims import meeting_along_rim
 from cagepose.kernels.quasistatic.projection import box_axis
-from cagepose.kernels.shapes.features import Shapes, place_feature
-from cagepose.kernels.shapes.meeting import meeting_kept, twin_pair
-from cagepose.kernels.shapes.rims import is_rim_on_side
+from cagepose.kernels.quasistatic.pushing_out import is_fixed
 
 STRAYED = 2.0
 """Times the way that contacts stray: a point or an edge that was nearer than this is met because they do."""
@@ -22,6 +21,7 @@ STRAYED = 2.0
 @kernel
 def strayed(
     geometry: Geometry,
+    placement: Placement,
     contacts: ContactSet,
     position: Vector,
     quaternion: Quaternion,
@@ -29,34 +29,26 @@ def strayed(
     spin: Vector,
     amount: float,
     where_over: float,
-    moved: Shapes,
 ) -> float:
     """Return how far the contacts that stay on their faces leave them on a screw, until they are put back, metres.
 
-    A contact that has no place any more at the end counts for ``where_over``; of a rim that stays flat, for nothing.
+    A contact that has no place any more at the end counts for ``where_over``; of a circle that stays flat, for nothing.
     """
     end, turned = moved_along_twist(position, quaternion, velocity, spin, amount)
     back = (turned[0], -turned[1], -turned[2], -turned[3])
-    farthest = 0.0
+    farthest, moved, places = 0.0, held_moved(geometry, placement), placement.meetings.places
     for i in range(contacts.used[0]):
         if not is_kept(contacts, i):
             continue
         contact = contacts.rows[i]
         if contact.feature >= 0:
-            matrix = matrix_from_quaternion(turned)
-            place_feature(geometry.held, contact.feature, end, matrix, moved)
-            twin, _ = twin_pair(moved, contact.feature, geometry.cage, contact.cage_feature)
-            if twin >= 0:
-                place_feature(geometry.held, twin, end, matrix, moved)
-            held, cage = moved.features[contact.feature], geometry.cage.features[contact.cage_feature]
-            is_along = is_along_wall(contacts, i)
-            if is_along and is_rim_on_side(held, cage):
-                met = meeting_along_rim(geometry, contact.feature, contact.cage_feature, end, matrix, moved)
-            else:
-                met = meeting_kept(moved, contact.feature, geometry.cage, contact.cage_feature, contact.gap)
+            i_held, i_cage, fixed = contact.feature, contact.cage_feature, is_fixed(contacts, i)
+            place_feature_at(moved, i_held, end, matrix_from_quaternion(turned))
+            place_feature(geometry.cage, i_cage)
+            met = meeting_kept(moved, i_held, geometry.cage, i_cage, contact.angle, fixed, geometry.touch_m, places)
             if met.is_one:
                 farthest = max(farthest, abs(met.gap - contact.gap))
-            elif not (contacts.states[i].stays_flat or is_along):
+            elif not (contacts.states[i].stays_flat or is_along_wall(contacts, i)):
                 farthest = max(farthest, where_over)
         else:
             from_center = rotated(back, minus(row(geometry.points_world, contact.point), end))

@@ -12,7 +12,7 @@ from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, HELD_WITHOUT_
 from cagepose.kernels.contact.metric import frame_at, twist_of
 from cagepose.kernels.contact.onset import onset
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.along_twist import Twist
+from cagepose.kernels.quasistatic.first_contact import Twist
 from cagepose.kernels.quasistatic.on_the_way import find_touched_before, place_before, stepped_from
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace

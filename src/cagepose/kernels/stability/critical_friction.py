@@ -10,7 +10,7 @@ from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.edges import CHOICES_LIMIT, ONLY_CARRYING, first_choice, next_choice
 from cagepose.kernels.contact.equilibrium import least_residual
 from cagepose.kernels.contact.metric import Frame
-from cagepose.kernels.contact.on_rim import MOST_ADDED_POINTS, add_on_rims
+from cagepose.kernels.contact.on_circle import MOST_ADDED_POINTS, add_on_circles
 from cagepose.kernels.contact.tolerances import RESIDUAL_AT_LIMIT, RESIDUAL_OF_LOAD
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
@@ -42,7 +42,7 @@ def left_of_load(contacts: ContactSet, n_listed: int, frame: Frame, friction: fl
     contacts.used[0] = n_listed
     left = least_residual(contacts, friction, work.load, work.load_terms, work)
     for _ in range(MOST_ADDED_POINTS):
-        if left <= RESIDUAL_AT_LIMIT or not add_on_rims(
+        if left <= RESIDUAL_AT_LIMIT or not add_on_circles(
             contacts, frame, friction, work.cone.passive.residual, work.load_terms
         ):
             break

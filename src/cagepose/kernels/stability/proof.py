@@ -31,7 +31,7 @@ from cagepose.kernels.contact.find_contacts import find_contacts
 from cagepose.kernels.contact.friction import Friction
 from cagepose.kernels.contact.loads import PhaseLoad, write_load
 from cagepose.kernels.contact.metric import WRENCH, Body, Frame, ScaledVector, frame_at
-from cagepose.kernels.contact.on_rim import drop_idle
+from cagepose.kernels.contact.on_circle import drop_idle
 from cagepose.kernels.contact.self_stress import forget_locked, write_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel

@@ -34,7 +34,7 @@ from cagepose.kernels.stability.proof import (
     prove,
 )
 from cagepose.kernels.stability.second_order import MARGINAL, STABLE_REST
-from cagepose.kernels.stability.strong import OTHER_FOUND, UNIQUE, other_onset, other_onset_on_rims
+from cagepose.kernels.stability.strong import OTHER_FOUND, UNIQUE, other_onset, other_onset_on_circles
 
 
 @entry
@@ -86,7 +86,7 @@ def search_faces(friction: float, frame: Frame, at: ProofWorkspace) -> int:
             if solver.locked.used > 0:  # wrenches are without what that stops: no point is added
                 answer = search_with_faces(friction, at)
             else:
-                answer = other_onset_on_rims(
+                answer = other_onset_on_circles(
                     contacts, frame, friction, solver.load, solver.load_terms, work.tree, solver.newton, at.system
                 )
             if answer != UNIQUE:

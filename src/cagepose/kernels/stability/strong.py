@@ -18,7 +18,7 @@ from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.coulomb import coulomb_error, motion_left
 from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS, NewtonWorkspace, add_carrying, newton_on_modes
 from cagepose.kernels.contact.metric import WRENCH, Frame, ScaledVector
-from cagepose.kernels.contact.on_rim import MOST_ADDED_POINTS, add_on_rims
+from cagepose.kernels.contact.on_circle import MOST_ADDED_POINTS, add_on_circles
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.relaxation import (
     CLOSED,
@@ -252,7 +252,7 @@ def other_onset(
 
 
 @kernel
-def other_onset_on_rims(
+def other_onset_on_circles(
     contacts: ContactSet,
     frame: Frame,
     friction: float,
@@ -269,6 +269,6 @@ def other_onset_on_rims(
         answer = other_onset(contacts, friction, b, tree, newton, system)
         if answer != OTHER_FOUND or contacts.used[0] == len(contacts.rows):
             return answer if answer != OTHER_FOUND else NOT_SHOWN
-        if not add_on_rims(contacts, frame, 0.0, tree.y, terms):
+        if not add_on_circles(contacts, frame, 0.0, tree.y, terms):
             return OTHER_FOUND
     return NOT_SHOWN

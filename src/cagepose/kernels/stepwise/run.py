@@ -356,7 +356,7 @@ def run_stepwise_cases(
     """
     for case in range(first, last):
         start = start_of(case, part, cases, work.cage)
-        if not is_valid(start, farthest, len(cases.points_cage) > 1, work.placement):
+        if not is_valid(start, farthest, len(cases.points_cage) > 1, work.placement, work.cage):
             endings.verdicts[case, 0] = INVALID
             continue
         position, quaternion = start.position, start.quaternion

@@ -1,4 +1,4 @@
-"""The parts of a body as kernels take them, each with a ball around it."""
+"""The parts of a body as kernels take them, each with a ball around it; and a boundary seen from elsewhere."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cagepose.kernels.algebra.record import dtype_of
-from cagepose.kernels.boundary.features import BodyPart
+from cagepose.kernels.boundary.features import BodyPart, Boundary
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
 from cagepose.model.shapes import Shape, Turned
@@ -37,3 +37,16 @@ def _ball(part: Shape | FloatArray, solids: Sequence[Shape]) -> tuple[FloatArray
         return place, part.farthest_m(place)
     place = part.nodes_body().mean(axis=0)
     return place, part.farthest_m(place)
+
+
+def shifted(boundary: Boundary, by: FloatArray) -> Boundary:
+    """Return a boundary moved by a travel, metres."""
+    if len(boundary.features) == 0:
+        return boundary
+    moved: Any = Boundary(*[np.array(rows) for rows in boundary])
+    moved.features["point"] += by
+    moved.nodes["middle"] += by
+    moved.parts["middle"] += by
+    moved.covers["point"] += by
+    moved.planes[3] += moved.planes[:3].T @ by
+    return Boundary(*moved)

@@ -1,10 +1,10 @@
-"""A rim that lies flat touches with all its points, of which some are listed: others are added where they count.
+"""A circle that lies flat touches with all its points, of which some are listed: others are added where they count.
 
 Of a cylinder that stands on a floor, or of a ball in a round hole, eight contacts are listed. If they do not hold the
-load, the motion that begins goes in deepest at some point of the rim, in closed form; this is added, and the question
-asked again, until no point goes in: the exchange method of semi-infinite programs. The points close in on the two
-between which the rim carries, halving the angle each time. Of a balance with friction it is the point whose force would
-take the most power from the twist that is left.
+load, the motion that begins goes in deepest at some point of the circle, in closed form; this is added, and the
+question asked again, until no point goes in: the exchange method of semi-infinite programs. The points close in on the
+two between which the circle carries, halving the angle each time. Of a balance with friction it is the point whose
+force would take the most power from the twist that is left.
 """
 
 from __future__ import annotations
@@ -15,14 +15,13 @@ from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.algebra.pose import matrix_from_quaternion, quaternion_about
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.boundary.bend import write_turned
 from cagepose.kernels.contact.cone import ConeWorkspace, steepest_tangent
 from cagepose.kernels.contact.contact_set import ContactSet, choose, stays_on_face, write_directions
 from cagepose.kernels.contact.edges import has_one_choice
 from cagepose.kernels.contact.metric import WRENCH, Frame, twist_of
-from cagepose.kernels.contact.tolerances import LAST_TURN_RAD, ROUNDING_OF_SPEED, SAME_CIRCLE, SAME_SIDE, SPEED_OF_ENTRY
+from cagepose.kernels.contact.tolerances import LAST_TURN_RAD, ROUNDING_OF_SPEED, SAME_WAY, SPEED_OF_ENTRY
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.shapes.bend import write_turned
-from cagepose.kernels.shapes.flat_rims import SAME_WAY
 
 MOST_ADDED_POINTS = 40
 """So many points of circles are added for one question."""
@@ -31,67 +30,58 @@ MOST_FOLLOWED = 30
 
 
 @kernel
-def is_under_rim(contacts: ContactSet, i: int, touch_m: float) -> bool:
-    """Whether a contact is of a rim that a face lies on, to the touch tolerance."""
+def is_under_circle(contacts: ContactSet, i: int, touch_m: float) -> bool:
+    """Whether a contact is of a circle that a face lies on, to the touch tolerance."""
     if contacts.rows[i].feature < 0:
         return False
-    rim, normal = contacts.bends[i].on_rim, vector_from(contacts.rows[i].directions[0])
-    if rim.length == 0.0 or rim.is_on_ball:
+    around, normal = contacts.bends[i].on_circle, vector_from(contacts.rows[i].directions[0])
+    if around.length == 0.0 or around.is_on_ball:
         return False
-    return abs(rim.length) * norm(cross(vector_from(rim.axis), normal)) <= touch_m
+    return abs(around.length) * norm(cross(vector_from(around.axis), normal)) <= touch_m
 
 
 @kernel
 def is_along_wall(contacts: ContactSet, i: int) -> bool:
-    """Whether a contact is of a rim that lies along the wall of a hole. One that lies around a cone is held by it as by
-    a wedge, and one around a ball stays where it is.
+    """Whether a contact is of a circle that lies along the wall of a hole. One that lies around a cone is held by it as
+    by a wedge, and one around a ball stays where it is.
     """
     if contacts.rows[i].feature < 0:
         return False
-    rim, row = contacts.bends[i].on_rim, contacts.rows[i]
-    if rim.length == 0.0 or not rim.is_on_ball or max(rim.before, rim.after) == 0.0:
+    around, row = contacts.bends[i].on_circle, contacts.rows[i]
+    if around.length == 0.0 or not around.is_on_ball:
         return False
-    away = minus(vector_from(row.arm), vector_from(rim.ball))
-    return (dot(away, vector_from(row.directions[0])) > 0.0) != rim.is_of_cage
+    away = minus(vector_from(row.arm), vector_from(around.ball))
+    return (dot(away, vector_from(row.directions[0])) > 0.0) != around.is_of_cage
 
 
 @kernel
-def is_of_same_rim(contacts: ContactSet, i: int, other: int) -> bool:
-    """Whether another contact is of the same rim on the same round side."""
+def is_of_same_circle(contacts: ContactSet, i: int, other: int) -> bool:
+    """Whether another contact is of the same circle, around the same round side."""
     row, one = contacts.rows[i], contacts.rows[other]
-    if one.point != row.point or one.box != row.box or row.feature < 0 or one.feature < 0:
+    if row.feature < 0 or one.feature != row.feature or one.cage_feature != row.cage_feature:
         return False
-    rim, around = contacts.bends[i].on_rim, contacts.bends[other].on_rim
-    if not (rim.is_on_ball and around.is_on_ball) or around.is_of_cage != rim.is_of_cage or around.length != rim.length:
-        return False
-    between = norm(minus(center_of_rim(contacts, i), center_of_rim(contacts, other)))
-    balls = norm(minus(vector_from(rim.ball), vector_from(around.ball)))
-    return between <= SAME_CIRCLE * abs(rim.length) and balls <= SAME_SIDE * abs(rim.length)
+    around, beside = contacts.bends[i].on_circle, contacts.bends[other].on_circle
+    return bool(around.length != 0.0 and beside.length != 0.0 and around.is_on_ball and beside.is_on_ball)
 
 
 @kernel
-def center_of_rim(contacts: ContactSet, i: int) -> Vector:
-    """Return the centre of the rim that a contact is of, as seen from the centre of gravity."""
-    rim = contacts.bends[i].on_rim
-    return minus(vector_from(contacts.rows[i].arm), scaled(vector_from(rim.outward), rim.length))
-
-
-@kernel
-def keeps_on_rim(contacts: ContactSet, i: int, velocity: Vector, spin: Vector, touch_m: float, slowest: float) -> bool:
-    """Whether a contact is of a rim that a motion leaves all on what it lies on, to a speed and to first order."""
-    if contacts.rows[i].feature < 0 or contacts.bends[i].on_rim.length == 0.0:
+def keeps_on_circle(
+    contacts: ContactSet, i: int, velocity: Vector, spin: Vector, touch_m: float, slowest: float
+) -> bool:
+    """Whether a contact is of a circle that a motion leaves all on what it lies on, to a speed and to first order."""
+    if contacts.rows[i].feature < 0 or contacts.bends[i].on_circle.length == 0.0:
         return False
-    rim, normal = contacts.bends[i].on_rim, vector_from(contacts.rows[i].directions[0])
+    around, normal = contacts.bends[i].on_circle, vector_from(contacts.rows[i].directions[0])
     if is_along_wall(contacts, i):  # all normals lead through one place
-        return norm(plus(velocity, cross(spin, vector_from(rim.ball)))) <= slowest
+        return norm(plus(velocity, cross(spin, vector_from(around.ball)))) <= slowest
     away = abs(dot(normal, plus(velocity, cross(spin, vector_from(contacts.rows[i].arm)))))
-    tilt = abs(rim.length) * norm(cross(normal, spin))  # about a point of it, a rim may tip
-    return is_under_rim(contacts, i, touch_m) and max(away, tilt) <= slowest
+    tilt = abs(around.length) * norm(cross(normal, spin))  # about a point of it, a circle may tip
+    return is_under_circle(contacts, i, touch_m) and max(away, tilt) <= slowest
 
 
 @kernel
 def is_on_flat(contacts: ContactSet, i: int) -> bool:
-    """Whether a point that was added is of a rim that stays flat on the same face."""
+    """Whether a point that was added is of a circle that stays flat on the same face."""
     row, found = contacts.rows[i], False
     for j in range(contacts.used[0]):
         other = contacts.rows[j]
@@ -104,9 +94,9 @@ def is_on_flat(contacts: ContactSet, i: int) -> bool:
 
 @kernel
 def is_kept(contacts: ContactSet, i: int) -> bool:
-    """Whether a step puts a contact back on its face: it carries, is locked or is of a rim that stays flat.
+    """Whether a step puts a contact back on its face: it carries, is locked or is of a circle that stays flat.
 
-    Of such a rim the points that were listed stand for those that were added, which are nowhere in particular.
+    Of such a circle the points that were listed stand for those that were added, which are nowhere in particular.
     """
     if contacts.states[i].stays_flat:
         return True
@@ -114,16 +104,16 @@ def is_kept(contacts: ContactSet, i: int) -> bool:
 
 
 @kernel
-def on_rim(contacts: ContactSet, i: int, angle: float) -> tuple[Vector, Vector]:
-    """Return (arm, normal) of the contact at an angle along the rim from a place of it that touches."""
-    row, rim = contacts.rows[i], contacts.bends[i].on_rim
-    axis, outward = vector_from(rim.axis), vector_from(rim.outward)
-    center = minus(vector_from(row.arm), scaled(outward, rim.length))
+def place_on_circle(contacts: ContactSet, i: int, angle: float) -> tuple[Vector, Vector]:
+    """Return (arm, normal) of the contact at an angle along the circle from a place of it that touches."""
+    row, around = contacts.rows[i], contacts.bends[i].on_circle
+    axis, outward = vector_from(around.axis), vector_from(around.outward)
+    center = minus(vector_from(row.arm), scaled(outward, around.length))
     there = plus(scaled(outward, math.cos(angle)), scaled(cross(axis, outward), math.sin(angle)))
-    arm, normal = plus(center, scaled(there, rim.length)), vector_from(row.directions[0])
-    if rim.is_on_ball:
-        away = minus(arm, vector_from(rim.ball))
-        side = math.copysign(1.0, dot(minus(vector_from(row.arm), vector_from(rim.ball)), normal))
+    arm, normal = plus(center, scaled(there, around.length)), vector_from(row.directions[0])
+    if around.is_on_ball:
+        away = minus(arm, vector_from(around.ball))
+        side = math.copysign(1.0, dot(minus(vector_from(row.arm), vector_from(around.ball)), normal))
         normal = scaled(away, side / norm(away))
     return arm, normal
 
@@ -132,27 +122,27 @@ def on_rim(contacts: ContactSet, i: int, angle: float) -> tuple[Vector, Vector]:
 def angle_of_deepest(
     contacts: ContactSet, i: int, friction: float, velocity: Vector, spin: Vector, start: float
 ) -> float:
-    """Return the angle along the rim, from a place of it that touches, to where a contact would resist a motion most:
-    a maximum of n . v + mu |v_t|, uphill from the slip at ``start``.
+    """Return the angle along the circle, from a place of it that touches, to where a contact would resist a motion
+    most: a maximum of n . v + mu |v_t|, uphill from the slip at ``start``.
 
     With the direction of the slip given, that is in closed form; the direction follows from where it is.
     """
-    row, rim = contacts.rows[i], contacts.bends[i].on_rim
-    axis, outward = vector_from(rim.axis), vector_from(rim.outward)
+    row, around = contacts.rows[i], contacts.bends[i].on_circle
+    axis, outward = vector_from(around.axis), vector_from(around.outward)
     share = friction * norm(vector_from(row.directions[1]))
     angle = start
     for _ in range(MOST_FOLLOWED if share > 0.0 else 1):
-        arm, normal = on_rim(contacts, i, angle)
+        arm, normal = place_on_circle(contacts, i, angle)
         way = plus(velocity, cross(spin, arm))
         slip = minus(way, scaled(normal, dot(normal, way)))
         rubs = scaled(slip, share / norm(slip)) if norm(slip) > 0.0 else (0.0, 0.0, 0.0)
-        if rim.is_on_ball:  # n . v(p) = (p - c) . v(c) / r, or its opposite
-            away, ball = minus(arm, vector_from(rim.ball)), vector_from(rim.ball)
+        if around.is_on_ball:  # n . v(p) = (p - c) . v(c) / r, or its opposite
+            away, ball = minus(arm, vector_from(around.ball)), vector_from(around.ball)
             side = math.copysign(1.0 / norm(away), dot(away, normal))
             along = plus(scaled(plus(velocity, cross(spin, ball)), side), cross(rubs, spin))
         else:  # g . (w x p) = p . (g x w)
             along = cross(plus(normal, rubs), spin)
-        along, before = scaled(along, rim.length), angle
+        along, before = scaled(along, around.length), angle
         angle = math.atan2(dot(along, cross(axis, outward)), dot(along, outward))
         if abs(angle - before) <= LAST_TURN_RAD:
             break
@@ -161,33 +151,37 @@ def angle_of_deepest(
 
 @kernel
 def write_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
-    """Write the row of the contact at an angle along the rim from a place of it that touches, behind all that count."""
-    row, rim, place = contacts.rows[i], contacts.bends[i].on_rim, contacts.used[0]
-    arm, normal = on_rim(contacts, i, angle)
+    """Write the row of the contact at an angle along the circle from a place of it that touches, behind all that
+    count.
+    """
+    row, place, around = contacts.rows[i], contacts.used[0], contacts.bends[i].on_circle
+    arm, normal = place_on_circle(contacts, i, angle)
     new = contacts.rows[place]
     new.point, new.box, new.axis, new.side, new.gap, new.group = row.point, row.box, 0, 1.0, row.gap, place
     new.is_added = True
-    arc = rim.arc_after if angle > 0.0 else rim.arc_before
-    if rim.is_of_cage:
-        new.feature, new.cage_feature = (row.feature if rim.face < 0 else rim.face), arc
-    else:
-        new.feature, new.cage_feature = arc, (row.cage_feature if rim.face < 0 else rim.face)
+    new.feature, new.cage_feature, new.angle = row.feature, row.cage_feature, row.angle + angle
+    if around.face >= 0 and around.is_of_cage:
+        new.feature = around.face
+    elif around.face >= 0:
+        new.cage_feature = around.face
     write_directions(new, normal, arm, norm(vector_from(row.directions[1])), frame)
 
 
 @kernel
 def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
-    """Append the contact at an angle along the rim from a place of it that touches."""
+    """Append the contact at an angle along the circle from a place of it that touches."""
     write_point(contacts, i, angle, frame)
     place = contacts.used[0]
-    new, state, rim = contacts.rows[place], contacts.states[place], contacts.bends[i].on_rim
+    new, state, around = contacts.rows[place], contacts.states[place], contacts.bends[i].on_circle
     choose(contacts, place, True)
     state.is_locked = state.is_sticking = state.has_carried = state.kept_chosen = False
     for k in range(3):
         state.forces[k] = state.kept_forces[k] = 0.0
     contacts.bends[place] = contacts.bends[i]  # type: ignore[index]
-    contacts.bends[place].on_rim.length = 0.0
-    by, normal = matrix_from_quaternion(quaternion_about(vector_from(rim.axis), angle)), vector_from(new.directions[0])
+    contacts.bends[place].on_circle.length = 0.0
+    contacts.bends[place].on_circle.is_crossing = False
+    by = matrix_from_quaternion(quaternion_about(vector_from(around.axis), angle))
+    normal = vector_from(new.directions[0])
     write_turned(contacts.bends[i], by, normal, vector_from(new.arm), frame.axes, frame.radii, contacts.bends[place])
     contacts.used[0] = place + 1
 
@@ -213,8 +207,8 @@ def drop_idle(contacts: ContactSet, cone: ConeWorkspace) -> None:
 
 
 @kernel
-def add_on_rims(contacts: ContactSet, frame: Frame, friction: float, y: FloatArray, terms: float) -> bool:
-    """Append the point of a flat rim that a motion y goes in fastest at; False: none counts, or there is no room.
+def add_on_circles(contacts: ContactSet, frame: Frame, friction: float, y: FloatArray, terms: float) -> bool:
+    """Append the point of a flat circle that a motion y goes in fastest at; False: none counts, or there is no room.
 
     With friction y is a twist that forces are asked to resist, which they do up to mu |v_t| faster. What y is the rest
     of has ``terms`` of this length: slower than their rounding, nothing goes in.
@@ -225,15 +219,15 @@ def add_on_rims(contacts: ContactSet, frame: Frame, friction: float, y: FloatArr
     n_listed, fastest, least = contacts.used[0], -1, max(SPEED_OF_ENTRY * length(y, WRENCH), ROUNDING_OF_SPEED * terms)
     at_fastest = 0.0
     for i in range(n_listed):
-        rim = contacts.bends[i].on_rim
-        if contacts.rows[i].feature < 0 or rim.length == 0.0 or contacts.used[0] == len(contacts.rows):
+        around = contacts.bends[i].on_circle
+        if contacts.rows[i].feature < 0 or around.length == 0.0 or contacts.used[0] == len(contacts.rows):
             continue
         deepest = angle_of_deepest(contacts, i, 0.0, velocity, spin, 0.0)
         for k in range(2 if friction > 0.0 else 1):  # with it, uphill from the deepest place, and from the listed one
             angle = deepest
             if friction > 0.0:
                 angle = angle_of_deepest(contacts, i, friction, velocity, spin, deepest if k == 0 else 0.0)
-            if angle == 0.0 or abs(angle) > (1.0 + SPEED_OF_ENTRY) * (rim.after if angle > 0.0 else rim.before):
+            if angle == 0.0 or abs(angle) > (1.0 + SPEED_OF_ENTRY) * (around.after if angle > 0.0 else around.before):
                 continue
             write_point(contacts, i, angle, frame)
             new = contacts.rows[n_listed]

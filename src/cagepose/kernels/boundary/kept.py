@@ -1,0 +1,42 @@
+"""Where features that touched meet after their body has moved: a place that moves along a circle is followed."""
+
+from __future__ import annotations
+
+from cagepose.kernels.algebra.record import Rows
+from cagepose.kernels.boundary.circle_first import place_near
+from cagepose.kernels.boundary.circle_places import Place, write_place
+from cagepose.kernels.boundary.features import CIRCLE, LINE, VERTEX, PlacedBoundary
+from cagepose.kernels.boundary.meeting import meeting, seated
+from cagepose.kernels.boundary.meetings import meeting_at
+from cagepose.kernels.boundary.met import Meeting, apart, swapped
+from cagepose.kernels.native.kernel import kernel
+
+
+@kernel
+def meeting_kept(
+    held: PlacedBoundary,
+    i: int,
+    cage: PlacedBoundary,
+    j: int,
+    angle: float,
+    is_fixed: bool,
+    touch_m: float,
+    places: Rows[Place],
+) -> Meeting:
+    """Return how two placed features meet that touched at an angle of a circle, if one of them is one.
+
+    ``is_fixed``: at this place of it, be it the nearest or not, as what lies all around does; else at the nearest place
+    that is no farther along it than a place goes in a step. Memory: ``places``.
+    """
+    one, other = held.features[i], cage.features[j]
+    if one.kind != CIRCLE and other.kind != CIRCLE:
+        if is_fixed and one.kind == VERTEX and other.kind == LINE:
+            return seated(one, other, angle)
+        if is_fixed and one.kind == LINE and other.kind == VERTEX:
+            return swapped(seated(other, one, angle))
+        return meeting(held, i, cage, j)
+    if is_fixed:
+        write_place(places[0], angle, 0.0, 0, True)
+        return meeting_at(held, i, cage, j, places[0])
+    at = place_near(one, other, angle, touch_m, places)
+    return meeting_at(held, i, cage, j, places[at]) if at >= 0 else apart()

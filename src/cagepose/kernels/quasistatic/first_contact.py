@@ -1,0 +1,216 @@
+"""The first contact along a twist, but for what touches already: of points and boxes, or of two boundaries."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from cagepose.kernels.algebra.motion import motion_of
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.boundary.features import middle_of_part
+from cagepose.kernels.boundary.first_meeting import Search, first_to_meet
+from cagepose.kernels.boundary.touching import Meetings
+from cagepose.kernels.collision.first_contact import first_contact_screw, first_contact_travel
+from cagepose.kernels.collision.geometry import Placement, held_at, held_moved, is_shaped
+from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.on_circle import is_kept
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.quasistatic.setting import Setting
+from cagepose.kernels.quasistatic.straying import STRAYED, strayed
+
+LOOKED_AT_AGAIN = 64
+"""Features that are met because contacts stray are passed over so many times at most."""
+
+
+class Twist(NamedTuple):
+    """A motion at constant twist.
+
+    Attributes
+    ----------
+    velocity, spin
+        Of the centre of gravity, and angular, for each unit of the amount.
+    end
+        The greatest amount; inf: a travel with no end of its own.
+    """
+
+    velocity: Vector
+    spin: Vector
+    end: float
+
+
+class Hit(NamedTuple):
+    """What is reached, and after which amount of a twist.
+
+    Attributes
+    ----------
+    amount
+        Inf: nothing is.
+    point, box
+        Of a point that reaches a box; -1: none does.
+    feature, cage_feature, angle
+        Of features that do, -1: none do; and where along a circle, if one of them is one.
+    """
+
+    amount: float
+    point: int
+    box: int
+    feature: int
+    cage_feature: int
+    angle: float
+
+
+NO_HIT = Hit(math.inf, -1, -1, -1, -1, 0.0)
+
+
+@kernel
+def first_contact(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+) -> Hit:
+    """Return the first contact along a twist, but for what touches already."""
+    if is_shaped(setting.geometry):
+        return first_of_boundaries(setting, placement, contacts, position, quaternion, twist)
+    return first_point(setting, placement, contacts, position, quaternion, twist)
+
+
+@kernel
+def until_past(setting: Setting, position: Vector, velocity: Vector) -> float:
+    """Return the amount of a travel after which the object is past all of the cage; zero: nothing is ahead."""
+    cage, farthest = setting.geometry.cage, 0.0
+    for part in range(len(cage.own.parts)):
+        ahead = dot(velocity, minus(middle_of_part(cage, part), position)) / norm(velocity)
+        farthest = max(farthest, ahead + cage.own.parts[part].reach + setting.body.reach_m)
+    return farthest / norm(velocity)
+
+
+@kernel
+def note_kept(meetings: Meetings, contacts: ContactSet, center: Vector) -> None:
+    """Note which meetings a motion keeps, also at places of circles that were added to those that are listed."""
+    rows, last = meetings.rows, max(meetings.used[0], 0)
+    for at in range(last):
+        rows[at].is_kept = False
+        for i in range(contacts.used[0]):
+            contact = contacts.rows[i]
+            is_same = contact.feature == rows[at].feature and contact.cage_feature == rows[at].cage_feature
+            rows[at].is_kept = rows[at].is_kept or (
+                is_same and contact.angle == rows[at].angle and is_kept(contacts, i)
+            )
+    for i in range(contacts.used[0]):
+        contact = contacts.rows[i]
+        if contact.is_added and is_kept(contacts, i) and last < len(rows):
+            row, place = rows[last], plus(center, vector_from(contact.arm))
+            row.feature, row.cage_feature, row.angle = contact.feature, contact.cage_feature, contact.angle
+            row.gap, row.is_kept = contact.gap, True
+            for k in range(3):
+                row.place[k], row.normal[k] = place[k], contact.directions[0, k]
+            last += 1
+    meetings.used[1] = last
+
+
+@kernel
+def first_of_boundaries(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+) -> Hit:
+    """Return the first contact of two boundaries along a twist.
+
+    Contacts that stay on their faces stray on a screw, by the square of its length, and are put back afterwards. Where
+    something is met because of that, not because it came nearer, it is passed over: whether it is reached shows at the
+    end.
+    """
+    geometry, velocity, spin = setting.geometry, twist.velocity, twist.spin
+    motion, touch_m = motion_of(position, velocity, spin), setting.tolerances.touch_m
+    end = until_past(setting, position, velocity) if twist.end == math.inf else twist.end
+    if end == 0.0:
+        return NO_HIT
+    note_kept(placement.meetings, contacts, position)
+    astray, near = 0.0, 0.0
+    if motion.rate > 0.0:
+        astray = strayed(geometry, placement, contacts, position, quaternion, velocity, spin, end, 0.0)
+    speed = norm(velocity) + motion.rate * setting.body.reach_m
+    held, moved = held_at(geometry, placement), held_moved(geometry, placement)
+    hit = NO_HIT
+    for _ in range(LOOKED_AT_AGAIN):
+        search = Search(motion, end, near, STRAYED * astray, speed, touch_m, setting.size_m)
+        found = first_to_meet(held, geometry.cage, search, placement.meetings, placement.queue, moved)
+        if found.feature < 0:
+            return NO_HIT
+        if found.is_open:  # nothing is reached before; the next step asks from there
+            return Hit(found.amount, -1, -1, -1, -1, 0.0)
+        hit = Hit(found.amount, -1, -1, found.feature, found.cage_feature, found.angle)
+        if found.gap <= near or motion.rate == 0.0:
+            break
+        reach = STRAYED * strayed(
+            geometry, placement, contacts, position, quaternion, velocity, spin, found.amount, 0.0
+        )
+        if found.gap > reach:
+            break
+        near = reach
+    return hit
+
+
+@kernel
+def first_point(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+) -> Hit:
+    """Return the first contact of a point and a box along a twist, but for what touches already.
+
+    Contacts that stay on their faces stray on a screw, by the square of its length, and are put back afterwards. Where
+    a point is met because of that, not because it came nearer, it is passed over: whether it is reached shows at the
+    end.
+    """
+    end = twist.end
+    touch_m = setting.tolerances.touch_m
+    rate = norm(twist.spin)
+    if rate == 0.0:
+        speed = norm(twist.velocity)
+        distance, point, box = first_contact_travel(
+            setting.geometry, placement, scaled(twist.velocity, 1.0 / speed), touch_m, setting.tolerances
+        )
+        amount = distance / speed
+    else:
+        astray = strayed(
+            setting.geometry, placement, contacts, position, quaternion, twist.velocity, twist.spin, end, 0.0
+        )
+        near, near_depth = 0.0, STRAYED * astray
+        angle, point, box = math.inf, -1, -1
+        for _ in range(len(setting.geometry.points_world)):
+            angle, point, box = first_contact_screw(
+                setting.geometry,
+                placement,
+                position,
+                scaled(twist.velocity, 1.0 / rate),
+                scaled(twist.spin, 1.0 / rate),
+                end * rate,
+                touch_m,
+                near,
+                near_depth,
+                setting.tolerances,
+            )
+            if point < 0 or placement.gaps[box, point] <= near:
+                break
+            met = angle / rate
+            reach = STRAYED * strayed(
+                setting.geometry, placement, contacts, position, quaternion, twist.velocity, twist.spin, met, 0.0
+            )
+            if placement.gaps[box, point] > reach:
+                break
+            near = reach
+        amount = angle / rate
+    if amount > end or point < 0:
+        return NO_HIT
+    return Hit(amount, point, box, -1, -1, 0.0)
