@@ -282,13 +282,13 @@ def append_arc(
     found: Meetings,
 ) -> None:
     """Append the meetings of an arc that touches all along; one that is straight to the slack is one place, as where a
-    circle leads over an edge that has its tangent.
+    circle leads over an edge that has its tangent. Others have a place between their ends, as edges may cross there.
     """
     span = arc.last - arc.first
     if span < math.pi and radius * (1.0 - math.cos(0.5 * span)) <= 2.0 * touch_m:
         append_along(held, i, cage, j, Along(arc.first + 0.5 * span, 0.0, 0.0), touch_m, found)
         return
-    n_between = math.ceil(span / HALF_SECTOR - LEAST_SLACK)
+    n_between = max(math.ceil(span / HALF_SECTOR - LEAST_SLACK), 2)
     for k in range(n_between + 1):
         before = span * k / n_between
         ends = min(before, HALF_SECTOR), min(span - before, HALF_SECTOR)

@@ -7,7 +7,7 @@ from typing import Annotated
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.circle import outward_at
-from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, VERTEX, Feature, PlacedBoundary
+from cagepose.kernels.boundary.features import CIRCLE, FACE, VERTEX, Feature, PlacedBoundary
 from cagepose.kernels.boundary.tapered import nearest_on_axis
 from cagepose.kernels.boundary.touching import Touching, is_around
 from cagepose.kernels.native.kernel import kernel
@@ -24,10 +24,6 @@ class OnCircle:
         Whose it is.
     before, after
         How far to either side along it, about its axis, it touches as it does at the place, radians.
-    is_crossing
-        Whether the place is where a sharp edge crosses it: the arc ends there, and the place moves along both.
-    face
-        The face that the circle lies on there, where that is not what touches, but a face beside the edge; else -1.
     is_on_ball, ball
         Whether the circle lies on a ball, and its centre as seen from the centre of gravity; else, on a face. The side
         of a cone that all of it lies on is there like a ball about the place on its axis that the normals lead through;
@@ -40,8 +36,6 @@ class OnCircle:
     is_of_cage: bool
     before: float
     after: float
-    is_crossing: bool
-    face: int
     is_on_ball: bool
     ball: Annotated[FloatArray, 3]
 
@@ -51,8 +45,7 @@ def write_on_circle(
     a: PlacedBoundary, i: int, b: PlacedBoundary, j: int, row: Touching, center: Vector, out: OnCircle
 ) -> None:
     """Write of which circle feature i of the object and feature j of the cage touch at a place, as its row tells."""
-    out.length, out.before, out.after, out.is_crossing = 0.0, row.before, row.after, False
-    out.face = row.face
+    out.length, out.before, out.after = 0.0, row.before, row.after
     if not is_around(row):
         return
     one, other, place = a.features[i], b.features[j], vector_from(row.place)
@@ -75,8 +68,7 @@ def write_on_circle(
 def write_along(circle: Feature, place: Vector, other: Feature, center: Vector, out: OnCircle) -> None:
     """Write a circle that lies on another feature at a place."""
     outward, axis, ball = outward_at(circle, place), vector_from(circle.direction), center
-    out.is_crossing = other.kind == LINE and other.radius == 0.0
-    out.length, out.is_on_ball = circle.length, other.kind != FACE and not out.is_crossing
+    out.length, out.is_on_ball = circle.length, other.kind != FACE
     if out.is_on_ball:
         ball = vector_from(other.point) if other.kind == VERTEX else nearest_on_axis(other, place).place
     for k in range(3):

@@ -43,8 +43,6 @@ class Touching:
     ----------
     feature, cage_feature
         Indices.
-    face
-        Where a sharp edge crosses a circle that lies flat: the face beside the edge that it lies on; else -1.
     twin, cage_twin
         Features that meet at the same place with the same normal and bend more; -1: none do.
     angle
@@ -64,7 +62,6 @@ class Touching:
 
     feature: int
     cage_feature: int
-    face: int
     twin: int
     cage_twin: int
     angle: float

@@ -27,7 +27,7 @@ def append_meeting(
         found.used[0] = -1
         return
     row = found.rows[at]
-    row.face, row.twin, row.cage_twin, row.gap, row.is_kept, row.group = -1, -1, -1, met.gap, False, at
+    row.twin, row.cage_twin, row.gap, row.is_kept, row.group = -1, -1, met.gap, False, at
     write_features(i, j, along, row)
     for k in range(3):
         row.normal[k], row.place[k] = met.normal[k], met.place[k]
@@ -54,16 +54,15 @@ def bends_of(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, row: To
 @kernel
 def note_twin(held: PlacedBoundary, cage: PlacedBoundary, told: Touching, new: Touching) -> None:
     """Keep, of features that meet at one place with one normal, those that bend least, and beside them those that bend
-    most; but a circle that touches along an arc there is kept in any case. Where it comes out from under a face, its
-    meeting with the edge of this is kept, which goes along both, and told where the arc leads.
+    most; but a circle that touches along an arc there is kept in any case. Where the arc ends as an edge crosses it,
+    this crossing is kept instead, which goes along both.
     """
-    is_same = are_of_one_circle(held, cage, told, new)
-    if is_same and is_around(new) and (is_around(told) or is_crossing(held, cage, told)):
+    if is_around(new) and are_of_one_circle(held, cage, told, new):
+        if is_around(told):
+            told.before, told.after = max(told.before, new.before), max(told.after, new.after)
+            return
         if is_crossing(held, cage, told):
-            is_of_held = held.own.features[new.feature].kind == FACE
-            told.face = new.feature if is_of_held else new.cage_feature
-        told.before, told.after = max(told.before, new.before), max(told.after, new.after)
-        return
+            return
     least = bends_of(held, told.feature, cage, told.cage_feature, told, is_around(told))
     bend = bends_of(held, new.feature, cage, new.cage_feature, new, is_around(new))
     most = least if told.twin < 0 else bends_of(held, told.twin, cage, told.cage_twin, told, False)
@@ -77,10 +76,12 @@ def note_twin(held: PlacedBoundary, cage: PlacedBoundary, told: Touching, new: T
 
 @kernel
 def is_crossing(held: PlacedBoundary, cage: PlacedBoundary, row: Touching) -> bool:
-    """Whether a meeting is of a circle and a sharp line."""
+    """Whether a meeting is of a circle and a sharp edge, or of two sharp circles."""
     one, other = held.own.features[row.feature], cage.own.features[row.cage_feature]
-    line = one if one.kind == LINE else other
-    return bool(line.kind == LINE and line.radius == 0.0 and (one.kind == CIRCLE or other.kind == CIRCLE))
+    if one.kind == FACE or other.kind == FACE or (one.kind != CIRCLE and other.kind != CIRCLE):
+        return False
+    edge = other if one.kind == CIRCLE else one
+    return bool(edge.kind in (LINE, CIRCLE) and edge.radius == 0.0)
 
 
 @kernel

@@ -160,10 +160,6 @@ def write_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> Non
     new.point, new.box, new.axis, new.side, new.gap, new.group = row.point, row.box, 0, 1.0, row.gap, place
     new.is_added = True
     new.feature, new.cage_feature, new.angle = row.feature, row.cage_feature, row.angle + angle
-    if around.face >= 0 and around.is_of_cage:
-        new.feature = around.face
-    elif around.face >= 0:
-        new.cage_feature = around.face
     write_directions(new, normal, arm, norm(vector_from(row.directions[1])), frame)
 
 
@@ -179,7 +175,6 @@ def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
         state.forces[k] = state.kept_forces[k] = 0.0
     contacts.bends[place] = contacts.bends[i]  # type: ignore[index]
     contacts.bends[place].on_circle.length = 0.0
-    contacts.bends[place].on_circle.is_crossing = False
     by = matrix_from_quaternion(quaternion_about(vector_from(around.axis), angle))
     normal = vector_from(new.directions[0])
     write_turned(contacts.bends[i], by, normal, vector_from(new.arm), frame.axes, frame.radii, contacts.bends[place])

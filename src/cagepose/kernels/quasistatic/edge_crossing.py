@@ -79,16 +79,16 @@ def end_of_meeting(
     motion: Motion,
     end: float,
     touch_m: float,
-) -> float:
-    """Return the amount of a motion, up to ``end``, after which a contact runs over the end of one of its features;
-    inf: it does not.
+) -> tuple[float, float]:
+    """Return two amounts of a motion, up to ``end``, between which a contact runs over the end of one of its features,
+    a rounding apart; inf: it does not.
     """
     if end == math.inf:
         row = contacts.rows[i]
         apart_m = geometry.held.parts[row.box].reach + geometry.cage.own.parts[row.point].reach + touch_m
         end = 2.0 * apart_m / norm(motion.velocity)
     if still_meet(geometry, placement, contacts, i, motion, end, touch_m, 0.0):
-        return math.inf
+        return math.inf, math.inf
     low, high = 0.0, end
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
@@ -96,7 +96,7 @@ def end_of_meeting(
             low = middle
         else:
             high = middle
-    return high
+    return low, high
 
 
 @kernel
@@ -124,10 +124,10 @@ def first_edge_crossing(
             continue
         if contact.feature >= 0:
             motion = motion_of(center, velocity, spin)
-            crossing = end_of_meeting(geometry, placement, contacts, i, motion, min(end, first), touch_m)
+            before, crossing = end_of_meeting(geometry, placement, contacts, i, motion, min(end, first), touch_m)
             if crossing < first:
                 reach = STRAYED * strayed(
-                    geometry, placement, contacts, center, quaternion, velocity, spin, crossing, math.inf
+                    geometry, placement, contacts, center, quaternion, velocity, spin, before, math.inf
                 )
                 if still_meet(geometry, placement, contacts, i, motion, 0.0, touch_m, reach):
                     first = crossing

@@ -66,7 +66,7 @@ def place_before(contacts: ContactSet, one: ContactRow) -> int:
         row = contacts.rows[i]
         if (row.point, row.box, row.feature, row.cage_feature) == (one.point, one.box, one.feature, one.cage_feature):
             away = abs(within_turn(row.angle - one.angle))
-            goes_on = row.feature >= 0 and contacts.bends[i].on_circle.is_crossing
+            goes_on = row.feature >= 0 and contacts.bends[i].on_circle.length == 0.0
             if away < least and (goes_on or away < SAME_ANGLE):
                 found, least = i, away
     return found

@@ -26,7 +26,7 @@ from cagepose.kernels.algebra.vector import (
     vector_from,
 )
 from cagepose.kernels.boundary.circle_places import within_turn
-from cagepose.kernels.boundary.features import LINE, place_feature, place_feature_at
+from cagepose.kernels.boundary.features import CIRCLE, LINE, place_feature, place_feature_at
 from cagepose.kernels.boundary.kept import meeting_kept
 from cagepose.kernels.boundary.met import PARALLEL
 from cagepose.kernels.collision.geometry import Geometry, Placement, held_moved
@@ -222,12 +222,16 @@ def lack(
 
 
 @kernel
-def are_parallel(geometry: Geometry, constraint: PositionConstraint, placement: Placement) -> bool:
-    """Whether a constraint is of edges that have become parallel: they meet nowhere, and what else touches counts."""
+def cross_no_more(geometry: Geometry, constraint: PositionConstraint, placement: Placement) -> bool:
+    """Whether a constraint that means nothing is of edges that crossed in a plane: straight ones that have become
+    parallel, or a circle from under which an edge has come out. What else touches there counts.
+    """
     held, cage = placement.moved.features[constraint.feature], geometry.cage.features[constraint.cage_feature]
-    if held.kind != LINE or cage.kind != LINE:
-        return False
-    return norm(cross(vector_from(held.direction), vector_from(cage.direction))) < PARALLEL
+    u, v = vector_from(held.direction), vector_from(cage.direction)
+    if (held.kind == CIRCLE and cage.kind == LINE) or (held.kind == LINE and cage.kind == CIRCLE):
+        return abs(dot(u, v)) < PARALLEL
+    is_alike = held.kind == cage.kind and held.kind in (LINE, CIRCLE)
+    return is_alike and norm(cross(u, v)) < PARALLEL
 
 
 @kernel
@@ -373,7 +377,7 @@ def projected(
             if is_slip(rows[i]) != slips:
                 continue
             lacks = lack(geometry, rows[i], position, quaternion, placement)
-            if lacks.value == math.inf and are_parallel(geometry, rows[i], placement):
+            if lacks.value == math.inf and cross_no_more(geometry, rows[i], placement):
                 continue
             if lacks.value == math.inf:
                 return False, position, quaternion

@@ -74,12 +74,9 @@ def constrain_to_face(geometry: Geometry, placement: Placement, point: int, box:
 
 @kernel
 def is_fixed(contacts: ContactSet, i: int) -> bool:
-    """Whether a contact stays at its place of a circle: of one that stays flat on a face, or lies around a side; not
-    where an edge crosses it.
+    """Whether a contact stays at its place of a circle: of one that stays flat on a face, or lies around a side.
     """
     around = contacts.bends[i].on_circle
-    if around.is_crossing:
-        return False
     return bool(contacts.states[i].stays_flat or (around.length != 0.0 and around.is_on_ball))
 
 
