@@ -412,9 +412,11 @@ def first_of_curved(
             if is_held:
                 is_passed = True
             elif reaches_there:  # a contact that carries, or it would not go into it
-                is_passed = closing >= -slowest
+                is_passed = closing >= -slowest or is_beside_kept(i, j, meetings, met, touch_m)
             else:  # that of features next to them
                 is_passed = abs(closing) <= slowest and is_there(meetings, met, False, touch_m)
+        elif reaches_there and met.gap < 0.0:
+            is_passed = is_passed or is_beside_kept(i, j, meetings, met, touch_m)
         if not is_held:
             least = min(least, met.gap)
         if is_passed or met.gap >= -depth:
@@ -454,6 +456,25 @@ def is_there(meetings: Meetings, met: Meeting, is_kept: bool, touch_m: float) ->
 
 
 @kernel
+def is_beside_kept(i: int, j: int, meetings: Meetings, met: Meeting, touch_m: float) -> bool:
+    """Whether two features meet where an alternative is kept, which holds the object out of what they would: as where a
+    flat foot slides over the edge of a table that it is flush with. Those that touch are of the same group; those that
+    are past the edge are not listed.
+    """
+    group, found = -1, False
+    for at in range(meetings.used[0]):
+        row = meetings.rows[at]
+        is_near = norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
+        if is_near and row.feature == i and row.cage_feature == j:
+            group = row.group
+    for at in range(meetings.used[1]):
+        row = meetings.rows[at]
+        is_near = norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
+        found = found or (is_near and row.is_kept and (group < 0 or row.group == group))
+    return found
+
+
+@kernel
 def first_of_features(
     held: PlacedBoundary,
     i: int,
@@ -482,7 +503,7 @@ def first_of_features(
         closing = -math.inf
     if leaves and motion.rate == 0.0 and not is_hollow:
         return math.inf
-    if closing >= -slowest:  # a contact that carries, or it would not go into it
+    if closing >= -slowest or (leaves and is_beside_kept(i, j, meetings, met, touch_m)):  # a contact that carries
         return math.inf
     level, side = 0.0, 0.0
     if met.is_one and abs(met.gap) <= max(search.near_m, touch_m):

@@ -286,7 +286,7 @@ def append_arc(
     """
     span = arc.last - arc.first
     if span < math.pi and radius * (1.0 - math.cos(0.5 * span)) <= 2.0 * touch_m:
-        append_along(held, i, cage, j, Along(arc.first + 0.5 * span, 0.0, 0.0), touch_m, found)
+        append_along(held, i, cage, j, Along(arc.first + 0.5 * span, 0.5 * span, 0.5 * span), touch_m, found)
         return
     n_between = max(math.ceil(span / HALF_SECTOR - LEAST_SLACK), 2)
     for k in range(n_between + 1):

@@ -6,7 +6,6 @@ import math
 
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
-from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE
 from cagepose.kernels.boundary.circle_places import within_turn
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
@@ -58,16 +57,15 @@ def find_touched_before(
 
 @kernel
 def place_before(contacts: ContactSet, one: ContactRow) -> int:
-    """Return which of the contacts is of the same point and box, or features, of a circle at the nearest place that one
-    goes to in a step; -1: none is.
+    """Return which of the contacts is of the same point and box, or features, and of a circle at the nearest place; -1:
+    none is.
     """
-    found, least = -1, math.pi
+    found, least = -1, math.inf
     for i in range(contacts.used[0]):
         row = contacts.rows[i]
         if (row.point, row.box, row.feature, row.cage_feature) == (one.point, one.box, one.feature, one.cage_feature):
             away = abs(within_turn(row.angle - one.angle))
-            goes_on = row.feature >= 0 and contacts.bends[i].on_circle.length == 0.0
-            if away < least and (goes_on or away < SAME_ANGLE):
+            if away < least:
                 found, least = i, away
     return found
 
