@@ -10,25 +10,28 @@ import numpy as np
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.tolerances import KernelTolerances
-from cagepose.kernels.algebra.vector import Vector
+from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, vector_from
 from cagepose.kernels.boundary.meetings import EQUALLY_FAR
-from cagepose.kernels.boundary.touching import is_around
+from cagepose.kernels.boundary.touching import SAME_PLACE, Touching, is_around
 from cagepose.kernels.collision.first_contact import allowed_depth
 from cagepose.kernels.collision.geometry import Geometry, Placement, most_rows, place_object
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.on_circle import is_along_wall, is_kept, is_of_same_circle
+from cagepose.kernels.contact.tolerances import SAME_NORMAL_RAD
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.projection import (
     ALONG,
     FIXED,
     GAP,
     Constraints,
+    PositionConstraint,
     add_constraint,
     constrain_features,
     drop_constraint,
     empty_constraints,
     has_slips,
     is_slip,
+    lack,
     projected,
 )
 from cagepose.kernels.quasistatic.setting import Setting
@@ -180,7 +183,9 @@ def pushed_out(
             box = box_around(geometry, placement, point)
             if not constrain_to_face(geometry, placement, point, box, work.constraints):
                 return False, position, quaternion
-        elif not constrain_meeting(placement, meeting, work.constraints):
+        elif not constrain_meeting(
+            geometry, placement, meeting, position, quaternion, work.constraints
+        ):
             return False, position, quaternion
     is_out = deepest_offender(placement, work.allowed) < 0 and deepest_meeting(placement, work) < 0
     return holds and is_out, position, quaternion
@@ -211,18 +216,45 @@ def outermost_of_group(placement: Placement, group: int) -> int:
 
 
 @kernel
-def constrain_meeting(placement: Placement, at: int, constraints: Constraints) -> bool:
+def is_at_meeting(
+    geometry: Geometry,
+    constraint: PositionConstraint,
+    row: Touching,
+    position: Vector,
+    quaternion: Quaternion,
+    placement: Placement,
+) -> bool:
+    """Whether features that are kept together meet at the place and with the normal of others that meet at a pose."""
+    if constraint.feature < 0 or constraint.which == FIXED:
+        return False
+    kept = lack(geometry, constraint, position, quaternion, placement)
+    away = minus(plus(position, kept.arm), vector_from(row.place))
+    if kept.value == math.inf or norm(away) > SAME_PLACE * geometry.touch_m:
+        return False
+    return is_slip(constraint) or norm(minus(kept.direction, vector_from(row.normal))) <= SAME_NORMAL_RAD
+
+
+@kernel
+def constrain_meeting(
+    geometry: Geometry,
+    placement: Placement,
+    at: int,
+    position: Vector,
+    quaternion: Quaternion,
+    constraints: Constraints,
+) -> bool:
     """Constrain the gap of a meeting that is too deep to zero. The deepest place of a circle takes the place of those
-    of it that were to stay where they are, which are farther out then.
+    of it that were to stay where they are, and features that of others that meet there, which are farther out then.
     """
     row, sticks = placement.meetings.rows[at], False
     i, j = row.feature, row.cage_feature
     for k in range(constraints.scratch[0].used - 1, -1, -1):
         other = constraints.rows[k]
-        if (other.feature, other.cage_feature, other.which) == (i, j, FIXED):
-            drop_constraint(constraints, k)
-        elif is_slip(other) and (other.feature, other.cage_feature) == (i, j):
-            sticks = True
+        is_same = (other.feature, other.cage_feature) == (i, j)
+        if is_same and other.which == GAP:
+            continue
+        if is_same or is_at_meeting(geometry, other, row, position, quaternion, placement):
+            sticks = sticks or is_slip(other)
             drop_constraint(constraints, k)
     for which in range(ALONG, ALONG + 2 if sticks else ALONG):
         constrain_features(constraints, i, j, row.angle, which, 0.0)
