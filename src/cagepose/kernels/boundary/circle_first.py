@@ -41,8 +41,10 @@ COARSE_STEPS = 8
 NEWTON_STEPS = 12
 ROOT_OF_TOUCH, CONVERGES = 1e-3, 0.5
 """Of the touch tolerance: a gap that is less is a root; and of such a gap: a step that leaves more no longer helps."""
-KEPT_STEP = 1.0 / 32.0
-"""In amounts of the whole motion: a place that touches is looked at at least so often, whether it is still there."""
+KEPT_STEP, LONGER, FOLLOWED = 1.0 / 32.0, 2.0, 0.1
+"""In amounts of the whole motion: the first step where places that touch are followed; how many times as long the next
+one is at most; and radians that such a place should go along its circle in a step.
+"""
 
 
 @kernel
@@ -172,17 +174,18 @@ def first_touch_of_curved(
     kept, n_kept
         Places that touch now. They are written over.
     """
-    amount, before, behind = 0.0, 0.0, BEHIND * end
+    amount, before, behind, kept_step = 0.0, 0.0, BEHIND * end, KEPT_STEP * end
     for n_steps in range(ADVANCES):
         place_after(a, i, motion, amount, moved)
         one, other = moved.features[i], b.features[j]
         closing = closing_of(one, other, motion)
         n_places = find_circle_places(one, other, touch_m, places)
         is_around = n_places == WHOLE
-        least, is_past, nearest, facing = math.inf, False, 0, (0.0, 0.0, 0.0)
+        least, is_past, nearest, facing, turned = math.inf, False, 0, (0.0, 0.0, 0.0), 0.0
         if is_around and one.kind == CIRCLE and other.kind == CIRCLE:
             least, n_places = circles_apart(one, other), 0
             is_past, is_around = least <= touch_m, False
+        has_kept = n_kept > 0
         for k in range(PLACES_AROUND if is_around else n_places):
             place = places[k]
             if place.kind in (GREATEST, SADDLE):
@@ -194,11 +197,16 @@ def first_touch_of_curved(
             at, depth = kept_at(place.angle, kept, n_kept), 0.0
             if at >= 0:
                 # One that touched: it is followed until it is apart.
+                turned = max(turned, abs(within_turn(kept[at].angle - place.angle)))
                 kept[at].angle, kept[at].other_angle = place.angle, place.other_angle
                 if kept[at].is_held:
                     continue
                 depth = kept[at].depth_m
-                if met.gap > touch_m and (met.gap > depth or depth == math.inf):
+                if kept[at].is_grazing:
+                    if abs(met.gap) <= touch_m:
+                        continue
+                    n_kept, at, depth = dropped(kept, n_kept, at), -1, 0.0
+                elif met.gap > touch_m and (met.gap > depth or depth == math.inf):
                     n_kept, depth = dropped(kept, n_kept, at), 0.0
                 elif depth == math.inf:
                     if abs(met.gap) > touch_m:
@@ -206,7 +214,7 @@ def first_touch_of_curved(
                     continue
             gap = met.gap + depth
             # Where places are kept, all of a circle may come on at one moment: the nearest place is a new one then.
-            is_through = n_kept > 0 and gap < -ROOT_OF_TOUCH * touch_m
+            is_through = has_kept and gap < -ROOT_OF_TOUCH * touch_m
             if is_through and at >= 0:  # counts again once apart
                 kept[at].depth_m = math.inf
             if is_through or -ROOT_OF_TOUCH * touch_m <= gap <= touch_m:
@@ -217,6 +225,11 @@ def first_touch_of_curved(
                     at_root = place_near(moved.features[i], b.features[j], root.angle, touch_m, places)
                     if at_root >= 0 and place_touches(moved, i, b, j, places[at_root], motion, depth, slack, touch_m):
                         return Reached(reached, places[at_root].angle, n_steps, False)
+                if at < 0 and abs(met.gap) <= touch_m and n_kept < len(kept):  # they may graze so for long
+                    row = kept[n_kept]
+                    row.angle, row.other_angle, row.depth_m = place.angle, place.other_angle, math.inf
+                    row.is_held, row.is_grazing = False, True
+                    n_kept += 1
                 is_past = True
                 place_after(a, i, motion, amount, moved)
                 find_circle_places(moved.features[i], b.features[j], touch_m, places)
@@ -229,7 +242,12 @@ def first_touch_of_curved(
         if is_past and closing.speed > 0.0:  # a root that is no contact: on so short a way none is hidden that counts
             step = max(step, touch_m / closing.speed)
         if n_kept > 0:
-            step = min(step, end * KEPT_STEP)
+            went = amount - before
+            if went > 0.0:
+                kept_step *= LONGER
+            if turned * kept_step > FOLLOWED * went:
+                kept_step = max(KEPT_STEP * end, FOLLOWED * went / turned)
+            step = min(step, kept_step)
         if step >= end - amount:
             return Reached(math.inf, 0.0, n_steps, False)
         before = amount
@@ -274,5 +292,5 @@ def dropped(kept: Rows[Kept], n_kept: int, at: int) -> int:
     """Drop a place from those that touched; return how many are left."""
     last = kept[n_kept - 1]
     kept[at].angle, kept[at].other_angle = last.angle, last.other_angle
-    kept[at].depth_m, kept[at].is_held = last.depth_m, last.is_held
+    kept[at].depth_m, kept[at].is_held, kept[at].is_grazing = last.depth_m, last.is_held, last.is_grazing
     return n_kept - 1

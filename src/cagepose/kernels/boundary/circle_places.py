@@ -75,12 +75,16 @@ class Kept:
     is_held
         Whether the motion keeps them there: they are put back afterwards, however far they come apart or into each
         other on the way.
+    is_grazing
+        Whether the motion has come to it, and they touch there without reaching: it counts as soon as they do not touch
+        any more, be it that they are in each other.
     """
 
     angle: float
     other_angle: float
     depth_m: float
     is_held: bool
+    is_grazing: bool
 
 
 class CirclePoint(NamedTuple):

@@ -422,7 +422,7 @@ def first_of_curved(
         if is_passed or met.gap >= -depth:
             row = meetings.kept[n_kept]
             row.angle, row.other_angle, row.is_held = place.angle, place.other_angle, is_held
-            row.depth_m = math.inf if is_passed else depth
+            row.depth_m, row.is_grazing = math.inf if is_passed else depth, False
             n_kept += 1
     exact = max(LEAST_SLACK, touch_m / search.size_m)
     found = first_touch_of_curved(
@@ -440,6 +440,7 @@ def hold_places(i: int, j: int, meetings: Meetings) -> int:
         if row.is_kept and row.feature == i and row.cage_feature == j and n_kept < len(meetings.kept):
             kept = meetings.kept[n_kept]
             kept.angle, kept.other_angle, kept.depth_m, kept.is_held = row.angle, 0.0, math.inf, True
+            kept.is_grazing = False
             n_kept += 1
     return n_kept
 
