@@ -407,12 +407,15 @@ def first_of_curved(
         depth = max(depth, 2.0 * touch_m)  # they may not reach there now, but might
         is_passed = reaches_there and met.gap < -depth
         is_held = touches and is_there(meetings, met, True, touch_m)
+        is_grazing = False
         if touches:
             closing = dot(met.normal, velocity_at(search.motion, met.place))
             if is_held:
                 is_passed = True
-            elif reaches_there:  # a contact that carries, or it would not go into it
-                is_passed = closing >= -slowest or is_beside_kept(i, j, meetings, met, touch_m)
+            elif reaches_there:  # a contact that carries, or it would not go into it, but may along a curve
+                is_beside = is_beside_kept(i, j, meetings, met, touch_m)
+                is_grazing = abs(closing) <= slowest and search.near_m == 0.0 and not is_beside
+                is_passed = closing >= -slowest or is_beside
             else:  # that of features next to them
                 is_passed = abs(closing) <= slowest and is_there(meetings, met, False, touch_m)
         elif reaches_there and met.gap < 0.0:
@@ -422,7 +425,7 @@ def first_of_curved(
         if is_passed or met.gap >= -depth:
             row = meetings.kept[n_kept]
             row.angle, row.other_angle, row.is_held = place.angle, place.other_angle, is_held
-            row.depth_m, row.is_grazing = math.inf if is_passed else depth, False
+            row.depth_m, row.is_grazing = math.inf if is_passed else depth, is_grazing
             n_kept += 1
     exact = max(LEAST_SLACK, touch_m / search.size_m)
     found = first_touch_of_curved(
