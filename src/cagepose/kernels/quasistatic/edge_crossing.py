@@ -7,10 +7,12 @@ import math
 from cagepose.kernels.algebra.motion import Motion, motion_of
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled, vector_from
+from cagepose.kernels.boundary.features import PlacedBoundary
 from cagepose.kernels.boundary.first_touch import place_after
 from cagepose.kernels.boundary.kept import meeting_kept
 from cagepose.kernels.boundary.meeting import both_reach
 from cagepose.kernels.boundary.meetings import slack_of
+from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.collision.geometry import (
     Geometry,
     Placement,
@@ -23,7 +25,7 @@ from cagepose.kernels.collision.geometry import (
 from cagepose.kernels.collision.screw import next_below
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.on_circle import is_kept
-from cagepose.kernels.contact.tolerances import SAME_WAY
+from cagepose.kernels.contact.tolerances import SAME_NORMAL_RAD, SAME_WAY
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.pushing_out import is_fixed
 from cagepose.kernels.quasistatic.straying import STRAYED, strayed
@@ -56,7 +58,8 @@ def still_meet(
     """Whether the features of a contact still reach where they meet, after an amount of a motion, by so much within
     their ends.
 
-    Those that do with quite another normal have come apart: an edge and the circle that lay across it.
+    Those that do with quite another normal have come apart: an edge and the circle that lay across it. A circle that
+    lies flat may go from one face to another one that is flush with it.
     """
     contact, cage, moved = contacts.rows[i], geometry.cage, held_moved(geometry, placement)
     one, other = contact.feature, contact.cage_feature
@@ -65,9 +68,28 @@ def still_meet(
     met = meeting_kept(moved, one, cage, other, contact.angle, fixed, touch_m, placement.meetings.places)
     if not met.is_one or dot(met.normal, vector_from(contact.directions[0])) < SAME_WAY:
         return False
-    held_row, cage_row = geometry.held.features[one], cage.own.features[other]
-    slack = CLEAR * slack_of(held_row, cage_row, touch_m) - within_m / min(held_row.least, cage_row.least)
-    return both_reach(moved, one, cage, other, met, slack, 2.0 * CLEAR * touch_m - within_m)
+    if reach_within(geometry, moved, one, other, met, touch_m, within_m):
+        return True
+    is_met = False
+    for k in range(contacts.used[0] if contacts.states[i].stays_flat else 0):
+        beside = contacts.rows[k]
+        turned = minus(vector_from(beside.directions[0]), vector_from(contact.directions[0]))
+        if not contacts.states[k].stays_flat or norm(turned) > SAME_NORMAL_RAD or is_met:
+            continue
+        if (beside.feature == one) != (beside.cage_feature == other):
+            place_after(held_at(geometry, placement), beside.feature, motion, amount, moved)
+            is_met = reach_within(geometry, moved, beside.feature, beside.cage_feature, met, touch_m, within_m)
+    return is_met
+
+
+@kernel
+def reach_within(
+    geometry: Geometry, moved: PlacedBoundary, i: int, j: int, met: Meeting, touch_m: float, within_m: float
+) -> bool:
+    """Whether two features reach where they meet, by so much within their ends."""
+    one, other = geometry.held.features[i], geometry.cage.own.features[j]
+    slack = CLEAR * slack_of(one, other, touch_m) - within_m / min(one.least, other.least)
+    return both_reach(moved, i, geometry.cage, j, met, slack, 2.0 * CLEAR * touch_m - within_m)
 
 
 @kernel

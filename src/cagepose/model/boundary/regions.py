@@ -44,17 +44,19 @@ def faces_of(planes: Rows, arcs: Rows, ends: NDArray[np.int64]) -> tuple[Faces, 
 
 
 def _regions(planes: Rows, keys: NDArray[np.int64], normals: NDArray[np.float64], borders: Rows, loops: Rows) -> Faces:
-    """Return one face for each outer loop, with the inner loops within it."""
-    loop_of = np.searchsorted(loops["first"], borders["loop"])
+    """Return one face for each outer loop, with the inner loops within it; slivers of two corners are none."""
+    n_borders = np.bincount(np.searchsorted(loops["first"], borders["loop"]), minlength=len(loops))
     region = np.where(loops["region"] == NONE, np.arange(len(loops)), loops["region"])
-    outer, index, n_loops = np.unique(region, return_inverse=True, return_counts=True)
+    is_wide = (n_borders >= 3) & (n_borders[region] >= 3)
+    outer, index, n_loops = np.unique(region[is_wide], return_inverse=True, return_counts=True)
+    index = index.reshape(-1)
     face = borders["face"][loops["first"][outer]]
-    order = _in_loops(borders, loops, np.argsort(index, kind="stable"))
+    order = _in_loops(borders, loops[is_wide], np.argsort(index, kind="stable"))
     oriented, parts = keys[face].T
     offsets = planes["offset"][oriented // 2] * np.where(oriented % 2, -1.0, 1.0)
     is_convex = loops["is_convex"][outer] & (n_loops == 1)
-    n_borders = np.bincount(index.reshape(-1)[loop_of], minlength=len(outer))
-    return Faces(normals[face], offsets, oriented, parts, is_convex, n_borders, borders[order])
+    n_of_face = np.bincount(index, n_borders[is_wide], minlength=len(outer)).astype(np.int64)
+    return Faces(normals[face], offsets, oriented, parts, is_convex, n_of_face, borders[order])
 
 
 def _in_loops(borders: Rows, loops: Rows, order: NDArray[np.int64]) -> list[int]:
