@@ -203,9 +203,9 @@ def first_touch_of_curved(
                     continue
                 depth = kept[at].depth_m
                 if kept[at].is_grazing:
-                    if abs(met.gap) <= touch_m:
+                    if -depth <= met.gap <= touch_m:
                         continue
-                    n_kept, at, depth = dropped(kept, n_kept, at), -1, 0.0
+                    n_kept, at = dropped(kept, n_kept, at), -1
                 elif met.gap > touch_m and (met.gap > depth or depth == math.inf):
                     n_kept, depth = dropped(kept, n_kept, at), 0.0
                 elif depth == math.inf:
@@ -227,7 +227,7 @@ def first_touch_of_curved(
                         return Reached(reached, places[at_root].angle, n_steps, False)
                 if at < 0 and abs(met.gap) <= touch_m and n_kept < len(kept):  # they may graze so for long
                     row = kept[n_kept]
-                    row.angle, row.other_angle, row.depth_m = place.angle, place.other_angle, math.inf
+                    row.angle, row.other_angle, row.depth_m = place.angle, place.other_angle, touch_m
                     row.is_held, row.is_grazing = False, True
                     n_kept += 1
                 is_past = True

@@ -76,8 +76,8 @@ class Kept:
         Whether the motion keeps them there: they are put back afterwards, however far they come apart or into each
         other on the way.
     is_grazing
-        Whether the motion has come to it, and they touch there without reaching: it counts as soon as they do not touch
-        any more, be it that they are in each other.
+        Whether the motion goes along it, or they touch there without reaching: it counts as soon as they do not touch
+        any more, be it that they are deeper in each other.
     """
 
     angle: float

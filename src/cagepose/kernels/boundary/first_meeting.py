@@ -425,7 +425,7 @@ def first_of_curved(
         if is_passed or met.gap >= -depth:
             row = meetings.kept[n_kept]
             row.angle, row.other_angle, row.is_held = place.angle, place.other_angle, is_held
-            row.depth_m, row.is_grazing = math.inf if is_passed else depth, is_grazing
+            row.depth_m, row.is_grazing = math.inf if is_passed and not is_grazing else depth, is_grazing
             n_kept += 1
     exact = max(LEAST_SLACK, touch_m / search.size_m)
     found = first_touch_of_curved(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.vector import minus, norm, vector_from
 from cagepose.kernels.boundary.bend import bends_by, curvatures
-from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, PlacedBoundary
+from cagepose.kernels.boundary.features import CIRCLE, PlacedBoundary
 from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.boundary.touching import SAME_NORMAL, Along, Meetings, Touching, is_around, is_at_place
 from cagepose.kernels.native.kernel import kernel
@@ -54,15 +54,14 @@ def bends_of(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, row: To
 @kernel
 def note_twin(held: PlacedBoundary, cage: PlacedBoundary, told: Touching, new: Touching) -> None:
     """Keep, of features that meet at one place with one normal, those that bend least, and beside them those that bend
-    most; but a circle that touches along an arc there is kept in any case. Where the arc ends as an edge crosses it,
-    this crossing is kept instead, which goes along both.
+    most; but a circle that touches along an arc there is kept in any case. Where the arc ends, what else is there is
+    kept, as an edge that crosses the circle: its place goes along both.
     """
-    if is_around(new) and are_of_one_circle(held, cage, told, new):
-        if is_around(told):
-            told.before, told.after = max(told.before, new.before), max(told.after, new.after)
-            return
-        if is_crossing(held, cage, told):
-            return
+    if is_around(told) and is_around(new) and are_of_one_circle(held, cage, told, new):
+        told.before, told.after = max(told.before, new.before), max(told.after, new.after)
+        return
+    if is_end(new) and not is_around(told):
+        return
     least = bends_of(held, told.feature, cage, told.cage_feature, told, is_around(told))
     bend = bends_of(held, new.feature, cage, new.cage_feature, new, is_around(new))
     most = least if told.twin < 0 else bends_of(held, told.twin, cage, told.cage_twin, told, False)
@@ -75,13 +74,9 @@ def note_twin(held: PlacedBoundary, cage: PlacedBoundary, told: Touching, new: T
 
 
 @kernel
-def is_crossing(held: PlacedBoundary, cage: PlacedBoundary, row: Touching) -> bool:
-    """Whether a meeting is of a circle and a sharp edge, or of two sharp circles."""
-    one, other = held.own.features[row.feature], cage.own.features[row.cage_feature]
-    if one.kind == FACE or other.kind == FACE or (one.kind != CIRCLE and other.kind != CIRCLE):
-        return False
-    edge = other if one.kind == CIRCLE else one
-    return bool(edge.kind in (LINE, CIRCLE) and edge.radius == 0.0)
+def is_end(row: Touching) -> bool:
+    """Whether a meeting is at an end of an arc along which a circle touches."""
+    return is_around(row) and min(row.before, row.after) == 0.0
 
 
 @kernel
