@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 from boundary.asked import Asked
 from boundary.motions import motion_of, random_direction
 from cagepose import Box, Pose
+from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE
 from cagepose.kernels.boundary.circle_first import place_near, root_of_gap
 from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE
 from cagepose.kernels.boundary.features import CIRCLE, LINE, place_feature
@@ -53,7 +54,7 @@ def test_newtons_method_ends_at_a_root_but_for_rounding(cases):
 
         def gap_after(amount: float, i=i, j=j, angle=angle, motion=motion) -> float:
             place_after(held, i, motion, amount, moved)
-            at = place_near(moved.features[i], cage.features[j], angle, TOUCH_M, places)
+            at = place_near(moved.features[i], cage.features[j], angle, SAME_ANGLE, TOUCH_M, places)
             return meeting_at(moved, i, cage, j, places[at]).gap if at >= 0 else np.inf
 
         if not gap_after(2.0 * met.gap) < 0.0:

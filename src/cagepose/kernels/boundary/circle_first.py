@@ -67,10 +67,12 @@ def place_touches(
 
 
 @kernel
-def place_near(one: Feature, other: Feature, angle: float, touch_m: float, places: Rows[Place]) -> int:
-    """Write the places of two features and return which of them is nearest to an angle; -1: none is that near."""
+def place_near(one: Feature, other: Feature, angle: float, farthest: float, touch_m: float, places: Rows[Place]) -> int:
+    """Write the places of two features and return which of them is nearest to an angle; -1: none is nearer than
+    ``farthest``, radians.
+    """
     n_places = find_circle_places(one, other, touch_m, places)
-    nearest, least = -1, SAME_ANGLE
+    nearest, least = -1, farthest
     if n_places == WHOLE:
         write_place(places[0], angle, 0.0, 0, True)
         return 0
@@ -106,7 +108,7 @@ def root_of_gap(
     root, least = Root(math.inf, angle), ROOT_OF_TOUCH * touch_m / CONVERGES
     for _ in range(NEWTON_STEPS):
         place_after(a, i, motion, amount, moved)
-        at = place_near(moved.features[i], b.features[j], angle, touch_m, places)
+        at = place_near(moved.features[i], b.features[j], angle, SAME_ANGLE, touch_m, places)
         if at < 0:
             break
         angle = places[at].angle
@@ -222,7 +224,7 @@ def first_touch_of_curved(
                 reached = max(root.amount, before if is_through else amount)
                 if reached <= end:
                     place_after(a, i, motion, reached, moved)
-                    at_root = place_near(moved.features[i], b.features[j], root.angle, touch_m, places)
+                    at_root = place_near(moved.features[i], b.features[j], root.angle, SAME_ANGLE, touch_m, places)
                     if at_root >= 0 and place_touches(moved, i, b, j, places[at_root], motion, depth, slack, touch_m):
                         return Reached(reached, places[at_root].angle, n_steps, False)
                 if at < 0 and abs(met.gap) <= touch_m and n_kept < len(kept):  # they may graze so for long

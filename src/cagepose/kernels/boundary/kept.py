@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 from cagepose.kernels.algebra.record import Rows
+from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE
 from cagepose.kernels.boundary.circle_first import place_near
+from cagepose.kernels.boundary.circle_meeting import is_sharp
 from cagepose.kernels.boundary.circle_places import Place, write_place
 from cagepose.kernels.boundary.features import CIRCLE, LINE, VERTEX, PlacedBoundary
 from cagepose.kernels.boundary.meeting import meeting, seated
@@ -26,7 +30,8 @@ def meeting_kept(
     """Return how two placed features meet that touched at an angle of a circle, if one of them is one.
 
     ``is_fixed``: at this place of it, be it the nearest or not, as what lies all around does; else at the nearest place
-    that is no farther along it than a place goes in a step. Memory: ``places``.
+    to it; of edges that cross, which may cross elsewhere, too, no farther along it than a place goes in a step. Memory:
+    ``places``.
     """
     one, other = held.features[i], cage.features[j]
     if one.kind != CIRCLE and other.kind != CIRCLE:
@@ -38,5 +43,6 @@ def meeting_kept(
     if is_fixed:
         write_place(places[0], angle, 0.0, 0, True)
         return meeting_at(held, i, cage, j, places[0])
-    at = place_near(one, other, angle, touch_m, places)
+    is_crossing = is_sharp(one, other) if one.kind == CIRCLE else is_sharp(other, one)
+    at = place_near(one, other, angle, SAME_ANGLE if is_crossing else math.pi, touch_m, places)
     return meeting_at(held, i, cage, j, places[at]) if at >= 0 else apart()

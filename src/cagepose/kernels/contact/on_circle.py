@@ -72,8 +72,9 @@ def keeps_on_circle(
     if contacts.rows[i].feature < 0 or contacts.bends[i].on_circle.length == 0.0:
         return False
     around, normal = contacts.bends[i].on_circle, vector_from(contacts.rows[i].directions[0])
-    if is_along_wall(contacts, i):  # all normals lead through one place
-        return norm(plus(velocity, cross(spin, vector_from(around.ball)))) <= slowest
+    if is_along_wall(contacts, i):  # all normals lead through one place; but as it tilts, it is an ellipse to the wall
+        slides = norm(plus(velocity, cross(spin, vector_from(around.ball))))
+        return max(slides, abs(around.length) * norm(cross(vector_from(around.axis), spin))) <= slowest
     away = abs(dot(normal, plus(velocity, cross(spin, vector_from(contacts.rows[i].arm)))))
     tilt = abs(around.length) * norm(cross(normal, spin))  # about a point of it, a circle may tip
     return is_under_circle(contacts, i, touch_m) and max(away, tilt) <= slowest
@@ -154,7 +155,7 @@ def write_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> Non
     """Write the row of the contact at an angle along the circle from a place of it that touches, behind all that
     count.
     """
-    row, place, around = contacts.rows[i], contacts.used[0], contacts.bends[i].on_circle
+    row, place = contacts.rows[i], contacts.used[0]
     arm, normal = place_on_circle(contacts, i, angle)
     new = contacts.rows[place]
     new.point, new.box, new.axis, new.side, new.gap, new.group = row.point, row.box, 0, 1.0, row.gap, place

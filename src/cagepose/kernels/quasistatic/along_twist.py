@@ -22,6 +22,7 @@ from cagepose.kernels.contact.loads import (
     work_done,
 )
 from cagepose.kernels.contact.metric import moved_along_twist
+from cagepose.kernels.contact.on_circle import is_kept
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
 from cagepose.kernels.quasistatic.first_contact import NO_HIT, Hit, Twist, first_contact
@@ -41,6 +42,8 @@ from cagepose.kernels.quasistatic.setting import Setting
 MAY_SLIP = 0.01
 """Share of the way of a step. What sticks in two places may slip by as much, where it cannot turn without, as in a V.
 That is of second order in the step, by which its path is wrong anyway."""
+TO_FIRST_ORDER = 2.0
+"""Times what is worked out to first order."""
 HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
 ROUNDING = 1e-15
@@ -102,6 +105,16 @@ def longest_step(
 
 
 @kernel
+def work_of_depths(contacts: ContactSet) -> float:
+    """Return the work of the forces that contacts carry as they come out of what they are deep in, to first order."""
+    work = 0.0
+    for i in range(contacts.used[0]):
+        if is_kept(contacts, i):
+            work += contacts.states[i].forces[0] * max(0.0, -contacts.rows[i].gap)
+    return work
+
+
+@kernel
 def stepped(
     setting: Setting,
     placement: Placement,
@@ -116,8 +129,8 @@ def stepped(
     """Move by ``amount``, keep the contacts that carry on their faces, and put the one that is hit on its own.
 
     A contact that touches across a gap, within the touch tolerance, keeps the gap, as its gap rate of zero says.
-    False: a point would be inside, a contact would not stay on its face, or the loads would do negative work. The
-    placement is that of the new pose, or of the old one.
+    False: a point would be inside, a contact would not stay on its face, or the loads would do negative work, more than
+    it takes to bring contacts out that were a little deep. The placement is that of the new pose, or of the old one.
     """
     geometry = setting.geometry
     constrain_contacts(geometry, placement, contacts, setting.tolerances.rounding_m, work.constraints)
@@ -132,8 +145,8 @@ def stepped(
     done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], work)
     if done:
         total = total_load(setting.load, position, quaternion, setting.size_m)
-        rounding = setting.tolerances.resolution_m * total
-        done = work_done(setting.load, position, quaternion, new_position, new_quaternion) >= -rounding
+        least = -setting.tolerances.resolution_m * total - TO_FIRST_ORDER * work_of_depths(contacts)
+        done = work_done(setting.load, position, quaternion, new_position, new_quaternion) >= least
     if done:
         return True, new_position, new_quaternion
     place_object(geometry, position, quaternion, placement)

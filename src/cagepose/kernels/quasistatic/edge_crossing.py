@@ -64,7 +64,7 @@ def still_meet(
     contact, cage, moved = contacts.rows[i], geometry.cage, held_moved(geometry, placement)
     one, other = contact.feature, contact.cage_feature
     place_after(held_at(geometry, placement), one, motion, amount, moved)
-    fixed = is_fixed(contacts, i)
+    fixed = is_fixed(contacts, i) or amount == 0.0  # where it was found
     met = meeting_kept(moved, one, cage, other, contact.angle, fixed, touch_m, placement.meetings.places)
     if not met.is_one or dot(met.normal, vector_from(contact.directions[0])) < SAME_WAY:
         return False

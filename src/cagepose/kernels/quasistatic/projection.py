@@ -212,7 +212,8 @@ def lack(
     moved, places = held_moved(geometry, placement), placement.meetings.places
     place_feature_at(moved, i, position, matrix_from_quaternion(quaternion))
     place_feature(geometry.cage, j)
-    met = meeting_kept(moved, i, geometry.cage, j, constraint.angle, is_fixed, geometry.touch_m, places)
+    angle, touch_m = constraint.angle, geometry.touch_m
+    met = meeting_kept(moved, i, geometry.cage, j, angle, is_fixed, touch_m, places)
     arm = minus(met.place, position)
     if not met.is_one:
         return Lack(math.inf, met.normal, arm)

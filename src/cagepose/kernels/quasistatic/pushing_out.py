@@ -77,8 +77,7 @@ def constrain_to_face(geometry: Geometry, placement: Placement, point: int, box:
 
 @kernel
 def is_fixed(contacts: ContactSet, i: int) -> bool:
-    """Whether a contact stays at its place of a circle: of one that stays flat on a face, or lies around a side.
-    """
+    """Whether a contact stays at its place of a circle: of one that stays flat on a face, or lies around a side."""
     around = contacts.bends[i].on_circle
     return bool(contacts.states[i].stays_flat or (around.length != 0.0 and around.is_on_ball))
 
@@ -183,9 +182,7 @@ def pushed_out(
             box = box_around(geometry, placement, point)
             if not constrain_to_face(geometry, placement, point, box, work.constraints):
                 return False, position, quaternion
-        elif not constrain_meeting(
-            geometry, placement, meeting, position, quaternion, work.constraints
-        ):
+        elif not constrain_meeting(geometry, placement, meeting, position, quaternion, work.constraints):
             return False, position, quaternion
     is_out = deepest_offender(placement, work.allowed) < 0 and deepest_meeting(placement, work) < 0
     return holds and is_out, position, quaternion

@@ -1,0 +1,54 @@
+"""Which meetings a motion keeps, and what is beside them: a first contact passes these over."""
+
+from __future__ import annotations
+
+import math
+
+from cagepose.kernels.algebra.vector import dot, minus, norm, vector_from
+from cagepose.kernels.boundary.met import Meeting
+from cagepose.kernels.boundary.touching import SAME_PLACE, Meetings
+from cagepose.kernels.native.kernel import kernel
+
+
+@kernel
+def hold_places(i: int, j: int, meetings: Meetings) -> int:
+    """Write the places of two features that the motion keeps; return how many there are."""
+    n_kept = 0
+    for at in range(meetings.used[1]):
+        row = meetings.rows[at]
+        if row.is_kept and row.feature == i and row.cage_feature == j and n_kept < len(meetings.kept):
+            kept = meetings.kept[n_kept]
+            kept.angle, kept.other_angle, kept.depth_m, kept.is_held = row.angle, 0.0, math.inf, True
+            kept.is_grazing = False
+            n_kept += 1
+    return n_kept
+
+
+@kernel
+def is_there(meetings: Meetings, met: Meeting, is_kept: bool, touch_m: float) -> bool:
+    """Whether features meet where there is a contact, or one that the motion keeps."""
+    for at in range(meetings.used[1]):
+        row = meetings.rows[at]
+        is_near = norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
+        if is_near and (row.is_kept or not is_kept) and dot(vector_from(row.normal), met.normal) > 0.0:
+            return True
+    return False
+
+
+@kernel
+def is_beside_kept(i: int, j: int, meetings: Meetings, met: Meeting, touch_m: float) -> bool:
+    """Whether two features meet where an alternative is kept, which holds the object out of what they would: as where a
+    flat foot slides over the edge of a table that it is flush with. Those that touch are of the same group; those that
+    are past the edge are not listed.
+    """
+    group, found = -1, False
+    for at in range(meetings.used[0]):
+        row = meetings.rows[at]
+        is_near = norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
+        if is_near and row.feature == i and row.cage_feature == j:
+            group = row.group
+    for at in range(meetings.used[1]):
+        row = meetings.rows[at]
+        is_near = norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
+        found = found or (is_near and row.is_kept and (group < 0 or row.group == group))
+    return found
