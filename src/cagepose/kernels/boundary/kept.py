@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.record import Rows
+from cagepose.kernels.algebra.vector import cross, dot, norm, vector_from
 from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE
 from cagepose.kernels.boundary.circle_first import place_near
 from cagepose.kernels.boundary.circle_meeting import is_sharp
 from cagepose.kernels.boundary.circle_places import Place, write_place
-from cagepose.kernels.boundary.features import CIRCLE, LINE, VERTEX, PlacedBoundary
+from cagepose.kernels.boundary.features import CIRCLE, LINE, VERTEX, Feature, PlacedBoundary
 from cagepose.kernels.boundary.meeting import meeting, seated
 from cagepose.kernels.boundary.meetings import meeting_at
-from cagepose.kernels.boundary.met import Meeting, apart, swapped
+from cagepose.kernels.boundary.met import PARALLEL, Meeting, apart, swapped
 from cagepose.kernels.native.kernel import kernel
 
 
@@ -46,3 +47,15 @@ def meeting_kept(
     is_crossing = is_sharp(one, other) if one.kind == CIRCLE else is_sharp(other, one)
     at = place_near(one, other, angle, SAME_ANGLE if is_crossing else math.pi, touch_m, places)
     return meeting_at(held, i, cage, j, places[at]) if at >= 0 else apart()
+
+
+@kernel
+def cross_in_plane(one: Feature, other: Feature) -> bool:
+    """Whether edges that do not meet any more crossed in a plane: straight ones that have become parallel, or a circle
+    from under which an edge has come out.
+    """
+    u, v = vector_from(one.direction), vector_from(other.direction)
+    if (one.kind == CIRCLE and other.kind == LINE) or (one.kind == LINE and other.kind == CIRCLE):
+        return abs(dot(u, v)) < PARALLEL
+    is_alike = one.kind == other.kind and one.kind in (LINE, CIRCLE)
+    return is_alike and norm(cross(u, v)) < PARALLEL

@@ -18,17 +18,14 @@ from cagepose.kernels.algebra.vector import (
     cross,
     dot,
     minus,
-    norm,
     plus,
     row,
     scaled,
     transposed_times,
-    vector_from,
 )
 from cagepose.kernels.boundary.circle_places import within_turn
-from cagepose.kernels.boundary.features import CIRCLE, LINE, place_feature, place_feature_at
-from cagepose.kernels.boundary.kept import meeting_kept
-from cagepose.kernels.boundary.met import PARALLEL
+from cagepose.kernels.boundary.features import place_feature, place_feature_at
+from cagepose.kernels.boundary.kept import cross_in_plane, meeting_kept
 from cagepose.kernels.collision.geometry import Geometry, Placement, held_moved
 from cagepose.kernels.contact.contact_set import tangents_to
 from cagepose.kernels.contact.metric import (
@@ -223,16 +220,10 @@ def lack(
 
 
 @kernel
-def cross_no_more(geometry: Geometry, constraint: PositionConstraint, placement: Placement) -> bool:
-    """Whether a constraint that means nothing is of edges that crossed in a plane: straight ones that have become
-    parallel, or a circle from under which an edge has come out. What else touches there counts.
-    """
+def are_apart(geometry: Geometry, constraint: PositionConstraint, placement: Placement) -> bool:
+    """Whether a constraint that means nothing is of edges that crossed in a plane: what else touches there counts."""
     held, cage = placement.moved.features[constraint.feature], geometry.cage.features[constraint.cage_feature]
-    u, v = vector_from(held.direction), vector_from(cage.direction)
-    if (held.kind == CIRCLE and cage.kind == LINE) or (held.kind == LINE and cage.kind == CIRCLE):
-        return abs(dot(u, v)) < PARALLEL
-    is_alike = held.kind == cage.kind and held.kind in (LINE, CIRCLE)
-    return is_alike and norm(cross(u, v)) < PARALLEL
+    return cross_in_plane(held, cage)
 
 
 @kernel
@@ -378,7 +369,7 @@ def projected(
             if is_slip(rows[i]) != slips:
                 continue
             lacks = lack(geometry, rows[i], position, quaternion, placement)
-            if lacks.value == math.inf and cross_no_more(geometry, rows[i], placement):
+            if lacks.value == math.inf and are_apart(geometry, rows[i], placement):
                 continue
             if lacks.value == math.inf:
                 return False, position, quaternion
