@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.record import Rows
-from cagepose.kernels.algebra.vector import cross, dot, norm, vector_from
+from cagepose.kernels.algebra.vector import cross, norm, vector_from
 from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE
 from cagepose.kernels.boundary.circle_first import place_near
 from cagepose.kernels.boundary.circle_meeting import is_sharp
@@ -50,12 +50,10 @@ def meeting_kept(
 
 
 @kernel
-def cross_in_plane(one: Feature, other: Feature) -> bool:
-    """Whether edges that do not meet any more crossed in a plane: straight ones that have become parallel, or a circle
-    from under which an edge has come out.
+def crossed(one: Feature, other: Feature) -> bool:
+    """Whether features that do not meet any more are edges that crossed: straight ones that have become parallel, or a
+    circle and an edge, the two places of which have come together.
     """
-    u, v = vector_from(one.direction), vector_from(other.direction)
-    if (one.kind == CIRCLE and other.kind == LINE) or (one.kind == LINE and other.kind == CIRCLE):
-        return abs(dot(u, v)) < PARALLEL
-    is_alike = one.kind == other.kind and one.kind in (LINE, CIRCLE)
-    return is_alike and norm(cross(u, v)) < PARALLEL
+    if one.kind == LINE and other.kind == LINE:
+        return norm(cross(vector_from(one.direction), vector_from(other.direction))) < PARALLEL
+    return (one.kind == CIRCLE and is_sharp(one, other)) or (other.kind == CIRCLE and is_sharp(other, one))

@@ -25,7 +25,7 @@ from cagepose.kernels.algebra.vector import (
 )
 from cagepose.kernels.boundary.circle_places import within_turn
 from cagepose.kernels.boundary.features import place_feature, place_feature_at
-from cagepose.kernels.boundary.kept import cross_in_plane, meeting_kept
+from cagepose.kernels.boundary.kept import crossed, meeting_kept
 from cagepose.kernels.collision.geometry import Geometry, Placement, held_moved
 from cagepose.kernels.contact.contact_set import tangents_to
 from cagepose.kernels.contact.metric import (
@@ -221,9 +221,9 @@ def lack(
 
 @kernel
 def are_apart(geometry: Geometry, constraint: PositionConstraint, placement: Placement) -> bool:
-    """Whether a constraint that means nothing is of edges that crossed in a plane: what else touches there counts."""
+    """Whether a constraint that means nothing is of edges that crossed: what else touches there counts."""
     held, cage = placement.moved.features[constraint.feature], geometry.cage.features[constraint.cage_feature]
-    return cross_in_plane(held, cage)
+    return crossed(held, cage)
 
 
 @kernel

@@ -5,7 +5,7 @@ from __future__ import annotations
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion, rotated
 from cagepose.kernels.algebra.vector import Vector, dot, minus, row
 from cagepose.kernels.boundary.features import place_feature, place_feature_at
-from cagepose.kernels.boundary.kept import cross_in_plane, meeting_kept
+from cagepose.kernels.boundary.kept import crossed, meeting_kept
 from cagepose.kernels.collision.geometry import Geometry, Placement, held_moved
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.metric import moved_along_twist
@@ -33,7 +33,7 @@ def strayed(
     """Return how far the contacts that stay on their faces leave them on a screw, until they are put back, metres.
 
     A contact that has no place any more at the end counts for ``where_over``; of a circle that stays flat, or of edges
-    that crossed in a plane, for nothing.
+    that crossed, for nothing.
     """
     end, turned = moved_along_twist(position, quaternion, velocity, spin, amount)
     back = (turned[0], -turned[1], -turned[2], -turned[3])
@@ -52,7 +52,7 @@ def strayed(
             elif not (
                 contacts.states[i].stays_flat
                 or is_along_wall(contacts, i)
-                or cross_in_plane(moved.features[i_held], geometry.cage.features[i_cage])
+                or crossed(moved.features[i_held], geometry.cage.features[i_cage])
             ):
                 farthest = max(farthest, where_over)
         else:
