@@ -30,7 +30,7 @@ from cagepose.kernels.boundary.features import (
     position_of,
 )
 from cagepose.kernels.boundary.first_touch import clear_step, distance_from, first_touch, keeps_radius
-from cagepose.kernels.boundary.kept_meetings import hold_places, is_beside_kept, is_there
+from cagepose.kernels.boundary.kept_meetings import hold_places, is_beside_kept, is_there, passes_axis
 from cagepose.kernels.boundary.meeting import both_reach, meeting
 from cagepose.kernels.boundary.meetings import (
     PLACES_AROUND,
@@ -456,8 +456,8 @@ def first_of_features(
     is_hollow = one.radius < 0.0 or other.radius < 0.0
     closing = dot(met.normal, velocity_at(motion, met.place)) if touches else -math.inf
     slowest = LEAVES_OF_SPEED * search.speed
-    if touches and is_there(meetings, met, True, touch_m):  # it is put back there
-        return math.inf
+    if touches and is_there(meetings, met, True, touch_m):  # it is put back there, or stands all around
+        return passes_axis(held, i, cage, j, motion) if is_hollow else math.inf
     if touches and not leaves:
         if abs(closing) <= slowest and is_there(meetings, met, False, touch_m):  # that of features next to them
             return math.inf

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import math
 
-from cagepose.kernels.algebra.vector import dot, minus, norm, vector_from
+from cagepose.kernels.algebra.motion import Motion, velocity_at
+from cagepose.kernels.algebra.vector import dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.boundary.features import LINE, VERTEX, PlacedBoundary
 from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.boundary.touching import SAME_PLACE, Meetings
 from cagepose.kernels.native.kernel import kernel
+
+ON_AXIS = 0.5
+"""Of its distance: a ball that comes nearer to the axis of a wall passes it."""
 
 
 @kernel
@@ -52,3 +57,21 @@ def is_beside_kept(i: int, j: int, meetings: Meetings, met: Meeting, touch_m: fl
         is_near = norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
         found = found or (is_near and row.is_kept and (group < 0 or row.group == group))
     return found
+
+
+@kernel
+def passes_axis(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, motion: Motion) -> float:
+    """Return the amount of a motion after which a ball that slides down a hole's slanted wall is nearest to its axis,
+    where the wall meets it on all sides; inf: it passes the axis at a distance, or these are other features.
+    """
+    one, other = held.features[i], cage.features[j]
+    ball, wall, sense = (one, other, 1.0) if one.kind == VERTEX else (other, one, -1.0)
+    if ball.kind != VERTEX or wall.kind != LINE or wall.taper == 0.0:
+        return math.inf
+    axis, center = vector_from(wall.direction), vector_from(ball.point)
+    off, way = minus(center, vector_from(wall.point)), scaled(velocity_at(motion, center), sense)
+    off, way = minus(off, scaled(axis, dot(axis, off))), minus(way, scaled(axis, dot(axis, way)))
+    speed = dot(way, way)
+    amount = -dot(off, way) / speed if speed > 0.0 else 0.0
+    left = norm(plus(off, scaled(way, amount)))
+    return amount if amount > 0.0 and left < ON_AXIS * norm(off) else math.inf
