@@ -32,7 +32,8 @@ from cagepose.kernels.boundary.within import nearest_surface
 from cagepose.kernels.native.kernel import kernel
 
 DEEPEST_OF_LEAST = 0.05
-"""Of the shortest edge: features that are deeper in each other are on far sides of a part, and do not touch."""
+"""Of the shortest edge: features that are deeper in each other are on far sides of a part, and do not touch, but for
+what is deep in a face of longer edges and nearest to it of all surfaces."""
 LEAST_SLACK, MOST_SLACK = 1e-9, 0.1
 """Sines that normals may be beyond those of a feature."""
 PLACES_AROUND = 8
@@ -144,13 +145,13 @@ def find_beyond(
     place_feature(vertices, i)
     vertex, planes = vertices.features[i], faces.own.planes
     x, y, z = in_body(faces, minus(vector_from(vertex.point), position_of(faces)))
-    radius, deepest = vertex.radius, DEEPEST_OF_LEAST * vertex.least
+    radius = vertex.radius
     n, m, k, above = planes[0, first:last], planes[1, first:last], planes[2, first:last], planes[3, first:last]
     least, here = planes[4, first:last], out[first:last]  # slices from zero on, so that several are worked out at once
     n_near = 0
     for j in range(len(here)):
         height = n[j] * x + m[j] * y + k[j] * z - above[j] - radius
-        here[j] = max(height - touch_m, -height - min(DEEPEST_OF_LEAST * least[j], deepest))
+        here[j] = max(height - touch_m, -height - DEEPEST_OF_LEAST * least[j])
         n_near += here[j] <= 0.0
     return n_near
 
@@ -318,18 +319,21 @@ def append_touching(
     found: Meetings,
 ) -> None:
     """Append a meeting, if two features touch there: they are near, not on far sides of a part, and both reach. What is
-    deep is well within its borders, or no other surface is nearer: two faces meet there nearly in one plane.
+    deep is well within its borders, or no other surface is nearer.
     """
     one, other = held.own.features[i], cage.own.features[j]
-    if not met.is_one or not -DEEPEST_OF_LEAST * min(one.least, other.least) <= met.gap <= touch_m:
+    if not met.is_one or met.gap > touch_m:
         return
-    is_deep, slack = met.gap < -touch_m, slack_of(one, other, touch_m)
-    if both_reach(held, i, cage, j, met, slack, -touch_m if is_deep else 2.0 * touch_m) or (
-        is_deep
-        and (one.kind == FACE or other.kind == FACE)
-        and both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
-        and is_nearest(held, i, cage, met, touch_m, found)
-    ):
+    slack, deepest = slack_of(one, other, touch_m), DEEPEST_OF_LEAST * min(one.least, other.least)
+    if met.gap >= -touch_m:
+        touches = both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
+    else:
+        touches = met.gap >= -deepest and both_reach(held, i, cage, j, met, slack, -touch_m)
+        face = one if one.kind == FACE else other
+        if not touches and face.kind == FACE and met.gap >= -DEEPEST_OF_LEAST * face.least:
+            reach = both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
+            touches = reach and is_nearest(held, i, cage, met, touch_m, found)
+    if touches:
         append_meeting(held, i, cage, j, along, met, touch_m, found)
 
 

@@ -10,11 +10,13 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from cagepose.kernels.algebra.motion import motion_of, moved_point, turned_by_amount
-from cagepose.kernels.algebra.pose import Quaternion, quaternion_about, quaternion_product, rotated
+from cagepose.kernels.algebra.pose import Quaternion, quaternion_about, quaternion_product, rotated, turned_by
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import (
     Matrix,
     Vector,
+    minus,
+    norm,
     row,
     times,
     transposed_times,
@@ -91,3 +93,11 @@ def moved_along_twist(
     if motion.rate * amount == 0.0:
         return moved, quaternion
     return moved, quaternion_product(quaternion_about(motion.axis, motion.rate * amount), quaternion)
+
+
+@kernel
+def way_between(position: Vector, quaternion: Quaternion, end: Vector, turned: Quaternion, reach_m: float) -> float:
+    """Return how far a body that reaches so far from its position moves at most from one pose to another one near it,
+    metres.
+    """
+    return norm(minus(end, position)) + reach_m * turned_by(quaternion, turned)

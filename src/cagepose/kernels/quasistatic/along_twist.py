@@ -21,7 +21,7 @@ from cagepose.kernels.contact.loads import (
     total_load,
     work_done,
 )
-from cagepose.kernels.contact.metric import moved_along_twist
+from cagepose.kernels.contact.metric import moved_along_twist, way_between
 from cagepose.kernels.contact.on_circle import is_kept
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
@@ -129,8 +129,9 @@ def stepped(
     """Move by ``amount``, keep the contacts that carry on their faces, and put the one that is hit on its own.
 
     A contact that touches across a gap, within the touch tolerance, keeps the gap, as its gap rate of zero says.
-    False: a point would be inside, a contact would not stay on its face, or the loads would do negative work, more than
-    it takes to bring contacts out that were a little deep. The placement is that of the new pose, or of the old one.
+    False: a point would be inside, a contact would not stay on its face, to put all back would be a longer way than the
+    step, or the loads would do negative work, more than it takes to bring contacts out that were a little deep. The
+    placement is that of the new pose, or of the old one.
     """
     geometry = setting.geometry
     constrain_contacts(geometry, placement, contacts, setting.tolerances.rounding_m, work.constraints)
@@ -143,12 +144,12 @@ def stepped(
         place_object(geometry, moved[0], moved[1], placement)
         constrain_to_face(geometry, placement, hit.point, hit.box, work.constraints)
     done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], work)
-    if done:
+    strayed = way_between(moved[0], moved[1], new_position, new_quaternion, setting.body.reach_m)
+    if done and strayed <= way + setting.tolerances.touch_m:
         total = total_load(setting.load, position, quaternion, setting.size_m)
         least = -setting.tolerances.resolution_m * total - TO_FIRST_ORDER * work_of_depths(contacts)
-        done = work_done(setting.load, position, quaternion, new_position, new_quaternion) >= least
-    if done:
-        return True, new_position, new_quaternion
+        if work_done(setting.load, position, quaternion, new_position, new_quaternion) >= least:
+            return True, new_position, new_quaternion
     place_object(geometry, position, quaternion, placement)
     return False, position, quaternion
 

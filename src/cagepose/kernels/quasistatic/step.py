@@ -13,8 +13,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from cagepose.kernels.algebra.pose import Quaternion, turned_by
-from cagepose.kernels.algebra.vector import Vector, minus, norm, scaled, vector_from
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.vector import Vector, norm, scaled, vector_from
 from cagepose.kernels.collision.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
 from cagepose.kernels.contact.curvature import curvature_along, write_curvature
@@ -28,7 +28,7 @@ from cagepose.kernels.contact.equilibrium import (
 from cagepose.kernels.contact.find_contacts import find_contacts
 from cagepose.kernels.contact.load_curvature import has_circulation, write_circulation
 from cagepose.kernels.contact.loads import longest_pull, write_load
-from cagepose.kernels.contact.metric import Frame, frame_at, twist_of
+from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, way_between
 from cagepose.kernels.contact.on_circle import is_under_circle
 from cagepose.kernels.contact.onset import find_sticking, onset
 from cagepose.kernels.native.kernel import kernel
@@ -353,7 +353,7 @@ def next_step(
         end, turned = first_rest(setting, position, quaternion, twist, amount, (end, turned), work)
 
     # Go there.
-    moved = norm(minus(end, position)) + setting.body.reach_m * turned_by(quaternion, turned)
+    moved = way_between(position, quaternion, end, turned, setting.body.reach_m)
     n_still = 0 if moved > STILL * setting.size_m else state.n_still + 1
     fits = find_placed_contacts(setting, end, turned, work)
     write_step(work, step, rule, motion, end, turned)
