@@ -186,24 +186,33 @@ def depth_within(shape: Shape, point: np.ndarray) -> float:
     return float(left) - (shape.radius_m if isinstance(shape, Rounded) else 0.0)
 
 
+def is_held_as_its_points(scene: Scene) -> bool:
+    """Whether points within the solids of a cage hold the object; if so, check that the solids do, as tightly."""
+    inner = inner_scene(scene)
+    named = {shape.name: shape for shape in scene.cage.shapes}
+    for name, point in zip(inner.cage.names, inner.cage.points_cage, strict=True):
+        assert depth_within(named[name.rpartition(" ")[0]], point) < 1e-9 * scene.size_m
+    frame = PlayFrame(inner)
+    bounds = Bounds(frame, range_goals(frame), inner.touch_m)
+    if not bounds.is_caged:
+        return False
+    pushed = PushedPlay(scene, unseated(scene), [])
+    for ends, low, high in zip(pushed.ranges(), bounds.ends[::2], bounds.ends[1::2], strict=True):
+        assert low is None or low <= (ends[0].reached or 0.0)
+        assert high is None or (ends[1].reached or 0.0) <= high
+    assert pushed.judge("", None, 0.3, None).verdict == "not certified"
+    return True
+
+
 def test_random_solids_hold_what_points_within_them_hold(cases):
     """No push leads out, none of 12 ends passes its bound, and all points lie within the solids."""
-    rng, n_caged, n_cases = np.random.default_rng(8), 0, cases(3, 150)
-    for _ in range(n_cases):
-        scene = cage_of_solids(rng)
-        inner = inner_scene(scene)
-        named = {shape.name: shape for shape in scene.cage.shapes}
-        for name, point in zip(inner.cage.names, inner.cage.points_cage, strict=True):
-            assert depth_within(named[name.rpartition(" ")[0]], point) < 1e-9 * scene.size_m
-        frame = PlayFrame(inner)
-        bounds = Bounds(frame, range_goals(frame), inner.touch_m)
-        if not bounds.is_caged:
-            continue
-        n_caged += 1
-        pushed = PushedPlay(scene, unseated(scene), [])
-        for ends, low, high in zip(pushed.ranges(), bounds.ends[::2], bounds.ends[1::2], strict=True):
-            assert low is None or low <= (ends[0].reached or 0.0)
-            assert high is None or (ends[1].reached or 0.0) <= high
-        assert pushed.judge("", None, 0.3, None).verdict == "not certified"
+    rng, n_cases = np.random.default_rng(8), cases(3, 150)
+    n_caged = sum(is_held_as_its_points(cage_of_solids(rng)) for _ in range(n_cases))
     print(f"{n_caged} of {n_cases} scenes caged")
     assert n_caged >= 0.5 * n_cases
+
+
+def test_no_push_goes_into_solids_where_many_contacts_are_put_back():
+    """They nearly depend on each other, and a way that puts all back is longer than the step."""
+    rng = np.random.default_rng(8)
+    assert is_held_as_its_points([cage_of_solids(rng) for _ in range(4)][-1])

@@ -84,12 +84,14 @@ def test_countersunk_screws_have_an_answer(cases, say):
         ((4.0, 2.0, 0.2, 20.0, 45.0, 40.0), 0.1, 0.3, 0.2, -2.0),
         ((2.5, 2.0, 0.1, 20.0, 40.0, 45.0), 0.09, 0.0, 1.0, 0.0),
         ((3.0, 3.0, 0.2, 10.0, 50.0, 40.0), 0.9 * 0.2, 0.1, 3.0, 0.0),  # 0.18 does not stall
+        ((4.0, 3.0, 0.1, 10.0, 50.0, 45.0), 0.09, 0.0, 3.0, -3.0 / math.tan(math.radians(50.0))),
     ],
-    ids=["two places stick", "deep between vertices", "two places come together"],
+    ids=["two places stick", "deep between vertices", "two places come together", "tilts out of the middle"],
 )
 def test_screws_in_seats_of_other_angles_that_stalled(sizes, aside, friction, push_n, at):
     """What two places that stick slip was given to one of them, a hundred times as far; an arc that was deep was put on
-    its place beside its ends; and where two places on an arc came together one of them was thought at an edge.
+    its place beside its ends; where two places on an arc came together one of them was thought at an edge; and a head
+    that lay all around stayed on its wall at places that go into it as it tilts.
     """
     parts, cage = screw_and_seat(*sizes)
     held = Object(shapes=parts, mass_kg=1.0 / 9.81, pose=Pose((aside * MM, 0, 2 * MM)))
