@@ -391,7 +391,7 @@ def first_of_curved(
     slack, slowest, least = slack_of(one, other, touch_m), LEAVES_OF_SPEED * search.speed, math.inf
     deepest = min(search.near_depth_m, THIN_OF_LEAST * min(one.least, other.least))
     n_kept = hold_places(i, j, meetings)
-    n_places = find_circle_places(one, other, touch_m, meetings.places)
+    n_places, is_flat = find_circle_places(one, other, touch_m, meetings.places), one.kind == FACE or other.kind == FACE
     for k in range(PLACES_AROUND if n_places == WHOLE else n_places):
         if n_kept == len(meetings.kept):
             break
@@ -423,10 +423,11 @@ def first_of_curved(
             is_passed = is_passed or is_beside_kept(i, j, meetings, met, touch_m)
         if not is_held:
             least = min(least, met.gap)
-        if is_passed or met.gap >= -depth:
+        is_deep = met.gap < -depth  # and does not reach there; but another place may come up beside it
+        if is_passed or not is_deep or not is_flat:
             row = meetings.kept[n_kept]
             row.angle, row.other_angle, row.is_held = place.angle, place.other_angle, is_held
-            row.depth_m, row.is_grazing = math.inf if is_passed and not is_grazing else depth, is_grazing
+            row.depth_m, row.is_grazing = math.inf if (is_passed or is_deep) and not is_grazing else depth, is_grazing
             n_kept += 1
     exact = max(LEAST_SLACK, touch_m / search.size_m)
     found = first_touch_of_curved(
