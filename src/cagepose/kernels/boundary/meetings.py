@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.record import FloatArray, Rows
-from cagepose.kernels.algebra.vector import dot, minus, vector_from
+from cagepose.kernels.algebra.vector import dot, minus, plus, scaled, vector_from
 from cagepose.kernels.boundary.circle import WHOLE_TURN, is_on_arc
 from cagepose.kernels.boundary.circle_meeting import circle_meeting, find_places
 from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE, Place, write_place
@@ -28,6 +28,7 @@ from cagepose.kernels.boundary.met import Meeting, swapped
 from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, SAME_PLACE, Along, Meetings
 from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
 from cagepose.kernels.boundary.twins import append_meeting
+from cagepose.kernels.boundary.within import nearest_surface
 from cagepose.kernels.native.kernel import kernel
 
 DEEPEST_OF_LEAST = 0.05
@@ -316,12 +317,24 @@ def append_touching(
     touch_m: float,
     found: Meetings,
 ) -> None:
-    """Append a meeting, if two features touch there: they are near, not on far sides of a part, and both reach; what is
-    deep, well within its borders.
+    """Append a meeting, if two features touch there: they are near, and both reach; of what is deep, no other surface is
+    nearer, as on far sides of a part.
     """
     one, other = held.own.features[i], cage.own.features[j]
     if not met.is_one or not -DEEPEST_OF_LEAST * min(one.least, other.least) <= met.gap <= touch_m:
         return
-    slack_m = 2.0 * touch_m if met.gap >= -touch_m else -touch_m
-    if both_reach(held, i, cage, j, met, slack_of(one, other, touch_m), slack_m):
+    if not both_reach(held, i, cage, j, met, slack_of(one, other, touch_m), 2.0 * touch_m):
+        return
+    if met.gap >= -touch_m or is_nearest(held, i, cage, met, touch_m, found):
         append_meeting(held, i, cage, j, along, met, touch_m, found)
+
+
+@kernel
+def is_nearest(
+    held: PlacedBoundary, i: int, cage: PlacedBoundary, met: Meeting, touch_m: float, found: Meetings
+) -> bool:
+    """Whether, where features are deep in each other, no other surface of the one body is nearer to the other one."""
+    of_held = held.own.features[i].kind == FACE
+    body, place = (held, plus(met.place, scaled(met.normal, met.gap))) if of_held else (cage, met.place)
+    within = in_body(body, minus(place, position_of(body)))
+    return nearest_surface(body.own, within, -met.gap - touch_m, found.waiting).feature < 0

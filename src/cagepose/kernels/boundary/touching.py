@@ -88,6 +88,8 @@ class Meetings(NamedTuple):
         Memory for pairs of nodes, (MOST_PAIRS, 2).
     places, kept
         Memory for the places of a circle, and for those of them that touch.
+    waiting
+        Memory for nodes, (MOST_PAIRS,), that wait while one tree is descended.
     heights
         Memory for how far a vertex is above faces, (n_features,) of the body that has more, metres.
     """
@@ -97,6 +99,7 @@ class Meetings(NamedTuple):
     pairs: IntArray
     places: Rows[Place]
     kept: Rows[Kept]
+    waiting: IntArray
     heights: FloatArray
 
 
@@ -114,6 +117,7 @@ def empty_meetings(n_features: int, n_rows: int = MOST_MEETINGS) -> Meetings:
         pairs,
         places,
         empty_rows(Kept, MOST_PLACES),
+        np.zeros(MOST_PAIRS, np.int64),
         np.zeros(n_features),
     )
 
