@@ -2,7 +2,8 @@
 
 At a pose: find the contacts and solve the onset of motion. Held: the end. Else move along its twist, an exact screw,
 up to the first contact, to the edge of a face that carries, or as far as the motion keeps its direction; put the
-sliding contacts back on their faces. The loads do work in every step, so no pose comes twice.
+sliding contacts back on their faces. The loads do work in every step, but for what it takes to bring contacts out that
+are deep within the touch tolerance: no pose comes twice from farther than that.
 
 A step depends on its state alone, so that any step of a run can be made again.
 """
