@@ -38,7 +38,7 @@ PIECES = 8
 """Of a circle at first."""
 DEEPEST, KEPT_DEEPEST = 40, 6
 """How often a piece is halved at most, and one that a kept place ends in."""
-MOST_PIECES = 60
+MOST_PIECES = 150
 """That are looked at; what more of them would tell is not worth it."""
 AS_GOOD = 0.5
 """Of what the points of a curve tell: pieces that tell as much are not divided."""

@@ -10,7 +10,7 @@ from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE
 from cagepose.kernels.boundary.circle_first import place_near
 from cagepose.kernels.boundary.circle_meeting import is_sharp
 from cagepose.kernels.boundary.circle_places import Place, write_place
-from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, VERTEX, Feature, PlacedBoundary
+from cagepose.kernels.boundary.features import CIRCLE, LINE, VERTEX, Feature, PlacedBoundary
 from cagepose.kernels.boundary.meeting import meeting, seated
 from cagepose.kernels.boundary.meetings import meeting_at
 from cagepose.kernels.boundary.met import PARALLEL, Meeting, apart, swapped
@@ -41,7 +41,7 @@ def meeting_kept(
         if is_fixed and one.kind == LINE and other.kind == VERTEX:
             return swapped(seated(other, one, angle))
         return meeting(held, i, cage, j)
-    if is_fixed and (one.kind == FACE or other.kind == FACE):
+    if is_fixed:
         write_place(places[0], angle, 0.0, 0, True)
         return meeting_at(held, i, cage, j, places[0])
     is_crossing = is_sharp(one, other) if one.kind == CIRCLE else is_sharp(other, one)

@@ -8,7 +8,7 @@ from cagepose.kernels.algebra.motion import Motion, velocity_at
 from cagepose.kernels.algebra.vector import dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.features import LINE, VERTEX, PlacedBoundary
 from cagepose.kernels.boundary.met import Meeting
-from cagepose.kernels.boundary.touching import SAME_PLACE, Meetings
+from cagepose.kernels.boundary.touching import SAME_PLACE, Meetings, Touching
 from cagepose.kernels.native.kernel import kernel
 
 ON_AXIS = 0.5
@@ -30,12 +30,17 @@ def hold_places(i: int, j: int, meetings: Meetings) -> int:
 
 
 @kernel
+def is_at(row: Touching, met: Meeting, touch_m: float) -> bool:
+    """Whether features meet at the place of others that touch."""
+    return norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
+
+
+@kernel
 def is_there(meetings: Meetings, met: Meeting, is_kept: bool, touch_m: float) -> bool:
     """Whether features meet where there is a contact, or one that the motion keeps."""
     for at in range(meetings.used[1]):
         row = meetings.rows[at]
-        is_near = norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
-        if is_near and (row.is_kept or not is_kept) and dot(vector_from(row.normal), met.normal) > 0.0:
+        if is_at(row, met, touch_m) and (row.is_kept or not is_kept) and dot(vector_from(row.normal), met.normal) > 0.0:
             return True
     return False
 
@@ -49,13 +54,11 @@ def is_beside_kept(i: int, j: int, meetings: Meetings, met: Meeting, touch_m: fl
     group, found = -1, False
     for at in range(meetings.used[0]):
         row = meetings.rows[at]
-        is_near = norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
-        if is_near and row.feature == i and row.cage_feature == j:
+        if row.feature == i and row.cage_feature == j and is_at(row, met, touch_m):
             group = row.group
     for at in range(meetings.used[1]):
         row = meetings.rows[at]
-        is_near = norm(minus(vector_from(row.place), met.place)) <= SAME_PLACE * touch_m
-        found = found or (is_near and row.is_kept and (group < 0 or row.group == group))
+        found = found or (row.is_kept and (group < 0 or row.group == group) and is_at(row, met, touch_m))
     return found
 
 

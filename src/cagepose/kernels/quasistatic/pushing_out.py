@@ -77,9 +77,12 @@ def constrain_to_face(geometry: Geometry, placement: Placement, point: int, box:
 
 @kernel
 def is_fixed(contacts: ContactSet, i: int) -> bool:
-    """Whether a contact stays at its place of a circle: of one that stays flat on a face, or lies around a side."""
+    """Whether a contact stays at its place of a circle: of one that stays flat on a face, or lies around a side, be it
+    listed or added.
+    """
     around = contacts.bends[i].on_circle
-    return bool(contacts.states[i].stays_flat or (around.length != 0.0 and around.is_on_ball))
+    is_around = around.is_on_ball and (around.length != 0.0 or contacts.rows[i].is_added)
+    return bool(contacts.states[i].stays_flat or is_around)
 
 
 @kernel
