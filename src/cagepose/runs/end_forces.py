@@ -42,7 +42,7 @@ def end_forces(scene: Scene, variation: Variation, rows: Iterable[int]) -> Float
     n_phases, n_elements = len(scene.loads), len(scene.cage.element_names)
     n_ordered = 0 if method.joins_steps else len(scene.cage.names)
     outcome = empty_outcome(scene.geometry, n_phases, rules.step_limit, n_ordered)
-    work, filled = Slots(method.workspace(scene.geometry, rules.step_limit)), Slots(outcome)
+    work, filled = Slots(method.workspace(scene, rules.step_limit)), Slots(outcome)
     part, found = Slots(part_of(scene)), np.full((n_runs, n_elements), np.nan)
     phases: Any = outcome.phases
     contacts: Any = outcome.contacts

@@ -69,9 +69,9 @@ def touched_faces(scene: Scene, pose: Pose) -> list[Touch]:
     """Return the contacts of the cage's points with the object's boxes; none where there are other shapes."""
     if scene.has_other_shapes:
         return []
-    points, half_sizes = scene.cage.points_world(), scene.geometry.half_sizes
-    rotations = pose.rotation @ scene.geometry.box_rotations
-    middles = pose.transform(scene.geometry.box_positions)
+    points, half_sizes = scene.cage.points_world(), scene.boxes.half_sizes
+    rotations = pose.rotation @ scene.boxes.box_rotations
+    middles = pose.transform(scene.boxes.box_positions)
     touch_m, touched = scene.touch_m, list[Touch]()
     for name, point in zip(scene.cage.names, points, strict=True):
         normals = list[FloatArray]()

@@ -82,3 +82,9 @@ def scaled_tolerances(of_size: KernelTolerances, size_m: float) -> KernelToleran
     return KernelTolerances(
         of_size.touch_m * size_m, of_size.resolution_m * size_m, of_size.rounding_m * size_m, of_size.tie
     )
+
+
+@kernel
+def allowed_depth(depth_m: float, tolerances: KernelTolerances) -> float:
+    """Return how deep what starts at ``depth_m`` may go: no deeper than it is, rounding apart."""
+    return max(tolerances.resolution_m, depth_m + tolerances.rounding_m)

@@ -257,14 +257,6 @@ def list_one_sided(
 
 
 @kernel
-def is_same_face(contacts: ContactSet, i: int, k: int) -> bool:
-    """Whether two rows are one, or flush faces of two boxes over one point."""
-    one, other = contacts.rows[i], contacts.rows[k]
-    is_one_point = one.point == other.point and one.feature < 0 and other.feature < 0
-    return i == k or (is_one_point and inner(one.directions[0], other.directions[0], 3) > 1.0 - PART_OUTSIDE_SPAN)
-
-
-@kernel
 def extend_by_equalities(contacts: ContactSet, statuses: Rows[ContactStatus], without: int, span: PassiveSet) -> None:
     """Write the span of what sticking contacts carry along their faces and of the normals that may carry, without that
     of one face (-1: of all); labels say which contact's normal each basis vector is, -1: none.
@@ -278,7 +270,7 @@ def extend_by_equalities(contacts: ContactSet, statuses: Rows[ContactStatus], wi
     for place in range(span.used):
         span.labels[place] = -1
     for i in range(contacts.used[0]):
-        if statuses[i].is_equality and not (without >= 0 and is_same_face(contacts, i, without)):
+        if statuses[i].is_equality and i != without:
             span.labels[span.used] = i
             extend(span, rows[i].columns[0], PART_OUTSIDE_SPAN)
 
@@ -298,7 +290,7 @@ def find_shared(contacts: ContactSet, statuses: Rows[ContactStatus], work: Stabi
         adds = False
         for place in range(whole.used):
             k = whole.labels[place]
-            adds = adds or (k >= 0 and is_same_face(contacts, k, i))
+            adds = adds or k == i
         span = whole
         if adds:
             span = work.held
@@ -333,10 +325,10 @@ def hold_some(contacts: ContactSet, n_one_sided: int, chosen: int, work: Stabili
 @kernel
 def has_twins(contacts: ContactSet) -> bool:
     """Whether a contact that carries is where features meet that bend by different amounts."""
-    for i in range(contacts.used[0] if len(contacts.bends) > 0 else 0):
-        if contacts.rows[i].feature >= 0 and contacts.bends[i].has_twin and contacts.states[i].forces[0] > 0.0:
-            return True
-    return False
+    found = False
+    for i in range(contacts.used[0]):
+        found = found or (contacts.bends[i].has_twin and contacts.states[i].forces[0] > 0.0)
+    return found
 
 
 @kernel
