@@ -50,7 +50,7 @@ def end_forces(scene: Scene, variation: Variation, rows: Iterable[int]) -> Float
         method.run(part, _case(cases, row), rules, work, filled)
         last = int(outcome.counts[0]) - 1
         of_last = slice(int(phases["n_contacts"][last - 1]) if last else 0, int(phases["n_contacts"][last]))
-        elements = contacts["point"][of_last]
+        elements = contacts["cage_part"][of_last]
         if phases["proof"][last] in HELD_BY_NO_FORCES and len(elements):
             continue
         found[row] = 0.0

@@ -155,6 +155,7 @@ def first_touch_of_curved(
     motion: Motion,
     end: float,
     slack: float,
+    slack_m: float,
     touch_m: float,
     moved: PlacedBoundary,
     places: Rows[Place],
@@ -169,8 +170,10 @@ def first_touch_of_curved(
         The features, placed in the world.
     motion, end
         That of the object; the end is finite.
-    slack, touch_m
+    slack, slack_m
         How far beyond its end a feature still counts: the sine of an angle, and metres.
+    touch_m
+        What is this close touches, metres.
     moved, places
         Memory.
     kept, n_kept
@@ -225,7 +228,7 @@ def first_touch_of_curved(
                 if reached <= end:
                     place_after(a, i, motion, reached, moved)
                     at_root = place_near(moved.features[i], b.features[j], root.angle, SAME_ANGLE, touch_m, places)
-                    if at_root >= 0 and place_touches(moved, i, b, j, places[at_root], motion, depth, slack, touch_m):
+                    if at_root >= 0 and place_touches(moved, i, b, j, places[at_root], motion, depth, slack, slack_m):
                         return Reached(reached, places[at_root].angle, n_steps, False)
                 if at < 0 and abs(met.gap) <= touch_m and n_kept < len(kept):  # they may graze so for long
                     row = kept[n_kept]

@@ -343,7 +343,7 @@ def sooner(
         return first_of_curved(held, i, cage, j, until, search, meetings, moved, hit)
     if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
         return hit
-    clear = clear_step(held, i, cage, j, motion)
+    clear = clear_step(held, i, cage, j, motion, reach_of(search))
     is_near = clear * search.speed <= SAME_PLACE * max(search.near_m, search.touch_m)  # and may be deep already
     if not is_near and clear >= until:
         return hit
@@ -429,9 +429,9 @@ def first_of_curved(
             row.angle, row.other_angle, row.is_held = place.angle, place.other_angle, is_held
             row.depth_m, row.is_grazing = math.inf if (is_passed or is_deep) and not is_grazing else depth, is_grazing
             n_kept += 1
-    exact = max(LEAST_SLACK, touch_m / search.size_m)
+    exact, reach_m = max(LEAST_SLACK, touch_m / search.size_m), reach_of(search)
     found = first_touch_of_curved(
-        held, i, cage, j, search.motion, until, exact, touch_m, moved, meetings.places, meetings.kept, n_kept
+        held, i, cage, j, search.motion, until, exact, reach_m, touch_m, moved, meetings.places, meetings.kept, n_kept
     )
     return Hit(found.amount, i, j, least, found.angle, found.is_open) if found.amount < until else hit
 
@@ -477,4 +477,12 @@ def first_of_features(
             crossed = cross(vector_from(held.features[i].direction), vector_from(cage.features[j].direction))
             side = -math.copysign(1.0, dot(met.normal, crossed))
     exact = max(LEAST_SLACK, touch_m / search.size_m)
-    return first_touch(held, i, cage, j, motion, until, level, side, exact, touch_m, moved)
+    return first_touch(held, i, cage, j, motion, until, level, side, exact, reach_of(search), moved)
+
+
+@kernel
+def reach_of(search: Search) -> float:
+    """Return how far beyond its border a feature still counts as reached, metres: what slides in a hollow edge strays
+    from it on a screw, as far as it may go into its faces, and is put back.
+    """
+    return max(search.touch_m, search.near_depth_m)

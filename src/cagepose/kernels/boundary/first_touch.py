@@ -86,9 +86,9 @@ def distance_from(body: PlacedBoundary, i: int, point: Vector) -> float:
 
 
 @kernel
-def clear_step(moved: PlacedBoundary, i: int, b: PlacedBoundary, j: int, motion: Motion) -> float:
-    """Return how much farther the motion surely leads without a contact of two features, by how far apart they are
-    where they are placed.
+def clear_step(moved: PlacedBoundary, i: int, b: PlacedBoundary, j: int, motion: Motion, slack_m: float) -> float:
+    """Return how much farther the motion surely leads without a contact of two features, which count so far beyond
+    their ends, by how far apart they are where they are placed.
 
     What functions of planes and lines say where no feature is, needs no search then.
     """
@@ -105,7 +105,7 @@ def clear_step(moved: PlacedBoundary, i: int, b: PlacedBoundary, j: int, motion:
     else:
         point = vector_from(other.point)
         away, speed = distance_from(moved, i, point), norm(velocity_at(motion, point))
-    away -= one.radius + other.radius
+    away -= one.radius + other.radius + slack_m
     if away <= 0.0:
         return 0.0
     return away / speed if speed > 0.0 else math.inf
@@ -187,7 +187,7 @@ def first_touch(
         is_at_root = was_apart and now.value < 0.0
         if is_at_root and is_jump:
             place_after(a, i, motion, amount, moved)
-            is_at_root = clear_step(moved, i, b, j, motion) <= NEAR_ROOT * end
+            is_at_root = clear_step(moved, i, b, j, motion, slack_m) <= NEAR_ROOT * end
         if is_at_root and touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
             return amount
         if is_sharp and level == 0.0 and now.value < 0.0:  # lines that have crossed, but not where both edges are
@@ -202,7 +202,9 @@ def first_touch(
                 step, is_over = max(step, min(narrow, span)), narrow >= span
                 span *= NARROWER
             place_after(a, i, motion, amount, moved)
-            clear = clear_step(moved, i, b, j, motion) if level == 0.0 else 0.0  # that does not tell how deep they are
+            clear = (
+                clear_step(moved, i, b, j, motion, slack_m) if level == 0.0 else 0.0
+            )  # that does not tell how deep they are
             step, is_jump = max(step, clear), clear > step
             if stay_parallel(moved.features[i], other, motion, rest):
                 return math.inf

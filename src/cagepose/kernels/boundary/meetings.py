@@ -28,12 +28,14 @@ from cagepose.kernels.boundary.met import Meeting, swapped
 from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, SAME_PLACE, Along, Meetings
 from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
 from cagepose.kernels.boundary.twins import append_meeting
-from cagepose.kernels.boundary.within import nearest_surface
+from cagepose.kernels.boundary.within import is_within, nearest_surface
 from cagepose.kernels.native.kernel import kernel
 
 DEEPEST_OF_LEAST = 0.05
 """Of the shortest edge: features that are deeper in each other are on far sides of a part, and do not touch, but for
 what is deep in a face of longer edges and nearest to it of all surfaces."""
+BEYOND_OF_DEPTH = 4.0
+"""What is so many times its depth beyond the border of a face may be in it: there is material behind a hollow edge."""
 LEAST_SLACK, MOST_SLACK = 1e-9, 0.1
 """Sines that normals may be beyond those of a feature."""
 PLACES_AROUND = 8
@@ -319,7 +321,7 @@ def append_touching(
     found: Meetings,
 ) -> None:
     """Append a meeting, if two features touch there: they are near, not on far sides of a part, and both reach. What is
-    deep is well within its borders, or no other surface is nearer.
+    deep is well within its borders, or in the body with no other surface nearer.
     """
     one, other = held.own.features[i], cage.own.features[j]
     if not met.is_one or met.gap > touch_m:
@@ -331,7 +333,7 @@ def append_touching(
         touches = met.gap >= -deepest and both_reach(held, i, cage, j, met, slack, -touch_m)
         face = one if one.kind == FACE else other
         if not touches and face.kind == FACE and met.gap >= -DEEPEST_OF_LEAST * face.least:
-            reach = both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
+            reach = both_reach(held, i, cage, j, met, slack, 2.0 * touch_m - BEYOND_OF_DEPTH * met.gap)
             touches = reach and is_nearest(held, i, cage, met, touch_m, found)
     if touches:
         append_meeting(held, i, cage, j, along, met, touch_m, found)
@@ -341,8 +343,10 @@ def append_touching(
 def is_nearest(
     held: PlacedBoundary, i: int, cage: PlacedBoundary, met: Meeting, touch_m: float, found: Meetings
 ) -> bool:
-    """Whether no other surface of the body of a face is nearer to what is deep in the face."""
+    """Whether what is deep in a face is in its body, and no other surface of that is nearer."""
     of_held = held.own.features[i].kind == FACE
     body, place = (held, plus(met.place, scaled(met.normal, met.gap))) if of_held else (cage, met.place)
     within = in_body(body, minus(place, position_of(body)))
-    return nearest_surface(body.own, within, -met.gap - touch_m, found.waiting).feature < 0
+    if nearest_surface(body.own, within, -met.gap - touch_m, found.waiting).feature >= 0:
+        return False
+    return is_within(body.own, within, touch_m, found.waiting)

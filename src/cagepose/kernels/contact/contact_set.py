@@ -19,6 +19,10 @@ from cagepose.kernels.boundary.geometry import Geometry, most_rows
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.native.kernel import kernel
 
+STEEP = 0.55
+"""Cosine. The tangents of a normal that is farther from an axis are told from this axis: few ordinary normals are so
+far from one that rounding would change them."""
+
 
 class ContactRow:
     """The geometry of one contact; a record.
@@ -154,14 +158,10 @@ def count_chosen(contacts: ContactSet) -> None:
 
 @kernel
 def tangents_to(normal: Vector) -> tuple[Vector, Vector]:
-    """Return two unit vectors across a unit normal and each other."""
-    x, y, z = abs(normal[0]), abs(normal[1]), abs(normal[2])
-    least = (
-        1.0 if x <= y and x <= z else 0.0,
-        1.0 if y < x and y <= z else 0.0,
-        1.0 if z < x and z < y else 0.0,
-    )
-    one = cross(normal, least)
+    """Return two unit vectors across a unit normal and each other; for nearly the same normal, nearly the same."""
+    is_x, is_y = abs(normal[0]) < STEEP, abs(normal[1]) < STEEP
+    aside = (1.0, 0.0, 0.0) if is_x else (0.0, 1.0, 0.0) if is_y else (0.0, 0.0, 1.0)
+    one = cross(normal, aside)
     one = scaled(one, 1.0 / norm(one))
     return one, cross(normal, one)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from cagepose.kernels.algebra.vector import Vector, minus, vector_from
 from cagepose.kernels.boundary.bend import curvatures, write_bend, write_twin
 from cagepose.kernels.boundary.geometry import Geometry, Placement, held_at
@@ -19,22 +21,42 @@ from cagepose.kernels.native.kernel import kernel
 def find_contacts(
     geometry: Geometry, placement: Placement, friction: Friction, center: Vector, frame: Frame, contacts: ContactSet
 ) -> bool:
-    """Fill ``contacts`` where the object is placed, those of a group together; False: there are more than it has room
-    for.
+    """Fill ``contacts`` where the object is placed, in the order of the scene, those of a group together; False: there
+    are more than it has room for.
     """
     contacts.used[0] = 0
     meetings = placement.meetings
     if meetings.used[0] < 0 or meetings.used[0] > len(contacts.rows):
         return False
-    for at in range(meetings.used[0]):
-        if meetings.rows[at].group != at:
-            continue
-        first = contacts.used[0]
-        for other in range(at, meetings.used[0]):
-            if meetings.rows[other].group == at:
-                append_meeting(geometry, placement, friction, other, first, center, frame, contacts)
+    place = next_pair(geometry, placement, -1.0)
+    while place < math.inf:
+        for at in range(meetings.used[0]):
+            if meetings.rows[at].group != at or place_of_pair(geometry, placement, at) != place:
+                continue
+            first = contacts.used[0]
+            for other in range(at, meetings.used[0]):
+                if meetings.rows[other].group == at:
+                    append_meeting(geometry, placement, friction, other, first, center, frame, contacts)
+        place = next_pair(geometry, placement, place)
     seat_circles(geometry, contacts, frame)
     return True
+
+
+@kernel
+def place_of_pair(geometry: Geometry, placement: Placement, at: int) -> int:
+    """Return the place of a meeting in the order of the scene: by the part of the cage, then by that of the object."""
+    row, held, cage = placement.meetings.rows[at], geometry.held, geometry.cage.own
+    return cage.features[row.cage_feature].part * len(held.parts) + held.features[row.feature].part
+
+
+@kernel
+def next_pair(geometry: Geometry, placement: Placement, place: float) -> float:
+    """Return the least place behind another one at which a group begins; inf: none does."""
+    least = math.inf
+    for at in range(placement.meetings.used[0]):
+        if placement.meetings.rows[at].group == at and place_of_pair(geometry, placement, at) > place:
+            least = min(least, place_of_pair(geometry, placement, at))
+    return least
 
 
 @kernel
