@@ -73,9 +73,7 @@ _WORKSPACES = _Workspaces()
 
 def _workspace(scene: Scene, method: Method, step_limit: int) -> _Workspace:
     n_phases, n_points = len(scene.loads), len(scene.cage.names)
-    size: tuple[object, ...] = (method.name, n_phases, n_points, len(scene.boxes.half_sizes), step_limit)
-    if scene.has_other_shapes:
-        size = (*size, *_sizes(scene))
+    size = (method.name, n_phases, n_points, len(scene.boxes.half_sizes), step_limit, *_sizes(scene))
     kept = _WORKSPACES.by_size
     if size in kept:
         kept.move_to_end(size)

@@ -106,24 +106,85 @@ def are_alternatives(
     if not is_at_place(found, one, other, touch_m):
         return False
     row, second = found.rows[one], found.rows[other]
-    i, j, place = row.feature, second.feature, vector_from(row.place)
-    normal, second_normal = vector_from(row.normal), vector_from(second.normal)
-    slack = slack_of(held.own.features[i], held.own.features[j], touch_m)
-    if not is_convex_between(held, i, normal, j, second_normal, place, slack, touch_m):
+    place, normal, second_normal = vector_from(row.place), vector_from(row.normal), vector_from(second.normal)
+    pairs = (row.feature, row.beside), (second.feature, second.beside)
+    if not is_convex_at(held, pairs[0], normal, pairs[1], second_normal, place, touch_m):
         return False
-    i, j = row.cage_feature, second.cage_feature
-    normal, second_normal = scaled(normal, -1.0), scaled(second_normal, -1.0)
-    slack = slack_of(cage.own.features[i], cage.own.features[j], touch_m)
-    return is_convex_between(cage, i, normal, j, second_normal, place, slack, touch_m)
+    pairs = (row.cage_feature, row.cage_beside), (second.cage_feature, second.cage_beside)
+    return is_convex_at(cage, pairs[0], scaled(normal, -1.0), pairs[1], scaled(second_normal, -1.0), place, touch_m)
+
+
+@kernel
+def is_convex_at(
+    body: PlacedBoundary,
+    ones: tuple[int, int],
+    normal: Vector,
+    others: tuple[int, int],
+    other_normal: Vector,
+    place: Vector,
+    touch_m: float,
+) -> bool:
+    """Whether the material of a body between two features at a place is convex, or between others that are flush with
+    them there, -1: none are.
+    """
+    is_convex = False
+    for i in ones:
+        for j in others:
+            if i >= 0 and j >= 0 and not is_convex:
+                slack = slack_of(body.own.features[i], body.own.features[j], touch_m)
+                is_convex = is_convex_between(body, i, normal, j, other_normal, place, slack, touch_m)
+    return is_convex
+
+
+@kernel
+def fits_group(
+    held: PlacedBoundary, cage: PlacedBoundary, group: int, at: int, touch_m: float, found: Meetings
+) -> bool:
+    """Whether a meeting and all of a group are alternatives."""
+    for member in range(found.used[0]):
+        is_member = member != at and found.rows[member].group == group
+        if is_member and not are_alternatives(held, cage, member, at, touch_m, found):
+            return False
+    return True
+
+
+@kernel
+def list_again(found: Meetings, at: int, group: int) -> bool:
+    """List a meeting once more, in another group, as of the features that are flush with its own; False: there is no
+    room.
+    """
+    last = found.used[0]
+    if last == len(found.rows):
+        found.used[0] = found.used[1] = -1
+        return False
+    found.rows[last] = found.rows[at]  # type: ignore[index]
+    row = found.rows[last]
+    row.group = group
+    if row.beside >= 0:
+        row.feature, row.cage_feature, row.beside, row.cage_beside = (
+            row.beside,
+            row.cage_beside,
+            row.feature,
+            row.cage_feature,
+        )
+    found.used[0] = found.used[1] = last + 1
+    return True
 
 
 @kernel
 def number_groups(held: PlacedBoundary, cage: PlacedBoundary, touch_m: float, found: Meetings) -> None:
-    """Write the group of each meeting."""
+    """Write the group of each meeting, the first of those that are alternatives. One that is an alternative of several
+    that are none of each other is listed in each of their groups: below a corner where two walls of a plate meet in a
+    hollow edge, its bottom is one of either wall.
+    """
     for at in range(found.used[0]):
-        group = at
+        found.rows[at].group, joins = at, False
         for first in range(at):
-            if found.rows[first].group == first and are_alternatives(held, cage, first, at, touch_m, found):
-                group = first
-                break
-        found.rows[at].group = group
+            if found.rows[first].group == first and fits_group(held, cage, first, at, touch_m, found):
+                if not joins:
+                    found.rows[at].group, joins = first, True
+                elif not list_again(found, at, first):
+                    return
+        for before in range(at if not joins else 0):
+            if fits_group(held, cage, at, before, touch_m, found) and not list_again(found, before, at):
+                return

@@ -45,6 +45,8 @@ class Touching:
         Indices.
     twin, cage_twin
         Features that meet at the same place with the same normal and bend more; -1: none do.
+    beside, cage_beside
+        Other features that meet there with that normal, as where two faces are flush; -1: none do.
     angle
         Where on a circle, if one of them is one, radians; of two, on the object's.
     before, after
@@ -64,6 +66,8 @@ class Touching:
     cage_feature: int
     twin: int
     cage_twin: int
+    beside: int
+    cage_beside: int
     angle: float
     before: float
     after: float

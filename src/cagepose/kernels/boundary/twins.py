@@ -28,13 +28,18 @@ def append_meeting(
         return
     row = found.rows[at]
     row.twin, row.cage_twin, row.gap, row.is_kept, row.group = -1, -1, met.gap, False, at
+    row.beside, row.cage_beside = -1, -1
     write_features(i, j, along, row)
     for k in range(3):
         row.normal[k], row.place[k] = met.normal[k], met.place[k]
     for before in range(at):
         turned = norm(minus(vector_from(found.rows[before].normal), met.normal))
         if turned <= SAME_NORMAL and is_at_place(found, before, at, touch_m):
-            note_twin(held, cage, found.rows[before], row)
+            told = found.rows[before]
+            first, cage_first = told.feature, told.cage_feature
+            note_twin(held, cage, told, row)
+            is_told_now = told.feature == i and told.cage_feature == j
+            told.beside, told.cage_beside = (first, cage_first) if is_told_now else (i, j)
             return
     found.used[0] = at + 1
 

@@ -21,8 +21,9 @@ from cagepose.kernels.outcome.trace import LET_GO, NONE, RESTS, SCREW, STALLED, 
 from cagepose.kernels.stability.proof import OTHER_ONSET, PROVEN_MOVES, TOO_MANY_CONTACTS, ProofWorkspace
 from cagepose.kernels.stability.proof_search import judge
 
-PROBES_AROUND = 8
-"""Places around a contact that are asked whether there is material below its face."""
+PROBES_AROUND, PROBE_SLACK = 8, 0.1
+"""Places around a contact that are asked whether there is material below its face; and, in touch tolerances, how near
+to borders that may be told."""
 PHASES, EVENTS, STEPS, CONTACTS = 0, 1, 2, 3
 """Places in `Outcome.counts`."""
 NO_BALANCE = (PROVEN_MOVES, TOO_MANY_CONTACTS)
@@ -174,9 +175,8 @@ def is_at_edge(start: Start, position: Vector, at: ProofWorkspace, i: int) -> bo
         angle = 2.0 * math.pi * k / PROBES_AROUND
         aside = plus(scaled(one, math.cos(angle)), scaled(other, math.sin(angle)))
         probe = plus(place, scaled(minus(aside, normal), PROBE * touch_m))
-        if not is_within(
-            geometry.held, in_body(held, minus(probe, position_of(held))), touch_m, at.placement.meetings.waiting
-        ):
+        seen = in_body(held, minus(probe, position_of(held)))
+        if not is_within(geometry.held, seen, PROBE_SLACK * touch_m, at.placement.meetings.waiting):
             return True
     return False
 

@@ -257,6 +257,17 @@ def list_one_sided(
 
 
 @kernel
+def is_listed_twice(contacts: ContactSet, i: int, k: int) -> bool:
+    """Whether two rows are one, or one contact that is in two groups."""
+    one, other = contacts.rows[i], contacts.rows[k]
+    is_same = one.group != other.group
+    for axis in range(3):
+        is_same = is_same and one.arm[axis] == other.arm[axis]
+        is_same = is_same and one.directions[0, axis] == other.directions[0, axis]
+    return i == k or is_same
+
+
+@kernel
 def extend_by_equalities(contacts: ContactSet, statuses: Rows[ContactStatus], without: int, span: PassiveSet) -> None:
     """Write the span of what sticking contacts carry along their faces and of the normals that may carry, without that
     of one face (-1: of all); labels say which contact's normal each basis vector is, -1: none.
@@ -270,7 +281,7 @@ def extend_by_equalities(contacts: ContactSet, statuses: Rows[ContactStatus], wi
     for place in range(span.used):
         span.labels[place] = -1
     for i in range(contacts.used[0]):
-        if statuses[i].is_equality and i != without:
+        if statuses[i].is_equality and not (without >= 0 and is_listed_twice(contacts, i, without)):
             span.labels[span.used] = i
             extend(span, rows[i].columns[0], PART_OUTSIDE_SPAN)
 
@@ -290,7 +301,7 @@ def find_shared(contacts: ContactSet, statuses: Rows[ContactStatus], work: Stabi
         adds = False
         for place in range(whole.used):
             k = whole.labels[place]
-            adds = adds or k == i
+            adds = adds or (k >= 0 and is_listed_twice(contacts, k, i))
         span = whole
         if adds:
             span = work.held
