@@ -13,7 +13,7 @@ from cagepose import Box, Cage, Object, Pose
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.algebra.vector import vector_from
 from cagepose.kernels.boundary.geometry import empty_placement, held_at, place_object
-from cagepose.kernels.boundary.reach import beyond_face
+from cagepose.kernels.boundary.surface_end import ends_near
 from cagepose.kernels.collision.contacts import deepest_boxes
 from cagepose.kernels.contact.contact_set import contact_set_for
 from cagepose.kernels.contact.find_contacts import find_contacts
@@ -45,7 +45,8 @@ def rows_of(boxes, points, pose=STILL, touch=TOUCH):
     assert find_contacts(geometry, placement, smooth, pose[0], frame_at(body, pose[1]), contacts)
     rows = contacts.rows[: contacts.used[0]]
     placed = held_at(geometry, placement)
-    near_edge = [beyond_face(placed, row.feature, vector_from(row.arm + pose[0])) > -touch for row in rows]
+    waiting = placement.meetings.waiting
+    near_edge = [ends_near(placed, row.feature, vector_from(row.arm + pose[0]), touch, waiting) for row in rows]
     return Rows(rows["cage_part"], rows["part"], rows["directions"][:, 0], rows["gap"], np.array(near_edge, dtype=bool))
 
 

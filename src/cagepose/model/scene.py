@@ -162,8 +162,10 @@ class Scene:
         seams = Seams([], []) if has_shapes(object, cage) else object_seams(object, touch_m)
         geometry, boxes = scene_geometry(object, cage, touch_m), boxes_and_points(object, cage, seams.bridges)
         _check_distance(object, cage, size_m, problems)
-        _check_points_outside(object, cage, boxes, touch_m, size_m, problems)
-        _check_shapes_apart(object, cage, geometry, problems)
+        if has_shapes(object, cage):
+            _check_shapes_apart(object, cage, geometry, problems)
+        else:
+            _check_points_outside(object, cage, boxes, touch_m, size_m, problems)
         _check_loads(object, loads, touch_m, problems)
         problems.raise_if_any()
         named = object.boxes
@@ -325,8 +327,6 @@ def _check_distance(held: Object, cage: Cage, size_m: float, problems: ProblemLi
 def _check_points_outside(
     held: Object, cage: Cage, boxes: BoxesAndPoints, touch_m: float, size_m: float, problems: ProblemList
 ) -> None:
-    if len(boxes.half_sizes) == 0 or not cage.names:
-        return
     depths, deepest = deepest_boxes(boxes, *held.pose_world_object.as_tuples())
     for point_index in np.nonzero(depths > touch_m)[0].tolist():
         box = int(deepest[point_index])
@@ -342,9 +342,7 @@ def _check_points_outside(
 
 
 def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: ProblemList) -> None:
-    """Tell of each part of the object that starts in a part of the cage; of boxes and points is told above."""
-    if len(geometry.held.features) == 0:
-        return
+    """Tell of the part of the object that starts deepest in a part of the cage."""
     feature, cage_feature, depth_m = overlap_at(
         geometry,
         *held.pose_world_object.as_tuples(),

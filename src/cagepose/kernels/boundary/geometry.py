@@ -92,7 +92,13 @@ def empty_placement(geometry: Geometry) -> Placement:
 
 def most_rows(geometry: Geometry) -> int:
     """Return how many meetings of the two boundaries there is memory for (plain Python)."""
-    return most_meetings(len(geometry.held.parts), len(geometry.cage.own.parts))
+    n_points = number_of_points(geometry)
+    return most_meetings(len(geometry.held.parts), n_points, len(geometry.cage.own.parts) - n_points)
+
+
+def number_of_points(geometry: Geometry) -> int:
+    """Return how many single points the cage has (plain Python)."""
+    return int((np.asarray(geometry.cage.own.parts)["point"] >= 0).sum())
 
 
 def most_elements(geometry: Geometry) -> int:
@@ -103,9 +109,8 @@ def most_elements(geometry: Geometry) -> int:
 def empty_cage(geometry: Geometry) -> PlacedCage:
     """Return memory for the cage of a case (plain Python)."""
     own = geometry.cage.own
-    n_points = int((np.asarray(own.parts)["point"] >= 0).sum())
     return PlacedCage(
-        np.empty((n_points, 3)),
+        np.empty((number_of_points(geometry), 3)),
         empty_placing(own),
         empty_rows(Feature, len(own.features)),
         empty_rows(BodyPart, len(own.parts)),

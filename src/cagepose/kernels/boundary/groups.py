@@ -20,6 +20,7 @@ from cagepose.kernels.boundary.features import (
     seen_from_feature,
 )
 from cagepose.kernels.boundary.meetings import slack_of
+from cagepose.kernels.boundary.neighbours import NONE, first_in_layer, forget_layers, layer_of, put_in_layer
 from cagepose.kernels.boundary.reach import beyond_bound, beyond_normals, distance_from_segment
 from cagepose.kernels.boundary.touching import Meetings, is_at_place
 from cagepose.kernels.native.kernel import kernel
@@ -140,16 +141,21 @@ def is_convex_at(
 def fits_group(
     held: PlacedBoundary, cage: PlacedBoundary, group: int, at: int, touch_m: float, found: Meetings
 ) -> bool:
-    """Whether a meeting and all of a group are alternatives."""
-    for member in range(found.used[0]):
-        is_member = member != at and found.rows[member].group == group
-        if is_member and not are_alternatives(held, cage, member, at, touch_m, found):
-            return False
-    return True
+    """Whether a meeting and all of a group are alternatives, of which the first is at the group's number."""
+    if not is_at_place(found, group, at, touch_m):
+        return False
+    layer, fits = layer_of(found, group, touch_m), True
+    for beside in range(layer - 1, layer + 2):
+        member = first_in_layer(found, beside)
+        while member >= 0 and fits:
+            if member != at and found.rows[member].group == group:
+                fits = are_alternatives(held, cage, member, at, touch_m, found)
+            member = int(found.behind[member])
+    return fits
 
 
 @kernel
-def list_again(found: Meetings, at: int, group: int) -> bool:
+def list_again(found: Meetings, at: int, group: int, touch_m: float) -> bool:
     """List a meeting once more, in another group, as of the features that are flush with its own; False: there is no
     room.
     """
@@ -158,6 +164,7 @@ def list_again(found: Meetings, at: int, group: int) -> bool:
         found.used[0] = found.used[1] = -1
         return False
     found.rows[last] = found.rows[at]  # type: ignore[index]
+    put_in_layer(found, last, touch_m)
     row = found.rows[last]
     row.group = group
     if row.beside >= 0:
@@ -172,19 +179,51 @@ def list_again(found: Meetings, at: int, group: int) -> bool:
 
 
 @kernel
+def next_group(held: PlacedBoundary, cage: PlacedBoundary, at: int, last: int, touch_m: float, found: Meetings) -> int:
+    """Return the first group behind a number that a meeting fits; -1: none."""
+    layer, least = layer_of(found, at, touch_m), NONE
+    for beside in range(layer - 1, layer + 2):
+        group = first_in_layer(found, beside)
+        while group >= 0:
+            is_next = found.rows[group].group == group and group > last and (least < 0 or group < least)
+            if is_next and fits_group(held, cage, group, at, touch_m, found):
+                least = group
+            group = int(found.behind[group])
+    return least
+
+
+@kernel
+def next_before(held: PlacedBoundary, cage: PlacedBoundary, at: int, last: int, touch_m: float, found: Meetings) -> int:
+    """Return the first meeting behind a number, and before another one, that fits the group of that; -1: none."""
+    layer, least = layer_of(found, at, touch_m), NONE
+    for beside in range(layer - 1, layer + 2):
+        before = first_in_layer(found, beside)
+        while before >= 0:
+            is_next = last < before < at and (least < 0 or before < least)
+            if is_next and fits_group(held, cage, at, before, touch_m, found):
+                least = before
+            before = int(found.behind[before])
+    return least
+
+
+@kernel
 def number_groups(held: PlacedBoundary, cage: PlacedBoundary, touch_m: float, found: Meetings) -> None:
     """Write the group of each meeting, the first of those that are alternatives. One that is an alternative of several
     that are none of each other is listed in each of their groups: below a corner where two walls of a plate meet in a
     hollow edge, its bottom is one of either wall.
     """
+    forget_layers(found)
     for at in range(found.used[0]):
-        found.rows[at].group, joins = at, False
-        for first in range(at):
-            if found.rows[first].group == first and fits_group(held, cage, first, at, touch_m, found):
-                if not joins:
-                    found.rows[at].group, joins = first, True
-                elif not list_again(found, at, first):
-                    return
-        for before in range(at if not joins else 0):
-            if fits_group(held, cage, at, before, touch_m, found) and not list_again(found, before, at):
+        group = next_group(held, cage, at, NONE, touch_m, found)
+        found.rows[at].group = at if group < 0 else group
+        put_in_layer(found, at, touch_m)
+        before = next_before(held, cage, at, NONE, touch_m, found) if group < 0 else NONE
+        while group >= 0 or before >= 0:
+            if group >= 0:
+                group = next_group(held, cage, at, group, touch_m, found)
+                fits = group < 0 or list_again(found, at, group, touch_m)
+            else:
+                fits = list_again(found, before, at, touch_m)
+                before = next_before(held, cage, at, before, touch_m, found)
+            if not fits:
                 return

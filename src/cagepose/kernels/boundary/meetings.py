@@ -25,6 +25,7 @@ from cagepose.kernels.boundary.features import (
 from cagepose.kernels.boundary.flat_circle import Arc, next_arc, part_to_ask
 from cagepose.kernels.boundary.meeting import both_reach, is_seated, meeting, seated
 from cagepose.kernels.boundary.met import Meeting, swapped
+from cagepose.kernels.boundary.neighbours import forget_layers
 from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, SAME_PLACE, Along, Meetings
 from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
 from cagepose.kernels.boundary.twins import append_meeting
@@ -68,6 +69,7 @@ def slack_of(one: Feature, other: Feature, touch_m: float) -> float:
 def find_meetings(held: PlacedBoundary, cage: PlacedBoundary, touch_m: float, found: Meetings) -> None:
     """Find all meetings of two bodies at their poses; see `groups` for which are alternatives."""
     found.used[0] = 0
+    forget_layers(found)
     for own in range(3):
         for other in range(3):
             if found.used[0] >= 0 and may_touch(own, held.own.nodes[own], other, cage.own.nodes[other]):

@@ -6,6 +6,7 @@ from cagepose.kernels.algebra.vector import minus, norm, vector_from
 from cagepose.kernels.boundary.bend import bends_by, curvatures
 from cagepose.kernels.boundary.features import CIRCLE, PlacedBoundary
 from cagepose.kernels.boundary.met import Meeting
+from cagepose.kernels.boundary.neighbours import first_in_layer, layer_of, put_in_layer
 from cagepose.kernels.boundary.touching import SAME_NORMAL, Along, Meetings, Touching, is_around, is_at_place
 from cagepose.kernels.native.kernel import kernel
 
@@ -32,16 +33,30 @@ def append_meeting(
     write_features(i, j, along, row)
     for k in range(3):
         row.normal[k], row.place[k] = met.normal[k], met.place[k]
-    for before in range(at):
-        turned = norm(minus(vector_from(found.rows[before].normal), met.normal))
-        if turned <= SAME_NORMAL and is_at_place(found, before, at, touch_m):
-            told = found.rows[before]
-            first, cage_first = told.feature, told.cage_feature
-            note_twin(held, cage, told, row)
-            is_told_now = told.feature == i and told.cage_feature == j
-            told.beside, told.cage_beside = (first, cage_first) if is_told_now else (i, j)
-            return
+    before = same_before(found, at, touch_m)
+    if before >= 0:
+        told = found.rows[before]
+        first, cage_first = told.feature, told.cage_feature
+        note_twin(held, cage, told, row)
+        is_told_now = told.feature == i and told.cage_feature == j
+        told.beside, told.cage_beside = (first, cage_first) if is_told_now else (i, j)
+        return
+    put_in_layer(found, at, touch_m)
     found.used[0] = at + 1
+
+
+@kernel
+def same_before(found: Meetings, at: int, touch_m: float) -> int:
+    """Return which meeting is listed already at the place of another one, with its normal; -1: none is."""
+    layer, normal = layer_of(found, at, touch_m), vector_from(found.rows[at].normal)
+    for beside in range(layer - 1, layer + 2):
+        before = first_in_layer(found, beside)
+        while before >= 0:
+            turned = norm(minus(vector_from(found.rows[before].normal), normal))
+            if turned <= SAME_NORMAL and is_at_place(found, before, at, touch_m):
+                return before
+            before = int(found.behind[before])
+    return -1
 
 
 @kernel

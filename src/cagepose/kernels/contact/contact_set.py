@@ -8,20 +8,21 @@ holds on its own.
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
-from cagepose.kernels.algebra.vector import Vector, cross, norm, scaled
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, scaled
 from cagepose.kernels.boundary.bend import Bend
 from cagepose.kernels.boundary.geometry import Geometry, most_rows
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.native.kernel import kernel
 
 STEEP = 0.55
-"""Cosine. The tangents of a normal that is farther from an axis are told from this axis: few ordinary normals are so
-far from one that rounding would change them."""
+"""Cosine. Each normal is nearer to an axis than this; few ordinary ones are so far from one that rounding would change
+which is taken."""
 
 
 class ContactRow:
@@ -158,12 +159,20 @@ def count_chosen(contacts: ContactSet) -> None:
 
 @kernel
 def tangents_to(normal: Vector) -> tuple[Vector, Vector]:
-    """Return two unit vectors across a unit normal and each other; for nearly the same normal, nearly the same."""
-    is_x, is_y = abs(normal[0]) < STEEP, abs(normal[1]) < STEEP
-    aside = (1.0, 0.0, 0.0) if is_x else (0.0, 1.0, 0.0) if is_y else (0.0, 0.0, 1.0)
-    one = cross(normal, aside)
+    """Return two unit vectors across a unit normal and each other: of the three axes the two that follow the one that
+    the normal leads along, turned to be across it. For nearly the same normal they are nearly the same.
+    """
+    x, y, z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+    if abs(normal[2]) >= STEEP:
+        first, second = x, y
+    elif abs(normal[1]) >= STEEP:
+        first, second = z, x
+    else:
+        first, second = y, z
+    one = minus(first, scaled(normal, dot(first, normal)))
     one = scaled(one, 1.0 / norm(one))
-    return one, cross(normal, one)
+    other = cross(normal, one)
+    return one, scaled(other, math.copysign(1.0, dot(other, second)))
 
 
 @kernel

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 from cagepose.kernels.algebra.vector import Vector, minus, vector_from
 from cagepose.kernels.boundary.bend import curvatures, write_bend, write_twin
 from cagepose.kernels.boundary.geometry import Geometry, Placement, held_at
 from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.boundary.on_circle import write_on_circle
-from cagepose.kernels.boundary.touching import is_around
+from cagepose.kernels.boundary.touching import Meetings, is_around
 from cagepose.kernels.contact.contact_set import ContactSet, choose, write_directions
 from cagepose.kernels.contact.friction import Friction, friction_share
 from cagepose.kernels.contact.metric import Frame
@@ -28,35 +26,42 @@ def find_contacts(
     meetings = placement.meetings
     if meetings.used[0] < 0 or meetings.used[0] > len(contacts.rows):
         return False
-    place = next_pair(geometry, placement, -1.0)
-    while place < math.inf:
-        for at in range(meetings.used[0]):
-            if meetings.rows[at].group != at or place_of_pair(geometry, placement, at) != place:
-                continue
-            first = contacts.used[0]
-            for other in range(at, meetings.used[0]):
-                if meetings.rows[other].group == at:
-                    append_meeting(geometry, placement, friction, other, first, center, frame, contacts)
-        place = next_pair(geometry, placement, place)
+    n_groups = order_groups(geometry, meetings)
+    for k in range(n_groups):
+        at, first = meetings.order[k], contacts.used[0]
+        for other in range(at, meetings.used[0]):
+            if meetings.rows[other].group == at:
+                append_meeting(geometry, placement, friction, other, first, center, frame, contacts)
     seat_circles(geometry, contacts, frame)
     return True
 
 
 @kernel
-def place_of_pair(geometry: Geometry, placement: Placement, at: int) -> int:
+def place_of_pair(geometry: Geometry, meetings: Meetings, at: int) -> int:
     """Return the place of a meeting in the order of the scene: by the part of the cage, then by that of the object."""
-    row, held, cage = placement.meetings.rows[at], geometry.held, geometry.cage.own
+    row, held, cage = meetings.rows[at], geometry.held, geometry.cage.own
     return cage.features[row.cage_feature].part * len(held.parts) + held.features[row.feature].part
 
 
 @kernel
-def next_pair(geometry: Geometry, placement: Placement, place: float) -> float:
-    """Return the least place behind another one at which a group begins; inf: none does."""
-    least = math.inf
-    for at in range(placement.meetings.used[0]):
-        if placement.meetings.rows[at].group == at and place_of_pair(geometry, placement, at) > place:
-            least = min(least, place_of_pair(geometry, placement, at))
-    return least
+def order_groups(geometry: Geometry, meetings: Meetings) -> int:
+    """Write the first meetings of all groups in the order of the scene; return how many there are (Shell's sort)."""
+    order, n_groups = meetings.order, 0
+    for at in range(meetings.used[0]):
+        if meetings.rows[at].group == at:
+            order[n_groups] = at
+            n_groups += 1
+    apart = n_groups // 2
+    while apart > 0:
+        for k in range(apart, n_groups):
+            at, before = order[k], k - apart
+            place = place_of_pair(geometry, meetings, at)
+            while before >= 0 and place_of_pair(geometry, meetings, order[before]) > place:
+                order[before + apart] = order[before]
+                before -= apart
+            order[before + apart] = at
+        apart //= 2
+    return n_groups
 
 
 @kernel

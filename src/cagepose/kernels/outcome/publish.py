@@ -5,13 +5,10 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.pose import Quaternion, write_upright
-from cagepose.kernels.algebra.tolerances import PROBE
-from cagepose.kernels.algebra.vector import Vector, minus, plus, scaled, vector_from
-from cagepose.kernels.boundary.features import FACE, in_body, position_of
+from cagepose.kernels.algebra.vector import Vector, plus, vector_from
+from cagepose.kernels.boundary.features import FACE
 from cagepose.kernels.boundary.geometry import held_at
-from cagepose.kernels.boundary.reach import beyond_face
-from cagepose.kernels.boundary.within import is_within
-from cagepose.kernels.contact.contact_set import tangents_to
+from cagepose.kernels.boundary.surface_end import ends_near
 from cagepose.kernels.contact.metric import frame_at, twist_of
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.cases import Part, Start, object_position
@@ -21,9 +18,6 @@ from cagepose.kernels.outcome.trace import LET_GO, NONE, RESTS, SCREW, STALLED, 
 from cagepose.kernels.stability.proof import OTHER_ONSET, PROVEN_MOVES, TOO_MANY_CONTACTS, ProofWorkspace
 from cagepose.kernels.stability.proof_search import judge
 
-PROBES_AROUND, PROBE_SLACK = 8, 0.1
-"""Places around a contact that are asked whether there is material below its face; and, in touch tolerances, how near
-to borders that may be told."""
 PHASES, EVENTS, STEPS, CONTACTS = 0, 1, 2, 3
 """Places in `Outcome.counts`."""
 NO_BALANCE = (PROVEN_MOVES, TOO_MANY_CONTACTS)
@@ -160,25 +154,12 @@ def publish_events(
 
 @kernel
 def is_at_edge(start: Start, position: Vector, at: ProofWorkspace, i: int) -> bool:
-    """Whether a contact is of a point of the cage within the touch tolerance of where the surface of the object ends:
-    beside the place and below its face there is no material then, as there is at a seam or a hollow edge.
-    """
-    found, geometry, touch_m = at.contacts.rows[i], start.geometry, start.tolerances.touch_m
+    """Whether a contact is of a point of the cage within the touch tolerance of where the object's surface ends."""
+    found, geometry = at.contacts.rows[i], start.geometry
     if geometry.held.features[found.feature].kind != FACE or geometry.cage.own.parts[found.cage_part].point < 0:
         return False
     held, place = held_at(geometry, at.placement), plus(position, vector_from(found.arm))
-    if beyond_face(held, found.feature, place) <= -touch_m:
-        return False
-    normal = vector_from(found.directions[0])
-    one, other = tangents_to(normal)
-    for k in range(PROBES_AROUND):
-        angle = 2.0 * math.pi * k / PROBES_AROUND
-        aside = plus(scaled(one, math.cos(angle)), scaled(other, math.sin(angle)))
-        probe = plus(place, scaled(minus(aside, normal), PROBE * touch_m))
-        seen = in_body(held, minus(probe, position_of(held)))
-        if not is_within(geometry.held, seen, PROBE_SLACK * touch_m, at.placement.meetings.waiting):
-            return True
-    return False
+    return ends_near(held, found.feature, place, geometry.touch_m, at.placement.meetings.waiting)
 
 
 @kernel

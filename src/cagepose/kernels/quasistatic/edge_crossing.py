@@ -7,13 +7,14 @@ import math
 from cagepose.kernels.algebra.motion import Motion, motion_of
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, vector_from
-from cagepose.kernels.boundary.features import PlacedBoundary
+from cagepose.kernels.boundary.features import CIRCLE, FACE, PlacedBoundary
 from cagepose.kernels.boundary.first_touch import place_after
 from cagepose.kernels.boundary.geometry import Geometry, Placement, held_at, held_moved
 from cagepose.kernels.boundary.kept import meeting_kept
 from cagepose.kernels.boundary.meeting import both_reach
 from cagepose.kernels.boundary.meetings import slack_of
 from cagepose.kernels.boundary.met import Meeting
+from cagepose.kernels.boundary.reach import beyond_face
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.on_circle import is_kept
 from cagepose.kernels.contact.tolerances import SAME_NORMAL_RAD, SAME_WAY
@@ -23,6 +24,8 @@ from cagepose.kernels.quasistatic.straying import STRAYED, strayed
 
 CLEAR = 2.0
 """In touch tolerances: how far beyond the edge a contact is let go, so that it does not touch the next face too."""
+NEAR_GUESS, FALSE_POSITIONS = 1e-13, 12
+"""In amounts of the whole motion: an end that is guessed, in so many trials, is looked for so near to it first."""
 HALVINGS = 50
 """A motion is halved so many times to find where a contact of two shapes ends."""
 
@@ -76,6 +79,43 @@ def reach_within(
 
 
 @kernel
+def end_of_face(
+    geometry: Geometry, placement: Placement, contacts: ContactSet, i: int, motion: Motion, end: float, touch_m: float
+) -> float:
+    """Return the amount of a motion, up to ``end``, after which a vertex runs over the border of a face, by false
+    position (Illinois); inf: it does not, or the features are others.
+    """
+    contact, cage, moved = contacts.rows[i], geometry.cage, held_moved(geometry, placement)
+    one, other = contact.feature, contact.cage_feature
+    of_held = geometry.held.features[one].kind == FACE
+    if not (of_held or cage.own.features[other].kind == FACE) or geometry.held.features[one].kind == CIRCLE:
+        return math.inf
+    if cage.own.features[other].kind == CIRCLE:
+        return math.inf
+    low, high, at_low, at_high, amount = 0.0, end, 0.0, 0.0, 0.0
+    for trial in range(FALSE_POSITIONS):
+        place_after(held_at(geometry, placement), one, motion, amount, moved)
+        if of_held:
+            beyond = beyond_face(moved, one, vector_from(cage.features[other].point))
+        else:
+            beyond = beyond_face(cage, other, vector_from(moved.features[one].point))
+        beyond -= 2.0 * CLEAR * touch_m
+        if trial == 0:
+            at_low, amount = beyond, end
+            continue
+        if trial == 1:
+            at_high = beyond
+        elif beyond < 0.0:
+            low, at_low, at_high = amount, beyond, 0.5 * at_high
+        else:
+            high, at_high, at_low = amount, beyond, 0.5 * at_low
+        if at_low >= 0.0 or at_high <= 0.0 or high - low <= NEAR_GUESS * end:
+            break
+        amount = low - at_low * (high - low) / (at_high - at_low)
+    return amount if at_low < 0.0 < at_high else math.inf
+
+
+@kernel
 def end_of_meeting(
     geometry: Geometry,
     placement: Placement,
@@ -95,8 +135,19 @@ def end_of_meeting(
     if still_meet(geometry, placement, contacts, i, motion, end, touch_m, 0.0):
         return math.inf, math.inf
     low, high = 0.0, end
+    guess = end_of_face(geometry, placement, contacts, i, motion, end, touch_m)
+    for side in (-NEAR_GUESS, NEAR_GUESS):
+        near = guess + side * end
+        if not low < near < high:
+            continue
+        if still_meet(geometry, placement, contacts, i, motion, near, touch_m, 0.0):
+            low = near
+        else:
+            high = near
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
+        if not low < middle < high:
+            break
         if still_meet(geometry, placement, contacts, i, motion, middle, touch_m, 0.0):
             low = middle
         else:
