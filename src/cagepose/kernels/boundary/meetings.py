@@ -33,8 +33,8 @@ from cagepose.kernels.boundary.within import is_within, nearest_surface
 from cagepose.kernels.native.kernel import kernel
 
 DEEPEST_OF_LEAST = 0.05
-"""Of the shortest edge: features that are deeper in each other are on far sides of a part, and do not touch, but for
-what is deep in a face of longer edges and nearest to it of all surfaces."""
+"""Of the shortest edge, of a face or of two other features: what is deeper in each other is on far sides of a part, and
+does not touch."""
 BEYOND_OF_DEPTH = 4.0
 """What is so many times its depth beyond the border of a face may be in it: there is material behind a hollow edge."""
 LEAST_SLACK, MOST_SLACK = 1e-9, 0.1
@@ -323,20 +323,21 @@ def append_touching(
     found: Meetings,
 ) -> None:
     """Append a meeting, if two features touch there: they are near, not on far sides of a part, and both reach. What is
-    deep is well within its borders, or in the body with no other surface nearer.
+    deep in a face is in its body, with no other surface nearer; of other features that are, it is well within them.
     """
     one, other = held.own.features[i], cage.own.features[j]
     if not met.is_one or met.gap > touch_m:
         return
-    slack, deepest = slack_of(one, other, touch_m), DEEPEST_OF_LEAST * min(one.least, other.least)
+    slack, face = slack_of(one, other, touch_m), one if one.kind == FACE else other
     if met.gap >= -touch_m:
         touches = both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
+    elif face.kind == FACE:
+        reach_m = 2.0 * touch_m - BEYOND_OF_DEPTH * met.gap
+        touches = met.gap >= -DEEPEST_OF_LEAST * face.least and both_reach(held, i, cage, j, met, slack, reach_m)
+        touches = touches and is_nearest(held, i, cage, met, touch_m, found)
     else:
+        deepest = DEEPEST_OF_LEAST * min(one.least, other.least)
         touches = met.gap >= -deepest and both_reach(held, i, cage, j, met, slack, -touch_m)
-        face = one if one.kind == FACE else other
-        if not touches and face.kind == FACE and met.gap >= -DEEPEST_OF_LEAST * face.least:
-            reach = both_reach(held, i, cage, j, met, slack, 2.0 * touch_m - BEYOND_OF_DEPTH * met.gap)
-            touches = reach and is_nearest(held, i, cage, met, touch_m, found)
     if touches:
         append_meeting(held, i, cage, j, along, met, touch_m, found)
 

@@ -1,4 +1,4 @@
-"""Whether the surface of a body ends near a place of a face: where it goes on, at a seam or a hollow edge, it does not."""
+"""Whether the surface of a body ends near a place of a face, as it does not at a seam or a hollow edge."""
 
 from __future__ import annotations
 

@@ -26,42 +26,44 @@ def find_contacts(
     meetings = placement.meetings
     if meetings.used[0] < 0 or meetings.used[0] > len(contacts.rows):
         return False
-    n_groups = order_groups(geometry, meetings)
-    for k in range(n_groups):
-        at, first = meetings.order[k], contacts.used[0]
-        for other in range(at, meetings.used[0]):
-            if meetings.rows[other].group == at:
-                append_meeting(geometry, placement, friction, other, first, center, frame, contacts)
+    order_meetings(geometry, meetings)
+    first = 0
+    for k in range(meetings.used[0]):
+        at = meetings.order[k]
+        if meetings.rows[at].group == at:
+            first = contacts.used[0]
+        append_meeting(geometry, placement, friction, at, first, center, frame, contacts)
     seat_circles(geometry, contacts, frame)
     return True
 
 
 @kernel
-def place_of_pair(geometry: Geometry, meetings: Meetings, at: int) -> int:
-    """Return the place of a meeting in the order of the scene: by the part of the cage, then by that of the object."""
-    row, held, cage = meetings.rows[at], geometry.held, geometry.cage.own
-    return cage.features[row.cage_feature].part * len(held.parts) + held.features[row.feature].part
+def place_of(geometry: Geometry, meetings: Meetings, at: int) -> tuple[int, int, int]:
+    """Return the place of a meeting in the order of the scene: by the part of the cage and that of the object of the
+    first of its group, then by groups.
+    """
+    group = meetings.rows[at].group
+    row, held, cage = meetings.rows[group], geometry.held, geometry.cage.own
+    pair = cage.features[row.cage_feature].part * len(held.parts) + held.features[row.feature].part
+    return pair, group, at
 
 
 @kernel
-def order_groups(geometry: Geometry, meetings: Meetings) -> int:
-    """Write the first meetings of all groups in the order of the scene; return how many there are (Shell's sort)."""
-    order, n_groups = meetings.order, 0
-    for at in range(meetings.used[0]):
-        if meetings.rows[at].group == at:
-            order[n_groups] = at
-            n_groups += 1
-    apart = n_groups // 2
+def order_meetings(geometry: Geometry, meetings: Meetings) -> None:
+    """Write the meetings in the order of the scene (Shell's sort)."""
+    order, n = meetings.order, meetings.used[0]
+    for at in range(n):
+        order[at] = at
+    apart = n // 2
     while apart > 0:
-        for k in range(apart, n_groups):
+        for k in range(apart, n):
             at, before = order[k], k - apart
-            place = place_of_pair(geometry, meetings, at)
-            while before >= 0 and place_of_pair(geometry, meetings, order[before]) > place:
+            place = place_of(geometry, meetings, at)
+            while before >= 0 and place_of(geometry, meetings, order[before]) > place:
                 order[before + apart] = order[before]
                 before -= apart
             order[before + apart] = at
         apart //= 2
-    return n_groups
 
 
 @kernel
