@@ -168,12 +168,9 @@ def list_again(found: Meetings, at: int, group: int, touch_m: float) -> bool:
     row = found.rows[last]
     row.group = group
     if row.beside >= 0:
-        row.feature, row.cage_feature, row.beside, row.cage_beside = (
-            row.beside,
-            row.cage_beside,
-            row.feature,
-            row.cage_feature,
-        )
+        row.feature, row.beside = row.beside, row.feature
+    if row.cage_beside >= 0:
+        row.cage_feature, row.cage_beside = row.cage_beside, row.cage_feature
     found.used[0] = found.used[1] = last + 1
     return True
 

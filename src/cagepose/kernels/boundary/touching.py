@@ -48,7 +48,7 @@ class Touching:
     twin, cage_twin
         Features that meet at the same place with the same normal and bend more; -1: none do.
     beside, cage_beside
-        Other features that meet there with that normal, as where two faces are flush; -1: none do.
+        A face of either body that is flush there with that which meets; -1: none is.
     angle
         Where on a circle, if one of them is one, radians; of two, on the object's.
     before, after

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.vector import minus, norm, vector_from
 from cagepose.kernels.boundary.bend import bends_by, curvatures
-from cagepose.kernels.boundary.features import CIRCLE, PlacedBoundary
+from cagepose.kernels.boundary.features import CIRCLE, FACE, PlacedBoundary
 from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.boundary.neighbours import first_in_layer, layer_of, put_in_layer
 from cagepose.kernels.boundary.touching import SAME_NORMAL, Along, Meetings, Touching, is_around, is_at_place
@@ -35,11 +35,8 @@ def append_meeting(
         row.normal[k], row.place[k] = met.normal[k], met.place[k]
     before = same_before(found, at, touch_m)
     if before >= 0:
-        told = found.rows[before]
-        first, cage_first = told.feature, told.cage_feature
-        note_twin(held, cage, told, row)
-        is_told_now = told.feature == i and told.cage_feature == j
-        told.beside, told.cage_beside = (first, cage_first) if is_told_now else (i, j)
+        note_flush(held, cage, found.rows[before], row)
+        note_twin(held, cage, found.rows[before], row)
         return
     put_in_layer(found, at, touch_m)
     found.used[0] = at + 1
@@ -57,6 +54,16 @@ def same_before(found: Meetings, at: int, touch_m: float) -> int:
                 return before
             before = int(found.behind[before])
     return -1
+
+
+@kernel
+def note_flush(held: PlacedBoundary, cage: PlacedBoundary, told: Touching, new: Touching) -> None:
+    """Note that two faces of a body meet one feature of the other one at a place: they are flush there."""
+    kind, cage_kind = held.own.features[new.feature].kind, cage.own.features[new.cage_feature].kind
+    if kind == FACE and told.cage_feature == new.cage_feature:
+        told.beside = new.feature
+    if cage_kind == FACE and told.feature == new.feature:
+        told.cage_beside = new.cage_feature
 
 
 @kernel

@@ -41,7 +41,7 @@ SHORTEST_SPRING = 1e-12
 """In sizes of the scene. A spring is taken to be no shorter, where its length limits a step."""
 LAST_TURN_RAD = 1e-9
 """Radians. A smaller change of the place on a circle ends the search that follows the slip."""
-SPEED_OF_ENTRY = 1e-10
+SPEED_OF_ENTRY = 1e-12
 """In lengths of the motion. A point of a circle that goes in more slowly does not count."""
 ROUNDING_OF_SPEED = 3e-16
 """Fraction of the terms of the load. So much of a speed is their rounding."""
