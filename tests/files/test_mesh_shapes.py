@@ -150,7 +150,7 @@ def test_unions_come_back_as_their_parts(name, single):
 
 
 def centroid_of(solid):
-    from cagepose.model.union import mesh_sums
+    from cagepose.model.shape_moments import mesh_sums
 
     mesh = Triangles.of(solid)
     sums = mesh_sums(Mesh(mesh.vertices, mesh.faces), np.zeros(3))
