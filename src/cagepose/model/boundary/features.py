@@ -62,11 +62,18 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
             blocks.append(block_of(_rows_of(part, number), frozenset((number,))))
     for group in united(polyhedra, holes, touch_m):
         blocks.append(union_block(union_of([pieces[number] for number in sorted(group)], touch_m), group))
-    names = [part.name if isinstance(part, Shape) else None for part in every]
-    for hole in holes:
-        opened = frozenset(number for number, name in enumerate(names) if name in hole.in_)
-        blocks = [pierced(block, hole, opened) for block in blocks]
-    return packed(blocks, every, touch_m)
+    return packed([_with_holes(block, every, holes) for block in blocks], every, touch_m)
+
+
+def _with_holes(block: Block, parts: Sequence[Shape | FloatArray], holes: Sequence[Hole]) -> Block:
+    """Return features of some parts without what holes cut out of these."""
+    owners = ((number, parts[number]) for number in np.unique(block.features["part"]).tolist())
+    names = {number: part.name for number, part in owners if isinstance(part, Shape) and not isinstance(part, Hole)}
+    for hole in holes if names else ():
+        opened = frozenset(number for number, name in names.items() if name in hole.in_)
+        if opened:
+            block = pierced(block, hole, opened)
+    return block
 
 
 def _piece_of(part: Shape | FloatArray, number: int) -> ConvexPiece | None:
