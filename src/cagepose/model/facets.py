@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,7 +23,9 @@ FLATTEST = 1e-3
 """Fraction of the size. What is flat may not be told as more."""
 AWAY = np.array((0.4127, 0.5309, 0.7401))
 """A direction along which few sides and edges of ordinary parts lie: rays lead there."""
-AT_ONCE = 4_000_000
+ON_SIDE = 1e-9
+"""Of the size of a triangle. A line that is as near to its sides meets it."""
+AT_ONCE = 400_000
 """Pairs of points and triangles that are asked at once: arrays of more take much memory."""
 
 
@@ -45,6 +47,7 @@ class Facets(Shape):
     """
 
     kind: ClassVar[str] = "facets"
+    is_convex: ClassVar[bool] = False
     vertices_m: Annotated[FloatArray, (-1, 3)]
     triangles: IntArray
     flat_m: float
@@ -100,6 +103,16 @@ class Facets(Shape):
     def farthest_m(self, point_body: FloatArray) -> float:
         return float(np.linalg.norm(self.nodes_body() - point_body, axis=1).max())
 
+    def reach_m(self, point_body: FloatArray, direction_body: FloatArray) -> float:
+        """Return how far it is from a point of the body's frame, on the surface or within, along a unit vector to where
+        that leaves the body, metres; zero: it does not go in there.
+        """
+        point = self.pose_body_shape.inverse_transform(point_body)
+        way = self.pose_body_shape.rotation.T @ direction_body
+        met = _crossed(point[None], way, self.vertices_m[self.triangles], ON_SIDE)
+        leaves = (met.slopes > 0.0) & met.is_met[0] & (met.ahead_m[0] > ON_SIDE * float(np.ptp(self.vertices_m)))
+        return float(met.ahead_m[0][leaves].min(initial=np.inf)) if leaves.any() else 0.0
+
     def holds(self, points_body: FloatArray) -> NDArray[np.bool_]:
         points = self.pose_body_shape.inverse_transform(points_body)
         corners = self.vertices_m[self.triangles]
@@ -143,25 +156,41 @@ def _check_closed(vertices: FloatArray, triangles: IntArray, problems: ProblemLi
 
 def _is_in(points: FloatArray, corners: FloatArray, slack: float) -> NDArray[np.bool_]:
     """Return which points are within triangles, or nearer to one than a slack."""
+    met = _crossed(points, AWAY, corners, 0.0)
+    n_left = np.where(met.is_met & (met.ahead_m > 0.0), np.sign(met.slopes), 0.0).sum(axis=1)
+    within: NDArray[np.bool_] = (n_left > 0.5) | (_distances(points, corners).min(axis=1) <= slack)
+    return within
+
+
+class _Crossed(NamedTuple):
+    """Where rays cross triangles: whether and how far ahead, (n_points, n_triangles); and of each triangle a number
+    above zero where they leave the body, (n_triangles,).
+    """
+
+    is_met: NDArray[np.bool_]
+    ahead_m: FloatArray
+    slopes: FloatArray
+
+
+def _crossed(points: FloatArray, way: FloatArray, corners: FloatArray, beside: float) -> _Crossed:
+    """Ask rays along a vector; a triangle is met, too, by as much of its size beside it (Moeller and Trumbore)."""
     begin, one, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    across, arms = np.cross(AWAY, other), points[:, None] - begin
+    across, arms = np.cross(way, other), points[:, None] - begin
     volumes = np.einsum("ij,ij->i", one, across)
     with np.errstate(divide="ignore", invalid="ignore"):
         first = np.einsum("pij,ij->pi", arms, across) / volumes
         turned = np.cross(arms, one)
-        second = turned @ AWAY / volumes
-        ahead = np.einsum("pij,ij->pi", turned, other) / volumes
-        is_met = (first >= 0.0) & (second >= 0.0) & (first + second <= 1.0)
-        n_left = np.where(is_met & (ahead > 0.0), np.sign(-volumes), 0.0).sum(axis=1)
-    is_near = _distances(arms, one, other).min(axis=1) <= slack
-    within: NDArray[np.bool_] = (n_left > 0.5) | is_near
-    return within
+        second, ahead_m = turned @ way / volumes, np.einsum("pij,ij->pi", turned, other) / volumes
+        is_met = (first >= -beside) & (second >= -beside) & (first + second <= 1.0 + beside)
+    return _Crossed(is_met, ahead_m, -volumes)
 
 
-def _distances(arms: FloatArray, one: FloatArray, other: FloatArray) -> FloatArray:
-    """Return how far points are from triangles, both seen from a corner: of those over a triangle, above its plane; of
-    others, from its sides; (n_points, n_triangles).
+def _distances(points: FloatArray, corners: FloatArray) -> FloatArray:
+    """Return how far points are from triangles: of those over a triangle, above its plane; of others, from its sides;
+    (n_points, n_triangles), metres.
     """
+    begin, one, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    arms = points[:, None] - begin
     normals = np.cross(one, other)
     squares = np.maximum(np.einsum("ij,ij->i", normals, normals), np.finfo(float).tiny)
     first = np.einsum("pij,ij->pi", np.cross(arms, other), normals) / squares
