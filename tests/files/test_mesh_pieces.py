@@ -145,7 +145,7 @@ def test_a_part_with_many_fillets_is_facets_with_round_holes():
     assert isinstance(plate, Facets)
     assert isinstance(hole, Hole)
     assert found.error == pytest.approx(6.0 * (1.0 - math.cos(math.pi / 64)), rel=1e-3)
-    said = re.search(r"flat facets here, as in the mesh; .* they are up to (.*) mm off", found.notes[1])
+    said = re.search(r"flat facets here, as in the mesh; .* they are about (.*) mm off", found.notes[1])
     assert said is not None
     assert float(said[1]) == pytest.approx(8.0 * (1.0 - math.cos(math.pi / 64)), rel=0.1)
     assert divided(found) == []

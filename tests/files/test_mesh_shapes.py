@@ -98,7 +98,7 @@ def test_a_hull_whose_edges_are_round_with_two_radii_stays_flat():
     stretched = body(Convex(CORE, 1.5)).scale((1.0, 1.0, 1.01))
     for solid in (two, stretched):
         (one,) = shapes_of(solid).shapes
-        assert one.radius_m == 0.0
+        assert isinstance(one, Facets)
 
 
 def test_prisms_and_what_is_nearly_round_stay_as_they_are():
@@ -181,14 +181,14 @@ def test_what_is_none_of_our_shapes_stays_facets_and_says_how_far_these_may_be_o
     (shape,) = found.shapes
     assert isinstance(shape, Facets)
     assert (len(shape.triangles), found.error) == (len(ring.faces), 0.0)
-    assert shape_moments(shape).volume_m3 == pytest.approx(ring.body().volume(), rel=1e-12)
+    assert shape_moments(shape).volume_m3 == pytest.approx(ring.body().volume(), rel=1e-10)
     said = re.fullmatch(
-        r"'ring' has 256 flat facets here, as in the mesh; where these stand for what is round, they are up to (.*) mm"
+        r"'ring' has 256 flat facets here, as in the mesh; where these stand for what is round, they are about (.*) mm"
         " off",
         found.notes[0],
     )
     assert said is not None
-    assert float(said[1]) == pytest.approx(13.0 * (1.0 - math.cos(math.pi / 16)), rel=0.15)
+    assert float(said[1]) == pytest.approx(13.0 * (1.0 - math.cos(math.pi / 16)), rel=0.2)
 
 
 def test_large_facets_are_kept_beside_their_mesh_and_found_anew_when_it_changes(tmp_path, monkeypatch):
@@ -282,9 +282,8 @@ def test_a_fillet_in_a_mesh_stays_facets_and_a_hole_beside_it_is_round():
     hole.check_mouth([solid], (), problems)
     assert not problems.problems
     moments = body_moments([solid], [hole])
-    assert moments.volume_m3 == pytest.approx(
-        bored.volume() - 8.0 * (math.pi - 32 * math.sin(math.pi / 32)) * 16.0, rel=1e-9
-    )
+    rounding = 8.0 * 16.0 * (math.pi - 32.0 * math.sin(math.pi / 32.0))  # a circle is more than 64 sides in it
+    assert moments.volume_m3 == pytest.approx(bored.volume() - rounding, rel=1e-9)
     assert "flat facets here, as in the mesh" in found.notes[-1]
     assert not any("facets" in note for note in shapes_of(walls).notes)
 

@@ -42,7 +42,7 @@ def facets_of(mesh: Triangles, *, coarse: bool) -> Facets:
 
 
 def round_error(mesh: Triangles) -> float:
-    """Return how far facets are within what they stand for at most, if several of them in a row with blunt edges
+    """Return about how far facets are within what they stand for at most, if several of them in a row with blunt edges
     between stand for something round, as in a fillet; zero: none do.
     """
     edges = edges_of(mesh)

@@ -84,7 +84,7 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str) -> MeshShapes:
     n_facets = sum(len(one.shape.triangles) for one in found if isinstance(one.shape, Facets))
     within = scale * max(part.within for part in parts)
     if within > 0.0:
-        off = f"where these stand for what is round, they are up to {_words(within, unit)} off"
+        off = f"where these stand for what is round, they are about {_words(within, unit)} off"
         notes.append(f"{name!r} has {n_facets:,} flat facets here, as in the mesh; {off}")
     names = [name] if len(found) == 1 else [f"{name}/{index + 1}" for index in range(len(found))]
     named = [one.shape.renamed(each) for one, each in zip(found, names, strict=True)]

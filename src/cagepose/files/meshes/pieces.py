@@ -42,11 +42,12 @@ def known_pieces(body: Any, holes: Sequence[Hole]) -> list[Recognised] | None:
         They are filled in it.
     """
     sides = FlatSides.of(Triangles.of(body))
-    alone = _recognised(sides, body)
-    if alone is not None or hollow_depth(body, DEPTH_OF_DENT) is not None:
+    parts = cut_at_steps(body, holes)
+    if len(parts) == 1 and hollow_depth(body, DEPTH_OF_DENT) is not None:
+        alone = _recognised(sides, body)
         return None if alone is None else [alone]
     known = partial(_recognised_as_known, sides)
-    pieces = cut_until(cut_at_steps(body, holes), known, sides, holes)
+    pieces = cut_until(parts, known, sides, holes)
     if pieces is None:
         return None
     divided = [hole for hole in holes if hole.divided_by(parts_of(hole, [one.shape for one in pieces]))]
@@ -64,7 +65,7 @@ def parts_of(hole: Hole, shapes: Sequence[Shape]) -> list[Shape]:
 
 
 def _recognised_as_known(sides: FlatSides, piece: Any) -> Recognised | None:
-    """Return the box or the round shape that a piece is; None: it is not convex."""
+    """Return the box or the round shape that a piece is; None: it is neither."""
     found = _recognised(sides, piece)
     if found is None or (isinstance(found.shape, Convex) and found.shape.radius_m == 0.0):
         return None
