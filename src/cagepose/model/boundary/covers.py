@@ -1,7 +1,8 @@
 """What may cover features of a body: its other parts, and what holes take away from these.
 
 A union of polyhedra knows by itself what its pieces cover. So only round parts and holes have covers, and polyhedra
-beside them; and pieces that a hole of another one is open to, which are united apart from it.
+beside them; and pieces that a hole of another one is open to, which are united apart from it. Facets cover nothing:
+they are joined with polyhedra that they meet, and other parts may not touch them.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from cagepose.kernels.algebra.record import dtype_of
 from cagepose.kernels.boundary.features import HALF_SPACE, HULL, SEGMENT, TURNED, Cover
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
+from cagepose.model.facets import Facets
 from cagepose.model.hole import Hole
 from cagepose.model.hull import Hull, hull_of
 from cagepose.model.pose import Pose
@@ -104,7 +106,7 @@ def covers_of(
     features, of_rows = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
     rows, bounds, of_parts = list[tuple[object, ...]](), list[BoundRow](), dict[int, int]()
     for number, part in enumerate(parts):
-        if isinstance(part, np.ndarray | Hole | Disc) or all(number in owner for owner in owners):
+        if isinstance(part, np.ndarray | Hole | Disc | Facets) or all(number in owner for owner in owners):
             continue
         may_cover = np.array([number not in owner for owner in owners])
         low, high = part.limits_m() + NEAR * touch_m * np.array(((-1.0,), (1.0,)))

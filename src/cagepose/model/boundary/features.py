@@ -12,8 +12,8 @@ from cagepose.kernels.boundary.features import CIRCLE, FACE, HALF_SPACE, INSIDE,
 from cagepose.model.boundary.blocks import NOWHERE, Block, Row, block_of, pierced
 from cagepose.model.boundary.convex_pieces import ConvexPiece, piece_of_box, piece_of_hull
 from cagepose.model.boundary.covers import united
+from cagepose.model.boundary.joined_surfaces import joined_surface, surface_groups
 from cagepose.model.boundary.packed import packed
-from cagepose.model.boundary.surface_union import surface_union
 from cagepose.model.boundary.union import union_of
 from cagepose.model.boundary.union_block import union_block
 from cagepose.model.box import Box
@@ -54,12 +54,14 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
                 plate = block_of(_rows_of(_plate_of(part), number), frozenset())
                 blocks.append(pierced(plate, part, frozenset((number,))))
         elif isinstance(part, Facets):
-            alone = frozenset((number,))
-            blocks.append(union_block(surface_union([part], [number]), alone))
+            polyhedra[number] = part
         elif isinstance(part, Shape) and (piece := _piece_of(part, number)) is not None:
             polyhedra[number], pieces[number] = part, piece
         else:
             blocks.append(block_of(_rows_of(part, number), frozenset((number,))))
+    for group in surface_groups(polyhedra, touch_m):
+        members = sorted(group)
+        blocks.append(union_block(joined_surface([polyhedra.pop(number) for number in members], members), group))
     for group in united(polyhedra, holes, touch_m):
         blocks.append(union_block(union_of([pieces[number] for number in sorted(group)], touch_m), group))
     return packed([_with_holes(block, every, holes) for block in blocks], every, touch_m)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +14,6 @@ from cagepose.kernels.boundary.loops import NONE, Border, Loop, find_loops
 from cagepose.model.boundary.regions import FacePlanes, regions_of
 from cagepose.model.boundary.trimmed import Edges, TrimmedUnion, Vertices
 from cagepose.model.checks import FloatArray, unit_rows
-from cagepose.model.facets import Facets
 from cagepose.model.sides import starts_and_ends, twins_of
 
 SHARP = 1e-9
@@ -55,17 +53,6 @@ class _Tangents(NamedTuple):
     directions: FloatArray
     is_hollow: NDArray[np.bool_]
     parts: IntArray
-
-
-def surface_union(shapes: Sequence[Facets], parts: Sequence[int]) -> TrimmedUnion:
-    """Return the boundary of shapes that are apart, in the frame of their body; ``parts`` has the number of each."""
-    shifts = np.cumsum([0, *(len(shape.vertices_m) for shape in shapes)])
-    return union_of_triangles(
-        np.concatenate([shape.nodes_body() for shape in shapes]),
-        np.concatenate([shape.triangles + shift for shape, shift in zip(shapes, shifts, strict=False)]),
-        np.repeat(np.array(parts, np.int64), [len(shape.triangles) for shape in shapes]),
-        max(shape.flat_m for shape in shapes),
-    )
 
 
 def union_of_triangles(vertices_m: FloatArray, triangles: IntArray, parts: IntArray, flat_m: float) -> TrimmedUnion:

@@ -1,0 +1,70 @@
+"""Facets and other polyhedra of one body that meet, joined to one surface: `surface_groups`, `joined_surface`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+
+from cagepose.errors import MissingExtraError
+from cagepose.model.boundary.surface_union import union_of_triangles
+from cagepose.model.boundary.trimmed import TrimmedUnion
+from cagepose.model.facets import FLAT, Facets
+from cagepose.model.near_pairs import near_pairs
+from cagepose.model.shapes import Shape
+from cagepose.model.surface import LEAST_SEGMENTS, shape_mesh
+
+
+def surface_groups(polyhedra: Mapping[int, Shape], touch_m: float) -> list[frozenset[int]]:
+    """Return the numbers of polyhedra in groups of which each has facets: those whose boxes are near each other, to
+    what touches, and what is near these in turn.
+    """
+    numbers = list(polyhedra)
+    if not any(isinstance(part, Facets) for part in polyhedra.values()):
+        return []
+    limits = np.array([part.limits_m() for part in polyhedra.values()])
+    group = {number: {number} for number in numbers}
+    for one, other in near_pairs(limits[:, 0] - touch_m, limits[:, 1] + touch_m).tolist():
+        joined = group[numbers[one]] | group[numbers[other]]
+        group.update(dict.fromkeys(joined, joined))
+    groups = {frozenset(members) for members in group.values()}
+    return sorted((each for each in groups if any(isinstance(polyhedra[k], Facets) for k in each)), key=min)
+
+
+def joined_surface(shapes: Sequence[Shape], parts: Sequence[int]) -> TrimmedUnion:
+    """Return the boundary of the union of polyhedra, in the frame of their body; ``parts`` has the number of each.
+
+    Raises
+    ------
+    MissingExtraError
+        There are several, and manifold3d is not installed.
+    """
+    meshes = [shape_mesh(shape, LEAST_SEGMENTS) for shape in shapes]
+    size = float(np.ptp(np.concatenate([mesh.vertices_m for mesh in meshes]), axis=0).max())
+    flat_m = max(FLAT * size, *_flat(shapes))
+    if len(meshes) == 1:
+        (mesh,), (part,) = meshes, parts
+        return union_of_triangles(mesh.vertices_m, mesh.triangles, np.full(len(mesh.triangles), part), flat_m)
+    try:
+        import manifold3d  # 20 ms and an extra, for bodies of several parts with facets alone
+    except ImportError as error:
+        raise MissingExtraError(
+            "a mesh of facets that meets other parts needs manifold3d, which is not installed; install the shapes"
+            " extra: pip install 'cagepose[shapes]', or make one mesh of what is one"
+        ) from error
+    origin = meshes[0].vertices_m.mean(axis=0)
+    bodies, part_of = [], dict[int, int]()
+    for mesh, part in zip(meshes, parts, strict=True):
+        triangles = mesh.triangles.astype(np.uint64)
+        body = manifold3d.Manifold(manifold3d.Mesh64(mesh.vertices_m - origin, triangles)).as_original()
+        bodies.append(body)
+        part_of[body.original_id()] = part
+    found = manifold3d.Manifold.batch_boolean(bodies, manifold3d.OpType.Add).to_mesh64()
+    runs = np.diff(np.array(found.run_index)) // 3
+    of_triangles = np.repeat([part_of[each] for each in found.run_original_id], runs)
+    vertices = found.vert_properties[:, :3] + origin
+    return union_of_triangles(vertices, found.tri_verts.astype(np.int64), of_triangles, flat_m)
+
+
+def _flat(shapes: Iterable[Shape]) -> list[float]:
+    return [shape.flat_m for shape in shapes if isinstance(shape, Facets)] or [0.0]
