@@ -140,6 +140,6 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield find_loops, (vectors, borders, empty_rows(Loop, 1))
     triples = np.zeros((1, 3), np.int64)
     of_triangles = (np.zeros((1, 3, 3)), vectors, is_true, indices, vectors, numbers)
-    yield find_flat_regions, (indices, triples, *of_triangles, 0.0, indices, indices)
+    yield find_flat_regions, (indices, triples, *of_triangles, 0.0, indices, indices, indices)
     yield find_cones, (indices, vectors, np.zeros((2, 1, 3)), triples, is_true)
     yield is_in_face, (ORIGIN, ORIGIN, borders, 0, 1, 0.0)

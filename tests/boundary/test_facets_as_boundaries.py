@@ -30,7 +30,7 @@ FRAME += [Box((1, 4, 1), Pose((1.5, 0, 0))), Box((1, 4, 1), Pose((-1.5, 0, 0)))]
 def test_a_mesh_of_boxes_has_the_features_of_their_union(boxes):
     for turn in (Pose(), Pose((1, 2, 3), euler_zyx=(0.4, -0.7, 1.1))):
         placed = [box.moved(turn @ box.pose_body_shape) for box in boxes]
-        found = joined_surface([of_boxes(placed)], [0])
+        found = joined_surface([of_boxes(placed)], [0], TOUCH_M)
         assert found.n_open == 0
         assert differences(found, union_of([piece_of_box(box, 0) for box in placed], TOUCH_M), 1e-12) == []
 
@@ -39,7 +39,7 @@ def test_corners_that_lead_into_material_are_none():
     """The tip of a pit has edges to one side alone, as that of a spike has, but is none that touches."""
     spike = Convex([(0, 0, 0), (0.3, 0, 1), (-0.2, 0.3, 1), (-0.2, -0.3, 1)])
     pit = facets(united([Box((4, 4, 1), Pose((0, 0, 0.5)))], [spike.moved(Pose((0, 0, 0.3)))]))
-    places = joined_surface([pit], [0]).vertices.places_m
+    places = joined_surface([pit], [0], TOUCH_M).vertices.places_m
     assert len(places) == 8  # of the block: those around the mouth lie in its face, which goes on around them
     assert np.abs(np.abs(places[:, :2]) - 2.0).max() < 1e-12
 
@@ -58,9 +58,9 @@ def test_triangles_within_faces_and_edges_change_nothing():
         vertices = np.vstack([vertices, (1 - 1e-7) * vertices[a] + 1e-7 * vertices[b]])
         halves = [np.where(triangles[where] == end, middle, triangles[where]) for end in (a, b)]
         triangles = np.concatenate([np.delete(triangles, where, axis=0), *halves])
-    found = joined_surface([Facets(vertices, triangles)], [0])
+    found = joined_surface([Facets(vertices, triangles)], [0], TOUCH_M)
     assert found.n_open == 0
-    assert differences(found, joined_surface([facets(plain)], [0]), 1e-9) == []
+    assert differences(found, joined_surface([facets(plain)], [0], TOUCH_M), 1e-9) == []
 
 
 def test_two_bodies_that_touch_along_an_edge_are_apart_there():
@@ -70,7 +70,7 @@ def test_two_bodies_that_touch_along_an_edge_are_apart_there():
     triangles = np.concatenate([one.tri_verts, other.tri_verts + len(one.vert_properties)]).astype(np.int64)
     places, same = np.unique(vertices.round(12), axis=0, return_inverse=True)
     both = Facets(places, same.ravel()[triangles])
-    found = joined_surface([both], [0])
+    found = joined_surface([both], [0], TOUCH_M)
     assert (found.n_open, len(found.faces.parts), len(found.edges.parts)) == (0, 12, 24)
 
 
@@ -131,14 +131,14 @@ def test_holds_and_reach_are_those_of_the_surface():
 def test_a_prism_of_many_sides_has_as_many_corners_as_its_ends():
     """One corner with two hundred edges: the tip of a pyramid."""
     ring = facets(solid(Cylinder(1.0, 2.0), 200))
-    found = joined_surface([ring], [0])
+    found = joined_surface([ring], [0], TOUCH_M)
     assert (len(found.vertices.parts), len(found.edges.parts), len(found.faces.parts)) == (400, 600, 202)
     angles = 2.0 * np.pi * np.arange(200) / 200
     vertices = np.vstack([np.column_stack([np.cos(angles), np.sin(angles), np.zeros(200)]), [(0, 0, 1), (0, 0, 0)]])
     here, beside = np.arange(200), np.roll(np.arange(200), -1)
     sides = np.column_stack([here, beside, np.full(200, 200)])
     below = np.column_stack([beside, here, np.full(200, 201)])
-    tip = joined_surface([Facets(vertices, np.vstack([sides, below]))], [0])
+    tip = joined_surface([Facets(vertices, np.vstack([sides, below]))], [0], TOUCH_M)
     assert (len(tip.vertices.parts), len(tip.edges.parts), len(tip.faces.parts)) == (201, 400, 201)
     assert tip.vertices.n_tangents.max() == 200
 
@@ -156,5 +156,5 @@ def test_facets_are_joined_with_polyhedra_that_they_meet(cases):
         assert np.bincount(found.features["kind"]).tolist() == np.bincount(wanted.features["kind"]).tolist()
         for kind in (VERTEX, FACE):
             places = [made.features["point"][made.features["kind"] == kind] @ ASKEW for made in (found, wanted)]
-            assert np.sort(places[0]) == pytest.approx(np.sort(places[1]), abs=1e-9)
+            assert np.sort(places[0]) == pytest.approx(np.sort(places[1]), abs=4.0 * TOUCH_M)
         assert set(found.features["part"].tolist()) == {0, 1}

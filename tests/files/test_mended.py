@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -34,7 +35,7 @@ def cube_with_corners_on_an_edge(shares=(0.5,)) -> Triangles:
     for a, b, c, d in SIDES:
         if (a, b, c, d) == SIDES[-1]:
             on_edge = [CORNERS[5], *((1 - s) * CORNERS[5] + s * CORNERS[7] for s in shares), CORNERS[7]]
-            found += [(CORNERS[1], one, other) for one, other in zip(on_edge, on_edge[1:], strict=False)]
+            found += [(CORNERS[1], one, other) for one, other in itertools.pairwise(on_edge)]
             found.append((CORNERS[1], CORNERS[7], CORNERS[3]))
         else:
             found += [(CORNERS[a], CORNERS[b], CORNERS[c]), (CORNERS[a], CORNERS[c], CORNERS[d])]

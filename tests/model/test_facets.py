@@ -53,7 +53,7 @@ def test_a_hole_in_it_takes_away_what_is_in_its_way():
     held = Object(shapes=[channel], holes=[hole])
     assert hole.run_through([channel]) == (pytest.approx(0.5), True)
     moments = body_moments(held.parts, held.holes)
-    assert moments.volume_m3 == pytest.approx(16 - 6 - 0.5 * np.pi * 0.09, rel=1e-9)
+    assert moments.volume_m3 == pytest.approx(16 - 5 - 0.5 * np.pi * 0.09, rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -61,7 +61,7 @@ def test_a_hole_in_it_takes_away_what_is_in_its_way():
     [
         (
             CUBE.triangles[1:],
-            r"triangles: do not close up: 3 of their sides have no triangle beyond them; give a closed",
+            r"triangles: do not close up: 3 of their sides have no triangle beyond them; give a",
         ),
         (CUBE.triangles[:, ::-1], r"triangles: enclose no volume, or face inwards; give corners counter-clockwise"),
         (CUBE.triangles + 1, r"triangles: has indices that are not 0 to 7; give those of vertices alone"),
@@ -101,10 +101,8 @@ def test_round_neighbours_in_one_body_are_refused_with_the_remedy():
     """What lies beside a mesh with room between is none of these."""
     shape = of_boxes(L_BRACKET, "bracket")
     cage = Cage(points=[[0, 0, -0.1]])
-    far = Scene(
-        Object(shapes=[shape, Sphere(0.002, Pose((0.03, 0, 0)), "knob")]), cage, [Load("w", gravity=(0, 0, -1))]
-    )
-    assert len(far.object.parts) == 2
+    knob = Sphere(0.002, Pose((0.03, 0, 0)), "knob")
+    assert run(Scene(Object(shapes=[shape, knob]), cage, [Load("w", gravity=(0, 0, -1))])).verdict == "escapes"
     for beside in (Sphere(0.002, Pose((0.02, 0, 0)), "knob"), Cylinder(0.001, 0.02, Pose((0, 0, 0.01)), "knob")):
         with pytest.raises(SceneError, match=r"\(knob\) that touches or overlaps bracket, a mesh of facets"):
             run(Scene(Object(shapes=[shape, beside]), cage, [Load("w", gravity=(0, 0, -1))]))

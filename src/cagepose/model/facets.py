@@ -73,7 +73,8 @@ class Facets(Shape):
             around a volume, or a length that is not below a thousandth of the size.
         """
         problems = ProblemList()
-        vertices = finite_array(vertices_m, (-1, 3), "vertices")
+        vertices = finite_array(vertices_m, (-1, 3), "vertices") + 0.0  # no zero below zero
+        vertices.setflags(write=False)
         corners = _indices(triangles, len(vertices), problems)
         size = float(np.ptp(vertices, axis=0).max(initial=0.0))
         set_lengths(self, problems, flat=FLAT * size if flat_m is None else flat_m)

@@ -11,7 +11,7 @@ from cagepose.kernels.native.kernel import entry, kernel
 
 NONE = -1
 THIN = 4.0
-"""In what is flat: a triangle of less height tells no plane. It lies in that of its neighbour, to as much."""
+"""In what is flat: a triangle of less height tells no plane. It lies in that of the neighbour that it is nearest to."""
 
 
 @entry
@@ -26,12 +26,15 @@ def find_flat_regions(
     offsets: FloatArray,
     flat_m: float,
     waiting: IntArray,
+    seeds: IntArray,
     regions: IntArray,
 ) -> int:
-    """Write of each triangle the region that it is in; return how many there are.
+    """Write of each triangle the region that it is in, and of each region its first triangle; return how many there
+    are.
 
     A region grows from its first triangle over all that hang together with it, are of the same part, and have their
-    corners within ``flat_m`` of that triangle's plane: what bends a little from one to the next does not grow on.
+    corners within ``flat_m`` of that triangle's plane: what bends a little from one to the next does not grow on. Thin
+    triangles begin regions only where they are in no other.
 
     Parameters
     ----------
@@ -52,40 +55,66 @@ def find_flat_regions(
     """
     n_regions = 0
     regions[:] = NONE
-    for seed in order:
-        if regions[seed] != NONE:
-            continue
-        regions[seed], waiting[0], n_waiting = n_regions, seed, 1
-        while n_waiting > 0:
-            n_waiting -= 1
-            at = waiting[n_waiting]
-            for k in range(3):
-                other = beside[at, k]
-                if regions[other] != NONE or parts[other] != parts[seed]:
-                    continue
-                if _lies_in(other, seed, corners, areas, is_thin, normals, offsets, flat_m):
-                    regions[other], waiting[n_waiting] = n_regions, other
-                    n_waiting += 1
-        n_regions += 1
+    for is_for_thin in (False, True):
+        for seed in order:
+            if regions[seed] != NONE or is_thin[seed] != is_for_thin:
+                continue
+            regions[seed], waiting[0], n_waiting = n_regions, seed, 1
+            while n_waiting > 0:
+                n_waiting -= 1
+                at = waiting[n_waiting]
+                for k in range(3):
+                    other = beside[at, k]
+                    if regions[other] != NONE or parts[other] != parts[seed]:
+                        continue
+                    is_along = is_thin[other] or dot(row(areas, other), row(normals, seed)) > 0.0
+                    if is_along and _off_plane(other, seed, corners, normals, offsets) <= flat_m:
+                        regions[other], waiting[n_waiting] = n_regions, other
+                        n_waiting += 1
+            seeds[n_regions] = seed
+            n_regions += 1
+        if not is_for_thin:
+            _spread_to_thin(order, beside, corners, is_thin, parts, normals, offsets, flat_m, seeds, regions)
     return n_regions
 
 
 @kernel
-def _lies_in(
-    triangle: int,
-    seed: int,
+def _spread_to_thin(
+    order: IntArray,
+    beside: IntArray,
     corners: FloatArray,
-    areas: FloatArray,
     is_thin: NDArray[np.bool_],
+    parts: IntArray,
     normals: FloatArray,
     offsets: FloatArray,
     flat_m: float,
-) -> bool:
-    """Whether a triangle lies in the plane of another one, and shows to the same side."""
-    normal = row(normals, seed)
-    if not is_thin[triangle] and dot(row(areas, triangle), normal) <= 0.0:
-        return False
-    farthest = 0.0
+    seeds: IntArray,
+    regions: IntArray,
+) -> None:
+    """Write of thin triangles that are in no plane the region beside them whose plane is nearest, one after the other
+    as long as there is one near enough.
+    """
+    is_more = True
+    while is_more:
+        is_more = False
+        for at in order:
+            if regions[at] != NONE or not is_thin[at]:
+                continue
+            best, least = NONE, THIN * flat_m
+            for k in range(3):
+                region = regions[beside[at, k]]
+                if region != NONE and parts[seeds[region]] == parts[at]:
+                    off = _off_plane(at, seeds[region], corners, normals, offsets)
+                    if off <= least:
+                        best, least = region, off
+            if best != NONE:
+                regions[at], is_more = best, True
+
+
+@kernel
+def _off_plane(triangle: int, seed: int, corners: FloatArray, normals: FloatArray, offsets: FloatArray) -> float:
+    """Return how far the corners of a triangle are from the plane of a region at most."""
+    normal, farthest = row(normals, seed), 0.0
     for k in range(3):
         farthest = max(farthest, abs(dot(row(corners[triangle], k), normal) - offsets[seed]))
-    return farthest <= (THIN * flat_m if is_thin[triangle] else flat_m)
+    return farthest

@@ -61,7 +61,9 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
             blocks.append(block_of(_rows_of(part, number), frozenset((number,))))
     for group in surface_groups(polyhedra, touch_m):
         members = sorted(group)
-        blocks.append(union_block(joined_surface([polyhedra.pop(number) for number in members], members), group))
+        blocks.append(
+            union_block(joined_surface([polyhedra.pop(number) for number in members], members, touch_m), group)
+        )
     for group in united(polyhedra, holes, touch_m):
         blocks.append(union_block(union_of([pieces[number] for number in sorted(group)], touch_m), group))
     return packed([_with_holes(block, every, holes) for block in blocks], every, touch_m)

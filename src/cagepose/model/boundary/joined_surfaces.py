@@ -12,7 +12,10 @@ from cagepose.model.boundary.trimmed import TrimmedUnion
 from cagepose.model.facets import FLAT, Facets
 from cagepose.model.near_pairs import near_pairs
 from cagepose.model.shapes import Shape
-from cagepose.model.surface import LEAST_SEGMENTS, shape_mesh
+from cagepose.model.surface import LEAST_SEGMENTS, Mesh, mesh_in_own_frame
+
+FLUSH = 4.0
+"""In touch tolerances: faces of several parts that are this near to one plane are one."""
 
 
 def surface_groups(polyhedra: Mapping[int, Shape], touch_m: float) -> list[frozenset[int]]:
@@ -31,17 +34,20 @@ def surface_groups(polyhedra: Mapping[int, Shape], touch_m: float) -> list[froze
     return sorted((each for each in groups if any(isinstance(polyhedra[k], Facets) for k in each)), key=min)
 
 
-def joined_surface(shapes: Sequence[Shape], parts: Sequence[int]) -> TrimmedUnion:
+def joined_surface(shapes: Sequence[Shape], parts: Sequence[int], touch_m: float) -> TrimmedUnion:
     """Return the boundary of the union of polyhedra, in the frame of their body; ``parts`` has the number of each.
+
+    Where there are several, all but the first facets are larger by what touches on all sides: flush ones overlap.
 
     Raises
     ------
     MissingExtraError
         There are several, and manifold3d is not installed.
     """
-    meshes = [shape_mesh(shape, LEAST_SEGMENTS) for shape in shapes]
+    first = next((shape for shape in shapes if isinstance(shape, Facets)), None)
+    meshes = [_larger(shape, 0.0 if shape is first else touch_m) for shape in shapes]
     size = float(np.ptp(np.concatenate([mesh.vertices_m for mesh in meshes]), axis=0).max())
-    flat_m = max(FLAT * size, *_flat(shapes))
+    flat_m = max(FLAT * size, *_flat(shapes), FLUSH * touch_m if len(shapes) > 1 else 0.0)
     if len(meshes) == 1:
         (mesh,), (part,) = meshes, parts
         return union_of_triangles(mesh.vertices_m, mesh.triangles, np.full(len(mesh.triangles), part), flat_m)
@@ -64,6 +70,14 @@ def joined_surface(shapes: Sequence[Shape], parts: Sequence[int]) -> TrimmedUnio
     of_triangles = np.repeat([part_of[each] for each in found.run_original_id], runs)
     vertices = found.vert_properties[:, :3] + origin
     return union_of_triangles(vertices, found.tri_verts.astype(np.int64), of_triangles, flat_m)
+
+
+def _larger(shape: Shape, by_m: float) -> Mesh:
+    """Return the surface of a shape in the frame of its body, its sides farther out by a length."""
+    mesh = mesh_in_own_frame(shape, LEAST_SEGMENTS)
+    low, high = mesh.vertices_m.min(axis=0), mesh.vertices_m.max(axis=0)
+    grown = mesh.vertices_m + by_m * (2.0 * mesh.vertices_m - low - high) / (high - low)
+    return Mesh(shape.pose_body_shape.transform(grown), mesh.triangles)
 
 
 def _flat(shapes: Iterable[Shape]) -> list[float]:

@@ -127,14 +127,13 @@ def flat_regions(
     normals = areas / np.maximum(sizes, np.finfo(float).tiny)[:, None]
     middles = corners.mean(axis=1)
     offsets = np.einsum("ij,ij->i", normals, middles)
-    beside, waiting, found = twins.reshape(-1, 3) // 3, np.zeros(len(triangles), np.int64), np.zeros_like(parts)
+    beside, (waiting, firsts, found) = twins.reshape(-1, 3) // 3, np.zeros((3, len(triangles)), np.int64)
     order = np.lexsort((-sizes, is_thin))
     for is_last in (False, True):
         n_regions = find_flat_regions(
-            order, beside, corners, areas, is_thin, parts, normals, offsets, flat_m, waiting, found
+            order, beside, corners, areas, is_thin, parts, normals, offsets, flat_m, waiting, firsts, found
         )
-        _, seeds = np.unique(found[order], return_index=True)
-        seeds = order[seeds]
+        seeds = firsts[:n_regions].copy()
         n_of = np.bincount(found, minlength=n_regions)
         if is_last or len(seeds) == len(order):
             break
