@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from audit.stations import stations
-from boundary.drawn_facets import bumpy_ball, facets, of_boxes, solid, triangles_of, united
+from boundary.drawn_facets import bumpy_ball, facets, solid, triangles_of, united
 from cagepose import Box, Cage, Convex, Cylinder, Facets, Force, Hole, Load, Object, Pose, Run, Scene, run
 from cagepose.model.shapes import Shape
 
@@ -44,7 +44,7 @@ SLIDER = [prism([(-6, 0.5), (6, 0.5), (3, 7), (-3, 7)], 20), Box((10, 4, 10), Po
 DOVETAIL = [Box((80, 40, 10), Pose((0, 0, -5)))]
 DOVETAIL += [prism([(side * 7, 0), (side * 20, 0), (side * 20, 8), (side * 3.4, 8)], 80) for side in (-1, 1)]
 PEG = [Box((4, 4, 40), Pose((0.3, 0.2, -20), euler_zyx=(0.3, 0, 0))), Box((60, 60, 5), Pose((0, 0, -42)))]
-NUT, BOLT_OF_NUT = wedges(6, 6.0, 12.0, 8.0), [*wedges(6, 0.0, 5.6, 30.0)]
+NUT, BOLT_OF_NUT = wedges(6, 6.0, 12.0, 8.0), [*wedges(6, 0.0, 5.0, 30.0)]
 CASES = {
     "fork": (FORK, BAR, Pose((1, 2, 20), euler_zyx=(0.1, 0.05, 0.1)), DOWN),
     "T-slot": (BOLT, SLOT, Pose((3, 1, -0.5), euler_zyx=(0.02, 0.01, 0.03)), PULL),
@@ -115,16 +115,12 @@ def deepest(one: Run, held: Facets, cage: Facets) -> float:
 
 
 def test_nothing_is_deep_anywhere_on_the_way(cases):
-    """Bumpy balls in bumpy bowls and forks over bars."""
+    """Bumpy balls in bumpy bowls."""
     pytest.importorskip("rtree")
     rng = np.random.default_rng(61)
-    for k in range(cases(3, 60)):
-        if k % 3 == 2:
-            held, cage = of_boxes(FORK), of_boxes(BAR)
-            pose, size = Pose((*rng.uniform(-9, 9, 2), 20), euler_zyx=rng.uniform(-0.3, 0.3, 3)), 60.0
-        else:
-            held, size = bumpy_ball(rng, 2), 1.0
-            cage = facets(united([Box((3.2, 3.2, 1.2), Pose((0, 0, -0.6)))]) - solid(bumpy_ball(rng, 2)))
-            pose = Pose((*rng.uniform(-0.2, 0.2, 2), 1.8), rng.standard_normal(4))
+    for _ in range(cases(3, 60)):
+        held = bumpy_ball(rng, 2)
+        cage = facets(united([Box((3.2, 3.2, 1.2), Pose((0, 0, -0.6)))]) - solid(bumpy_ball(rng, 2)))
+        pose = Pose((*rng.uniform(-0.2, 0.2, 2), 1.8), rng.standard_normal(4))
         found = run(scene_of([held], [cage], pose, DOWN, float(rng.choice([0.0, 0.3]))))
-        assert deepest(found, held, cage) < 1e-7 * size
+        assert deepest(found, held, cage) < 1e-7

@@ -9,9 +9,11 @@ import numpy as np
 from cagepose.errors import MissingExtraError
 from cagepose.model.boundary.surface_union import union_of_triangles
 from cagepose.model.boundary.trimmed import TrimmedUnion
+from cagepose.model.checks import FloatArray
 from cagepose.model.facets import FLAT, Facets
 from cagepose.model.near_pairs import near_pairs
 from cagepose.model.shapes import Shape
+from cagepose.model.sides import IntArray
 from cagepose.model.surface import LEAST_SEGMENTS, Mesh, mesh_in_own_frame
 
 FLUSH = 4.0
@@ -69,7 +71,8 @@ def joined_surface(shapes: Sequence[Shape], parts: Sequence[int], touch_m: float
     runs = np.diff(np.array(found.run_index)) // 3
     of_triangles = np.repeat([part_of[each] for each in found.run_original_id], runs)
     vertices = found.vert_properties[:, :3] + origin
-    return union_of_triangles(vertices, found.tri_verts.astype(np.int64), of_triangles, flat_m)
+    joined, kept = _welded(vertices, found.tri_verts.astype(np.int64), FLUSH * touch_m)
+    return union_of_triangles(vertices, joined, of_triangles[kept], flat_m)
 
 
 def _larger(shape: Shape, by_m: float) -> Mesh:
@@ -78,6 +81,24 @@ def _larger(shape: Shape, by_m: float) -> Mesh:
     low, high = mesh.vertices_m.min(axis=0), mesh.vertices_m.max(axis=0)
     grown = mesh.vertices_m + by_m * (2.0 * mesh.vertices_m - low - high) / (high - low)
     return Mesh(shape.pose_body_shape.transform(grown), mesh.triangles)
+
+
+def _welded(vertices: FloatArray, triangles: IntArray, within_m: float) -> tuple[IntArray, IntArray]:
+    """Return triangles whose corners are one where they are near each other, and which these are: steps of faces that
+    were flush are none then.
+    """
+    same = np.arange(len(vertices))
+    for one, other in near_pairs(vertices - 0.5 * within_m, vertices + 0.5 * within_m).tolist():
+        same[other] = min(same[other], same[one])
+    found = same[triangles]
+    kept = np.flatnonzero((found != np.roll(found, 1, axis=1)).all(axis=1))
+    first = np.argmin(found[kept], axis=1)
+    turned = np.stack([found[kept, (first + k) % 3] for k in range(3)], axis=1)
+    flipped = turned[:, [0, 2, 1]]
+    _, number = np.unique(np.concatenate([turned, flipped]), axis=0, return_inverse=True)
+    here, back = np.split(number.ravel(), 2)
+    kept = kept[~np.isin(here, back)]  # two triangles back to back enclose nothing
+    return found[kept], kept
 
 
 def _flat(shapes: Iterable[Shape]) -> list[float]:

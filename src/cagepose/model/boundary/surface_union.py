@@ -197,11 +197,12 @@ def _followed(following: IntArray) -> IntArray:
 
 def _is_within_faces(borders: NDArray[np.void], normals: FloatArray, n_vertices: int) -> NDArray[np.bool_]:
     """Return at which vertices a face takes up more than half a turn, (n_vertices,)."""
-    before = borders[borders["following"] != NONE]
-    turns = np.cross(before["direction"], borders["direction"][before["following"]])
-    is_hollow = np.einsum("ij,ij->i", turns, normals[before["face"]]) < -SHARP
+    before = np.flatnonzero(borders["following"] != NONE)
+    directions, following = np.ascontiguousarray(borders["direction"]), borders["following"][before]
+    turns = np.cross(directions[before], directions[following])
+    is_hollow = np.einsum("ij,ij->i", turns, normals[borders["face"][before]]) < -SHARP
     found = np.zeros(n_vertices, np.bool_)
-    found[before["end_node"][is_hollow]] = True
+    found[borders["end_node"][before[is_hollow]]] = True
     return found
 
 
