@@ -13,6 +13,7 @@ import pytest
 from cagepose import Box, Cylinder, Facets, run
 from cagepose.exchange import solids_document, step_fillets, step_reader
 from cagepose.exchange.imported import Import, imported
+from cagepose.model.shape_moments import shape_moments
 
 pytest.importorskip("OCP")
 
@@ -169,3 +170,12 @@ def test_a_part_without_fillets_stays_what_it_is(read):
     assert isinstance(box, Box)
     assert box.pose_body_shape.position_m == pytest.approx((0, 0, 0.005), abs=1e-12)
     assert not any("flat sides" in note for note in notes)
+
+
+def test_a_hole_across_a_shaft_is_facets_of_the_right_volume(read):
+    """Open CASCADE's triangles leave a band of the wall out where they have no corners within it."""
+    shaft = cut(pin((0, 0, 0), (0, 0, 1), 2.5, 30.0), pin((-10, 0, 10), (1, 0, 0), 1.264, 20.0))
+    scene, _ = read(shaft)
+    (part,) = scene.object.parts
+    assert isinstance(part, Facets)
+    assert shape_moments(part).volume_m3 == pytest.approx(564.782e-9, rel=1e-3)

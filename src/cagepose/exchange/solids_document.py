@@ -10,6 +10,7 @@ import numpy as np
 
 from cagepose.errors import FileProblem, SceneError, SceneFileError
 from cagepose.exchange.solids_note import SHOWN, read_solids_note
+from cagepose.exchange.step_reader import off_volume
 from cagepose.exchange.step_solids import read_step
 from cagepose.exchange.stl import MM_PER_M
 from cagepose.exchange.tolerances import SAME_END, SAME_VOLUME
@@ -169,6 +170,9 @@ def _shapes(name: str, solid: Data, frame: Pose, notes: list[str]) -> list[Shape
     if "core" in solid:
         shapes: Sequence[Shape] = [_rounded(np.array(solid["core"]), solid["radius"], name)]
     else:
+        if "volume" in solid and (off := off_volume(solid)) > 0.0:
+            found_off = f"{name!r} is {off:.1%} of its volume off as Open CASCADE makes triangles of it"
+            raise mesh_file.refused(f"{found_off}; repair it, or export it as STL")
         mesh, moved = mended(Triangles(np.array(solid["vertices"]), np.array(solid["faces"])))
         mesh_file.checked(mesh, f"{name!r} ")
         if moved > 0.0:

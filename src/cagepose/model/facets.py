@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cagepose.errors import Key
 from cagepose.model.checks import FloatArray, ProblemList, finite_array
+from cagepose.model.near_pairs import near_pairs
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Shape, set_lengths
 from cagepose.model.sides import IntArray, open_sides
@@ -25,8 +26,6 @@ AWAY = np.array((0.4127, 0.5309, 0.7401))
 """A direction along which few sides and edges of ordinary parts lie: rays lead there."""
 ON_SIDE = 1e-9
 """Of the size of a triangle. A line that is as near to its sides meets it."""
-AT_ONCE = 400_000
-"""Pairs of points and triangles that are asked at once: arrays of more take much memory."""
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -111,18 +110,21 @@ class Facets(Shape):
         point = self.pose_body_shape.inverse_transform(point_body)
         way = self.pose_body_shape.rotation.T @ direction_body
         met = _crossed(point[None], way, self.vertices_m[self.triangles], ON_SIDE)
-        leaves = (met.slopes > 0.0) & met.is_met[0] & (met.ahead_m[0] > ON_SIDE * float(np.ptp(self.vertices_m)))
-        return float(met.ahead_m[0][leaves].min(initial=np.inf)) if leaves.any() else 0.0
+        leaves = (met.slopes > 0.0) & met.is_met & (met.ahead_m > ON_SIDE * float(np.ptp(self.vertices_m)))
+        return float(met.ahead_m[leaves].min(initial=np.inf)) if leaves.any() else 0.0
 
     def holds(self, points_body: FloatArray) -> NDArray[np.bool_]:
         points = self.pose_body_shape.inverse_transform(points_body)
         corners = self.vertices_m[self.triangles]
         slack = DISTANCE_OUTSIDE * float(np.ptp(self.vertices_m, axis=0).max())
-        within = np.zeros(len(points), np.bool_)
-        low, high = self.vertices_m.min(axis=0) - slack, self.vertices_m.max(axis=0) + slack
-        near = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
-        for some in np.array_split(near, 1 + len(near) * len(corners) // AT_ONCE):
-            within[some] = _is_in(points[some], corners, slack)
+        across = np.linalg.svd(AWAY[None])[2][1:].T  # seen along rays, few triangles are where a point is
+        seen, seen_corners = (np.insert(places @ across, 2, 0.0, axis=-1) for places in (points, corners))
+        point, triangle = _pairs(seen, seen_corners, 0.0)
+        met = _crossed(points[point], AWAY, corners[triangle], 0.0)
+        n_left = np.bincount(point, np.where(met.is_met & (met.ahead_m > 0.0), np.sign(met.slopes), 0.0), len(points))
+        within: NDArray[np.bool_] = n_left > 0.5
+        point, triangle = _pairs(points, corners, slack)
+        within[point[_distances(points[point], corners[triangle]) <= slack]] = True
         return within
 
     def thickness(self) -> list[tuple[tuple[Key, ...], float]]:
@@ -155,18 +157,16 @@ def _check_closed(vertices: FloatArray, triangles: IntArray, problems: ProblemLi
         problems.add(("triangles",), "enclose no volume, or face inwards; give corners counter-clockwise from outside")
 
 
-def _is_in(points: FloatArray, corners: FloatArray, slack: float) -> NDArray[np.bool_]:
-    """Return which points are within triangles, or nearer to one than a slack."""
-    met = _crossed(points, AWAY, corners, 0.0)
-    n_left = np.where(met.is_met & (met.ahead_m > 0.0), np.sign(met.slopes), 0.0).sum(axis=1)
-    within: NDArray[np.bool_] = (n_left > 0.5) | (_distances(points, corners).min(axis=1) <= slack)
-    return within
+def _pairs(points: FloatArray, corners: FloatArray, within_m: float) -> tuple[IntArray, IntArray]:
+    """Return which points are near the boxes around which triangles."""
+    low, high = corners.min(axis=1) - within_m, corners.max(axis=1) + within_m
+    pairs = near_pairs(np.concatenate([points, low]), np.concatenate([points, high]))
+    pairs = pairs[(pairs[:, 0] < len(points)) & (pairs[:, 1] >= len(points))].astype(np.int64)
+    return pairs[:, 0], pairs[:, 1] - len(points)
 
 
 class _Crossed(NamedTuple):
-    """Where rays cross triangles: whether and how far ahead, (n_points, n_triangles); and of each triangle a number
-    above zero where they leave the body, (n_triangles,).
-    """
+    """Whether rays cross triangles, how far ahead, and a number above zero where they leave the body there, (n,)."""
 
     is_met: NDArray[np.bool_]
     ahead_m: FloatArray
@@ -174,34 +174,35 @@ class _Crossed(NamedTuple):
 
 
 def _crossed(points: FloatArray, way: FloatArray, corners: FloatArray, beside: float) -> _Crossed:
-    """Ask rays along a vector; a triangle is met, too, by as much of its size beside it (Moeller and Trumbore)."""
-    begin, one, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    across, arms = np.cross(way, other), points[:, None] - begin
+    """Ask rays along a vector, each of one triangle; it is met, too, by as much of its size beside it (Moeller and
+    Trumbore).
+    """
+    arms, one, other = points - corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    across = np.cross(way, other)
     volumes = np.einsum("ij,ij->i", one, across)
     with np.errstate(divide="ignore", invalid="ignore"):
-        first = np.einsum("pij,ij->pi", arms, across) / volumes
+        first = np.einsum("ij,ij->i", arms, across) / volumes
         turned = np.cross(arms, one)
-        second, ahead_m = turned @ way / volumes, np.einsum("pij,ij->pi", turned, other) / volumes
+        second, ahead_m = turned @ way / volumes, np.einsum("ij,ij->i", turned, other) / volumes
         is_met = (first >= -beside) & (second >= -beside) & (first + second <= 1.0 + beside)
     return _Crossed(is_met, ahead_m, -volumes)
 
 
 def _distances(points: FloatArray, corners: FloatArray) -> FloatArray:
-    """Return how far points are from triangles: of those over a triangle, above its plane; of others, from its sides;
-    (n_points, n_triangles), metres.
+    """Return how far points are from triangles, one each: of those over it, above its plane; of others, from its sides;
+    (n,), metres.
     """
-    begin, one, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    arms = points[:, None] - begin
+    arms, one, other = points - corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     normals = np.cross(one, other)
     squares = np.maximum(np.einsum("ij,ij->i", normals, normals), np.finfo(float).tiny)
-    first = np.einsum("pij,ij->pi", np.cross(arms, other), normals) / squares
-    second = np.einsum("pij,ij->pi", np.cross(one, arms), normals) / squares
+    first = np.einsum("ij,ij->i", np.cross(arms, other), normals) / squares
+    second = np.einsum("ij,ij->i", np.cross(one, arms), normals) / squares
     is_over = (first >= 0.0) & (second >= 0.0) & (first + second <= 1.0)
-    found = np.abs(np.einsum("pij,ij->pi", arms, normals)) / np.sqrt(squares)
-    sides = np.full(found.shape, np.inf)
+    above = np.abs(np.einsum("ij,ij->i", arms, normals)) / np.sqrt(squares)
+    sides = np.full(len(arms), np.inf)
     for start, way in ((np.zeros_like(one), one), (np.zeros_like(one), other), (one, other - one)):
         seen = arms - start
-        share = np.einsum("pij,ij->pi", seen, way) / np.maximum(np.einsum("ij,ij->i", way, way), np.finfo(float).tiny)
-        sides = np.minimum(sides, np.linalg.norm(seen - np.clip(share, 0.0, 1.0)[..., None] * way, axis=2))
-    distances: FloatArray = np.where(is_over, found, sides)
+        share = np.einsum("ij,ij->i", seen, way) / np.maximum(np.einsum("ij,ij->i", way, way), np.finfo(float).tiny)
+        sides = np.minimum(sides, np.linalg.norm(seen - np.clip(share, 0.0, 1.0)[:, None] * way, axis=1))
+    distances: FloatArray = np.where(is_over, above, sides)
     return distances
