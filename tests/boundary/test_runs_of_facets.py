@@ -99,8 +99,8 @@ def test_a_bore_of_64_flat_sides_ends_where_a_round_one_does():
 
 
 def deepest(one: Run, held: Facets, cage: Facets, *, told: bool) -> float:
-    """How far corners and middles of triangles of one mesh are in the other at most, by trimesh: at the poses that a run
-    tells, or at those between them.
+    """How far corners and middles of triangles of one mesh are in the other one, by trimesh: at the poses that the
+    run tells, or at those between them.
     """
     own, other = triangles_of(held), triangles_of(cage)
     samples = [np.concatenate([mesh.vertices, mesh.triangles_center]) for mesh in (own, other)]
