@@ -38,6 +38,28 @@ def faces_at(boundary: TrimmedUnion, place: FloatArray, normal: FloatArray, tole
     return found
 
 
+def n_faces_at(boundary: TrimmedUnion, places: FloatArray, normals: FloatArray, tolerance_m: float) -> FloatArray:
+    """Say in how many faces with its outward normal each place (n, 3) lies: as `faces_at`, without a kernel."""
+    faces, borders = boundary.faces, boundary.faces.borders
+    along, above = normals @ faces.normals.T, places @ faces.normals.T - faces.offsets_m
+    which, face = np.nonzero((along > 1.0 - 1e-9) & (np.abs(above) <= tolerance_m))
+    n_borders = faces.n_borders[face]
+    pair = np.repeat(np.arange(len(face)), n_borders)
+    border = np.arange(len(pair)) + np.repeat(np.cumsum(faces.n_borders)[face] - np.cumsum(n_borders), n_borders)
+    starts, ends = (borders[end][border] - places[which[pair]] for end in ("start", "end"))
+    ways = ends - starts
+    shares = np.clip(-np.einsum("ij,ij->i", starts, ways) / np.einsum("ij,ij->i", ways, ways), 0.0, 1.0)
+    is_on = np.linalg.norm(starts + shares[:, None] * ways, axis=1) <= tolerance_m
+    across = np.abs(faces.normals[face]).argmax(axis=1)[pair]
+    row = np.arange(len(pair))
+    (x, y), (end_x, end_y) = ((at[row, (across + 1) % 3], at[row, (across + 2) % 3]) for at in (starts, ends))
+    is_passed = (x > 0.0) != (end_x > 0.0)
+    heights = y - x / np.where(is_passed, end_x - x, 1.0) * (end_y - y)
+    n_crossings = np.bincount(pair, is_passed & (heights > 0.0), len(face))
+    is_in = (np.bincount(pair, is_on, len(face)) > 0.0) | (n_crossings % 2.0 == 1.0)
+    return np.bincount(which, is_in, len(places))
+
+
 def faults_of_surface(boundary: TrimmedUnion, tolerance_m: float) -> list[str]:
     """Say where a boundary is not closed, or its rows do not fit each other."""
     faces, edges, vertices = boundary.faces, boundary.edges, boundary.vertices
@@ -65,23 +87,34 @@ def faults_of_surface(boundary: TrimmedUnion, tolerance_m: float) -> list[str]:
             faults.append("an edge is not along the cross product of its normals")
         if np.abs(np.cross(edges.ends_m - edges.starts_m, edges.directions)).max() > 10 * tolerance_m * max(extent, 1):
             faults.append("an edge does not lead from its start to its end")
-    last = np.cumsum(vertices.n_tangents)
-    for place, first, end in zip(vertices.places_m, last - vertices.n_tangents, last, strict=True):
-        starts = np.linalg.norm(edges.starts_m - place, axis=1) <= 2 * tolerance_m
-        ends = np.linalg.norm(edges.ends_m - place, axis=1) <= 2 * tolerance_m
-        leading = np.concatenate([edges.directions[starts], -edges.directions[ends]])
-        for tangent in vertices.tangents[first:end]:
-            if not len(leading) or np.abs(leading - tangent).max(axis=1).min() > 1e-7:
-                faults.append(f"no edge leads from a vertex along its tangent {tangent}")
+    owners = np.repeat(np.arange(len(vertices.places_m)), vertices.n_tangents)
+    leads = np.zeros((len(owners), len(edges.starts_m)), np.bool_)
+    for ends, sense in ((edges.starts_m, 1.0), (edges.ends_m, -1.0)):
+        is_there = np.linalg.norm(vertices.places_m[:, None] - ends, axis=2) <= 2 * tolerance_m
+        apart = np.abs(vertices.tangents[:, None] - sense * edges.directions).max(axis=2, initial=0.0)
+        leads |= is_there[owners] & (apart <= 1e-7)
+    faults += [f"no edge leads from a vertex along its tangent {way}" for way in vertices.tangents[~leads.any(axis=1)]]
     return faults
 
 
 def _senses_beside(starts: FloatArray, ends: FloatArray, directions: FloatArray, tolerance_m: float) -> FloatArray:
     """Of a place on each border, where none is likely to end: how many pass in its sense, less those in the other."""
     asked = starts + 0.4142 * (ends - starts)
-    arms = asked[:, None] - starts
-    along = np.einsum("ijk,jk->ij", arms, directions)
-    off = np.linalg.norm(arms - along[..., None] * directions, axis=2)
-    lengths = np.linalg.norm(ends - starts, axis=1)
+    one, other = _near_lines(asked, starts, directions)
+    arms = asked[one] - starts[other]
+    along = np.einsum("ij,ij->i", arms, directions[other])
+    off = np.linalg.norm(arms - along[:, None] * directions[other], axis=1)
+    lengths = np.linalg.norm(ends - starts, axis=1)[other]
     passes = (off <= 10 * tolerance_m) & (along > 0.0) & (along < lengths)
-    return np.sum(passes * np.round(directions @ directions.T), axis=1)
+    senses = np.round(np.einsum("ij,ij->i", directions[one], directions[other]))
+    return np.bincount(one, passes * senses, len(starts))
+
+
+def _near_lines(places: FloatArray, starts: FloatArray, directions: FloatArray) -> tuple[np.ndarray, ...]:
+    """Which places are near which lines: within a thousandth of how large all is, as far as rounding tells."""
+    middle = starts.mean(axis=0)
+    places, starts = places - middle, starts - middle
+    along = places @ directions.T - np.einsum("ij,ij->i", starts, directions)
+    squares = np.einsum("ij,ij->i", places, places)[:, None] + np.einsum("ij,ij->i", starts, starts)
+    off = squares - 2.0 * (places @ starts.T) - along**2
+    return np.nonzero(off <= 1e-6 * squares.max())

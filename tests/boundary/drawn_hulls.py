@@ -44,20 +44,30 @@ def drawn_pieces(rng: Rng, n: int) -> list[ConvexPiece]:
     ]
 
 
-def cut(hull: Hull, n_cuts: int, rng: Rng) -> list[Hull]:
-    """Cut a hull, or one of its pieces, by a random plane, so many times: no plane is close to a corner."""
-    pieces = [hull]
+def cut(hull: Hull, n_cuts: int, rng: Rng) -> list[FloatArray]:
+    """Cut a hull, or one of its pieces, by a random plane, so many times: no plane is close to a corner.
+
+    Return the corners of each piece. Until then its edges are told from which corners are on which faces.
+    """
+    is_on = np.zeros((len(hull.vertices_m), len(hull.faces)), np.bool_)
+    for face, loop in enumerate(hull.faces):
+        is_on[list(loop), face] = True
+    pieces = [(hull.vertices_m, is_on)]
     while len(pieces) <= n_cuts:
-        piece = pieces.pop(int(rng.integers(len(pieces))))
+        corners, is_on = piece = pieces.pop(int(rng.integers(len(pieces))))
         normal = rng.standard_normal(3)
         normal /= np.linalg.norm(normal)
-        corners = piece.vertices_m
         heights = (corners - rng.dirichlet(np.ones(len(corners))) @ corners) @ normal
         if np.abs(heights).min() < 1e-3 * np.ptp(heights):
             pieces.append(piece)
             continue
-        start, end = piece.edges[heights[piece.edges].prod(axis=1) < 0.0].T
+        is_above = heights > 0.0
+        n_shared = is_on.astype(np.int64) @ is_on.T
+        start, end = np.nonzero(np.triu(n_shared >= 2, 1) & (is_above[:, None] != is_above))
         share = (heights[start] / (heights[start] - heights[end]))[:, None]
         on_plane = corners[start] + share * (corners[end] - corners[start])
-        pieces += [hull_of(np.concatenate([corners[side], on_plane])) for side in (heights > 0.0, heights < 0.0)]
-    return pieces
+        is_on_there = np.hstack([is_on[start] & is_on[end], np.ones((len(start), 1), np.bool_)])
+        for side in (is_above, ~is_above):
+            is_on_here = np.hstack([is_on[side], np.zeros((int(side.sum()), 1), np.bool_)])
+            pieces.append((np.concatenate([corners[side], on_plane]), np.concatenate([is_on_here, is_on_there])))
+    return [corners for corners, _ in pieces]

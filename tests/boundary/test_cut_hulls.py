@@ -12,6 +12,7 @@ from boundary.same_features import differences
 from cagepose import Pose
 from cagepose.model.boundary.convex_pieces import piece_of_hull
 from cagepose.model.boundary.union import union_of
+from cagepose.model.hull import hull_of
 
 TOUCH_M = 1e-9 * SIZE_M
 Cases = Callable[[int, int], int]
@@ -22,7 +23,7 @@ def test_the_pieces_of_a_hull_give_back_its_own_features(cases: Cases) -> None:
         rng = np.random.default_rng((case, 1))
         hull = drawn_hull(rng)
         whole = union_of([piece_of_hull(hull, Pose(), 0)], TOUCH_M)
-        pieces = [piece_of_hull(piece, Pose(), 0) for piece in cut(hull, int(rng.integers(1, 9)), rng)]
+        pieces = [piece_of_hull(hull_of(corners), Pose(), 0) for corners in cut(hull, int(rng.integers(1, 9)), rng)]
         found = union_of(pieces, TOUCH_M)
         assert not faults_of_surface(found, TOUCH_M), case
         assert not differences(found, whole, 1e-9 * SIZE_M), case
@@ -36,7 +37,8 @@ def test_pieces_shifted_within_the_touch_tolerance_give_back_the_hull(cases: Cas
         whole = union_of([piece_of_hull(hull, Pose(), 0)], TOUCH_M)
         shift_m = 10.0 ** rng.uniform(-14.0, -12.0)
         pieces = cut(hull, int(rng.integers(1, 9)), rng)
-        shifted = [piece_of_hull(piece, Pose(shift_m * rng.standard_normal(3)), 0) for piece in pieces]
+        shifts = [Pose(shift_m * rng.standard_normal(3)) for _ in pieces]
+        shifted = [piece_of_hull(hull_of(corners), by, 0) for corners, by in zip(pieces, shifts, strict=True)]
         found = union_of(shifted, TOUCH_M)
         assert not faults_of_surface(found, TOUCH_M), case
         assert not differences(found, whole, 1e-9 * SIZE_M), case

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from boundary.boundary_checks import areas, faces_at, faults_of_surface, volume
+from boundary.boundary_checks import areas, faces_at, faults_of_surface, n_faces_at, volume
 from boundary.box_grid import Box, cells_of, drawn_boxes, edges_of, n_regions, squares_of, vertices_of
 from cagepose import Box as Block
 from cagepose import Pose
@@ -77,12 +77,13 @@ def _wrong(boundary: TrimmedUnion, boxes: list[Box], blocks: list[Block], turn: 
         faults.append("regions")
     if abs(areas(boundary).sum() / CELL_M**2 - len(squares)) > 1e-8 * len(squares):
         faults.append("area")
-    for axis, sense, cell in squares:
-        normal = sense * turn.rotation[:, axis]
-        middle = np.array(cell) - 0.5
-        middle[axis] += 0.5 * sense
-        if len(faces_at(boundary, turn.transform(middle * CELL_M), normal, TOUCH_M)) != 1:
-            faults.append("a square of the surface is not in one face")
+    axes, senses, full = (np.array(column) for column in zip(*squares, strict=True))
+    normals = senses[:, None] * turn.rotation.T[axes]
+    places = turn.transform((full - 0.5 + 0.5 * senses[:, None] * np.eye(3)[axes]) * CELL_M)
+    if (n_faces_at(boundary, places, normals, TOUCH_M) != 1).any():
+        faults.append("a square of the surface is not in one face")
+    if len(faces_at(boundary, places[0], normals[0], TOUCH_M)) != 1:
+        faults.append("a square of the surface is not in one face to the kernel")
     moments = union_moments(
         np.array([block.size_m for block in blocks]) / 2.0,
         np.array([block.pose_object_box.position_m for block in blocks]),
