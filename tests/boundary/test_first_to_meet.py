@@ -22,9 +22,17 @@ SHORTEST = 2e-3
 
 
 def check(
-    asked: Asked, pose: Pose, motion: Motion, end: float, apart_at: Callable[[Pose], float]
+    asked: Asked,
+    pose: Pose,
+    motion: Motion,
+    end: float,
+    apart_at: Callable[[Pose], float],
+    at_least: Callable[[Pose], float] | None = None,
 ) -> tuple[Hit | None, str]:
-    """Ask the first contact, and whether it is one, and none comes before; None: parts that touch do not all leave."""
+    """Ask the first contact, and whether it is one, and none comes before; None: parts that touch do not all leave.
+
+    On the way a lower bound above zero of how far parts are apart will do, where one is given; at its end it will not.
+    """
     meetings, touch_m = asked.place(pose), asked.touch_m
     if meetings.used[0] > 0 and not leaves(motion, meetings):
         return None, ""
@@ -35,7 +43,10 @@ def check(
     )
     speed, until = float(np.linalg.norm(way) + motion.rate * reach), min(hit.amount, end)
     while True:
-        apart = apart_at(after(motion, pose, amount))
+        there = after(motion, pose, amount)
+        apart = at_least(there) if at_least is not None and amount != until else 0.0
+        if apart <= 0.0:
+            apart = apart_at(there)
         if apart < -TOLERANCE * touch_m:
             return hit, f"{-apart / touch_m:g} touch tolerances deep at {amount}, before {hit.amount}"
         if amount == until:
@@ -96,8 +107,15 @@ def test_motions_of_round_and_sharp_parts(cases, say):
             apart, normal = turned_bodies.gap(body.at(there), other, normal)
             return apart if apart >= least else greatest_separation(body.at(there), other, [normal, *STARTS])
 
+        def at_least(there: Pose, body=body, other=other) -> float:
+            nonlocal normal
+            apart, along = turned_bodies.gap_at_least(body.at(there), other)
+            normal = along if apart > 0.0 else normal
+            return apart
+
         asked = Asked([part], [cage_part], TOUCH * size)
-        tally.note(*_of(check(asked, pose, motion, end, apart_at), end), (part, pose, cage_part, motion, end))
+        found = check(asked, pose, motion, end, apart_at, at_least)
+        tally.note(*_of(found, end), (part, pose, cage_part, motion, end))
     tally.conclude("round and sharp parts", say)
 
 

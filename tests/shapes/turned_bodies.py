@@ -89,8 +89,11 @@ def circles_of(part: Shape) -> Circles:
     return Circles(corners, np.zeros_like(corners), np.zeros(len(corners)), radius)
 
 
-def nearest(one: Circles, other: Circles) -> Nearest:
-    """Return how far apart two bodies are without their radii; they are into each other: the lower bound is -inf."""
+def nearest(one: Circles, other: Circles, plenty: float = np.inf) -> Nearest:
+    """Return how far apart two bodies are without their radii; they are into each other: the lower bound is -inf.
+
+    Of what is farther apart than ``plenty``, a tenth of what is beyond that may stay open.
+    """
     size = max(one.reach, other.reach)
     way = other.middle - one.middle
     if not way.any():
@@ -111,7 +114,7 @@ def nearest(one: Circles, other: Circles) -> Nearest:
         way = columns @ (shares / shares.sum())
         apart = float(np.linalg.norm(way))
         high, stalled = min(high, apart), stalled + 1
-        if high - low <= ENOUGH * size or stalled > 12 or apart <= 1e-15 * size:
+        if high - low <= max(ENOUGH * size, 0.1 * (low - plenty)) or stalled > 12 or apart <= 1e-15 * size:
             break
         if len(points) > 24:
             points = [point for point, share in zip(points, shares, strict=True) if share > 0.0]
@@ -143,6 +146,13 @@ def gap(one: Circles, other: Circles, normal: np.ndarray | None = None) -> tuple
         elif not is_better:
             break
     return best - radius, normal
+
+
+def gap_at_least(one: Circles, other: Circles) -> tuple[float, np.ndarray]:
+    """Return a lower bound of how far apart two bodies are, and its normal: a tenth too low at most, if above zero."""
+    radius = one.radius + other.radius
+    told = nearest(one, other, radius)
+    return told.low - radius, told.normal
 
 
 def overlap(one: Circles, other: Circles) -> bool:
