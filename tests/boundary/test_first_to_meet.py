@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from scipy.optimize import minimize
@@ -27,7 +28,7 @@ def check(
     motion: Motion,
     end: float,
     apart_at: Callable[[Pose], float],
-    at_least: Callable[[Pose], float] | None = None,
+    roughly_apart_at: Callable[[Pose], float] | None = None,
 ) -> tuple[Hit | None, str]:
     """Ask the first contact, and whether it is one, and none comes before; None: parts that touch do not all leave.
 
@@ -43,10 +44,8 @@ def check(
     )
     speed, until = float(np.linalg.norm(way) + motion.rate * reach), min(hit.amount, end)
     while True:
-        there = after(motion, pose, amount)
-        apart = at_least(there) if at_least is not None and amount != until else 0.0
-        if apart <= 0.0:
-            apart = apart_at(there)
+        is_rough = roughly_apart_at is not None and amount != until
+        apart = (roughly_apart_at if is_rough else apart_at)(after(motion, pose, amount))
         if apart < -TOLERANCE * touch_m:
             return hit, f"{-apart / touch_m:g} touch tolerances deep at {amount}, before {hit.amount}"
         if amount == until:
@@ -102,19 +101,15 @@ def test_motions_of_round_and_sharp_parts(cases, say):
         motion, end = random_motion(rng, pose, towards, size), float(rng.choice([0.1, 1.0, 3.0]))
         normal = towards / max(float(np.linalg.norm(towards)), 1e-300)
 
-        def apart_at(there: Pose, body=body, other=other, least=-TOLERANCE * TOUCH * size) -> float:
+        def apart_at(
+            there: Pose, is_rough: bool = False, body=body, other=other, least=-TOLERANCE * TOUCH * size
+        ) -> float:
             nonlocal normal
-            apart, normal = turned_bodies.gap(body.at(there), other, normal)
+            apart, normal = turned_bodies.gap(body.at(there), other, normal, is_rough=is_rough)
             return apart if apart >= least else greatest_separation(body.at(there), other, [normal, *STARTS])
 
-        def at_least(there: Pose, body=body, other=other) -> float:
-            nonlocal normal
-            apart, along = turned_bodies.gap_at_least(body.at(there), other)
-            normal = along if apart > 0.0 else normal
-            return apart
-
         asked = Asked([part], [cage_part], TOUCH * size)
-        found = check(asked, pose, motion, end, apart_at, at_least)
+        found = check(asked, pose, motion, end, apart_at, partial(apart_at, is_rough=True))
         tally.note(*_of(found, end), (part, pose, cage_part, motion, end))
     tally.conclude("round and sharp parts", say)
 

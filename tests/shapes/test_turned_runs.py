@@ -17,6 +17,8 @@ from shapes.turned_bodies import circles_of, gap, random_turned
 
 WEIGHT = Load("weight", gravity=(0, 0, -1))
 WIDE = 6.0
+ENOUGH = 1e-12
+"""How near the bounds of a depth come to each other, in sizes of a part: a thousandth of a touch tolerance."""
 DEEP_ON_THE_WAY = 40.0
 """Touch tolerances. Known: sharp rims of two solid parts that cross at a small angle go in each other by so much for
 some steps.
@@ -99,7 +101,8 @@ def test_turned_parts_dropped_on_others(cases, say):
         def depth_at(pose: Pose, part=part, body=body, around=around, touch_m=scene.touch_m) -> float:
             deepest = 0.0
             for circles, other in around:
-                deep = -gap(body.at(pose), circles)[0]  # a search from many starts, which now and then finds too much
+                # A search from many starts, which now and then finds too much.
+                deep = -gap(body.at(pose), circles, enough=ENOUGH, is_rough=True)[0]
                 if deep > touch_m and not isinstance(part, Convex) and not isinstance(other, Convex):
                     deep = min(deep, depth(part, pose, other))
                 deepest = max(deepest, deep)

@@ -7,7 +7,9 @@ the nearest combination is found by least squares, and the way between is the ne
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +19,8 @@ from cagepose import Box, Pose
 from cagepose.model.shapes import Capsule, Cone, Cylinder, Disc, Rounded, Shape, Sphere, Turned
 from shapes.convex_bodies import random_part
 
-ITERATIONS, ENOUGH = 200, 1e-14
+ITERATIONS, ENOUGH, MOST_POINTS = 200, 1e-14, 24
+ORIGIN = np.array((0.0, 0.0, 0.0, 1.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,18 +59,24 @@ class Circles:
     def moved(self, by: np.ndarray) -> Circles:
         return Circles(self.centers + by, self.axes, self.radii, self.radius)
 
+    @cached_property
+    def is_sharp(self) -> bool:
+        """Whether all circles are points."""
+        return not self.radii.any()
+
     def end_along(self, normal: np.ndarray) -> np.ndarray:
         """Return a point where the body, without the radius, ends along a unit normal."""
+        if self.is_sharp:
+            return self.centers[(self.centers @ normal).argmax()]
         across = normal - (self.axes @ normal)[:, None] * self.axes
-        sines = np.sqrt((across * across).sum(axis=1))
+        sines = np.sqrt(np.einsum("ij,ij->i", across, across))
         at = int((self.centers @ normal + self.radii * sines).argmax())
-        if sines[at] * self.radii[at] < 1e-15:
-            return self.centers[at]
-        outward = across[at] / sines[at]
-        outward = (
-            outward - (self.axes[at] @ outward) * self.axes[at]
-        )  # by rounding, where the normal is nearly the axis
-        return self.centers[at] + self.radii[at] / np.linalg.norm(outward) * outward
+        center, axis, radius, sine = self.centers[at], self.axes[at], self.radii[at], sines[at]
+        if sine * radius < 1e-15:
+            return center
+        outward = across[at] / sine
+        outward = outward - (axis @ outward) * axis  # by rounding, where the normal is nearly the axis
+        return center + radius / math.sqrt(outward @ outward) * outward
 
 
 class Nearest(NamedTuple):
@@ -89,54 +98,64 @@ def circles_of(part: Shape) -> Circles:
     return Circles(corners, np.zeros_like(corners), np.zeros(len(corners)), radius)
 
 
-def nearest(one: Circles, other: Circles, plenty: float = np.inf) -> Nearest:
+def nearest(one: Circles, other: Circles, enough: float = ENOUGH, plenty: float = np.inf) -> Nearest:
     """Return how far apart two bodies are without their radii; they are into each other: the lower bound is -inf.
 
-    Of what is farther apart than ``plenty``, a tenth of what is beyond that may stay open.
+    Bounds that differ by a share ``enough`` of the bodies' size will do; of what is farther apart than ``plenty``,
+    a tenth of what is beyond that may stay open.
     """
     size = max(one.reach, other.reach)
     way = other.middle - one.middle
     if not way.any():
         way = np.array((0.0, 0.0, 1.0))
-    points: list[np.ndarray] = []
+    points, n_points = np.ones((4, MOST_POINTS + 1)), 0
     low, high, normal, stalled = -np.inf, np.inf, way, 0
     for _ in range(ITERATIONS):
-        along = way / np.linalg.norm(way)
+        along = way / math.sqrt(way @ way)
         point = other.end_along(-along) - one.end_along(along)
-        points.append(point)
+        points[:3, n_points] = point / size
+        n_points += 1
         if along @ point > low:
             low, normal, stalled = float(along @ point), along, 0
-        columns = np.column_stack(points)
         try:
-            shares, _ = nnls(np.vstack([columns / size, np.ones(len(points))]), np.array((0.0, 0.0, 0.0, 1.0)))
+            shares, _ = nnls(points[:, :n_points], ORIGIN)
         except RuntimeError:  # goes round in circles, of points that differ by rounding alone
             break
-        way = columns @ (shares / shares.sum())
-        apart = float(np.linalg.norm(way))
+        way = size * (points[:3, :n_points] @ (shares / shares.sum()))
+        apart = math.sqrt(way @ way)
         high, stalled = min(high, apart), stalled + 1
-        if high - low <= max(ENOUGH * size, 0.1 * (low - plenty)) or stalled > 12 or apart <= 1e-15 * size:
+        if high - low <= max(enough * size, 0.1 * (low - plenty)) or stalled > 12 or apart <= 1e-15 * size:
             break
-        if len(points) > 24:
-            points = [point for point, share in zip(points, shares, strict=True) if share > 0.0]
+        if n_points > MOST_POINTS:
+            kept = points[:, :n_points][:, shares > 0.0]
+            n_points = kept.shape[1]
+            points[:, :n_points] = kept
     return Nearest(low, high, normal)
 
 
-def gap(one: Circles, other: Circles, normal: np.ndarray | None = None) -> tuple[float, np.ndarray]:
+def gap(
+    one: Circles,
+    other: Circles,
+    normal: np.ndarray | None = None,
+    enough: float = ENOUGH,
+    is_rough: bool = False,
+) -> tuple[float, np.ndarray]:
     """Return how far apart two bodies are at least, below zero how deep into each other at most, and the normal there.
 
     Those that touch or overlap are moved apart along a normal first, and nowhere farther than by so much: of those that
-    are not deep in each other, with a normal near the true one, what is left over is their gap.
+    are not deep in each other, with a normal near the true one, what is left over is their gap. It ends where that
+    changes by a share ``enough`` of their size at most. Of those that are apart a rough answer is a tenth too low.
     """
     size, radius = max(one.size, other.size), one.radius + other.radius
-    told = nearest(one, other)
-    if told.low > 1e-2 * size:
+    told = nearest(one, other, enough, radius if is_rough else np.inf)
+    if told.low > (radius if is_rough else 1e-2 * size):
         return told.low - radius, told.normal
     if told.low > 0.0 or normal is None:
         normal = told.normal
     best, by = max(told.low, -size), 0.5 * size
     for _ in range(ITERATIONS):
-        told = nearest(one.moved(-by * normal), other)
-        is_better = told.low - by > best + ENOUGH * size
+        told = nearest(one.moved(-by * normal), other, enough)
+        is_better = told.low - by > best + enough * size
         if is_better:
             best, normal = told.low - by, told.normal
         if (
@@ -146,13 +165,6 @@ def gap(one: Circles, other: Circles, normal: np.ndarray | None = None) -> tuple
         elif not is_better:
             break
     return best - radius, normal
-
-
-def gap_at_least(one: Circles, other: Circles) -> tuple[float, np.ndarray]:
-    """Return a lower bound of how far apart two bodies are, and its normal: a tenth too low at most, if above zero."""
-    radius = one.radius + other.radius
-    told = nearest(one, other, radius)
-    return told.low - radius, told.normal
 
 
 def overlap(one: Circles, other: Circles) -> bool:
