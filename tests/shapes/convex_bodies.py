@@ -70,6 +70,12 @@ def _body(corners: np.ndarray, radius: float) -> Body:
     return Body(corners, np.array(sorted(edges)), hull.simplices, hull.equations[:, :3], radius)
 
 
+def cross(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Cross products of rows (..., 3), digit by digit those of `np.cross`, which takes four times as long for a few."""
+    a, b, c, u, v, w = (rows[..., k] for rows in (one, other) for k in range(3))
+    return np.stack([b * w - c * v, c * u - a * w, a * v - b * u], axis=-1)
+
+
 def nearest(one: Body, other: Body) -> tuple[float, np.ndarray]:
     """Return the least distance of the cores, and the way from a nearest point of the first to the other's."""
     ways = [
@@ -90,12 +96,16 @@ def separation(one: Body, other: Body) -> float:
     """Return the greatest distance of two planes between the cores, over all directions that can tell; below zero where
     the cores overlap.
     """
-    axes = [one.normals, other.normals, nearest(one, other)[1][None]]
+    return _separation(one, other, nearest(one, other)[1])
+
+
+def _separation(one: Body, other: Body, way: np.ndarray) -> float:
+    axes = [one.normals, other.normals, way[None]]
     sides = [_along_edges(body) for body in (one, other)]
-    axes.append(np.cross(sides[0][:, None], sides[1][None]).reshape(-1, 3))
+    axes.append(cross(sides[0][:, None], sides[1][None]).reshape(-1, 3))
     for side, body in zip(sides, (one, other), strict=True):
         if len(body.normals) == 1:
-            axes.append(np.cross(side, body.normals[0]))
+            axes.append(cross(side, body.normals[0]))
     rows = np.concatenate(axes)
     lengths = np.linalg.norm(rows, axis=1)
     rows = rows[lengths > 1e-9 * lengths.max(initial=0.0)]
@@ -110,8 +120,9 @@ def separation(one: Body, other: Body) -> float:
 
 def gap(one: Body, other: Body) -> float:
     """Return the distance of two bodies; of those that overlap, how deep, below zero (of round ones the least)."""
-    apart = separation(one, other)
-    return (nearest(one, other)[0] if apart > 0.0 else apart) - one.radius - other.radius
+    distance, way = nearest(one, other)
+    apart = _separation(one, other, way)
+    return (distance if apart > 0.0 else apart) - one.radius - other.radius
 
 
 def _along_edges(body: Body) -> np.ndarray:
@@ -134,11 +145,11 @@ def _corners_to_edges(one: Body, other: Body) -> np.ndarray:
 def _corners_to_triangles(one: Body, other: Body) -> np.ndarray:
     first = other.corners[other.triangles[:, 0]]
     u, w = (other.corners[other.triangles[:, k]] - first for k in (1, 2))
-    normal = np.cross(u, w)
+    normal = cross(u, w)
     square = np.maximum((normal * normal).sum(-1), 1e-300)
     seen = one.corners[:, None] - first
-    a = (np.cross(seen, w) * normal).sum(-1) / square
-    b = (np.cross(u, seen) * normal).sum(-1) / square
+    a = (cross(seen, w) * normal).sum(-1) / square
+    b = (cross(u, seen) * normal).sum(-1) / square
     inside = (a >= 0.0) & (b >= 0.0) & (a + b <= 1.0)
     return (a[..., None] * u + b[..., None] * w - seen)[inside]
 
@@ -147,10 +158,10 @@ def _edges_to_edges(one: Body, other: Body) -> np.ndarray:
     p, q = one.corners[one.edges[:, 0]][:, None], other.corners[other.edges[:, 0]][None]
     u = one.corners[one.edges[:, 1]][:, None] - p
     w = other.corners[other.edges[:, 1]][None] - q
-    crossed = np.cross(u, w)
+    crossed = cross(u, w)
     square = np.maximum((crossed * crossed).sum(-1), 1e-300)
-    s = (np.cross(q - p, w) * crossed).sum(-1) / square
-    t = (np.cross(q - p, u) * crossed).sum(-1) / square
+    s = (cross(q - p, w) * crossed).sum(-1) / square
+    t = (cross(q - p, u) * crossed).sum(-1) / square
     inside = (s >= 0.0) & (s <= 1.0) & (t >= 0.0) & (t <= 1.0)
     return (q + t[..., None] * w - p - s[..., None] * u)[inside]
 
