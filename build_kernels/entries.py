@@ -16,9 +16,11 @@ from cagepose.kernels.algebra.record import dtype_of, empty_record, empty_rows
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
 from cagepose.kernels.boundary.arcs import Arc
 from cagepose.kernels.boundary.candidates import find_pairs
+from cagepose.kernels.boundary.cones import find_cones
 from cagepose.kernels.boundary.corners import find_corners
 from cagepose.kernels.boundary.fans import find_arcs
 from cagepose.kernels.boundary.features import NO_BOUNDARY, empty_placed
+from cagepose.kernels.boundary.flat_regions import find_flat_regions
 from cagepose.kernels.boundary.inside import is_in_face
 from cagepose.kernels.boundary.lines import empty_fan_work
 from cagepose.kernels.boundary.loops import Border, Loop, find_loops
@@ -136,4 +138,8 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield merge_places, (indices, numbers, numbers, vectors, indices)
     yield find_corners, (indices, indices, 0.0, pieces, planes, indices, indices, vectors, vectors, is_true)
     yield find_loops, (vectors, borders, empty_rows(Loop, 1))
+    triples = np.zeros((1, 3), np.int64)
+    of_triangles = (np.zeros((1, 3, 3)), vectors, is_true, indices, vectors, numbers)
+    yield find_flat_regions, (indices, triples, *of_triangles, 0.0, indices, indices, indices)
+    yield find_cones, (indices, vectors, np.zeros((2, 1, 3)), triples, is_true)
     yield is_in_face, (ORIGIN, ORIGIN, borders, 0, 1, 0.0)

@@ -39,6 +39,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     from cagepose.kernels.boundary.groups import number_groups
     from cagepose.kernels.boundary.meetings import find_meetings
     from cagepose.kernels.boundary.overlap import empty_overlap_work, find_overlap
+    from cagepose.kernels.boundary.queue import empty_queue
     from cagepose.kernels.boundary.touching import empty_meetings
     from cagepose.kernels.contact.cone import ConeWorkspace, cone_residual
     from cagepose.kernels.contact.contact_set import empty_contact_set
@@ -64,7 +65,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield number_groups, (body, body, 0.0, found)
     yield find_overlap, (body, body, 0.0, empty_overlap_work(NO_BOUNDARY, NO_BOUNDARY))
     search = of_boundaries.Search(motion, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    yield of_boundaries.first_to_meet, (body, body, search, found, of_boundaries.empty_queue(), body)
+    yield of_boundaries.first_to_meet, (body, body, search, found, empty_queue(), body)
     one = (body, 0, body, 0, motion, 0.0, 0.0, 0.0, body, found.places, found.kept, 0)
     yield first_touch_of_curved, one
 

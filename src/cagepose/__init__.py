@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from cagepose.files.scene_file import load_scene as load_scene
     from cagepose.model.box import Box as Box
     from cagepose.model.cage import Cage as Cage
+    from cagepose.model.facets import Facets as Facets
     from cagepose.model.hole import Chamfer as Chamfer
     from cagepose.model.hole import Hole as Hole
     from cagepose.model.load import Force as Force
@@ -104,6 +105,7 @@ _HOMES = {
     "cagepose.model.parts": ("Object",),
     "cagepose.model.pose": ("Pose",),
     "cagepose.model.scene": ("Adjustable", "Scene"),
+    "cagepose.model.facets": ("Facets",),
     "cagepose.model.shapes": ("Capsule", "Cone", "Convex", "Cylinder", "Disc", "Shape", "Sphere"),
     "cagepose.model.tolerances": ("Tolerances",),
     "cagepose.runs.critical": ("with_critical_friction",),
@@ -151,6 +153,7 @@ __all__ = [
     "Design",
     "DesignResults",
     "Disc",
+    "Facets",
     "Event",
     "Force",
     "Frame",

@@ -11,9 +11,10 @@ import numpy as np
 from cagepose import Pose
 from cagepose.kernels.algebra.motion import Motion
 from cagepose.kernels.boundary.features import PlacedBoundary, empty_placed, place_boundary
-from cagepose.kernels.boundary.first_meeting import Hit, Search, empty_queue, first_to_meet
+from cagepose.kernels.boundary.first_meeting import Hit, Search, first_to_meet
 from cagepose.kernels.boundary.groups import number_groups
 from cagepose.kernels.boundary.meetings import find_meetings
+from cagepose.kernels.boundary.queue import empty_queue
 from cagepose.kernels.boundary.touching import Meetings, empty_meetings
 from cagepose.model.boundary.features import boundary_of
 from cagepose.model.shapes import Shape

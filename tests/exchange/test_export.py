@@ -34,9 +34,8 @@ from cagepose.exchange.mjcf import mjcf_text
 from cagepose.exchange.pierced import SIDES_OF_ROUND
 from cagepose.exchange.solids import POINT_OF_SIZE, assembly_of
 from cagepose.exchange.stl import stl_text
-from cagepose.model.shape_moments import shape_moments
+from cagepose.model.shape_moments import mesh_sums, shape_moments
 from cagepose.model.surface import Mesh
-from cagepose.model.union import mesh_sums
 from our_scenes import SCENES
 
 mujoco = pytest.importorskip("mujoco")

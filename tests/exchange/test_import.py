@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import subprocess
 import sys
@@ -361,3 +362,25 @@ def test_the_command_writes_a_scene_that_runs(arm, monkeypatch, capsys):
     Path("mine.yaml").write_text("name: mine")
     assert main(["import", "arm.xml", "-o", "mine.yaml"]) == 2
     assert Path("mine.yaml").read_text() == "name: mine"
+
+
+def test_a_hull_of_many_corners_is_facets(tmp_path):
+    """A ball of 20 mm stands on a post of 200 sides, 100 mm high."""
+    n = 200
+    rim = [(0.04 * math.cos(2 * math.pi * k / n), 0.04 * math.sin(2 * math.pi * k / n)) for k in range(n)]
+    corners = [(x, y, z) for z in (0.0, 0.1) for x, y in rim]
+    lines = [f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in [*corners, (0.0, 0.0, 0.0), (0.0, 0.0, 0.1)]]
+    for k in range(n):
+        one, two = k + 1, (k + 1) % n + 1
+        lines += [f"f {one} {two} {n + two}", f"f {one} {n + two} {n + one}"]
+        lines += [f"f {2 * n + 1} {two} {one}", f"f {2 * n + 2} {n + one} {n + two}"]
+    (tmp_path / "post.obj").write_text("\n".join(lines) + "\n")
+    (tmp_path / "post.xml").write_text(
+        '<mujoco><asset><mesh name="post" file="post.obj"/></asset><worldbody>'
+        '<geom name="floor" type="plane" size="1 1 1"/><body name="cage"><geom type="mesh" mesh="post"/></body>'
+        '<body name="ball" pos="0.005 0 0.16"><freejoint/><geom type="sphere" size="0.02"/></body>'
+        "</worldbody></mujoco>"
+    )
+    found = imported.imported(str(tmp_path / "post.xml"))
+    assert [shape.kind for shape in found.scene.cage.shapes] == ["box", "facets"]
+    assert run(found.scene).pose.position_m[2] == pytest.approx(0.12, abs=1e-7)

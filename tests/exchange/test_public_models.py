@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from cagepose import Convex, load_scene, run
+from cagepose import Facets, load_scene, run
 from cagepose.cli.app import main
 from cagepose.files.meshes.mesh_file import read_mesh
 
@@ -43,12 +43,9 @@ def test_a_public_model_becomes_a_scene_that_comes_to_rest(package, name, chosen
     assert (found.verdict, found.phases[-1].proof.stability) == ("rests", stability)
 
 
-def test_a_bone_of_a_public_model_is_decomposed(tmp_path):
-    """And not written to: the parts are kept beside a copy."""
-    pytest.importorskip("coacd")
+def test_a_bone_of_a_public_model_is_facets(tmp_path):
     bone = model("dm_control", "suite/dog_assets/BONEPhalanx_media_digiti_IV_L.stl")
     shutil.copy(bone, tmp_path / "bone.stl")
     found = read_mesh(tmp_path / "bone.stl", "m", "m", "bone")
-    assert all(isinstance(shape, Convex) for shape in found.shapes)
-    assert 0.0 < found.error < 0.06 * max(shape.farthest_m(shape.nodes_body()[0]) for shape in found.shapes)
-    assert (tmp_path / "bone.stl.parts.json").is_file()
+    assert [type(shape) for shape in found.shapes] == [Facets]
+    assert found.error == 0.0

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
 
 from cagepose import Pose
-from cagepose.files.meshes.decomposed import Decomposition
 from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.meshes.mesh_file import checked
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
@@ -19,10 +16,6 @@ manifold3d = pytest.importorskip("manifold3d")
 
 PLACE = Pose((3.0, 4.0, 5.0), euler_zyx=(0.4, -0.7, 1.1))
 SEGMENTS = 64
-
-
-def refuse(mesh: Triangles) -> Decomposition:
-    raise AssertionError(f"{mesh!r} needs no decomposition")
 
 
 def body(*added: Shape, without: tuple[Shape, ...] = ()):
@@ -42,8 +35,8 @@ def turned(solid) -> Triangles:
     return Triangles(PLACE.transform(mesh.vertices), mesh.faces)
 
 
-def shapes_of(solid, *, single: bool = False, decompose: Callable[[Triangles], Decomposition] = refuse) -> MeshShapes:
+def shapes_of(solid, *, single: bool = False) -> MeshShapes:
     """What is recognised of a body that is turned and, as in an STL file, in single precision."""
     mesh = turned(solid)
     vertices = mesh.vertices.astype(np.float32).astype(np.float64) if single else mesh.vertices
-    return mesh_shapes(checked(Triangles(vertices, mesh.faces), ""), "part", "mm", decompose)
+    return mesh_shapes(checked(Triangles(vertices, mesh.faces), ""), "part", "mm")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import sys
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from cagepose import (
     Cone,
     Convex,
     Cylinder,
+    Facets,
     Hole,
     Pose,
     Scene,
@@ -25,9 +27,11 @@ from cagepose import (
 )
 from cagepose.cli.app import main
 from cagepose.exchange.stl import binary_stl
-from cagepose.files.meshes import decomposed, mesh_file, run_coacd
+from cagepose.files.meshes import mesh_file
 from cagepose.files.meshes.manifolds import Triangles
+from cagepose.files.meshes.mesh_shapes import mesh_shapes
 from cagepose.model.checks import ProblemList
+from cagepose.model.shape_moments import mesh_sums, shape_moments
 from cagepose.model.surface import Mesh, shape_mesh
 from cagepose.model.union import body_moments
 from files.bodies import PLACE, SEGMENTS, body, shapes_of
@@ -94,7 +98,7 @@ def test_a_hull_whose_edges_are_round_with_two_radii_stays_flat():
     stretched = body(Convex(CORE, 1.5)).scale((1.0, 1.0, 1.01))
     for solid in (two, stretched):
         (one,) = shapes_of(solid).shapes
-        assert one.radius_m == 0.0
+        assert isinstance(one, Facets)
 
 
 def test_prisms_and_what_is_nearly_round_stay_as_they_are():
@@ -150,8 +154,6 @@ def test_unions_come_back_as_their_parts(name, single):
 
 
 def centroid_of(solid):
-    from cagepose.model.union import mesh_sums
-
     mesh = Triangles.of(solid)
     sums = mesh_sums(Mesh(mesh.vertices, mesh.faces), np.zeros(3))
     return sums.first / sums.volume
@@ -172,33 +174,51 @@ def torus() -> Triangles:
     return Triangles.of(manifold3d.Manifold.revolve(section, 16))
 
 
-def test_what_cannot_be_cut_is_decomposed_with_its_error_and_kept(tmp_path, monkeypatch):
-    """The error is at least what any point of the mesh is off, and the parts are found once."""
-    pytest.importorskip("coacd")
-    pytest.importorskip("rtree")
-    monkeypatch.setattr(run_coacd, "MOST_CONCAVITY", 0.2)
+def test_what_is_none_of_our_shapes_stays_facets_and_says_how_far_these_may_be_off():
+    """A ring of 8 sides around a ring of 16: a chord of one of sixteen of its outer circle is farthest within."""
+    ring = torus()
+    found = mesh_shapes(ring, "ring", "mm")
+    (shape,) = found.shapes
+    assert isinstance(shape, Facets)
+    assert (len(shape.triangles), found.error) == (len(ring.faces), 0.0)
+    assert shape_moments(shape).volume_m3 == pytest.approx(ring.body().volume(), rel=1e-10)
+    said = re.fullmatch(
+        r"'ring' has 256 flat facets here, as in the mesh; where these stand for what is round, they are about (.*) mm"
+        " off",
+        found.notes[0],
+    )
+    assert said is not None
+    assert float(said[1]) == pytest.approx(13.0 * (1.0 - math.cos(math.pi / 16)), rel=0.2)
+
+
+def test_large_facets_are_kept_beside_their_mesh_and_found_anew_when_it_changes(tmp_path, monkeypatch):
+    """What somebody damaged is not used, and what was kept of another mesh is not either."""
+    section = manifold3d.CrossSection.circle(3.0, 32).translate((10.0, 0.0))
+    ring = Triangles.of(manifold3d.Manifold.revolve(section, 64))
+    path, kept = tmp_path / "ring.stl", tmp_path / "ring.stl.facets.npz"
     calls = []
-    plain = decomposed.decomposed
-    monkeypatch.setattr(decomposed, "decomposed", lambda mesh: calls.append(1) or plain(mesh))
-    (tmp_path / "ring.stl").write_bytes(binary_stl(Mesh(torus().vertices, torus().faces)))
-    first = mesh_file.read_mesh(tmp_path / "ring.stl", "mm", "mm", "ring")
-    assert all(isinstance(shape, Convex) for shape in first.shapes)
-    assert len(first.shapes) > 3
-    assert f"here, {len(first.shapes)} convex parts, up to {1e3 * first.error:.2g} mm off" in first.notes[0]
-    assert "'ring' has 1 openings that are not round with flat ends" in first.notes[1]
-    within = [shape.holds(torus().vertices / 1e3) for shape in first.shapes]
-    outside = torus().vertices[~np.any(within, axis=0)] / 1e3
-    assert 1e-4 < first.error < 3e-3
-    gaps = [min(gap_of(shape, point) for shape in first.shapes) for point in outside]
-    assert max(gaps) < 1.01 * first.error
-    mesh_file._shapes.cache_clear()
-    again = mesh_file.read_mesh(tmp_path / "ring.stl", "mm", "mm", "ring")
+    monkeypatch.setattr(mesh_file, "mesh_shapes", lambda *given: calls.append(1) or mesh_shapes(*given))
+
+    def read(name: str = "ring"):
+        mesh_file._shapes.cache_clear()
+        return mesh_file.read_mesh(path, "mm", "mm", name)
+
+    path.write_bytes(binary_stl(Mesh(ring.vertices, ring.faces)))
+    first = read()
+    assert kept.is_file()
+    again = read()
     assert len(calls) == 1
-    assert [shape.vertices_m.tolist() for shape in again.shapes] == [s.vertices_m.tolist() for s in first.shapes]
-    (tmp_path / "ring.stl.parts.json").write_text("{")
-    mesh_file._shapes.cache_clear()
-    mesh_file.read_mesh(tmp_path / "ring.stl", "mm", "mm", "ring")
+    assert again.shapes[0].form == first.shapes[0].form
+    assert (again.notes, again.shapes[0].name) == (first.notes, "ring")
+    content = bytearray(kept.read_bytes())
+    kept.write_bytes(content[: len(content) // 2])
+    assert read().shapes[0].form == first.shapes[0].form
     assert len(calls) == 2
+    path.write_bytes(binary_stl(Mesh(1.5 * ring.vertices, ring.faces)))
+    assert read().shapes[0].farthest_m(np.zeros(3)) == pytest.approx(1.5 * 0.013, rel=1e-3)
+    assert len(calls) == 3
+    read("other")
+    assert len(calls) == 4
 
 
 SCENE = """\
@@ -245,8 +265,7 @@ def test_numbers_of_a_mesh_of_several_shapes_cannot_be_adjusted(tmp_path):
         scene_with(tmp_path, UNIONS["boss"][0], (), text)
 
 
-def test_a_fillet_in_a_mesh_is_named_and_a_hole_beside_it_goes_through_all_that_it_cuts():
-    """Its flat sides cut the plate below into thin wedges, which all have to let the peg through."""
+def test_a_fillet_in_a_mesh_stays_facets_and_a_hole_beside_it_is_round():
     corner = body(
         Box((6, 40, 6), Pose((10, 0, 10))),
         without=(Cylinder(5, 60, Pose((13, 0, 13), euler_zyx=(0, 0, math.pi / 2))),),
@@ -254,19 +273,19 @@ def test_a_fillet_in_a_mesh_is_named_and_a_hole_beside_it_goes_through_all_that_
     walls = body(Box((60, 40, 8), Pose((30, 0, 4))), Box((8, 40, 50), Pose((4, 0, 25))))
     bored = walls + corner - body(Cylinder(4, 30, Pose((40, 0, 4))))
     found = shapes_of(bored)
-    (hole,) = (shape for shape in found.shapes if isinstance(shape, Hole))
+    solid, hole = found.shapes
+    assert isinstance(solid, Facets)
+    assert isinstance(hole, Hole)
+    assert hole.in_ == (solid.name,)
+    assert hole.run_through([solid]) == (pytest.approx(8.0, abs=1e-9), True)
     problems = ProblemList()
-    hole.check_mouth([shape for shape in found.shapes if shape.name in hole.in_], (), problems)
+    hole.check_mouth([solid], (), problems)
     assert not problems.problems
-    middle = hole.pose_body_shape.transform(
-        [(x, y, z) for x in (-3, 0, 3) for y in (-2, 0, 2) for z in (-0.1, -1, -4, -7.9)]
-    )
-    for shape in found.shapes:
-        assert shape is hole or shape.name in hole.in_ or not shape.holds(middle).any()
-    assert found.notes[-1].startswith(
-        "'part' is hollow and round somewhere, as in a fillet, which makes many parts of it: here, "
-    )
-    assert not any("hollow" in note for note in shapes_of(walls).notes)
+    moments = body_moments([solid], [hole])
+    rounding = 8.0 * 16.0 * (math.pi - 32.0 * math.sin(math.pi / 32.0))  # a circle is more than 64 sides in it
+    assert moments.volume_m3 == pytest.approx(bored.volume() - rounding, rel=1e-9)
+    assert "flat facets here, as in the mesh" in found.notes[-1]
+    assert not any("facets" in note for note in shapes_of(walls).notes)
 
 
 def test_holes_of_a_finely_divided_plate_are_recognised():
@@ -277,13 +296,13 @@ def test_holes_of_a_finely_divided_plate_are_recognised():
     assert found.error == pytest.approx(5 * (1 - math.cos(math.pi / SEGMENTS)), rel=0.01)
 
 
-def test_a_convex_body_of_many_corners_keeps_as_many_as_may_be_and_their_distance_is_measured():
-    """Corners of an egg: what 300 of them leave of a ball of radius 20 is some 20 (1 - cos(7 deg))."""
+def test_a_convex_body_of_many_corners_keeps_them_all():
     egg = shape_mesh(Sphere(20.0), 80)
     found = shapes_of(Triangles(egg.vertices_m * (1.0, 0.7, 0.5), egg.triangles).body())
     (one,) = found.shapes
-    assert 250 <= len(one.vertices_m) <= 300
-    assert 0.1 < found.error < 0.5
+    assert isinstance(one, Facets)
+    assert len(one.vertices_m) == len(egg.vertices_m)
+    assert found.error == 0.0
 
 
 def test_what_takes_seconds_is_told_on_a_terminal(tmp_path, monkeypatch, capsys):

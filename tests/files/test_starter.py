@@ -36,7 +36,20 @@ def test_the_rules_of_the_paper_hold_the_starter_before_its_last_stop() -> None:
 
 
 SEVERAL_LOADS = {"forces", "moments", "springs", "follows", "to", "stiffness", "preload"}
-ROUND = {"shapes", "radius", "radius_bottom", "radius_top", "vertices", "depth", "chamfer", "width", "in", *KINDS}
+ROUND = {
+    "shapes",
+    "radius",
+    "radius_bottom",
+    "radius_top",
+    "vertices",
+    "triangles",
+    "flat",
+    "depth",
+    "chamfer",
+    "width",
+    "in",
+    *KINDS,
+}
 """Keys that a first scene has no use for."""
 
 

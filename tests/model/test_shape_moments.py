@@ -9,9 +9,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cagepose import Box, Capsule, Cone, Convex, Cylinder, Disc, Pose, Sphere
-from cagepose.model.shape_moments import shape_moments, sums_of
+from cagepose.model.shape_moments import mesh_sums, shape_moments, sums_of
 from cagepose.model.surface import shape_mesh
-from cagepose.model.union import mesh_sums
 
 POSE = Pose((1.0, -2.0, 0.5), (0.3, -0.4, 0.5, 0.1))
 RNG = np.random.default_rng(3)

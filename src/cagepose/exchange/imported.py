@@ -19,8 +19,10 @@ from cagepose.exchange.model_friction import scene_friction
 from cagepose.exchange.model_text import ModelText, read_model_text
 from cagepose.exchange.solids_document import METRES, SOLIDS, kept_friction, solids_document
 from cagepose.exchange.tolerances import VOLUME_NOT_CONVEX
+from cagepose.files.meshes.manifolds import Triangles, manifold3d
 from cagepose.files.meshes.pieces import MOST_CORNERS
 from cagepose.files.scene_file import SceneText
+from cagepose.files.triples import text_of
 from cagepose.files.yaml_source import YamlSource
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -169,15 +171,17 @@ class _Reader:
         return {"name": label, **numbers, **METRES.pose(place, turn=False)} if numbers else None
 
     def hull(self, geom: Data, label: str) -> Data:
-        if len(geom["vertices"]) > MOST_CORNERS:
-            found = f"has {len(geom['vertices'])} corners, more than {MOST_CORNERS}"
-            self.notes.append(f"left out: the mesh {label!r}, as its hull {found}; simplify it")
-            return {}
-        full_m3, volume_m3 = shape_moments(Convex(geom["vertices"])).volume_m3, abs(geom["volume"])
+        is_large = len(geom["vertices"]) > MOST_CORNERS
+        whole = manifold3d().Manifold.hull_points(np.array(geom["vertices"])) if is_large else None
+        full_m3 = shape_moments(Convex(geom["vertices"])).volume_m3 if whole is None else whole.volume()
+        volume_m3 = abs(geom["volume"])
         if volume_m3 < (1.0 - VOLUME_NOT_CONVEX) * full_m3:
             share = 1.0 - volume_m3 / full_m3
             self.notes.append(f"the mesh {label!r} is not convex: here, its hull, {share:.1%} of which is too much")
-        return {"convex": {"vertices": geom["vertices"]}}
+        if whole is None:
+            return {"convex": {"vertices": geom["vertices"]}}
+        mesh = Triangles.of(whole)
+        return {"facets": {"vertices": text_of(mesh.vertices.tolist()), "triangles": text_of(mesh.faces.tolist())}}
 
     def inertial(self, of_object: set[int], frame: int) -> Data:
         found = self.bodies.inertial(of_object, frame)

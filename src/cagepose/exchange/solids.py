@@ -14,8 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from cagepose.errors import Problem, SceneError
+from cagepose.exchange.facets_pieces import facets_pieces
 from cagepose.exchange.pierced import SIDES_AROUND_HOLES, SIDES_OF_ROUND, pierced_pieces
 from cagepose.model.box import Box
+from cagepose.model.facets import Facets
 from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose, turn_from_z
 from cagepose.model.scene import Scene
@@ -163,11 +165,24 @@ class _Body:
             yield Convex(shape_mesh(shape, SIDES_OF_ROUND).vertices_m)
         elif isinstance(shape, Convex) and shape.radius_m > 0.0:
             yield from rounded_pieces(shape)
+        elif isinstance(shape, Facets):
+            yield from self.convex_pieces(shape)
         elif isinstance(shape, Box | Sphere | Capsule | Cylinder | Convex):
             yield shape
 
+    def convex_pieces(self, shape: Facets) -> list[Convex]:
+        found = facets_pieces(shape)
+        if found is None:
+            message = f"is a mesh of {len(shape.triangles):,} facets that few cuts do not make convex, as these formats"
+            self.problems.append(Problem((self.name, str(shape.name)), f"{message} need it; export STEP or STL"))
+        return found or []
+
     def pierced(self, part: Shape, holes: Sequence[Hole]) -> list[Solid]:
         name = str(part.name)
+        if isinstance(part, Facets):
+            message = f"is a mesh of facets with a hole ({holes[0].name!r}), which no wedges can stand for"
+            self.problems.append(Problem((self.name, name), f"{message}; export STEP or STL"))
+            return []
         if isinstance(part, Rounded) and part.radius_m > 0.0:
             message = f"has a hole and round sides, which no flat wedges can stand for; leave {holes[0].name!r} out"
             self.problems.append(Problem((self.name, name), message))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +10,13 @@ import numpy as np
 
 from cagepose.errors import FileProblem, SceneError, SceneFileError
 from cagepose.exchange.solids_note import SHOWN, read_solids_note
+from cagepose.exchange.step_reader import off_volume
 from cagepose.exchange.step_solids import read_step
 from cagepose.exchange.stl import MM_PER_M
 from cagepose.exchange.tolerances import SAME_END, SAME_VOLUME
 from cagepose.files.meshes import mesh_file
-from cagepose.files.meshes.decomposed import kept_beside
 from cagepose.files.meshes.manifolds import Triangles
+from cagepose.files.meshes.mended import mended
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
 from cagepose.files.meshes.surface_distance import farthest_from
 from cagepose.files.progress import tell
@@ -65,7 +65,7 @@ def solids_document(source: str, object_name: str | None, cage_names: Sequence[s
         listed = [("object", name, held, of_object.inverse()) for name in held]
         listed += [("cage", name, walls, of_cage.inverse()) for name in walls]
         for body, name, names, frame in listed:
-            of_solid = _shapes(path, _short(name, names), solids[name], frame, notes)
+            of_solid = _shapes(_short(name, names), solids[name], frame, notes)
             shapes[body] += [METRES.shape(_named(shape, note.get("holes", {}))) for shape in of_solid]
     except SceneError as error:
         messages = [*(problem.message for problem in error.problems), *damaged]
@@ -165,15 +165,21 @@ def _middle(solid: Data) -> FloatArray:
     return middle
 
 
-def _shapes(path: Path, name: str, solid: Data, frame: Pose, notes: list[str]) -> list[Shape]:
+def _shapes(name: str, solid: Data, frame: Pose, notes: list[str]) -> list[Shape]:
     """Return a solid as shapes in the frame of its body, in metres."""
     if "core" in solid:
         shapes: Sequence[Shape] = [_rounded(np.array(solid["core"]), solid["radius"], name)]
     else:
-        mesh = _surface(solid, name)
+        if "volume" in solid and (off := off_volume(solid)) > 0.0:
+            found_off = f"{name!r} is {off:.1%} of its volume off as Open CASCADE makes triangles of it"
+            raise mesh_file.refused(f"{found_off}; repair it, or export it as STL")
+        mesh, moved = mended(Triangles(np.array(solid["vertices"]), np.array(solid["faces"])))
+        mesh_file.checked(mesh, f"{name!r} ")
+        if moved > 0.0:
+            notes.append(f"{name!r} has cracks of up to {moved:.2g} mm, which are closed here")
         if "sharp" in solid:
             solid, mesh = _sharp(solid, mesh, name, notes)
-        found = mesh_shapes(mesh, name, "mm", partial(kept_beside, path))
+        found = mesh_shapes(mesh, name, "mm")
         if not _is_exact(found, solid):
             notes += found.notes
             if solid.get("off", 0.0) > found.error:
@@ -183,14 +189,11 @@ def _shapes(path: Path, name: str, solid: Data, frame: Pose, notes: list[str]) -
     return [shape.moved(frame @ shape.pose_body_shape) for shape in metres]
 
 
-def _surface(solid: Data, name: str) -> Triangles:
-    return mesh_file.checked(Triangles(np.array(solid["vertices"]), np.array(solid["faces"])), f"{name!r} ")
-
-
 def _sharp(solid: Data, mesh: Triangles, name: str, notes: list[str]) -> tuple[Data, Triangles]:
     """Return a solid without its hollow roundings, and its surface; with them, where they are a great part of it."""
     try:
-        sharp = _surface(solid["sharp"], name)
+        sharp = Triangles(np.array(solid["sharp"]["vertices"]), np.array(solid["sharp"]["faces"]))
+        mesh_file.checked(sharp, f"{name!r} ")
     except SceneError:  # Open CASCADE left it open or crossing itself
         return solid, mesh
     off = max(farthest_from(mesh, sharp), farthest_from(sharp, mesh))

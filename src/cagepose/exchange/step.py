@@ -14,6 +14,7 @@ from cagepose.exchange.step_solids import write_step
 from cagepose.exchange.stl import MM_PER_M
 from cagepose.exchange.world_parts import world_parts
 from cagepose.model.box import Box
+from cagepose.model.facets import Facets
 from cagepose.model.hole import Hole
 from cagepose.model.hull import Hull, hull_of
 from cagepose.model.pose import Pose
@@ -59,6 +60,8 @@ def _primitive(shape: Shape, pose: Pose) -> dict[str, Any]:
         return {**found, **_flat(hull_of(MM_PER_M * BOX_SIGNS * shape.size_m / 2.0))}
     if isinstance(shape, Convex):
         return {**found, **_flat(hull_of(MM_PER_M * shape.vertices_m))}
+    if isinstance(shape, Facets):
+        return {**found, "corners": (MM_PER_M * shape.vertices_m).tolist(), "loops": shape.triangles.tolist()}
     if isinstance(shape, Sphere | Capsule):
         return {
             **found,

@@ -100,6 +100,8 @@ def _solid(solid: Any, most_fillets: int) -> Data:
     if core is not None:
         return core
     found = {"volume": abs(mass.Mass()), **_triangles(solid, faces)}
+    if off_volume(found) > 0.0:  # holes across round walls come out so at times
+        found |= _triangles(solid, faces, within=True)
     sharp = without_fillets(solid, faces, most_fillets)
     if sharp is not None:
         try:
@@ -187,11 +189,23 @@ def _is_ball(face: Any) -> bool:
     return BRepAdaptor_Surface(face).GetType() not in (GeomAbs_Plane, GeomAbs_Cylinder, GeomAbs_Cone)
 
 
-def _triangles(solid: Any, faces: list[Any]) -> Data:
+def off_volume(solid: Data) -> float:
+    """Return by how much more than by their chords triangles enclose another volume than the solid, in its parts."""
+    corners = np.array(solid["vertices"])[np.array(solid["faces"])]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    volume = float(np.einsum("ij,ij->", corners[:, 0] - corners[0, 0], across)) / 6.0
+    allowed = solid["off"] * float(np.linalg.norm(across, axis=1).sum()) + SAME_OF_SIZE * solid["volume"]
+    off = abs(volume - solid["volume"])
+    return off / float(solid["volume"]) if off > allowed else 0.0
+
+
+def _triangles(solid: Any, faces: list[Any], *, within: bool = False) -> Data:
+    """Return triangles; ``within``: those that there are are made anew, with corners within faces."""
     from OCP.Bnd import Bnd_Box
     from OCP.BRep import BRep_Tool
     from OCP.BRepBndLib import BRepBndLib
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
+    from OCP.BRepTools import BRepTools
     from OCP.IMeshTools import IMeshTools_Parameters
     from OCP.TopAbs import TopAbs_REVERSED
     from OCP.TopLoc import TopLoc_Location
@@ -202,8 +216,10 @@ def _triangles(solid: Any, faces: list[Any]) -> Data:
     size = float(np.sqrt(box.SquareExtent()))
     wanted = IMeshTools_Parameters()
     wanted.Deflection, wanted.Angle = CHORD_OF_SIZE * size, 0.999 * 2.0 * np.pi / CHORDS_OF_CIRCLE
-    wanted.InternalVerticesMode = any(_is_ball(face) for face in faces)  # a cylinder needs none between its ends
+    wanted.InternalVerticesMode = within or any(_is_ball(face) for face in faces)  # a cylinder needs none
     wanted.ControlSurfaceDeflection = wanted.InternalVerticesMode
+    if within:
+        BRepTools.Clean_s(solid)
     BRepMesh_IncrementalMesh(solid, wanted)
     # the corners of each face by themselves
     points: list[list[float]] = []

@@ -14,9 +14,11 @@ from cagepose.files.meshes.mesh_file import read_mesh
 from cagepose.files.points_file import PointsTable
 from cagepose.files.schema import BoxModel, ForceModel, LoadModel, MomentModel, PoseModel, SceneModel, SpringModel
 from cagepose.files.schema_shapes import CoefficientModel, ShapeModel
+from cagepose.files.triples import triples, whole_triples
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
+from cagepose.model.facets import Facets
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.load import Force, Load, Moment, Spring
 from cagepose.model.parts import Object
@@ -157,6 +159,10 @@ class _Builder:
         if model.convex is not None:
             vertices = to_metres(model.convex.vertices, self.unit)
             return Convex(vertices, length(model.convex.radius or 0.0), pose, model.name)
+        if model.facets is not None:
+            vertices = to_metres(triples(model.facets.vertices, "vertices"), self.unit)
+            flat_m = None if model.facets.flat is None else length(model.facets.flat)
+            return Facets(vertices, whole_triples(model.facets.triangles, "triangles"), flat_m, pose, model.name)
         if model.disc is not None:
             return Disc(length(model.disc.radius), pose, model.name)
         assert model.hole is not None, "the schema lets no shape pass that has no kind"

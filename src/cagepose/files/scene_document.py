@@ -14,9 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from cagepose.files.triples import text_of
 from cagepose.files.units import LengthUnit, from_metres, to_metres
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
+from cagepose.model.facets import Facets
 from cagepose.model.hole import Hole
 from cagepose.model.load import Force, Load, Moment, Spring
 from cagepose.model.parts import Object
@@ -144,6 +146,13 @@ class SceneWriter:
         """Return the numbers that make a shape."""
         if isinstance(shape, Box):
             return {"size": self.lengths(shape.size_m)}
+        if isinstance(shape, Facets):
+            corners = text_of([self.lengths(vertex) for vertex in shape.vertices_m])
+            return {
+                "vertices": corners,
+                "triangles": text_of(shape.triangles.tolist()),
+                "flat": self.length(shape.flat_m),
+            }
         if isinstance(shape, Convex):
             vertices = [self.lengths(vertex) for vertex in shape.vertices_m]
             return {"vertices": vertices, "radius": self.length(shape.radius_m)}

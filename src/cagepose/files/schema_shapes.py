@@ -92,6 +92,26 @@ class MeshModel(Mapping):
     )
 
 
+class FacetsModel(Mapping):
+    """A body within a closed surface of triangles, as a mesh is written with its numbers."""
+
+    vertices: str = Field(
+        min_length=1,
+        description="The corners, from the shape's position: three numbers each, all in one text.",
+        examples=["0 0 0, 10 0 0, 0 10 0, 0 0 10"],
+    )
+    triangles: str = Field(
+        min_length=1,
+        description="Of each triangle the numbers of three corners, from 0 on, counter-clockwise seen from outside.",
+        examples=["0 2 1, 0 1 3, 0 3 2, 1 2 3"],
+    )
+    flat: Positive | None = Field(
+        None,
+        description="Corners this near to the plane of a face lie in it; left out: a thousand-millionth of the size.",
+        examples=[1e-8],
+    )
+
+
 class DiscModel(Mapping):
     """A flat round disc without thickness, across z."""
 
@@ -135,7 +155,7 @@ Friction = Annotated[
     Annotated[NotNegative, Tag("number")] | Annotated[CoefficientModel, Tag("mapping")], Discriminator(_friction_form)
 ]
 
-KINDS = ("box", "sphere", "capsule", "cylinder", "cone", "convex", "mesh", "disc", "hole")
+KINDS = ("box", "sphere", "capsule", "cylinder", "cone", "convex", "mesh", "facets", "disc", "hole")
 """Keys that say what a shape is."""
 
 
@@ -161,6 +181,11 @@ class ShapeModel(Mapping):
         examples=[{"vertices": [[0, 0, 0], [10, 0, 0], [0, 10, 0], [0, 0, 10]]}],
     )
     mesh: MeshModel | None = Field(None, description="A mesh.", examples=[{"file": "part.stl"}])
+    facets: FacetsModel | None = Field(
+        None,
+        description="A closed surface of triangles.",
+        examples=[{"vertices": "0 0 0, 10 0 0, 0 10 0, 0 0 10", "triangles": "0 2 1, 0 1 3, 0 3 2, 1 2 3"}],
+    )
     disc: DiscModel | None = Field(None, description="A flat round disc.", examples=[{"radius": 3}])
     hole: HoleModel | None = Field(None, description="A round hole.", examples=[{"radius": 3, "depth": 10}])
     position: Vector | None = Field(

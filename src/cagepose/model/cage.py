@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from cagepose.errors import Key
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, duplicates, finite_array
+from cagepose.model.facets import Facets
 from cagepose.model.hole import Hole, check_holes
 from cagepose.model.naming import check_names, names_of, placed
 from cagepose.model.pose import Pose
@@ -43,7 +44,7 @@ class Cage:
     points_cage: Annotated[FloatArray, (-1, 3)]
     names: tuple[str, ...]
     pose_world_cage: Pose
-    shapes: tuple[Box | AnyShape, ...]
+    shapes: tuple[Box | AnyShape | Facets, ...]
     holes: tuple[Hole, ...]
     shape_paths: tuple[tuple[Key, ...], ...]
 

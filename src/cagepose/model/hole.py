@@ -130,7 +130,7 @@ class Hole(Turned):
         axis, mouth = self.pose_body_shape.rotation[:, 2], self.pose_body_shape.position_m
         if not parts:
             return self.depth_m, True
-        lowest = min(-float(part.heights_m(-axis[None])[0]) - float(mouth @ axis) for part in parts)
+        lowest = -max(part.reach_m(mouth, -axis) for part in parts)
         is_open = lowest >= -self.depth_m - self._slack_m
         return (-lowest, True) if is_open else (self.depth_m, False)
 
@@ -147,7 +147,7 @@ class Hole(Turned):
         that their edges would stand in the opening: asked by points between the heights where parts begin and end. Not
         asked is a bar that lies across the hole.
         """
-        if len(parts) == 1:  # convex, it holds what is between the ends of the hole
+        if len(parts) == 1 and parts[0].is_convex:  # it holds what is between the ends of the hole
             return []
         axis, mouth = self.pose_body_shape.rotation[:, 2], self.pose_body_shape.position_m
         depth, _ = self.run_through(parts)
@@ -203,6 +203,8 @@ class Hole(Turned):
     def is_within(self, part: Shape) -> bool:
         """Return whether all that the hole takes away lies in one part; close to its surface the answer may be no."""
         rims = [self._ring(height, radius / math.cos(math.pi / CORNERS_OF_CIRCLE)) for height, radius in self.rims]
+        if not part.is_convex:
+            rims.append(self._filled(np.linspace(-self.depth_m, 0.0, HEIGHTS_BETWEEN), SHARE_OF_RADIUS))
         return bool(part.holds(np.concatenate(rims)).all())
 
     def check_mouth(self, parts: Sequence[Shape], path: tuple[Key, ...], problems: ProblemList) -> None:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from cagepose.errors import Key, Problem, SceneError
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, finite_array, is_finite
+from cagepose.model.facets import Facets
 from cagepose.model.hole import Hole, check_holes
 from cagepose.model.naming import check_names, names_of, placed
 from cagepose.model.near_pairs import near_pairs
@@ -53,7 +54,7 @@ class Object:
     """
 
     boxes: tuple[Box, ...]
-    shapes: tuple[AnyShape, ...]
+    shapes: tuple[AnyShape | Facets, ...]
     holes: tuple[Hole, ...]
     center_of_gravity_m: FloatArray
     mass_kg: float | None
@@ -131,7 +132,7 @@ class Object:
         return counted(boxes, shapes, (len(self.holes), "hole", "holes"))
 
     @cached_property
-    def parts(self) -> tuple[Box | AnyShape, ...]:
+    def parts(self) -> tuple[Box | AnyShape | Facets, ...]:
         """All boxes, then all other shapes; no holes."""
         return (*self.boxes, *self.shapes)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 from cagepose.errors import Key, Problem, SceneError
+from cagepose.model.beside_facets import meets_facets
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
 from cagepose.model.hole import Hole
@@ -14,14 +15,20 @@ from cagepose.model.shapes import Shape
 
 
 def unknown_shapes(scene: Scene) -> list[Problem]:
-    """Return a problem for each hole that no method runs."""
+    """Return a problem for each hole that no method runs, and for each round part that meets facets of its body."""
     found = []
-    for path, hole in _placed(scene):
-        if not isinstance(hole, Hole):
-            continue
+    for path, shape in _placed(scene):
         body: Object | Cage = scene.object if path[0] == "object" else scene.cage
-        solids = tuple(solid for solid in (*_boxes_of(body), *body.shapes) if solid.name in hole.in_)
-        if says := _unknown_in(hole, solids):
+        every = (*_boxes_of(body), *body.shapes)
+        if met := meets_facets(shape, every):
+            there = (
+                f"is a {shape.kind} ({shape.name}) that touches or overlaps {met}, a mesh of facets of the same body"
+            )
+            found.append(Problem(path, f"{there}, which no method runs; draw both as one mesh"))
+        if not isinstance(shape, Hole):
+            continue
+        solids = tuple(solid for solid in every if solid.name in shape.in_)
+        if says := _unknown_in(shape, solids):
             found.append(Problem(path, says))
     return found
 

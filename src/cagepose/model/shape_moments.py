@@ -18,8 +18,10 @@ import numpy as np
 
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
+from cagepose.model.facets import Facets
 from cagepose.model.hull import Hull
 from cagepose.model.shapes import Convex, Rounded, Shape, Turned
+from cagepose.model.surface import LEAST_SEGMENTS, Mesh, mesh_in_own_frame
 from cagepose.model.volume import VolumeMoments
 
 
@@ -60,6 +62,8 @@ def shape_moments(shape: Shape) -> VolumeMoments:
     """
     if isinstance(shape, Box):
         own = VolumeMoments(float(shape.size_m.prod()), np.zeros(3), np.diag(shape.size_m**2 / 12.0))
+    elif isinstance(shape, Facets):
+        own = _facets_moments(shape)
     elif isinstance(shape, Turned):
         own = _turned_moments(shape)
     elif isinstance(shape, Convex) and shape.hull.dimension > 1:
@@ -71,6 +75,20 @@ def shape_moments(shape: Shape) -> VolumeMoments:
     pose = shape.pose_body_shape
     turn = pose.rotation
     return VolumeMoments(own.volume_m3, pose.transform(own.centroid_m), turn @ own.second_moment_m2 @ turn.T)
+
+
+def mesh_sums(mesh: Mesh, origin: FloatArray) -> Sums:
+    """Return the integrals over the body within a mesh, seen from ``origin``: of tetrahedra over its triangles."""
+    a, b, c = np.moveaxis(mesh.vertices_m[mesh.triangles] - origin, 1, 0)
+    volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
+    total = a + b + c
+    second = sum(np.einsum("i,ij,ik->jk", volumes, point, point) for point in (a, b, c, total)) / 20.0
+    return Sums(float(volumes.sum()), volumes @ total / 4.0, second)
+
+
+def _facets_moments(shape: Facets) -> VolumeMoments:
+    origin = shape.vertices_m.mean(axis=0)
+    return mesh_sums(mesh_in_own_frame(shape, LEAST_SEGMENTS), origin).moments(origin)
 
 
 def _turned_moments(shape: Turned) -> VolumeMoments:

@@ -31,6 +31,8 @@ class Shape(ABC):
     ----------
     kind
         As in a scene file: "sphere", ...
+    is_convex
+        Whether a straight line between two of its points is in it.
     pose_body_shape
         Places the shape in the frame of its body: the object or the cage.
     name
@@ -38,6 +40,7 @@ class Shape(ABC):
     """
 
     kind: ClassVar[str]
+    is_convex: ClassVar[bool] = True
     pose_body_shape: Pose
     name: str | None
 
@@ -83,6 +86,10 @@ class Shape(ABC):
         """Return the lowest and the highest coordinates of the shape in its body's frame, (2, 3), metres."""
         ends: FloatArray = np.array([-self.heights_m(-np.eye(3)), self.heights_m(np.eye(3))])
         return ends
+
+    def reach_m(self, point_body: FloatArray, direction_body: FloatArray) -> float:
+        """Return how far the shape reaches from a point (3,) of its body's frame along a unit vector, metres."""
+        return float(self.heights_m(direction_body[None])[0] - point_body @ direction_body)
 
     @abstractmethod
     def holds(self, points_body: FloatArray) -> NDArray[np.bool_]:

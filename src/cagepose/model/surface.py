@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
+from cagepose.model.facets import Facets
 from cagepose.model.hull import Hull, hull_of
 from cagepose.model.shapes import Convex, Rounded, Shape, Turned
 from cagepose.model.volume import BOX_SIGNS
@@ -67,6 +68,8 @@ def mesh_in_own_frame(shape: Shape, segments: int, *, halved: bool = False) -> M
     finer = 2 if halved else 1
     if isinstance(shape, Box):
         return _hull_mesh(hull_of(BOX_SIGNS * shape.size_m / 2.0))
+    if isinstance(shape, Facets):
+        return Mesh(shape.vertices_m, shape.triangles)
     if isinstance(shape, Turned):
         return _turned_mesh([*shape.rims], segments * finer)
     if isinstance(shape, Convex) and shape.hull.dimension > 1:

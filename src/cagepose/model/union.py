@@ -17,7 +17,7 @@ from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
 from cagepose.model.near_pairs import near_pairs
-from cagepose.model.shape_moments import NOTHING, Sums, shape_moments, sums_of
+from cagepose.model.shape_moments import NOTHING, Sums, mesh_sums, shape_moments, sums_of
 from cagepose.model.shapes import Shape
 from cagepose.model.surface import Mesh, shape_mesh
 from cagepose.model.tolerances import LEAST_VOLUME_LEFT
@@ -148,12 +148,3 @@ def _too_much(group: Sequence[Shape], holes: Sequence[Hole], origin: FloatArray,
         if not isinstance(shape, Box):
             total += sums(body)
     return total + together.times(-1.0)
-
-
-def mesh_sums(mesh: Mesh, origin: FloatArray) -> Sums:
-    """Return the integrals over the body within a mesh, seen from ``origin``: of tetrahedra over its triangles."""
-    a, b, c = np.moveaxis(mesh.vertices_m[mesh.triangles] - origin, 1, 0)
-    volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
-    total = a + b + c
-    second = sum(np.einsum("i,ij,ik->jk", volumes, point, point) for point in (a, b, c, total)) / 20.0
-    return Sums(float(volumes.sum()), volumes @ total / 4.0, second)

@@ -25,7 +25,7 @@ MOST_TRIES = 8
 DISTANCE_OF_CUT = 1.5 * SINGLE_PRECISION
 """Fraction of a body's size. What is as near to the plane of a cut is in it. It is more than single precision, as such
 a plane is rounded itself."""
-MOST_EDGES = 2000
+MOST_EDGES = 500
 """Hollow ones of a body that is cut."""
 
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import os
-from functools import lru_cache, partial
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
 from cagepose.errors import Problem, SceneError
 from cagepose.files.meshes.crossings import crosses_itself
-from cagepose.files.meshes.decomposed import kept_beside
+from cagepose.files.meshes.kept_facets import keep, kept
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
+from cagepose.files.meshes.mended import mended
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes, tidied
 from cagepose.files.meshes.run_trimesh import is_text, surfaces
 from cagepose.files.meshes.tolerances import FLAT_OF_SIZE
@@ -71,8 +72,15 @@ def read_mesh(path: Path, given: LengthUnit | None, of_scene: LengthUnit, name: 
 
 @lru_cache(maxsize=MESHES_KEPT)
 def _shapes(file: str, _changed: int, _n_bytes: int, unit: LengthUnit, name: str) -> MeshShapes:
-    solids = read_solids(Path(file), split=False)
-    found = mesh_shapes(checked(solids[""], ""), name, unit, partial(kept_beside, Path(file)))
+    path = Path(file)
+    found = kept(path, name, unit)
+    if found is None:
+        mesh, moved = mended(read_solids(path, split=False)[""])
+        found = mesh_shapes(checked(mesh, ""), name, unit)
+        if moved > 0.0:
+            closed = f"{name!r} has cracks of up to {moved:.2g} {unit}, which are closed here"
+            found = found._replace(notes=(closed, *found.notes))
+        keep(path, found, unit)
     metres = float(to_metres(1.0, unit))
     return MeshShapes(tuple(scaled(shape, metres) for shape in found.shapes), metres * found.error, found.notes)
 

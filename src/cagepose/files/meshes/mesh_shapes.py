@@ -1,37 +1,34 @@
-"""A body of triangles as shapes: what it is made of is recognised, else cut, else decomposed with its error stated.
+"""A body of triangles as shapes: what it is made of is recognised, and what is none of our shapes stays flat facets.
 
-Round holes are found first and filled. What is left is cut along its faces until all pieces are convex, and each piece
-is a box, a cylinder, a cone, a ball or a capsule if it stands for one. What has too many hollow edges for that, as a
-fillet has, is decomposed by coacd.
+Round holes are found first and filled. What is left is a box, a cylinder, a cone, a ball, a bar or a convex hull, or a
+few of these, if a few cuts along its faces say so. All else is one shape of facets, with the round holes in it; and
+where these are no holes of ours, as their mouths are in what is round, they are facets, too.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cagepose.files.meshes.convex_shapes import Recognised
 from cagepose.files.meshes.cuts import separate
-from cagepose.files.meshes.decomposed import Decomposition
-from cagepose.files.meshes.edges import is_hollow_and_round
+from cagepose.files.meshes.facets import facets_of, is_coarse, round_error
 from cagepose.files.meshes.manifolds import Triangles, without_rounding
-from cagepose.files.meshes.pieces import convex_pieces, parts_of, simplified
+from cagepose.files.meshes.pieces import known_pieces, parts_of
 from cagepose.files.meshes.round_holes import RoundHole, filled
-from cagepose.files.meshes.tolerances import ROUNDING_OF_MESH
 from cagepose.files.progress import tell
 from cagepose.model.box import Box
-from cagepose.model.checks import FloatArray
-from cagepose.model.hole import Chamfer, Hole
+from cagepose.model.checks import FloatArray, ProblemList
+from cagepose.model.facets import Facets
+from cagepose.model.hole import Chamfer, Hole, check_holes
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Shape, Sphere
 
 DIGITS_OF_SIZE = 11
 """Numbers are written with so many digits of the size. What follows is the rounding of double precision."""
-
-Decompose = Callable[[Triangles], Decomposition]
 
 
 class MeshShapes(NamedTuple):
@@ -40,11 +37,11 @@ class MeshShapes(NamedTuple):
     Attributes
     ----------
     shapes
-        Convex ones, then holes in them; each named, "NAME", or "NAME/1" and "NAME/hole 1" where there are several.
+        Solid ones, then holes in them; each named, "NAME", or "NAME/1" and "NAME/hole 1" where there are several.
     error
         By how much the mesh is off from them at most.
     notes
-        What is not in them as it is in the mesh, in sentences.
+        What is not in them as it is in the mesh, or what is round there, in sentences.
     """
 
     shapes: tuple[Shape, ...]
@@ -52,7 +49,15 @@ class MeshShapes(NamedTuple):
     notes: tuple[str, ...]
 
 
-def mesh_shapes(mesh: Triangles, name: str, unit: str, decompose: Decompose) -> MeshShapes:
+class _Part(NamedTuple):
+    """The shapes of what hangs together, and by how much facets of it are within what they may stand for."""
+
+    found: list[Recognised]
+    holes: list[RoundHole]
+    within: float
+
+
+def mesh_shapes(mesh: Triangles, name: str, unit: str) -> MeshShapes:
     """Return the shapes of a closed body.
 
     Parameters
@@ -63,58 +68,54 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str, decompose: Decompose) -> 
         Of its shapes.
     unit
         Of its lengths, for what is said.
-    decompose
-        Makes convex parts of what cannot be cut.
     """
     middle = (mesh.vertices.max(axis=0) + mesh.vertices.min(axis=0)) / 2.0
     scale = 2.0 ** float(np.frexp(mesh.size)[1])
     body = without_rounding(Triangles((mesh.vertices - middle) / scale, mesh.faces).body())
-    found: list[Recognised] = []
-    holes: list[RoundHole] = []
-    notes: list[str] = []
-    errors: list[float] = []
-    is_filleted = False
+    parts = []
     for part in separate(body):
         tell(f"{name!r}: {part.num_tri():,} triangles, its shape recognised")
-        simple, tolerance = simplified(part)
-        if tolerance > 0.0:
-            off = _words(scale * tolerance, unit)
-            notes.append(f"{name!r} has too many triangles: here, simplified, up to {off} off")
-        whole, of_part = filled(simple)
-        is_filleted |= is_hollow_and_round(Triangles.of(whole), ROUNDING_OF_MESH * Triangles.of(whole).size)
-        pieces = convex_pieces(whole, [one.hole for one in of_part])
-        if pieces is not None:
-            found += pieces.found
-            if pieces.error > 0.0:
-                off = _words(scale * pieces.error, unit)
-                notes.append(f"{name!r} would be too many convex parts: here, simplified, up to {off} off")
-            errors.append(tolerance + pieces.error)
-        else:
-            made = decompose(Triangles.of(whole))
-            off = _words(scale * made.error, unit)
-            notes.append(f"{name!r} is not convex: here, {len(made.parts)} convex parts, up to {off} off")
-            if whole.genus() > 0:
-                notes.append(
-                    f"{name!r} has {whole.genus()} openings that are not round with flat ends, which such parts hold"
-                    " badly: fill those that matter in the mesh and give them as `hole`"
-                )
-            found += [Recognised(Convex(corners), made.error) for corners in made.parts]
-            errors.append(tolerance)
-        holes += of_part
-    of_shapes = max([*(one.error for one in found), *(one.error for one in holes)])
-    error = scale * (of_shapes + max(errors))
-    if of_shapes > 0.0 and not notes:
+        parts.append(_shapes_of(part, is_coarse(mesh)))
+    found, holes = [one for part in parts for one in part.found], [one for part in parts for one in part.holes]
+    error = scale * max([*(one.error for one in found), *(one.error for one in holes)])
+    notes = []
+    if error > 0.0:
         notes.append(f"{name!r} has flat sides where it is round here, up to {_words(error, unit)} off")
-    if is_filleted and len(found) > 1:
-        notes.append(
-            f"{name!r} is hollow and round somewhere, as in a fillet, which makes many parts of it: here, {len(found)};"
-            " leave fillets that do not matter out in CAD"
-        )
+    n_facets = sum(len(one.shape.triangles) for one in found if isinstance(one.shape, Facets))
+    within = scale * max(part.within for part in parts)
+    if within > 0.0:
+        off = f"where these stand for what is round, they are about {_words(within, unit)} off"
+        notes.append(f"{name!r} has {n_facets:,} flat facets here, as in the mesh; {off}")
     names = [name] if len(found) == 1 else [f"{name}/{index + 1}" for index in range(len(found))]
-    pieces_named = [one.shape.renamed(each) for one, each in zip(found, names, strict=True)]
-    cuts = [_in_pieces(one.hole, pieces_named, f"{name}/hole {k + 1}") for k, one in enumerate(holes)]
-    shapes = [tidied(shape, scale, middle) for shape in (*pieces_named, *cuts)]
+    named = [one.shape.renamed(each) for one, each in zip(found, names, strict=True)]
+    cuts = [_in_pieces(one.hole, named, f"{name}/hole {k + 1}") for k, one in enumerate(holes)]
+    shapes = [tidied(shape, scale, middle) for shape in (*named, *cuts)]
     return MeshShapes(tuple(shapes), error, tuple(notes))
+
+
+def _shapes_of(part: Any, coarse: bool) -> _Part:
+    """Return the shapes of a body that hangs together."""
+    whole, holes = filled(part)
+    pieces = known_pieces(whole, [one.hole for one in holes])
+    if pieces is not None and _are_in(holes, [one.shape for one in pieces]):
+        return _Part(pieces, holes, 0.0)
+    if holes:
+        facets = facets_of(Triangles.of(whole), coarse=coarse)
+        if _are_in(holes, [facets]):
+            return _Part([Recognised(facets, 0.0)], holes, round_error(Triangles.of(whole)))
+    return _Part([Recognised(facets_of(Triangles.of(part), coarse=coarse), 0.0)], [], round_error(Triangles.of(part)))
+
+
+def _are_in(holes: Sequence[RoundHole], shapes: Sequence[Shape]) -> bool:
+    """Whether holes can be cut out of shapes: their mouths are on faces, and no side of a shape runs along them."""
+    named = [shape.renamed(f"{index}") for index, shape in enumerate(shapes)]
+    cuts = [_in_pieces(one.hole, named, f"hole {index}") for index, one in enumerate(holes)]
+    problems = ProblemList()
+    check_holes(cuts, [(cut.name or "",) for cut in cuts], named, problems)
+    if problems.problems or not all(cut.in_ for cut in cuts):
+        return False
+    around = [[shape for shape in named if shape.name in cut.in_] for cut in cuts]
+    return not any(cut.leaves_sideways(these) or cut.divided_by(these) for cut, these in zip(cuts, around, strict=True))
 
 
 def tidied(shape: Shape, scale: float, origin: FloatArray) -> Shape:
@@ -129,6 +130,10 @@ def tidied(shape: Shape, scale: float, origin: FloatArray) -> Shape:
     pose = Pose(lengths(place.position_m + origin / scale), np.round(place.quaternion_wxyz, DIGITS_OF_SIZE + 1))
     if isinstance(shape, Box):
         return Box(lengths(shape.size_m), pose, shape.name)
+    if isinstance(shape, Facets):
+        return Facets(
+            lengths(shape.vertices_m + origin / scale), shape.triangles, scale * shape.flat_m, None, shape.name
+        )
     if isinstance(shape, Convex):
         return Convex(lengths(shape.vertices_m + origin / scale), float(lengths(shape.radius_m)), None, shape.name)
     numbers: dict[str, Any] = {key: float(lengths(value)) for key, value in vars(shape).items() if key.endswith("_m")}

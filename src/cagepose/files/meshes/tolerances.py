@@ -28,6 +28,8 @@ ROUNDING_OF_MESH = 3e-7
 SINGLE_PRECISION = 1e-6
 """Fraction of a body's size. What is this near to a place or a plane is there, after single precision and some sums
 with it."""
+WIDEST_CRACK = 1e-3
+"""Fraction of a mesh's size. What is open by more is missing."""
 FLAT_OF_SIZE = 1e-6
 """Fraction of a mesh's size. What is thinner is flat."""
 LEAST_SHARED = 1e-6

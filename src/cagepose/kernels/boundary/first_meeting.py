@@ -9,10 +9,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from cagepose.kernels.algebra.motion import Motion, velocity_at
-from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
+from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import cross, dot, minus, norm, scaled, vector_from
 from cagepose.kernels.boundary.along_motion import ahead, safe_step
 from cagepose.kernels.boundary.circle_first import first_touch_of_curved, kept_at, lines_apart
@@ -40,52 +38,17 @@ from cagepose.kernels.boundary.meetings import (
     slack_of,
 )
 from cagepose.kernels.boundary.met import Meeting
+from cagepose.kernels.boundary.queue import Queue, put, take_first
 from cagepose.kernels.boundary.touching import SAME_PLACE, Meetings
 from cagepose.kernels.boundary.tree import Node, may_touch, span_of_overlap
 from cagepose.kernels.native.kernel import kernel
 
-MOST_WAITING = 4096
-"""Pairs of nodes; of more, some are asked to the end at once."""
 LEAVES_OF_SPEED = 1e-6
 """Features that touch and move apart faster leave each other, and may meet again."""
 LEAST_SLACK = 1e-12
 """Sine, of rounding."""
 THIN_OF_LEAST = 0.1
 """Of the shortest edge of two features: they may not go deeper, or could come out on the other side."""
-
-
-class Waiting:
-    """Two nodes that may meet; a record.
-
-    Attributes
-    ----------
-    node, cage_node
-        Indices.
-    begin, end
-        The amounts of the motion between which their boxes may overlap.
-    entry
-        In row k: which row is entry k of the heap.
-    """
-
-    node: int
-    cage_node: int
-    begin: float
-    end: float
-    entry: int
-
-
-class Queue(NamedTuple):
-    """Pairs that wait: rows, and how many of them and of entries of the heap there are, (2,). In the heap none can meet
-    earlier than entry (k - 1) // 2.
-    """
-
-    rows: Rows[Waiting]
-    used: IntArray
-
-
-def empty_queue(n_pairs: int = MOST_WAITING) -> Queue:
-    """Return memory for so many pairs that wait (plain Python)."""
-    return Queue(empty_rows(Waiting, n_pairs), np.zeros(2, np.int64))
 
 
 class Search(NamedTuple):
@@ -153,39 +116,7 @@ def let_wait(
     span = span_of_overlap(box, cage_box, search.motion, min(search.end, until), search.touch_m)
     if span.begin == math.inf:
         return True
-    at = queue.used[0]
-    if at == len(queue.rows):
-        return False
-    row = queue.rows[at]
-    row.node, row.cage_node, row.begin, row.end = node, cage_node, span.begin, span.end
-    queue.used[0] = at + 1
-    entry = queue.used[1]
-    queue.used[1] = entry + 1
-    rows = queue.rows
-    while entry > 0 and span.begin < rows[rows[(entry - 1) // 2].entry].begin:
-        rows[entry].entry = rows[(entry - 1) // 2].entry
-        entry = (entry - 1) // 2
-    rows[entry].entry = at
-    return True
-
-
-@kernel
-def take_first(queue: Queue) -> int:
-    """Take the pair that can meet first out of the heap; return its row."""
-    rows, first = queue.rows, queue.rows[0].entry
-    n = queue.used[1] - 1
-    queue.used[1] = n
-    last, entry = rows[n].entry, 0
-    while 2 * entry + 1 < n:
-        child = 2 * entry + 1
-        if child + 1 < n and rows[rows[child + 1].entry].begin < rows[rows[child].entry].begin:
-            child += 1
-        if rows[rows[child].entry].begin >= rows[last].begin:
-            break
-        rows[entry].entry = rows[child].entry
-        entry = child
-    rows[entry].entry = last
-    return int(first)
+    return put(queue, node, cage_node, span)
 
 
 @kernel
@@ -206,20 +137,19 @@ def first_to_meet(
         Memory.
     """
     hit = NO_HIT
-    queue.used[0] = queue.used[1] = 0
+    queue.used[:] = 0
     for root in range(3):
         for cage_root in range(3):
             if may_touch(root, held.own.nodes[root], cage_root, cage.own.nodes[cage_root]):
                 let_wait(held, root, cage, cage_root, search, hit.amount, queue)
     while queue.used[1] > 0:
         at = take_first(queue)
-        node, cage_node = queue.rows[at].node, queue.rows[at].cage_node
+        node, cage_node, end = queue.rows[at].node, queue.rows[at].cage_node, queue.rows[at].end
         if queue.rows[at].begin >= hit.amount:
             break
         one, other = held.own.nodes[node], cage.own.nodes[cage_node]
         if one.left < 0 and other.left < 0:
-            until = min(queue.rows[at].end, search.end)
-            hit = first_below(held, node, cage, cage_node, until, search, meetings, moved, hit)
+            hit = first_of_leaves(held, node, cage, cage_node, min(end, search.end), search, meetings, moved, hit)
             continue
         divides_held = other.left < 0 or (one.left >= 0 and max(one.half) >= max(other.half))
         for side in range(2):
@@ -227,12 +157,47 @@ def first_to_meet(
             child = left if side == 0 else right
             node_below, cage_below = (child, cage_node) if divides_held else (node, child)
             if not let_wait(held, node_below, cage, cage_below, search, hit.amount, queue):
-                hit = first_below(held, node_below, cage, cage_below, search.end, search, meetings, moved, hit)
+                hit = first_below(held, node_below, cage, cage_below, search, meetings, moved, hit)
     return hit
 
 
 @kernel
 def first_below(
+    held: PlacedBoundary,
+    node: int,
+    cage: PlacedBoundary,
+    cage_node: int,
+    search: Search,
+    meetings: Meetings,
+    moved: PlacedBoundary,
+    hit: Hit,
+) -> Hit:
+    """As `first_to_meet`, of what is below two nodes, in no order: where too many pairs wait."""
+    pairs, n_waiting = meetings.pairs, 1
+    pairs[0, 0], pairs[0, 1] = node, cage_node
+    while n_waiting > 0:
+        n_waiting -= 1
+        node, cage_node = pairs[n_waiting, 0], pairs[n_waiting, 1]
+        one, other = held.own.nodes[node], cage.own.nodes[cage_node]
+        until = min(search.end, hit.amount)
+        span = span_of_overlap(box_of(held, node), box_of(cage, cage_node), search.motion, until, search.touch_m)
+        if span.begin >= until:
+            continue
+        if one.left < 0 and other.left < 0:
+            hit = first_of_leaves(held, node, cage, cage_node, min(span.end, until), search, meetings, moved, hit)
+            continue
+        divides_held = other.left < 0 or (one.left >= 0 and max(one.half) >= max(other.half))
+        left, right = (one.left, one.right) if divides_held else (other.left, other.right)
+        for side in range(2):
+            child = left if side == 0 else right
+            pairs[n_waiting, 0] = child if divides_held else node
+            pairs[n_waiting, 1] = cage_node if divides_held else child
+            n_waiting += 1
+    return hit
+
+
+@kernel
+def first_of_leaves(
     held: PlacedBoundary,
     node: int,
     cage: PlacedBoundary,
@@ -243,7 +208,7 @@ def first_below(
     moved: PlacedBoundary,
     hit: Hit,
 ) -> Hit:
-    """Return what the features below two nodes reach if that is sooner than ``hit``, and else this."""
+    """Return what the features of two leaves reach if that is sooner than ``hit``, and else this."""
     one, other = held.own.nodes[node], cage.own.nodes[cage_node]
     kind, cage_kind = held.own.features[one.first].kind, cage.own.features[other.first].kind
     if kind == FACE and cage_kind == VERTEX:

@@ -23,14 +23,17 @@ from cagepose.kernels.boundary.features import (
     place_boundary,
     placed_in,
 )
-from cagepose.kernels.boundary.first_meeting import MOST_WAITING, Queue, empty_queue
 from cagepose.kernels.boundary.groups import number_groups
 from cagepose.kernels.boundary.meetings import find_meetings
 from cagepose.kernels.boundary.overlap import OverlapWork, empty_overlap_work
+from cagepose.kernels.boundary.queue import MOST_WAITING, Queue, empty_queue
 from cagepose.kernels.boundary.touching import Meetings, empty_meetings, most_meetings
 from cagepose.kernels.boundary.tree import Node
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import entry, kernel
+
+FEATURES_OF_PART = 64
+"""What has so many times more features may touch in as many times more places."""
 
 
 class Geometry(NamedTuple):
@@ -128,12 +131,16 @@ def empty_placement(geometry: Geometry) -> Placement:
 
 def most_waiting(geometry: Geometry) -> int:
     """Return how many pairs of nodes may wait (plain Python): none without boundaries."""
-    return MOST_WAITING if len(geometry.held.features) > 0 else 0
+    n_features = len(geometry.held.features) + len(geometry.cage.own.features)
+    return max(MOST_WAITING, n_features) if len(geometry.held.features) > 0 else 0
 
 
 def most_rows(geometry: Geometry) -> int:
     """Return how many meetings of the two boundaries there is memory for (plain Python)."""
-    return most_meetings(len(geometry.held.parts), len(geometry.cage.own.parts))
+    n_parts, n_cage_parts = (
+        max(len(body.parts), len(body.features) // FEATURES_OF_PART) for body in (geometry.held, geometry.cage.own)
+    )
+    return most_meetings(n_parts, n_cage_parts)
 
 
 def most_elements(geometry: Geometry) -> int:

@@ -1,7 +1,8 @@
 """What may cover features of a body: its other parts, and what holes take away from these.
 
 A union of polyhedra knows by itself what its pieces cover. So only round parts and holes have covers, and polyhedra
-beside them; and pieces that a hole of another one is open to, which are united apart from it.
+beside them; and pieces that a hole of another one is open to, which are united apart from it. Facets cover nothing:
+they are joined with polyhedra that they meet, and other parts may not touch them.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from cagepose.kernels.algebra.record import dtype_of
 from cagepose.kernels.boundary.features import HALF_SPACE, HULL, SEGMENT, TURNED, Cover
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
+from cagepose.model.facets import Facets
 from cagepose.model.hole import Hole
 from cagepose.model.hull import Hull, hull_of
 from cagepose.model.pose import Pose
@@ -81,7 +83,11 @@ def united(solids: Mapping[int, Shape], holes: Iterable[Hole], touch_m: float) -
 
 
 def covers_of(
-    parts: Sequence[Shape | FloatArray], boxes: FloatArray, apart_from: Sequence[frozenset[int]], touch_m: float
+    parts: Sequence[Shape | FloatArray],
+    boxes: FloatArray,
+    owners: Sequence[frozenset[int]],
+    owner_of: NDArray[np.int64],
+    touch_m: float,
 ) -> Covers:
     """Return what may cover each feature.
 
@@ -91,29 +97,29 @@ def covers_of(
         Those of the body.
     boxes
         Around the features, (n, 2, 3), metres.
-    apart_from
-        Numbers of the parts that do not cover each feature: its own, and those that it is united with.
+    owners, owner_of
+        Numbers of the parts that do not cover features, their own and those that these are united with; and which of
+        these sets each feature has, (n,).
     touch_m
         What is this close touches, metres.
     """
-    owners = {owner: index for index, owner in enumerate(dict.fromkeys(apart_from))}
-    owner_of = np.array([owners[owner] for owner in apart_from], np.int64)
-    of_features = [list[int]() for _ in apart_from]
+    features, of_rows = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
     rows, bounds, of_parts = list[tuple[object, ...]](), list[BoundRow](), dict[int, int]()
     for number, part in enumerate(parts):
-        if isinstance(part, np.ndarray | Hole | Disc) or all(number in owner for owner in owners):
+        if isinstance(part, np.ndarray | Hole | Disc | Facets) or all(number in owner for owner in owners):
             continue
         may_cover = np.array([number not in owner for owner in owners])
         low, high = part.limits_m() + NEAR * touch_m * np.array(((-1.0,), (1.0,)))
         is_near = may_cover[owner_of] & (boxes[:, 0] <= high).all(axis=1) & (boxes[:, 1] >= low).all(axis=1)
         if not is_near.any():
             continue
-        for feature in np.flatnonzero(is_near).tolist():
-            of_features[feature].append(len(rows))
+        features.append(np.flatnonzero(is_near))
+        of_rows.append(np.full(len(features[-1]), len(rows)))
         of_parts[number] = len(rows)
         rows.append(_solid(part, bounds, touch_m))
-    indices = [index for of_feature in of_features for index in of_feature]
-    counts = np.array([len(of_feature) for of_feature in of_features], np.int64)
+    of_each = np.concatenate(features)
+    indices: list[int] = np.concatenate(of_rows)[np.argsort(of_each, kind="stable")].tolist()
+    counts = np.bincount(of_each, minlength=len(boxes))
     last = np.cumsum(counts)
     made = _with_openings(parts, rows, of_parts, indices, touch_m)
     return Covers(made, bounds, indices, last - counts, last)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +12,15 @@ from cagepose.kernels.boundary.loops import NONE, Border, Loop, find_loops
 from cagepose.model.boundary.trimmed import Faces
 
 Rows = NDArray[np.void]
+
+
+class FacePlanes(NamedTuple):
+    """What faces on one side of a plane share, those of several such sides: see `Faces`."""
+
+    normals: NDArray[np.float64]
+    offsets: NDArray[np.float64]
+    planes: NDArray[np.int64]
+    parts: NDArray[np.int64]
 
 
 def faces_of(planes: Rows, arcs: Rows, ends: NDArray[np.int64]) -> tuple[Faces, int]:
@@ -40,10 +51,12 @@ def faces_of(planes: Rows, arcs: Rows, ends: NDArray[np.int64]) -> tuple[Faces, 
     borders = borders[np.argsort(face, kind="stable")]
     loops = np.zeros(len(borders), dtype_of(Loop))
     n_loops, n_open = find_loops(normals[first], borders, loops)
-    return _regions(planes, regions, normals[first], borders, loops[:n_loops]), n_open
+    oriented, parts = regions.T
+    offsets = planes["offset"][oriented // 2] * np.where(oriented % 2, -1.0, 1.0)
+    return regions_of(FacePlanes(normals[first], offsets, oriented, parts), borders, loops[:n_loops]), n_open
 
 
-def _regions(planes: Rows, keys: NDArray[np.int64], normals: NDArray[np.float64], borders: Rows, loops: Rows) -> Faces:
+def regions_of(sides: FacePlanes, borders: Rows, loops: Rows) -> Faces:
     """Return one face for each outer loop, with the inner loops within it; slivers of two corners are none."""
     n_borders = np.bincount(np.searchsorted(loops["first"], borders["loop"]), minlength=len(loops))
     region = np.where(loops["region"] == NONE, np.arange(len(loops)), loops["region"])
@@ -52,11 +65,10 @@ def _regions(planes: Rows, keys: NDArray[np.int64], normals: NDArray[np.float64]
     index = index.reshape(-1)
     face = borders["face"][loops["first"][outer]]
     order = _in_loops(borders, loops[is_wide], np.argsort(index, kind="stable"))
-    oriented, parts = keys[face].T
-    offsets = planes["offset"][oriented // 2] * np.where(oriented % 2, -1.0, 1.0)
     is_convex = loops["is_convex"][outer] & (n_loops == 1)
     n_of_face = np.bincount(index, n_borders[is_wide], minlength=len(outer)).astype(np.int64)
-    return Faces(normals[face], offsets, oriented, parts, is_convex, n_of_face, borders[order])
+    normals, offsets, planes, parts = (of[face] for of in sides)
+    return Faces(normals, offsets, planes, parts, is_convex, n_of_face, borders[order])
 
 
 def _in_loops(borders: Rows, loops: Rows, order: NDArray[np.int64]) -> list[int]:

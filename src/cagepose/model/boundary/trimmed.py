@@ -29,12 +29,15 @@ class Vertices:
         How many bound its cone, (n,).
     tangents
         Unit vectors of all, one after the other: a normal n of the cone has n . tangent <= 0 with all of its own.
+    shortest_m
+        Of each, the length of the shortest edge there, (n,), metres; inf: there is none.
     """
 
     places_m: FloatArray
     parts: IntArray
     n_tangents: IntArray
     tangents: FloatArray
+    shortest_m: FloatArray
 
 
 @dataclass(frozen=True, eq=False)

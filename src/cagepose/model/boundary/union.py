@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,11 +21,14 @@ from cagepose.model.boundary.corners import vertices_of
 from cagepose.model.boundary.regions import faces_of
 from cagepose.model.boundary.trimmed import Edges, TrimmedUnion, joined
 from cagepose.model.checks import FloatArray, unit_rows
+from cagepose.model.near_pairs import near_pairs
 
 TILT_RAD = 1e-6
 """Faces of different pieces at this angle can be flush: Euler angles are often written with six decimals."""
 ALONG = np.array((0.4127, 0.5309, 0.7401))
 """A direction across which few places of ordinary parts lie: the sweep over places goes along it."""
+SAME_END_OF_LENGTH = 1e-9
+"""Of the shortest edge: an end that is nearer to a vertex is at it."""
 
 Rows = NDArray[np.void]
 IntArray = NDArray[np.int64]
@@ -96,7 +100,20 @@ def _boundary(rows: Pieces, planes: Rows, arcs: Rows, ends: IntArray, nodes: Int
     of_sides = [rows_of_sides[:, ::-1] for rows_of_sides in (convex["normals"], oriented, convex["parts"])]
     edges = Edges(convex["start"], convex["end"], convex["direction"], *of_sides)
     faces, n_open = faces_of(planes, arcs, ends)
-    return TrimmedUnion(vertices_of(rows, planes, nodes, touch_m), edges, faces, n_open)
+    vertices = vertices_of(rows, planes, nodes, touch_m)
+    return TrimmedUnion(replace(vertices, shortest_m=_shortest_at(vertices.places_m, edges)), edges, faces, n_open)
+
+
+def _shortest_at(places: FloatArray, edges: Edges) -> FloatArray:
+    """Return the length of the shortest edge that starts or ends at each place, (n,); inf: none does."""
+    lengths = np.linalg.norm(edges.ends_m - edges.starts_m, axis=1)
+    everywhere = np.concatenate([places, edges.starts_m, edges.ends_m])
+    slack = SAME_END_OF_LENGTH * float(lengths.min(initial=0.0))
+    pairs = near_pairs(everywhere - slack, everywhere + slack)
+    ends = pairs[(pairs[:, 0] < len(places)) & (pairs[:, 1] >= len(places))]
+    shortest = np.full(len(places), np.inf)
+    np.minimum.at(shortest, ends[:, 0], np.tile(lengths, 2)[ends[:, 1] - len(places)])
+    return shortest
 
 
 def _planes_of(rows: Any, touch_m: float, tilt_rad: float) -> tuple[Rows, int]:
