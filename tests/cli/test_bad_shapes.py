@@ -24,7 +24,7 @@ loads:
 """
 PIN = "cylinder: {radius: 5, length: 20}"
 FLOOR = "box: {size: [90, 90, 10]}"
-SHAPES = "box, sphere, capsule, cylinder, cone, convex, mesh, disc, hole"
+SHAPES = "box, sphere, capsule, cylinder, cone, convex, mesh, facets, disc, hole"
 KNOWN = f"known shapes: {SHAPES}; known keys beside them: position, euler_zyx_deg, name, friction"
 
 # What is broken, the object's shape, the cage's shape, and the whole line that must come out.
