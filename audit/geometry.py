@@ -15,6 +15,8 @@ from cagepose import Contact, Load, Pose, Scene
 PROBE = 3.0
 PROBE_MARGIN = 1.5
 """The margin of (2.7), in touch tolerances."""
+SAME_PLACE, SAME_NORMAL = 4.0, 1e-9
+"""Contacts whose places are so near, in touch tolerances, and whose normals differ by less are one."""
 WEIGHT_BESIDE_FORCE = 1e-6
 """Where mass or magnitude is missing: docs/theory/mechanics, how loads are weighed."""
 
@@ -93,6 +95,12 @@ def _is_covered(scene: Scene, box: int, in_box: FloatArray, axis: int, tau: floa
         for k, other in enumerate(scene.object.boxes)
         if k != box
     )
+
+
+def are_one(one: Touch, other: Touch, touch_m: float) -> bool:
+    """Whether two contacts are one: at one place, and with one normal."""
+    apart_m = float(np.linalg.norm(one.place - other.place))
+    return apart_m <= SAME_PLACE * touch_m and float(np.linalg.norm(one.normal - other.normal)) <= SAME_NORMAL
 
 
 def touches_are_clear(scene: Scene, pose: Pose) -> bool:

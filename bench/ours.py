@@ -44,7 +44,7 @@ def native_call(scene: Scene, name: str) -> Callable[[], object]:
     n_points = len(scene.cage.names)
     rules = method.rules(scene)
     outcome = empty_outcome(scene.geometry, len(scene.loads), rules.step_limit, 0 if method.joins_steps else n_points)
-    work = method.workspace(scene.geometry, rules.step_limit)
+    work = method.workspace(scene, rules.step_limit)
     return partial(method.run, part, cases, Slots(rules), Slots(work), Slots(outcome))
 
 

@@ -21,14 +21,14 @@ from cagepose.kernels.boundary.corners import find_corners
 from cagepose.kernels.boundary.fans import find_arcs
 from cagepose.kernels.boundary.features import NO_BOUNDARY, empty_placed
 from cagepose.kernels.boundary.flat_regions import find_flat_regions
+from cagepose.kernels.boundary.geometry import Geometry, empty_cage, empty_placement, overlap_at, place_object
 from cagepose.kernels.boundary.inside import is_in_face
 from cagepose.kernels.boundary.lines import empty_fan_work
 from cagepose.kernels.boundary.loops import Border, Loop, find_loops
 from cagepose.kernels.boundary.overlap import empty_overlap_work
 from cagepose.kernels.boundary.pieces import Piece, PieceEdge, PieceFace, Pieces, Plane, find_planes
 from cagepose.kernels.boundary.places import find_groups, merge_places, settle_vertices
-from cagepose.kernels.collision.geometry import Geometry, empty_cage, empty_placement, place_object
-from cagepose.kernels.collision.start import overlap_at
+from cagepose.kernels.collision.boxes import BoxesAndPoints, empty_placed_boxes, place_boxes_at
 from cagepose.kernels.contact.loads import Action
 from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.outcome.at_pose import critical_friction, judge_start
@@ -69,14 +69,16 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     """Yield each entry and its arguments; only their types count."""
     vectors, quaternions, numbers = np.zeros((1, 3)), np.zeros((1, 4)), np.zeros(1)
     none = NO_BOUNDARY
-    geometry = Geometry(vectors, vectors, np.zeros((1, 3, 3)), 1, vectors, none, empty_placed(none), 0.0)
+    geometry = Geometry(none, empty_placed(none), 0.0)
+    boxes = BoxesAndPoints(vectors, vectors, np.zeros((1, 3, 3)), 1, vectors)
     tolerances = kernel_tolerances(1.0, 1e-9)
 
     yield write_quaternions, (vectors, quaternions)
     yield write_euler_zyx, (quaternions, vectors)
     yield place_object, (geometry, ORIGIN, UPRIGHT, empty_placement(geometry))
+    yield place_boxes_at, (boxes, ORIGIN, UPRIGHT, empty_placed_boxes(boxes))
 
-    part = Part(vectors, vectors, np.zeros((1, 3, 3)), 1, none, empty_record(Body), ORIGIN)
+    part = Part(none, vectors, vectors, np.zeros((1, 3, 3)), 1, empty_record(Body), ORIGIN)
     actions = np.zeros((1, 1, 1), dtype_of(Action))
     points = np.zeros((1, 1, 3))
     cases = Cases(
@@ -108,7 +110,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield run_quasistatic_cases, (0, 0, part, cases, 0.0, rules, work, endings)
 
     paper = StepwiseRules(SupportRules(0.0, 0.0, 0.0, 0.0), SlipRules(0.0, 0.0, 0.0, 0.0), 1)
-    paper_work = empty_stepwise_workspace(geometry, 1)
+    paper_work = empty_stepwise_workspace(geometry, boxes, 1)
     yield run_stepwise, (part, cases, paper, paper_work, outcome)
     yield repeat_stepwise, (0, outcome.steps, outcome.order[0], 1, part, cases, paper, paper_work, outcome)
     yield run_stepwise_cases, (0, 0, part, cases, 0.0, paper, paper_work, endings)
@@ -117,14 +119,14 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield solve_program, (rows, bounds, program)
     yield shortest_inside, (rows, bounds, empty_system(1), empty_record(PassiveSet), np.zeros(6))
     yield extents, (rows, bounds, program, np.zeros(6), np.zeros(6))
-    play_work, goals, extremes = empty_play_workspace(geometry), empty_rows(Goal, 1), empty_rows(Extreme, 1)
-    yield write_start, (geometry, play_work)
-    yield find_play, (geometry, goals, extremes, play_work)
-    yield find_play_from, (geometry, goals, extremes, vectors, quaternions, play_work)
-    yield find_limiting_gaps, (geometry, goals[0], extremes[0], empty_rows(LimitingGap, 1), play_work)
+    play_work, goals, extremes = empty_play_workspace(boxes), empty_rows(Goal, 1), empty_rows(Extreme, 1)
+    yield write_start, (boxes, play_work)
+    yield find_play, (boxes, goals, extremes, play_work)
+    yield find_play_from, (boxes, goals, extremes, vectors, quaternions, play_work)
+    yield find_limiting_gaps, (boxes, goals[0], extremes[0], empty_rows(LimitingGap, 1), play_work)
     yield find_linear_play, (goals, rows, bounds, program, extremes)
-    yield certify, (geometry, 0.0, goals, numbers, play_work, empty_certificate_workspace(1))
-    yield grow_tree, (geometry, vectors, empty_rows(Station, 1), 1, empty_placement(geometry), tolerances)
+    yield certify, (boxes, 0.0, goals, numbers, play_work, empty_certificate_workspace(1))
+    yield grow_tree, (boxes, vectors, empty_rows(Station, 1), 1, empty_placed_boxes(boxes), tolerances)
 
     indices, is_true = np.zeros(1, np.int64), np.zeros(1, np.bool_)
     pieces = Pieces(empty_rows(Piece, 1), vectors, empty_rows(PieceEdge, 1), empty_rows(PieceFace, 1), indices)

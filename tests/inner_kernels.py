@@ -66,7 +66,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield find_overlap, (body, body, 0.0, empty_overlap_work(NO_BOUNDARY, NO_BOUNDARY))
     search = of_boundaries.Search(motion, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     yield of_boundaries.first_to_meet, (body, body, search, found, empty_queue(), body)
-    one = (body, 0, body, 0, motion, 0.0, 0.0, 0.0, body, found.places, found.kept, 0)
+    one = (body, 0, body, 0, motion, 0.0, 0.0, 0.0, 0.0, body, found.places, found.waiting, found.kept, 0)
     yield first_touch_of_curved, one
 
 

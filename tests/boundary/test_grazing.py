@@ -39,8 +39,8 @@ class Steps:
             for j in range(len(cage.own.features)):
                 one, other = held.own.features[i], cage.own.features[j]
                 if is_curved(one, other) and can_touch(one, other):
-                    memory = (asked.moved, found.places, found.kept, 0)
-                    reached = Reached(*self.first(held, i, cage, j, motion, end, 1e-9, touch_m, *memory))
+                    memory = (asked.moved, found.places, found.waiting, found.kept, 0)
+                    reached = Reached(*self.first(held, i, cage, j, motion, end, 1e-9, touch_m, touch_m, *memory))
                     self.taken.append(reached.n_steps)
 
     def conclude(self, say: Callable[[str], None]) -> None:

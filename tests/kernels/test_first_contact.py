@@ -10,7 +10,6 @@ import math
 import numpy as np
 import pytest
 
-from cagepose.kernels.collision.screw import screw_entry
 from cagepose.kernels.collision.travel import travel_entry
 from cagepose.kernels.collision.turn import angle_of_key, turn_entry
 
@@ -26,11 +25,6 @@ def travel(point, direction, half=CUBE, depth=RESOLUTION):
 def turn(point, through, axis, half=CUBE, depth=RESOLUTION):
     key = turn_entry(point, through, axis, half, depth, RESOLUTION, math.inf)
     return math.inf if key == math.inf else angle_of_key(key)
-
-
-def screw(point, through, axis, pitch, end=2.0 * math.pi, half=CUBE, depth=RESOLUTION):
-    velocity = np.cross(axis, np.subtract(point, through)) + pitch * np.array(axis)
-    return screw_entry(point, tuple(velocity.tolist()), axis, end, half, depth, RESOLUTION)
 
 
 def negated(vector):
@@ -129,53 +123,6 @@ class TestTurn:
         gap, lever = 1e-11, 2.0
         found = turn((0.0, 1.0 + gap, 0.0), (-lever, 1.0 + gap, 0.0), Z)
         assert found == pytest.approx(gap / lever, rel=1e-4)
-
-
-class TestScrew:
-    @pytest.mark.parametrize("gap", [0.0, 0.9 * RESOLUTION, -0.9 * RESOLUTION])
-    def test_a_touching_point_blocks_at_once_when_the_face_comes_nearer(self, gap):
-        assert screw((0.2, 0.0, 1.0 + gap), (0.0, 0.0, 0.0), Z, 0.1) == 0.0
-        assert turn((0.2, 1.0 + gap, 0.0), (2.0, 1.0, 0.0), negated(Z)) == 0.0
-
-    def test_without_pitch_it_is_a_turn(self):
-        rng = np.random.default_rng(5)
-        n_met = 0
-        for _ in range(200):
-            point = tuple((rng.uniform(1.01, 1.8, 3) * rng.choice([-1, 1], 3)).tolist())
-            through = tuple(rng.uniform(-2, 2, 3).tolist())
-            axis = rng.normal(size=3)
-            axis = tuple((axis / np.linalg.norm(axis)).tolist())
-            expected = turn(point, through, axis)
-            found = screw(point, through, axis, 0.0)
-            n_met += expected < math.inf
-            assert found == expected or found == pytest.approx(expected, abs=1e-9)
-        assert n_met > 20
-
-    def test_the_thread_meets_the_face_below_after_the_height_over_the_pitch(self):
-        """The point sits 0.7 above the top face, off the axis; the object rises by the pitch for each radian."""
-        assert screw((0.5, 0.0, 1.7), (0.0, 0.0, 0.0), Z, 0.1, end=20.0) == pytest.approx(7.0, rel=1e-14)
-
-    def test_several_turns_may_pass_before_contact(self):
-        assert screw((0.5, 0.0, 2.0), (0.0, 0.0, 0.0), Z, 0.01, end=200.0) == pytest.approx(100.0, rel=1e-14)
-
-    def test_nothing_is_met_before_the_end_of_the_motion(self):
-        assert screw((0.5, 0.0, 1.7), (0.0, 0.0, 0.0), Z, 0.1, end=6.9) == math.inf
-
-    def test_the_third_rate_decides_where_two_vanish(self):
-        """With A = 0 and D = -B the gap is B (sin s - s): its first two rates vanish, the third is -B.
-
-        The lever u = (0, 1, 0) has no part along x or along the axis (sin t, 0, cos t), so A_x = 0 and B_x = cos t;
-        the pitch cos t / sin t makes D_x = -cos t. On the right face the point goes in at once, on the left face it
-        leaves.
-        """
-        tilt = 0.5
-        axis, pitch = (math.sin(tilt), 0.0, math.cos(tilt)), math.cos(tilt) / math.sin(tilt)
-        wide = (1.0, 50.0, 50.0)
-        assert screw((1.0, 0.0, 0.0), (1.0, -1.0, 0.0), axis, pitch, end=1.0, half=wide) == 0.0
-        assert screw((-1.0, 0.0, 0.0), (-1.0, -1.0, 0.0), axis, pitch, end=1.0, half=wide) == math.inf
-
-    def test_a_touching_point_that_is_carried_along_the_axis_of_its_face_is_no_contact(self):
-        assert screw((1.0, 0.0, 0.0), (1.0, 0.0, 0.0), Z, 0.3) == math.inf
 
 
 @pytest.mark.parametrize("scale", [1e-3, 1e3])

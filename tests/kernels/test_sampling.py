@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from cagepose.kernels.collision.screw import screw_entry
 from cagepose.kernels.collision.travel import travel_entry
 from cagepose.kernels.collision.turn import angle_of_key, turn_entry
 
@@ -61,16 +60,14 @@ class Travel:
 
 class Turn:
     end = 2.0 * math.pi
-    pitch = 0.0
 
     def __init__(self, rng):
         self.axis = random_unit(rng)
         self.through = rng.uniform(-2.0, 2.0, 3)
 
     def path(self, point, moments):
-        """Seen from the object, the point goes the way back: turned by -s and moved by -pitch s."""
-        turned = Rotation.from_rotvec(-moments[:, None] * self.axis).apply(point - self.through) + self.through
-        return turned - self.pitch * moments[:, None] * self.axis
+        """Seen from the object, the point goes the way back: turned by -s."""
+        return Rotation.from_rotvec(-moments[:, None] * self.axis).apply(point - self.through) + self.through
 
     def entry(self, point, half, depth):
         key = self.key(point, half, depth, math.inf)
@@ -80,19 +77,7 @@ class Turn:
         return turn_entry(tuple(point), tuple(self.through), tuple(self.axis), tuple(half), depth, RESOLUTION, least)
 
 
-class Screw(Turn):
-    end = 9.0
-
-    def __init__(self, rng):
-        super().__init__(rng)
-        self.pitch = rng.uniform(-0.5, 0.5)
-
-    def entry(self, point, half, depth):
-        velocity = np.cross(self.axis, point - self.through) + self.pitch * self.axis
-        return screw_entry(tuple(point), tuple(velocity), tuple(self.axis), self.end, tuple(half), depth, RESOLUTION)
-
-
-@pytest.mark.parametrize("motion_kind", [Travel, Turn, Screw])
+@pytest.mark.parametrize("motion_kind", [Travel, Turn])
 def test_first_contact_is_neither_late_nor_early(motion_kind, cases):
     rng = np.random.default_rng(20261121)
     n_met = n_blocked = 0
@@ -139,7 +124,7 @@ def test_a_turn_is_cut_short_only_where_nothing_is_met_before(cases):
     assert n_blocked > 0
 
 
-@pytest.mark.parametrize("motion_kind", [Travel, Turn, Screw])
+@pytest.mark.parametrize("motion_kind", [Travel, Turn])
 def test_a_point_that_starts_inside_the_tolerance_is_never_pushed_deeper(motion_kind, cases):
     rng = np.random.default_rng(7)
     n_free = 0

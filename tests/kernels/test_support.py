@@ -10,11 +10,11 @@ from numpy.testing import assert_allclose
 
 from cagepose import Box, Cage, Object, Pose
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
-from cagepose.kernels.collision.geometry import empty_placement, place_object
+from cagepose.kernels.collision.boxes import empty_placed_boxes, place_boxes_at
 from cagepose.kernels.collision.turn import key_of_angle
 from cagepose.kernels.outcome.trace import NONE, TURN
 from cagepose.kernels.stepwise.support import PointLoad, SupportRules, driven_axis, pairwise_stability
-from cagepose.model.geometry import scene_geometry
+from cagepose.model.geometry import boxes_and_points
 
 DOWN = (0.0, 0.0, -1.0)
 RULES = SupportRules(1e-3, key_of_angle(math.pi / 10000.0), key_of_angle(1e-9), 1e-6)
@@ -25,9 +25,9 @@ SQUARE = [(1.0, 1.0, 0.0), (1.0, -1.0, 0.0), (-1.0, -1.0, 0.0), (-1.0, 1.0, 0.0)
 def stability(points, load_point, *, direction=DOWN, pose=None, contacts=None):
     """Test a plate 6 x 6 x 1 whose bottom lies on the plane z = 0, loaded at ``load_point``."""
     frame = pose or Pose()
-    geometry = scene_geometry(Object([Box((6, 6, 1))]), Cage(points, pose=frame), [], 0.0)
-    placement = empty_placement(geometry)
-    place_object(geometry, *(frame @ Pose((0, 0, 0.5))).as_tuples(), placement)
+    geometry = boxes_and_points(Object([Box((6, 6, 1))]), Cage(points, pose=frame), [])
+    placement = empty_placed_boxes(geometry)
+    place_boxes_at(geometry, *(frame @ Pose((0, 0, 0.5))).as_tuples(), placement)
     load = PointLoad(tuple((frame.rotation @ direction).tolist()), tuple(frame.transform(load_point).tolist()))
     chosen = np.arange(len(points)) if contacts is None else np.array(contacts)
     return pairwise_stability(geometry, placement, chosen, len(chosen), load, 2, 3, RULES, TOLERANCES)

@@ -37,13 +37,13 @@ def assert_is_way_out(scene: Scene, found: Play) -> None:
     pose = scene.object.pose_world_object
     for step in found.cage.path:
         for fraction in np.linspace(0, 1, 200):
-            depths, _ = deepest_boxes(scene.geometry, *step.motion.pose_at(pose, float(fraction)).as_tuples())
+            depths, _ = deepest_boxes(scene.boxes, *step.motion.pose_at(pose, float(fraction)).as_tuples())
             assert depths.max() < 1e-9
         pose = step.pose_world_object
     last = found.cage.path[-1].motion
     assert last.kind == "travel"
     for far in (10.0, 100.0):
-        depths, _ = deepest_boxes(scene.geometry, *replace(last, distance_m=far).pose_at(pose, 1.0).as_tuples())
+        depths, _ = deepest_boxes(scene.boxes, *replace(last, distance_m=far).pose_at(pose, 1.0).as_tuples())
         assert depths.max() < 0
 
 

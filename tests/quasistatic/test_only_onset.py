@@ -19,7 +19,7 @@ from audit.uniqueness import violation
 from cagepose import run
 from cagepose.kernels.algebra.least_squares import empty_system
 from cagepose.kernels.algebra.record import empty_record
-from cagepose.kernels.collision.geometry import empty_cage
+from cagepose.kernels.boundary.geometry import empty_cage
 from cagepose.kernels.contact.contact_set import ContactSet, empty_contact_set
 from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS, NewtonWorkspace
 from cagepose.kernels.outcome.cases import start_of
@@ -321,7 +321,6 @@ def held_blocks(random: np.random.Generator, friction: float) -> Iterator[Held]:
             case.quaternion,
             case.actions[0],
             case.friction,
-            case.tolerances.touch_m,
             at,
         )
         rows = [at.contacts.rows[i] for i in range(at.contacts.used[0]) if at.contacts.states[i].chosen]

@@ -100,7 +100,7 @@ def test_a_ball_lies_on_the_rim_of_a_hole(radius: float) -> None:
     assert result.pose.position_m == pytest.approx((0.0, 0.0, math.sqrt(radius**2 - rim**2)), abs=1e-9 * 0.2)
 
 
-@pytest.mark.parametrize("direction_deg", [0.0, 22.5, 31.0, 45.0, 137.0])
+@pytest.mark.parametrize("direction_deg", [0.0, 3.0, 18.0, 22.5, 27.0, 31.0, 45.0, 63.0, 137.0])
 @pytest.mark.parametrize(
     ("share", "verdict"), [(0.999, "rests"), (0.9999999, "rests"), (1.00001, "tips"), (1.001, "tips")]
 )

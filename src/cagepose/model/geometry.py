@@ -8,14 +8,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from cagepose.kernels.boundary.features import (
-    NO_BOUNDARY,
-    Boundary,
-    PlacedBoundary,
-    empty_placed,
-    place_boundary,
-)
-from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.boundary.features import Boundary, PlacedBoundary, empty_placed, place_boundary
+from cagepose.kernels.boundary.geometry import Geometry
+from cagepose.kernels.collision.boxes import BoxesAndPoints
 from cagepose.model.boundary.features import boundary_of
 from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
@@ -41,38 +36,32 @@ def _seams_of(boxes: bytes, touch_m: float) -> Seams:
     return close_seams([PlacedBox(row[:3], row[3:6], row[6:].reshape(3, 3)) for row in rows], touch_m)
 
 
-def scene_geometry(held: Object, cage: Cage, bridges: list[PlacedBox], touch_m: float) -> Geometry:
-    """Return the boxes in the object's frame, its own first and then the bridges, and the cage points in the world; or,
-    with other shapes, the boundaries of both.
-    """
-    is_shaped = has_shapes(held, cage)
-    placed = [] if is_shaped else _placed(held) + bridges
-    points = np.zeros((0, 3)) if is_shaped else cage.points_world()
-    return Geometry(
+def boxes_and_points(held: Object, cage: Cage, bridges: list[PlacedBox]) -> BoxesAndPoints:
+    """Return the boxes in the object's frame, its own first and then the bridges, and the cage points in the world."""
+    placed = _placed(held) + bridges
+    return BoxesAndPoints(
         half_sizes=np.array([box.half_size for box in placed]).reshape(-1, 3),
         box_positions=np.array([box.position for box in placed]).reshape(-1, 3),
         box_rotations=np.array([box.rotation for box in placed]).reshape(-1, 3, 3),
-        n_own_boxes=0 if is_shaped else len(held.boxes),
-        points_world=np.ascontiguousarray(points),
-        held=_boundary((*held.parts, *held.holes), touch_m) if is_shaped else NO_BOUNDARY,
-        cage=placed_cage(held, cage, touch_m),
-        touch_m=touch_m,
+        n_own_boxes=len(held.boxes),
+        points_world=np.ascontiguousarray(cage.points_world()),
     )
 
 
-def placed_cage(held: Object, cage: Cage, touch_m: float) -> PlacedBoundary:
+def scene_geometry(held: Object, cage: Cage, touch_m: float) -> Geometry:
+    """Return the boundaries of the object, in its frame, and of the cage, in the world."""
+    return Geometry(_boundary((*held.parts, *held.holes), touch_m), placed_cage(cage, touch_m), touch_m)
+
+
+def placed_cage(cage: Cage, touch_m: float) -> PlacedBoundary:
     """Return the boundary of the cage in the world, with memory of its own."""
-    placed = empty_placed(cage_boundary(held, cage, touch_m))
+    placed = empty_placed(cage_boundary(cage, touch_m))
     place_boundary(placed, *cage.pose_world_cage.as_tuples())
     return placed
 
 
-def cage_boundary(held: Object, cage: Cage, touch_m: float) -> Boundary:
-    """Return the boundary of all parts of the cage, its points first, in its frame; that of none where there are boxes
-    and points alone.
-    """
-    if not has_shapes(held, cage):
-        return NO_BOUNDARY
+def cage_boundary(cage: Cage, touch_m: float) -> Boundary:
+    """Return the boundary of all parts of the cage, its points first, in its frame."""
     return _boundary((*cage.points_cage, *cage.shapes, *cage.holes), touch_m)
 
 

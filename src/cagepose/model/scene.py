@@ -10,10 +10,10 @@ from typing import Any, get_args
 import numpy as np
 
 from cagepose.errors import Key, key_path
+from cagepose.kernels.boundary.geometry import Geometry, empty_placement, overlap_at
 from cagepose.kernels.boundary.overlap import empty_overlap_work
+from cagepose.kernels.collision.boxes import BoxesAndPoints
 from cagepose.kernels.collision.contacts import deepest_boxes
-from cagepose.kernels.collision.geometry import Geometry, empty_placement
-from cagepose.kernels.collision.start import overlap_at
 from cagepose.model.above import from_above
 from cagepose.model.cage import Cage
 from cagepose.model.checks import (
@@ -26,7 +26,7 @@ from cagepose.model.checks import (
     duplicates,
     is_finite,
 )
-from cagepose.model.geometry import has_shapes, object_seams, scene_geometry, scene_size
+from cagepose.model.geometry import boxes_and_points, has_shapes, object_seams, scene_geometry, scene_size
 from cagepose.model.hole import Hole
 from cagepose.model.load import Load
 from cagepose.model.methods import METHODS, Metric
@@ -80,7 +80,9 @@ class Scene:
     tolerances
         What counts as touching and as grazing.
     geometry
-        Boxes, bridges over their seams and cage points as the kernels take them.
+        The boundaries of object and cage, as the kernels take them.
+    boxes
+        Boxes, bridges over their seams and cage points, as the stepwise method and the search for a way out take them.
     open_seams
         Names of pairs of boxes that meet flush with outlines that cross: a point that moves exactly in their common
         plane would pass between them.
@@ -101,6 +103,7 @@ class Scene:
     tolerances: Tolerances
     adjustable: tuple[Adjustable, ...]
     geometry: Geometry
+    boxes: BoxesAndPoints
     open_seams: tuple[tuple[str, str], ...]
     size_m: float
     has_other_shapes: bool
@@ -157,10 +160,12 @@ class Scene:
         _check_thickness(object, cage, touch_m, problems)
         _check_points_apart(cage, touch_m, problems)
         seams = Seams([], []) if has_shapes(object, cage) else object_seams(object, touch_m)
-        geometry = scene_geometry(object, cage, seams.bridges, touch_m)
+        geometry, boxes = scene_geometry(object, cage, touch_m), boxes_and_points(object, cage, seams.bridges)
         _check_distance(object, cage, size_m, problems)
-        _check_points_outside(object, cage, geometry, touch_m, size_m, problems)
-        _check_shapes_apart(object, cage, geometry, problems)
+        if has_shapes(object, cage):
+            _check_shapes_apart(object, cage, geometry, problems)
+        else:
+            _check_points_outside(object, cage, boxes, touch_m, size_m, problems)
         _check_loads(object, loads, touch_m, problems)
         problems.raise_if_any()
         named = object.boxes
@@ -176,6 +181,7 @@ class Scene:
             ("tolerances", tolerances),
             ("adjustable", adjustable),
             ("geometry", geometry),
+            ("boxes", boxes),
             ("open_seams", tuple((str(named[one].name), str(named[other].name)) for one, other in seams.open_pairs)),
             ("size_m", size_m),
             ("has_other_shapes", bool(object.shapes or object.holes or cage.shapes or cage.holes)),
@@ -319,13 +325,11 @@ def _check_distance(held: Object, cage: Cage, size_m: float, problems: ProblemLi
 
 
 def _check_points_outside(
-    held: Object, cage: Cage, geometry: Geometry, touch_m: float, size_m: float, problems: ProblemList
+    held: Object, cage: Cage, boxes: BoxesAndPoints, touch_m: float, size_m: float, problems: ProblemList
 ) -> None:
-    if len(geometry.half_sizes) == 0 or not cage.names:
-        return
-    depths, boxes = deepest_boxes(geometry, *held.pose_world_object.as_tuples())
+    depths, deepest = deepest_boxes(boxes, *held.pose_world_object.as_tuples())
     for point_index in np.nonzero(depths > touch_m)[0].tolist():
-        box = int(boxes[point_index])
+        box = int(deepest[point_index])
         if box < len(held.boxes):
             path = key_path(("object", *held.part_paths[box][:2]))
             where = f"starts {millimetres(depths[point_index])} inside {path} ({held.boxes[box].name})"
@@ -338,9 +342,7 @@ def _check_points_outside(
 
 
 def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: ProblemList) -> None:
-    """Tell of each part of the object that starts in a part of the cage; of boxes and points is told above."""
-    if len(geometry.held.features) == 0:
-        return
+    """Tell of the part of the object that starts deepest in a part of the cage."""
     feature, cage_feature, depth_m = overlap_at(
         geometry,
         *held.pose_world_object.as_tuples(),

@@ -127,7 +127,7 @@ def cage_middles(
     and their middles are the kernels' own (`cagepose.kernels.outcome.cases.start_of`). Number by number, as below.
     """
     n_points = points_cage_m.shape[1]
-    shapes = np.asarray(cage_boundary(scene.object, scene.cage, scene.touch_m).parts)["middle"][n_points:]
+    shapes = np.asarray(cage_boundary(scene.cage, scene.touch_m).parts)["middle"][n_points:]
     places = np.concatenate([points_cage_m, np.repeat(shapes[None], len(points_cage_m), axis=0)], axis=1)
     middles = places.cumsum(axis=1)[:, -1] / places.shape[1]
     found: FloatArray = positions_m + np.stack(_turned(quaternions, *middles.T), axis=1)

@@ -63,7 +63,7 @@ class Batch:
     def _workspace(self) -> Callable[[int, int], None]:
         """Return a call of the kernel with a workspace for one thread."""
         rules = self._method.rules(self._scene)
-        work = Slots(self._method.workspace(self._scene.geometry, rules.step_limit))
+        work = Slots(self._method.workspace(self._scene, rules.step_limit))
         return partial(
             _run,
             self._method,

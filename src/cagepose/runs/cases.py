@@ -28,13 +28,13 @@ from cagepose.runs.tolerances import LEAST_RADIUS_OF_GYRATION
 
 def part_of(scene: Scene) -> Part:
     """Return the object as seen from its centre of gravity."""
-    geometry, center = scene.geometry, scene.object.center_of_gravity_m
+    boxes, center = scene.boxes, scene.object.center_of_gravity_m
     return Part(
-        geometry.half_sizes,
-        geometry.box_positions - center,
-        geometry.box_rotations,
-        geometry.n_own_boxes,
-        shifted(geometry.held, -center),
+        shifted(scene.geometry.held, -center),
+        boxes.half_sizes,
+        boxes.box_positions - center,
+        boxes.box_rotations,
+        boxes.n_own_boxes,
         body_of(scene),
         as_vector(center),
     )
@@ -63,7 +63,7 @@ def cases_of(scene: Scene, friction: float, start: Pose | None = None) -> Cases:
         cage.position_m[None],
         cage.quaternion_wxyz[None],
         scene.cage.points_cage[None],
-        cage_boundary(scene.object, scene.cage, scene.touch_m),
+        cage_boundary(scene.cage, scene.touch_m),
         held.position_m[None],
         held.quaternion_wxyz[None],
         np.array([scene.size_m]),

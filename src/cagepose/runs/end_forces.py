@@ -42,7 +42,7 @@ def end_forces(scene: Scene, variation: Variation, rows: Iterable[int]) -> Float
     n_phases, n_elements = len(scene.loads), len(scene.cage.element_names)
     n_ordered = 0 if method.joins_steps else len(scene.cage.names)
     outcome = empty_outcome(scene.geometry, n_phases, rules.step_limit, n_ordered)
-    work, filled = Slots(method.workspace(scene.geometry, rules.step_limit)), Slots(outcome)
+    work, filled = Slots(method.workspace(scene, rules.step_limit)), Slots(outcome)
     part, found = Slots(part_of(scene)), np.full((n_runs, n_elements), np.nan)
     phases: Any = outcome.phases
     contacts: Any = outcome.contacts
@@ -50,7 +50,7 @@ def end_forces(scene: Scene, variation: Variation, rows: Iterable[int]) -> Float
         method.run(part, _case(cases, row), rules, work, filled)
         last = int(outcome.counts[0]) - 1
         of_last = slice(int(phases["n_contacts"][last - 1]) if last else 0, int(phases["n_contacts"][last]))
-        elements = contacts["point"][of_last]
+        elements = contacts["cage_part"][of_last]
         if phases["proof"][last] in HELD_BY_NO_FORCES and len(elements):
             continue
         found[row] = 0.0

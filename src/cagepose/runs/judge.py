@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cagepose.kernels.collision.geometry import PlacedCage, empty_cage
+from cagepose.kernels.boundary.geometry import PlacedCage, empty_cage
 from cagepose.kernels.outcome import at_pose
 from cagepose.kernels.outcome.records import Outcome, empty_outcome
 from cagepose.kernels.stability.proof import ProofWorkspace, empty_proof_workspace

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from cagepose.errors import Problem, SceneError
-from cagepose.kernels.collision.geometry import Geometry
 from cagepose.kernels.native.kernel import Entry
 from cagepose.kernels.quasistatic import run as quasistatic_kernels
 from cagepose.kernels.quasistatic.step import RULE_NAMES
-from cagepose.kernels.quasistatic.workspace import empty_quasistatic_workspace
 from cagepose.kernels.stepwise import run as stepwise_kernels
 from cagepose.model.checks import expect, expect_choice
 from cagepose.model.load import Load
@@ -19,9 +17,9 @@ from cagepose.model.methods import DEFAULT_FRICTION, DEFAULT_METHOD, METHODS
 from cagepose.model.scene import Scene
 from cagepose.model.scope import other_shapes, unknown_shapes
 from cagepose.runs.actions import is_one_force
-from cagepose.runs.quasistatic import quasistatic_rules, quasistatic_warnings
+from cagepose.runs.quasistatic import quasistatic_rules, quasistatic_warnings, quasistatic_workspace
 from cagepose.runs.run import PhaseRun
-from cagepose.runs.stepwise import stepwise_rules, stepwise_warnings
+from cagepose.runs.stepwise import stepwise_rules, stepwise_warnings, stepwise_workspace
 
 
 @dataclass(frozen=True)
@@ -44,7 +42,7 @@ class Method:
     rules
         The method's numbers for a scene, of size 1.
     workspace
-        What one run at a time writes to, for a geometry and a greatest number of steps in a phase.
+        What one run at a time writes to, for a scene and a greatest number of steps in a phase.
     warnings
         What a careful reader should know of a run: from the scene, the phases and the coefficient of friction.
     """
@@ -57,7 +55,7 @@ class Method:
     run_cases: Entry[None]
     repeat: Entry[None]
     rules: Callable[[Scene], Any]
-    workspace: Callable[[Geometry, int], Any]
+    workspace: Callable[[Scene, int], Any]
     warnings: Callable[[Scene, Sequence[PhaseRun], float], Iterator[str]]
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -80,7 +78,7 @@ REGISTRY = {
         stepwise_kernels.run_stepwise_cases,
         stepwise_kernels.repeat_stepwise,
         stepwise_rules,
-        stepwise_kernels.empty_stepwise_workspace,
+        stepwise_workspace,
         stepwise_warnings,
     ),
     "quasistatic": Method(
@@ -92,7 +90,7 @@ REGISTRY = {
         quasistatic_kernels.run_quasistatic_cases,
         quasistatic_kernels.repeat_quasistatic,
         quasistatic_rules,
-        empty_quasistatic_workspace,
+        quasistatic_workspace,
         quasistatic_warnings,
     ),
 }

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from cagepose.kernels.quasistatic.run import QuasistaticRules
 from cagepose.kernels.quasistatic.step import RULE_NAMES, STUCK
+from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace, empty_quasistatic_workspace
 from cagepose.model.load import Load
 from cagepose.model.remarks import remarks
 from cagepose.model.scene import Scene
@@ -14,7 +15,6 @@ from cagepose.runs.warnings_of_runs import (
     edge_warnings,
     lost_weight_warnings,
     proof_warnings,
-    seam_warnings,
     spring_warnings,
     unrun_warnings,
     weight_warnings,
@@ -37,10 +37,14 @@ def quasistatic_rules(_scene: Scene) -> QuasistaticRules:
     return QuasistaticRules(TURN_STEP_RAD, STEP_LIMIT)
 
 
+def quasistatic_workspace(scene: Scene, step_limit: int) -> QuasistaticWorkspace:
+    """Return what one run of a scene at a time writes to."""
+    return empty_quasistatic_workspace(scene.geometry, step_limit)
+
+
 def quasistatic_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: float) -> Iterator[str]:
-    """What a careful reader should know: seams, weights, contacts on edges, and what is less than a proven rest."""
+    """What a careful reader should know: weights, contacts on edges, and what is less than a proven rest."""
     yield from remarks(scene)
-    yield from seam_warnings(scene)
     yield from weight_warnings(scene, len(phases))
     yield from lost_weight_warnings(scene, len(phases))
     for phase in phases:

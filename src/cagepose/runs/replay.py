@@ -48,7 +48,7 @@ def replay_event(run: Run, phase: int, event: int, *, in_python: bool = False) -
         part_of(scene),
         cases_of(scene, solution.friction),
         solution.rules,
-        method.workspace(scene.geometry, n_steps),
+        method.workspace(scene, n_steps),
         repeated,
     )
     (found,) = read_events(scene, method, written(repeated))

@@ -116,8 +116,7 @@ class Contact:
     group
         Of contacts with the same number one counts at a time: faces at an edge that a point is on, and the normals of
         sharp features that meet at one place. It is the place of the first of them among the phase's contacts, from 0.
-        -1: the contact never counts, as another says all that it does (a flush face of another box). None in a run that
-        was saved before contacts had it.
+        In older saved runs -1: the contact never counts, as another says all that it does; or None.
     """
 
     point: str

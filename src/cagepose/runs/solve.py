@@ -73,9 +73,7 @@ _WORKSPACES = _Workspaces()
 
 def _workspace(scene: Scene, method: Method, step_limit: int) -> _Workspace:
     n_phases, n_points = len(scene.loads), len(scene.cage.names)
-    size: tuple[object, ...] = (method.name, n_phases, n_points, len(scene.geometry.half_sizes), step_limit)
-    if scene.has_other_shapes:
-        size = (*size, *_sizes(scene))
+    size = (method.name, n_phases, n_points, len(scene.boxes.half_sizes), step_limit, *_sizes(scene))
     kept = _WORKSPACES.by_size
     if size in kept:
         kept.move_to_end(size)
@@ -83,7 +81,7 @@ def _workspace(scene: Scene, method: Method, step_limit: int) -> _Workspace:
     if len(kept) == WORKSPACES_KEPT:
         kept.popitem(last=False)
     outcome = empty_outcome(scene.geometry, n_phases, step_limit, 0 if method.joins_steps else n_points)
-    kept[size] = _Workspace(Slots(method.workspace(scene.geometry, step_limit)), Slots(outcome), outcome)
+    kept[size] = _Workspace(Slots(method.workspace(scene, step_limit)), Slots(outcome), outcome)
     return kept[size]
 
 

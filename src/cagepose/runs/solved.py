@@ -164,8 +164,8 @@ def _contacts(scene: Scene, outcome: Outcome) -> list[Contact]:
     contacts: Any = outcome.contacts
     point_names, box_names = scene.cage.element_names, scene.object.element_names
     columns = zip(
-        contacts["point"].tolist(),
-        contacts["box"].tolist(),
+        contacts["cage_part"].tolist(),
+        contacts["part"].tolist(),
         contacts["normal"],
         contacts["gap"].tolist(),
         contacts["near_edge"].tolist(),

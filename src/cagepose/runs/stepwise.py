@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from cagepose.kernels.collision.turn import key_of_angle
-from cagepose.kernels.stepwise.run import StepwiseRules
+from cagepose.kernels.stepwise.run import StepwiseRules, StepwiseWorkspace, empty_stepwise_workspace
 from cagepose.kernels.stepwise.slip import SlipRules
 from cagepose.kernels.stepwise.support import SupportRules
 from cagepose.model.remarks import remarks
@@ -51,6 +51,11 @@ def stepwise_rules(scene: Scene) -> StepwiseRules:
         ),
         EVENT_LIMIT,
     )
+
+
+def stepwise_workspace(scene: Scene, step_limit: int) -> StepwiseWorkspace:
+    """Return what one run of a scene at a time writes to."""
+    return empty_stepwise_workspace(scene.geometry, scene.boxes, step_limit)
 
 
 def stepwise_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: float) -> Iterator[str]:

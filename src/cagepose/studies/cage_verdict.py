@@ -12,7 +12,7 @@ import numpy as np
 from cagepose.kernels.algebra.pose import euler_zyx_from_quaternion
 from cagepose.kernels.algebra.record import Rows, empty_rows
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
-from cagepose.kernels.collision.geometry import empty_placement
+from cagepose.kernels.collision.boxes import empty_placed_boxes
 from cagepose.kernels.play.certificate import FREE, OFF_EDGE, RAN_OFF, UNSOLVED
 from cagepose.kernels.play.escape import N_RANDOM, Station, grow_tree
 from cagepose.model.pose import Pose
@@ -147,7 +147,7 @@ def search_way_out(
     stations[0].parent = -1
     stations[0].quaternion[0] = 1.0
     n_stations, n_tried, is_out = 1, 0, False
-    placement = empty_placement(frame.geometry)
+    placement = empty_placed_boxes(frame.geometry)
     tolerances = kernel_tolerances(scene.size_m / frame.length_m, scene.tolerances.touch)
     random = np.random.default_rng(RANDOM_SEED)
     started = perf_counter()

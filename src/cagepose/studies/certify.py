@@ -11,6 +11,7 @@ from itertools import islice, product
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cagepose.kernels.contact import coulomb_newton, equilibrium
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
@@ -104,7 +105,7 @@ class _Search:
         work: Any = self.at.scratch[0]
         self.states, self.tree = contacts.states, work.tree
         contacts.used[0] = work.n_asked
-        self.used = np.nonzero(contacts.rows["group"][: work.n_asked] >= 0)[0]
+        self.used = _in_order(contacts.rows[: work.n_asked], self.lengths[..., None] * self.columns)
         load = work.solver.load[:WRENCH]
         self.size = float(np.linalg.norm(load)) or 1.0
         self.is_of_first_order = self._take(contacts.rows, load, run.phases[phase].proof.uniqueness == "strong")
@@ -116,9 +117,9 @@ class _Search:
         Another onset is one to rounding, and where the run found it with its own numbers it is found again with them.
         """
         columns, whole = self.lengths[..., None] * self.columns, self.problem.scaled(self.problem.load)
-        found = rows["columns"][self.used]
-        if found.shape != columns.shape:
+        if len(self.used) != len(columns):
             return False
+        found = rows["columns"][self.used]
         apart = np.linalg.norm(found - columns, axis=2) / np.linalg.norm(self.columns, axis=2)
         if apart.max() > SAME_LOAD or np.linalg.norm(load / self.size - whole) > SAME_LOAD:
             return False
@@ -174,6 +175,20 @@ class _Search:
                     size = share / sizes[contact] * self.lengths[places[contact]]
                     pressures[number, contact] += size * _not_allowed(found, leaf, contact, which)
         return replace(found, twists=tree.twists[leaves] @ self.problem.scale, pressures=pressures)
+
+
+def _in_order(rows: Any, columns: FloatArray) -> NDArray[np.int64]:
+    """Return which row of the kernels each contact of a problem is, by their wrenches, (n,); of another number of them,
+    none.
+    """
+    if len(rows) != len(columns):
+        return np.zeros(0, np.int64)
+    apart = np.linalg.norm(rows["columns"][:, 0] - columns[:, None, 0], axis=2)
+    found = np.zeros(len(columns), np.int64)
+    for number, ways in enumerate(apart):
+        found[number] = ways.argmin()
+        apart[:, found[number]] = np.inf
+    return found
 
 
 def _root_alone(forces: FloatArray) -> ModeTree:

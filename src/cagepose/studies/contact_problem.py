@@ -35,7 +35,6 @@ class ContactProblem:
         Their numbers: of each group one counts at a time (points on edges; sharp edges that meet).
     directions, places
         Of each contact: its outward normal and two tangents, unit vectors (n, 3, 3), and where it is, (n, 3), metres.
-        On a box the tangents are its next two axes, in the order x, y, z, x, y.
     wrenches
         Force and moment of a unit force along each of the directions, (n, 3, 6), metres. The contact pushes the other
         way.
@@ -70,9 +69,8 @@ def contact_problem(run: Run, phase: int) -> ContactProblem:
     """Return the contact problem at the end of a phase, counted from 0, from a run's scene and the pose there."""
     scene, pose = run.scene, run.phases[phase].pose
     of_scene = chosen_method(scene, run.method).friction(scene)
-    touched = touched_faces(scene, pose)
-    if scene.has_other_shapes:
-        touched += touched_shapes(scene, pose, phase, of_scene)
+    is_shaped = scene.has_other_shapes
+    touched = touched_shapes(scene, pose, phase, of_scene) if is_shaped else touched_faces(scene, pose)
     groups: dict[object, list[int]] = {}
     for number, touch in enumerate(touched):
         groups.setdefault(touch.group, []).append(number)

@@ -42,10 +42,10 @@ class PlayFrame:
         farthest = float(np.linalg.norm(points, axis=1).max())
         self.length_m = farthest if farthest > 0.0 else scene.size_m
         self.pose_frame_object = self._pose_world_frame.inverse() @ scene.object.pose_world_object
-        self.geometry = scene.geometry._replace(
-            half_sizes=scene.geometry.half_sizes / self.length_m,
-            box_positions=self.from_object(scene.geometry.box_positions),
-            box_rotations=self.pose_frame_object.rotation @ scene.geometry.box_rotations,
+        self.geometry = scene.boxes._replace(
+            half_sizes=scene.boxes.half_sizes / self.length_m,
+            box_positions=self.from_object(scene.boxes.box_positions),
+            box_rotations=self.pose_frame_object.rotation @ scene.boxes.box_rotations,
             points_world=points / self.length_m,
         )
 

@@ -86,13 +86,13 @@ def pressed_clearances(scene: Scene, pose: Pose, contacts: np.ndarray, push: Flo
     load = push / np.repeat([1.0, cones.length_m], 3)
     size = float(np.linalg.norm(load))
     found = []
-    for point in np.unique(contacts["point"]):
-        together = contacts["point"] == point
+    for point in np.unique(contacts["cage_part"]):
+        together = contacts["cage_part"] == point
         closing = _loss(cones.columns[:, 0], load / size, together.astype(np.float64))
         if closing <= REACH_OF_PROGRAM * LEAST_PRICE:
             continue
         opening = -_loss(cones.columns[:, 0], load / size, -together.astype(np.float64))
-        box = contacts["box"][together][0]
+        box = contacts["part"][together][0]
         names = scene.cage.element_names[point], scene.object.element_names[box]
         found.append(Clearance(*names, None, size * closing, size * max(opening, 0.0)))
     return tuple(sorted(found, key=lambda clearance: (-clearance.closing, -clearance.opening)))

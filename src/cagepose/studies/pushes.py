@@ -133,7 +133,7 @@ class Pushes:
         )
         self._outcome = empty_outcome(scene.geometry, 1, STEP_LIMIT, 0)
         rules = QuasistaticRules(TURN_STEP_RAD, STEP_LIMIT)
-        work = method.workspace(scene.geometry, STEP_LIMIT)
+        work = method.workspace(scene, STEP_LIMIT)
         self._part, self._rules, self._work = Slots(part_of(scene)), Slots(rules), Slots(work)
         self._written = Slots(self._outcome)
         self.n_steps = 0

@@ -1,6 +1,6 @@
 """What touches at a pose, `Touch`, and which faces of boxes the cage's points touch: `touched_faces`.
 
-In plain NumPy, by (2.4) and (2.7); nothing here is shared with the kernels.
+In plain NumPy, by (2.4) and (2.7); but for the choice of tangents nothing here is shared with the kernels.
 """
 
 from __future__ import annotations
@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from cagepose.kernels.contact.contact_set import tangents_to
 from cagepose.kernels.contact.tolerances import SAME_NORMAL_RAD
-from cagepose.model.checks import FloatArray
+from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 
@@ -51,8 +52,7 @@ class Touch(NamedTuple):
     face
         Its name.
     directions
-        Outward normal of the object and two tangents, unit vectors (3, 3). On a box the tangents are its next two axes,
-        in the order x, y, z, x, y.
+        Outward normal of the object and two tangents, unit vectors (3, 3).
     place
         (3,), metres.
     group
@@ -66,12 +66,10 @@ class Touch(NamedTuple):
 
 
 def touched_faces(scene: Scene, pose: Pose) -> list[Touch]:
-    """Return the contacts of the cage's points with the object's boxes; none where there are other shapes."""
-    if scene.has_other_shapes:
-        return []
-    points, half_sizes = scene.cage.points_world(), scene.geometry.half_sizes
-    rotations = pose.rotation @ scene.geometry.box_rotations
-    middles = pose.transform(scene.geometry.box_positions)
+    """Return the contacts of the cage's points with the object's boxes."""
+    points, half_sizes = scene.cage.points_world(), scene.boxes.half_sizes
+    rotations = pose.rotation @ scene.boxes.box_rotations
+    middles = pose.transform(scene.boxes.box_positions)
     touch_m, touched = scene.touch_m, list[Touch]()
     for name, point in zip(scene.cage.names, points, strict=True):
         normals = list[FloatArray]()
@@ -89,7 +87,7 @@ def touched_faces(scene: Scene, pose: Pose) -> list[Touch]:
                 continue  # flush faces of another box say nothing new
             for axis, normal in zip(found, outward, strict=True):
                 side = ("+" if place[axis] > 0.0 else "-") + "xyz"[axis]
-                tangents = rotations[box][:, (axis + 1) % 3], rotations[box][:, (axis + 2) % 3]
+                tangents = tangents_to(as_vector(normal))
                 face = ContactFace(name, str(held.name), side)
                 touched.append(Touch(face, np.array([normal, *tangents]), point, (name, held.name)))
             normals += outward

@@ -16,15 +16,15 @@ from cagepose.studies.touched_faces import ContactFace, Touch
 
 
 def touched_shapes(scene: Scene, pose: Pose, phase: int, friction: float) -> list[Touch]:
-    """Return the contacts at a pose but those of cage points with boxes; of rims that lie flat, also the points between
+    """Return the contacts at a pose; of rims that lie flat, also the points between
     those that a run lists which the search for another onset has asked.
     """
     at, _ = judged_workspace(scene, pose, phase, friction)
     contacts: Any = at.contacts
     rows = contacts.rows[: at.scratch[0].n_asked]
     center, counts, found = pose.transform(scene.object.center_of_gravity_m), Counter[tuple[str, str]](), list[Touch]()
-    for row in rows[(rows["feature"] >= 0) & (rows["group"] >= 0)]:
-        pair = scene.cage.element_names[row["point"]], scene.object.element_names[row["box"]]
+    for row in rows:
+        pair = scene.cage.element_names[row["cage_part"]], scene.object.element_names[row["part"]]
         counts[pair] += 1
         normal = row["directions"][0]  # the kernel's tangents have no length where there is no friction
         directions = np.array([normal, *tangents_to(as_vector(normal))])

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.collision.geometry import Placement, empty_placement, place_object
+from cagepose.kernels.boundary.geometry import Placement, empty_placement, place_object
 from cagepose.kernels.native.slots import Slots
 from cagepose.model.checks import FloatArray
 from cagepose.model.geometry import placed_cage
@@ -45,7 +45,7 @@ class TouchFinder:
     """Finds contacts of one scene, at pose after pose, in the same memory."""
 
     def __init__(self, scene: Scene) -> None:
-        geometry = scene.geometry._replace(cage=placed_cage(scene.object, scene.cage, scene.touch_m))
+        geometry = scene.geometry._replace(cage=placed_cage(scene.cage, scene.touch_m))
         held, cage = np.asarray(geometry.held.features), np.asarray(geometry.cage.own.features)
         self._parts, self._cage_parts = np.array(held["part"]), np.array(cage["part"])
         self._geometry = Slots(geometry)

@@ -51,7 +51,7 @@ RESIDUAL_OF_RIGHT_SIDE = 1e-11
 DEPENDENT_COLUMN = 1e-10
 """Fraction of a column. A column whose part outside the span of the others is smaller depends on them, where nothing
 else is said."""
-LEAST_PRICE = 1e-14
+LEAST_PRICE = 1e-15
 """In lengths of the residual's terms. A column that points along the residual by less only meets rounding."""
 LEAST_COEFFICIENT = 1e-11
 """A column that a dependent one takes less of than this cannot be dropped for it: that would divide by rounding."""
@@ -82,3 +82,9 @@ def scaled_tolerances(of_size: KernelTolerances, size_m: float) -> KernelToleran
     return KernelTolerances(
         of_size.touch_m * size_m, of_size.resolution_m * size_m, of_size.rounding_m * size_m, of_size.tie
     )
+
+
+@kernel
+def allowed_depth(depth_m: float, tolerances: KernelTolerances) -> float:
+    """Return how deep what starts at ``depth_m`` may go: no deeper than it is, rounding apart."""
+    return max(tolerances.resolution_m, depth_m + tolerances.rounding_m)

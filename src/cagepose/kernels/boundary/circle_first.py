@@ -12,7 +12,7 @@ import math
 from typing import NamedTuple
 
 from cagepose.kernels.algebra.motion import Motion, velocity_at
-from cagepose.kernels.algebra.record import Rows
+from cagepose.kernels.algebra.record import IntArray, Rows
 from cagepose.kernels.algebra.vector import dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.along_motion import BEHIND, LEAST_STEP, between_segments, gone_on
 from cagepose.kernels.boundary.circle import circle_of, outward_at
@@ -30,7 +30,7 @@ from cagepose.kernels.boundary.circle_places import (
 from cagepose.kernels.boundary.closing import closing_of, surely_clear
 from cagepose.kernels.boundary.features import CIRCLE, Feature, PlacedBoundary
 from cagepose.kernels.boundary.first_touch import place_after
-from cagepose.kernels.boundary.meeting import both_reach
+from cagepose.kernels.boundary.hollow_end import reach_in_hollow
 from cagepose.kernels.boundary.meetings import PLACES_AROUND, find_circle_places, meeting_at
 from cagepose.kernels.native.kernel import kernel
 
@@ -57,13 +57,15 @@ def place_touches(
     motion: Motion,
     depth_m: float,
     slack: float,
-    slack_m: float,
+    touch_m: float,
+    reach_m: float,
+    waiting: IntArray,
 ) -> bool:
     """Whether two features, as they are placed, reach where they meet at a place and come nearer."""
     met = meeting_at(a, i, b, j, place)
-    if met.gap < -depth_m - slack_m or not both_reach(a, i, b, j, met, slack, slack_m):
+    if met.gap < -depth_m - reach_m or dot(met.normal, velocity_at(motion, met.place)) <= 0.0:
         return False
-    return dot(met.normal, velocity_at(motion, met.place)) > 0.0
+    return reach_in_hollow(a, i, b, j, met, slack, touch_m, reach_m, waiting)
 
 
 @kernel
@@ -155,9 +157,11 @@ def first_touch_of_curved(
     motion: Motion,
     end: float,
     slack: float,
+    reach_m: float,
     touch_m: float,
     moved: PlacedBoundary,
     places: Rows[Place],
+    waiting: IntArray,
     kept: Rows[Kept],
     n_kept: int,
 ) -> Reached:
@@ -169,9 +173,11 @@ def first_touch_of_curved(
         The features, placed in the world.
     motion, end
         That of the object; the end is finite.
-    slack, touch_m
-        How far beyond its end a feature still counts: the sine of an angle, and metres.
-    moved, places
+    slack, reach_m
+        How far beyond its end a feature still counts: the sine of an angle, and, where that is hollow, metres.
+    touch_m
+        What is this close touches, and how far beyond another end it counts, metres.
+    moved, places, waiting
         Memory.
     kept, n_kept
         Places that touch now. They are written over.
@@ -225,8 +231,10 @@ def first_touch_of_curved(
                 if reached <= end:
                     place_after(a, i, motion, reached, moved)
                     at_root = place_near(moved.features[i], b.features[j], root.angle, SAME_ANGLE, touch_m, places)
-                    if at_root >= 0 and place_touches(moved, i, b, j, places[at_root], motion, depth, slack, touch_m):
-                        return Reached(reached, places[at_root].angle, n_steps, False)
+                    if at_root >= 0:
+                        at_place = places[at_root]
+                        if place_touches(moved, i, b, j, at_place, motion, depth, slack, touch_m, reach_m, waiting):
+                            return Reached(reached, at_place.angle, n_steps, False)
                 if at < 0 and abs(met.gap) <= touch_m and n_kept < len(kept):  # they may graze so for long
                     row = kept[n_kept]
                     row.angle, row.other_angle, row.depth_m = place.angle, place.other_angle, touch_m

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.boundary.features import FACE, Boundary
 from cagepose.kernels.boundary.touching import Meetings
 from cagepose.kernels.native.kernel import kernel
 
@@ -11,14 +12,16 @@ FAR = -1
 
 
 @kernel
-def drop_far_sides(touch_m: float, found: Meetings) -> None:
+def drop_far_sides(held: Boundary, cage: Boundary, touch_m: float, found: Meetings) -> None:
     """Drop meetings that say that a place of one body is deep in the other one, where this has a surface that is nearer
-    to the place.
+    to the place. Of what is deep in a face it has been asked whether any surface is.
     """
     n_far = 0
     for at in range(found.used[0]):
-        if found.rows[at].gap < -touch_m and is_on_far_side(found, at, touch_m):
-            found.rows[at].group = FAR
+        row = found.rows[at]
+        of_face = held.features[row.feature].kind == FACE or cage.features[row.cage_feature].kind == FACE
+        if row.gap < -touch_m and not of_face and is_on_far_side(found, at, touch_m):
+            row.group = FAR
             n_far += 1
     kept = 0
     for at in range(found.used[0] if n_far > 0 else 0):

@@ -187,8 +187,9 @@ class Boundary(NamedTuple):
     nodes
         The trees, see `cagepose.kernels.boundary.tree`.
     planes
-        Of each face normal, height above the origin with its radius, and shortest edge, (5, n_features), in the frame
-        of the body: in this order a processor works out how far a vertex is from several faces at once.
+        Of each face normal, height above the origin with its radius, shortest edge, and the two corners of the box
+        around it, (11, n_features), in the frame of the body: in this order a processor works out how far a vertex is
+        from several faces at once.
     """
 
     parts: Rows[BodyPart]

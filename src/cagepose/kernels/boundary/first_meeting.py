@@ -266,11 +266,11 @@ def find_clearances(
     search: Search,
     out: FloatArray,
 ) -> None:
-    """Write how far a vertex of one body surely stays from the planes of some faces of the other one, on its side of
-    them, up to an amount; at most zero: it may cross them. ``sense`` is 1 where the vertex moves, and -1 where the
-    faces do.
+    """Write how far a vertex of one body surely stays from some faces of the other one, on its side of their planes or
+    beside the boxes around them, up to an amount; at most zero: it may reach them. ``sense`` is 1 where the vertex
+    moves, and -1 where the faces do.
 
-    Its height changes at the speed along the normal, and this by the way's curvature.
+    Along each direction it goes straight, give or take the way's curvature.
     """
     place_feature(vertices, i)
     vertex, planes, motion = vertices.features[i], faces.own.planes, search.motion
@@ -280,12 +280,20 @@ def find_clearances(
     u, v, w = in_body(faces, way)
     bend = 0.5 * motion.rate * norm(cross(motion.axis, way)) * until * until
     margin = bend + 2.0 * search.touch_m
+    around = margin + radius + max(reach_of(search), SAME_PLACE * max(search.near_m, search.touch_m))
+    x_low, x_high = min(x, x + u * until) - around, max(x, x + u * until) + around
+    y_low, y_high = min(y, y + v * until) - around, max(y, y + v * until) + around
+    z_low, z_high = min(z, z + w * until) - around, max(z, z + w * until) + around
     n, m, k, above = planes[0, first:last], planes[1, first:last], planes[2, first:last], planes[3, first:last]
+    lows = planes[5, first:last], planes[6, first:last], planes[7, first:last]
+    highs = planes[8, first:last], planes[9, first:last], planes[10, first:last]
     here = out[first:last]
     for j in range(len(here)):
         height = n[j] * x + m[j] * y + k[j] * z - above[j] - radius
         rises = (n[j] * u + m[j] * v + k[j] * w) * until
-        here[j] = max(min(height, height + rises), -max(height, height + rises)) - margin
+        beside = max(lows[0][j] - x_high, x_low - highs[0][j], lows[1][j] - y_high)
+        beside = max(beside, y_low - highs[1][j], lows[2][j] - z_high, z_low - highs[2][j])
+        here[j] = max(min(height, height + rises) - margin, -max(height, height + rises) - margin, beside)
 
 
 @kernel
@@ -308,7 +316,7 @@ def sooner(
         return first_of_curved(held, i, cage, j, until, search, meetings, moved, hit)
     if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
         return hit
-    clear = clear_step(held, i, cage, j, motion)
+    clear = clear_step(held, i, cage, j, motion, reach_of(search))
     is_near = clear * search.speed <= SAME_PLACE * max(search.near_m, search.touch_m)  # and may be deep already
     if not is_near and clear >= until:
         return hit
@@ -394,9 +402,10 @@ def first_of_curved(
             row.angle, row.other_angle, row.is_held = place.angle, place.other_angle, is_held
             row.depth_m, row.is_grazing = math.inf if (is_passed or is_deep) and not is_grazing else depth, is_grazing
             n_kept += 1
-    exact = max(LEAST_SLACK, touch_m / search.size_m)
+    exact, reach_m = max(LEAST_SLACK, touch_m / search.size_m), reach_of(search)
+    places, waiting, kept = meetings.places, meetings.waiting, meetings.kept
     found = first_touch_of_curved(
-        held, i, cage, j, search.motion, until, exact, touch_m, moved, meetings.places, meetings.kept, n_kept
+        held, i, cage, j, search.motion, until, exact, reach_m, touch_m, moved, places, waiting, kept, n_kept
     )
     return Hit(found.amount, i, j, least, found.angle, found.is_open) if found.amount < until else hit
 
@@ -442,4 +451,13 @@ def first_of_features(
             crossed = cross(vector_from(held.features[i].direction), vector_from(cage.features[j].direction))
             side = -math.copysign(1.0, dot(met.normal, crossed))
     exact = max(LEAST_SLACK, touch_m / search.size_m)
-    return first_touch(held, i, cage, j, motion, until, level, side, exact, touch_m, moved)
+    reach_m, waiting = reach_of(search), meetings.waiting
+    return first_touch(held, i, cage, j, motion, until, level, side, exact, touch_m, reach_m, moved, waiting)
+
+
+@kernel
+def reach_of(search: Search) -> float:
+    """Return how far beyond its border a feature still counts as reached, metres: what slides in a hollow edge strays
+    from it on a screw, as far as it may go into its faces, and is put back.
+    """
+    return max(search.touch_m, search.near_depth_m)

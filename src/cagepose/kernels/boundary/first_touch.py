@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.motion import Motion, moved_point, turned, turned_by_amount, velocity_at
+from cagepose.kernels.algebra.record import IntArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.along_motion import (
     BEHIND,
@@ -30,7 +31,8 @@ from cagepose.kernels.boundary.features import (
     rotation_of,
     write_placed,
 )
-from cagepose.kernels.boundary.meeting import both_reach, meeting
+from cagepose.kernels.boundary.hollow_end import reach_in_hollow
+from cagepose.kernels.boundary.meeting import meeting
 from cagepose.kernels.boundary.met import PARALLEL
 from cagepose.kernels.boundary.reach import beyond_face
 from cagepose.kernels.native.kernel import kernel
@@ -86,9 +88,9 @@ def distance_from(body: PlacedBoundary, i: int, point: Vector) -> float:
 
 
 @kernel
-def clear_step(moved: PlacedBoundary, i: int, b: PlacedBoundary, j: int, motion: Motion) -> float:
-    """Return how much farther the motion surely leads without a contact of two features, by how far apart they are
-    where they are placed.
+def clear_step(moved: PlacedBoundary, i: int, b: PlacedBoundary, j: int, motion: Motion, slack_m: float) -> float:
+    """Return how much farther the motion surely leads without a contact of two features, which count so far beyond
+    their ends, by how far apart they are where they are placed.
 
     What functions of planes and lines say where no feature is, needs no search then.
     """
@@ -105,7 +107,7 @@ def clear_step(moved: PlacedBoundary, i: int, b: PlacedBoundary, j: int, motion:
     else:
         point = vector_from(other.point)
         away, speed = distance_from(moved, i, point), norm(velocity_at(motion, point))
-    away -= one.radius + other.radius
+    away -= one.radius + other.radius + slack_m
     if away <= 0.0:
         return 0.0
     return away / speed if speed > 0.0 else math.inf
@@ -130,15 +132,17 @@ def touches_after(
     amount: float,
     level: float,
     slack: float,
-    slack_m: float,
+    touch_m: float,
+    reach_m: float,
     moved: PlacedBoundary,
+    waiting: IntArray,
 ) -> bool:
     """Whether two features reach where they meet after an amount, not on their far sides, and come nearer."""
     place_after(a, i, motion, amount, moved)
     met = meeting(moved, i, b, j)
-    if met.gap < -level - slack_m or not both_reach(moved, i, b, j, met, slack, slack_m):
+    if met.gap < -level - reach_m or dot(met.normal, velocity_at(motion, met.place)) <= 0.0:
         return False
-    return dot(met.normal, velocity_at(motion, met.place)) > 0.0
+    return reach_in_hollow(moved, i, b, j, met, slack, touch_m, reach_m, waiting)
 
 
 @kernel
@@ -152,8 +156,10 @@ def first_touch(
     level: float,
     side: float,
     slack: float,
-    slack_m: float,
+    touch_m: float,
+    reach_m: float,
     moved: PlacedBoundary,
+    waiting: IntArray,
 ) -> float:
     """Return the amount, up to ``end``, after which two features touch that are no circles; inf: they do not.
 
@@ -167,10 +173,10 @@ def first_touch(
         How deep they may be in each other until they have been well apart, metres: more than they are.
     side
         Of sharp lines that touch: see `lines_ahead`.
-    slack, slack_m
-        How far beyond its end a feature still counts, the sine of an angle and metres.
-    moved
-        Memory for the object.
+    slack, touch_m, reach_m
+        How far beyond its end a feature still counts, the sine of an angle and metres; farther where this is hollow.
+    moved, waiting
+        Memory for the object, and for nodes of trees.
     """
     one, other = a.features[i], b.features[j]
     is_sharp = one.kind == LINE and other.kind == LINE and one.radius + other.radius == 0.0
@@ -187,8 +193,8 @@ def first_touch(
         is_at_root = was_apart and now.value < 0.0
         if is_at_root and is_jump:
             place_after(a, i, motion, amount, moved)
-            is_at_root = clear_step(moved, i, b, j, motion) <= NEAR_ROOT * end
-        if is_at_root and touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
+            is_at_root = clear_step(moved, i, b, j, motion, reach_m) <= NEAR_ROOT * end
+        if is_at_root and touches_after(a, i, b, j, motion, amount, level, slack, touch_m, reach_m, moved, waiting):
             return amount
         if is_sharp and level == 0.0 and now.value < 0.0:  # lines that have crossed, but not where both edges are
             side, now = -side, Ahead(-now.value, -now.slope, now.low, now.high, False)
@@ -202,15 +208,23 @@ def first_touch(
                 step, is_over = max(step, min(narrow, span)), narrow >= span
                 span *= NARROWER
             place_after(a, i, motion, amount, moved)
-            clear = clear_step(moved, i, b, j, motion) if level == 0.0 else 0.0  # that does not tell how deep they are
+            clear = (
+                clear_step(moved, i, b, j, motion, reach_m) if level == 0.0 else 0.0
+            )  # that does not tell how deep they are
             step, is_jump = max(step, clear), clear > step
             if stay_parallel(moved.features[i], other, motion, rest):
                 return math.inf
         if step >= rest:
             return math.inf
-        if step <= LEAST_STEP * end and touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved):
+        if step <= LEAST_STEP * end and touches_after(
+            a, i, b, j, motion, amount, level, slack, touch_m, reach_m, moved, waiting
+        ):
             return amount
         amount, behind = gone_on(amount, step, end, behind)
         if amount >= end:
             return math.inf
-    return amount if touches_after(a, i, b, j, motion, amount, level, slack, slack_m, moved) else math.inf
+    return (
+        amount
+        if touches_after(a, i, b, j, motion, amount, level, slack, touch_m, reach_m, moved, waiting)
+        else math.inf
+    )

@@ -20,6 +20,7 @@ from cagepose.kernels.boundary.features import (
     seen_from_feature,
 )
 from cagepose.kernels.boundary.meetings import slack_of
+from cagepose.kernels.boundary.neighbours import NONE, first_in_layer, forget_layers, layer_of, put_in_layer
 from cagepose.kernels.boundary.reach import beyond_bound, beyond_normals, distance_from_segment
 from cagepose.kernels.boundary.touching import Meetings, is_at_place
 from cagepose.kernels.native.kernel import kernel
@@ -106,24 +107,120 @@ def are_alternatives(
     if not is_at_place(found, one, other, touch_m):
         return False
     row, second = found.rows[one], found.rows[other]
-    i, j, place = row.feature, second.feature, vector_from(row.place)
-    normal, second_normal = vector_from(row.normal), vector_from(second.normal)
-    slack = slack_of(held.own.features[i], held.own.features[j], touch_m)
-    if not is_convex_between(held, i, normal, j, second_normal, place, slack, touch_m):
+    place, normal, second_normal = vector_from(row.place), vector_from(row.normal), vector_from(second.normal)
+    pairs = (row.feature, row.beside), (second.feature, second.beside)
+    if not is_convex_at(held, pairs[0], normal, pairs[1], second_normal, place, touch_m):
         return False
-    i, j = row.cage_feature, second.cage_feature
-    normal, second_normal = scaled(normal, -1.0), scaled(second_normal, -1.0)
-    slack = slack_of(cage.own.features[i], cage.own.features[j], touch_m)
-    return is_convex_between(cage, i, normal, j, second_normal, place, slack, touch_m)
+    pairs = (row.cage_feature, row.cage_beside), (second.cage_feature, second.cage_beside)
+    return is_convex_at(cage, pairs[0], scaled(normal, -1.0), pairs[1], scaled(second_normal, -1.0), place, touch_m)
+
+
+@kernel
+def is_convex_at(
+    body: PlacedBoundary,
+    ones: tuple[int, int],
+    normal: Vector,
+    others: tuple[int, int],
+    other_normal: Vector,
+    place: Vector,
+    touch_m: float,
+) -> bool:
+    """Whether the material of a body between two features at a place is convex, or between others that are flush with
+    them there, -1: none are.
+    """
+    is_convex = False
+    for i in ones:
+        for j in others:
+            if i >= 0 and j >= 0 and not is_convex:
+                slack = slack_of(body.own.features[i], body.own.features[j], touch_m)
+                is_convex = is_convex_between(body, i, normal, j, other_normal, place, slack, touch_m)
+    return is_convex
+
+
+@kernel
+def fits_group(
+    held: PlacedBoundary, cage: PlacedBoundary, group: int, at: int, touch_m: float, found: Meetings
+) -> bool:
+    """Whether a meeting and all of a group are alternatives, of which the first is at the group's number."""
+    if not is_at_place(found, group, at, touch_m):
+        return False
+    layer, fits = layer_of(found, group, touch_m), True
+    for beside in range(layer - 1, layer + 2):
+        member = first_in_layer(found, beside)
+        while member >= 0 and fits:
+            if member != at and found.rows[member].group == group:
+                fits = are_alternatives(held, cage, member, at, touch_m, found)
+            member = int(found.behind[member])
+    return fits
+
+
+@kernel
+def list_again(found: Meetings, at: int, group: int, touch_m: float) -> bool:
+    """List a meeting once more, in another group, as of the features that are flush with its own; False: there is no
+    room.
+    """
+    last = found.used[0]
+    if last == len(found.rows):
+        found.used[0] = found.used[1] = -1
+        return False
+    found.rows[last] = found.rows[at]  # type: ignore[index]
+    put_in_layer(found, last, touch_m)
+    row = found.rows[last]
+    row.group = group
+    if row.beside >= 0:
+        row.feature, row.beside = row.beside, row.feature
+    if row.cage_beside >= 0:
+        row.cage_feature, row.cage_beside = row.cage_beside, row.cage_feature
+    found.used[0] = found.used[1] = last + 1
+    return True
+
+
+@kernel
+def next_group(held: PlacedBoundary, cage: PlacedBoundary, at: int, last: int, touch_m: float, found: Meetings) -> int:
+    """Return the first group behind a number that a meeting fits; -1: none."""
+    layer, least = layer_of(found, at, touch_m), NONE
+    for beside in range(layer - 1, layer + 2):
+        group = first_in_layer(found, beside)
+        while group >= 0:
+            is_next = found.rows[group].group == group and group > last and (least < 0 or group < least)
+            if is_next and fits_group(held, cage, group, at, touch_m, found):
+                least = group
+            group = int(found.behind[group])
+    return least
+
+
+@kernel
+def next_before(held: PlacedBoundary, cage: PlacedBoundary, at: int, last: int, touch_m: float, found: Meetings) -> int:
+    """Return the first meeting behind a number, and before another one, that fits the group of that; -1: none."""
+    layer, least = layer_of(found, at, touch_m), NONE
+    for beside in range(layer - 1, layer + 2):
+        before = first_in_layer(found, beside)
+        while before >= 0:
+            is_next = last < before < at and (least < 0 or before < least)
+            if is_next and fits_group(held, cage, at, before, touch_m, found):
+                least = before
+            before = int(found.behind[before])
+    return least
 
 
 @kernel
 def number_groups(held: PlacedBoundary, cage: PlacedBoundary, touch_m: float, found: Meetings) -> None:
-    """Write the group of each meeting."""
+    """Write the group of each meeting, the first of those that are alternatives. One that is an alternative of several
+    that are none of each other is listed in each of their groups: below a corner where two walls of a plate meet in a
+    hollow edge, its bottom is one of either wall.
+    """
+    forget_layers(found)
     for at in range(found.used[0]):
-        group = at
-        for first in range(at):
-            if found.rows[first].group == first and are_alternatives(held, cage, first, at, touch_m, found):
-                group = first
-                break
-        found.rows[at].group = group
+        group = next_group(held, cage, at, NONE, touch_m, found)
+        found.rows[at].group = at if group < 0 else group
+        put_in_layer(found, at, touch_m)
+        before = next_before(held, cage, at, NONE, touch_m, found) if group < 0 else NONE
+        while group >= 0 or before >= 0:
+            if group >= 0:
+                group = next_group(held, cage, at, group, touch_m, found)
+                fits = group < 0 or list_again(found, at, group, touch_m)
+            else:
+                fits = list_again(found, before, at, touch_m)
+                before = next_before(held, cage, at, before, touch_m, found)
+            if not fits:
+                return

@@ -25,15 +25,18 @@ from cagepose.kernels.boundary.features import (
 from cagepose.kernels.boundary.flat_circle import Arc, next_arc, part_to_ask
 from cagepose.kernels.boundary.meeting import both_reach, is_seated, meeting, seated
 from cagepose.kernels.boundary.met import Meeting, swapped
+from cagepose.kernels.boundary.neighbours import forget_layers
 from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, SAME_PLACE, Along, Meetings
 from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
 from cagepose.kernels.boundary.twins import append_meeting
-from cagepose.kernels.boundary.within import nearest_surface
+from cagepose.kernels.boundary.within import is_within, nearest_surface
 from cagepose.kernels.native.kernel import kernel
 
 DEEPEST_OF_LEAST = 0.05
-"""Of the shortest edge: features that are deeper in each other are on far sides of a part, and do not touch, but for
-what is deep in a face of longer edges and nearest to it of all surfaces."""
+"""Of the shortest edge, of a face or of two other features: what is deeper in each other is on far sides of a part, and
+does not touch."""
+BEYOND_OF_DEPTH = 4.0
+"""What is so many times its depth beyond the border of a face may be in it: there is material behind a hollow edge."""
 LEAST_SLACK, MOST_SLACK = 1e-9, 0.1
 """Sines that normals may be beyond those of a feature."""
 PLACES_AROUND = 8
@@ -66,11 +69,12 @@ def slack_of(one: Feature, other: Feature, touch_m: float) -> float:
 def find_meetings(held: PlacedBoundary, cage: PlacedBoundary, touch_m: float, found: Meetings) -> None:
     """Find all meetings of two bodies at their poses; see `groups` for which are alternatives."""
     found.used[0] = 0
+    forget_layers(found)
     for own in range(3):
         for other in range(3):
             if found.used[0] >= 0 and may_touch(own, held.own.nodes[own], other, cage.own.nodes[other]):
                 descend(held, own, cage, other, touch_m, found)
-    drop_far_sides(touch_m, found)
+    drop_far_sides(held.own, cage.own, touch_m, found)
     found.used[1] = found.used[0]
 
 
@@ -139,8 +143,8 @@ def meet_leaves(
 def find_beyond(
     vertices: PlacedBoundary, i: int, faces: PlacedBoundary, first: int, last: int, touch_m: float, out: FloatArray
 ) -> int:
-    """Write how far a vertex of one body is from touching the planes of some faces of another one: above them, or so
-    deep below that it is on their far side; at most zero: it may touch. Return of how many.
+    """Write how far a vertex of one body is from touching some faces of another one: above their planes, so deep below
+    that it is on their far side, or beside the boxes around them; at most zero: it may touch. Return of how many.
     """
     place_feature(vertices, i)
     vertex, planes = vertices.features[i], faces.own.planes
@@ -148,10 +152,14 @@ def find_beyond(
     radius = vertex.radius
     n, m, k, above = planes[0, first:last], planes[1, first:last], planes[2, first:last], planes[3, first:last]
     least, here = planes[4, first:last], out[first:last]  # slices from zero on, so that several are worked out at once
+    lows = planes[5, first:last], planes[6, first:last], planes[7, first:last]
+    highs = planes[8, first:last], planes[9, first:last], planes[10, first:last]
     n_near = 0
     for j in range(len(here)):
         height = n[j] * x + m[j] * y + k[j] * z - above[j] - radius
-        here[j] = max(height - touch_m, -height - DEEPEST_OF_LEAST * least[j])
+        beside = max(lows[0][j] - x, x - highs[0][j], lows[1][j] - y, y - highs[1][j], lows[2][j] - z, z - highs[2][j])
+        beside -= radius + 4.0 * touch_m + (1.0 + BEYOND_OF_DEPTH) * max(-height, 0.0)
+        here[j] = max(height - touch_m, -height - DEEPEST_OF_LEAST * least[j], beside)
         n_near += here[j] <= 0.0
     return n_near
 
@@ -319,20 +327,22 @@ def append_touching(
     found: Meetings,
 ) -> None:
     """Append a meeting, if two features touch there: they are near, not on far sides of a part, and both reach. What is
-    deep is well within its borders, or no other surface is nearer.
+    deep in a face is in its body, with no other surface nearer; of other features that are, it is well within them.
     """
     one, other = held.own.features[i], cage.own.features[j]
     if not met.is_one or met.gap > touch_m:
         return
-    slack, deepest = slack_of(one, other, touch_m), DEEPEST_OF_LEAST * min(one.least, other.least)
+    slack, face = slack_of(one, other, touch_m), one if one.kind == FACE else other
     if met.gap >= -touch_m:
-        touches = both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
+        is_point = one.kind == VERTEX or other.kind == VERTEX
+        touches = both_reach(held, i, cage, j, met, slack, touch_m if is_point else 2.0 * touch_m)
+    elif face.kind == FACE:
+        reach_m = 2.0 * touch_m - BEYOND_OF_DEPTH * met.gap
+        touches = met.gap >= -DEEPEST_OF_LEAST * face.least and both_reach(held, i, cage, j, met, slack, reach_m)
+        touches = touches and is_nearest(held, i, cage, met, touch_m, found)
     else:
+        deepest = DEEPEST_OF_LEAST * min(one.least, other.least)
         touches = met.gap >= -deepest and both_reach(held, i, cage, j, met, slack, -touch_m)
-        face = one if one.kind == FACE else other
-        if not touches and face.kind == FACE and met.gap >= -DEEPEST_OF_LEAST * face.least:
-            reach = both_reach(held, i, cage, j, met, slack, 2.0 * touch_m)
-            touches = reach and is_nearest(held, i, cage, met, touch_m, found)
     if touches:
         append_meeting(held, i, cage, j, along, met, touch_m, found)
 
@@ -341,8 +351,10 @@ def append_touching(
 def is_nearest(
     held: PlacedBoundary, i: int, cage: PlacedBoundary, met: Meeting, touch_m: float, found: Meetings
 ) -> bool:
-    """Whether no other surface of the body of a face is nearer to what is deep in the face."""
+    """Whether what is deep in a face is in its body, and no other surface of that is nearer."""
     of_held = held.own.features[i].kind == FACE
     body, place = (held, plus(met.place, scaled(met.normal, met.gap))) if of_held else (cage, met.place)
     within = in_body(body, minus(place, position_of(body)))
-    return nearest_surface(body.own, within, -met.gap - touch_m, found.waiting).feature < 0
+    if nearest_surface(body.own, within, -met.gap - touch_m, found.waiting).feature >= 0:
+        return False
+    return is_within(body.own, within, touch_m, found.waiting)

@@ -12,10 +12,12 @@ from cagepose.kernels.algebra.vector import minus, norm, vector_from
 from cagepose.kernels.boundary.circle_places import Kept, Place
 from cagepose.kernels.native.kernel import kernel
 
-MOST_OF_PARTS, MOST_MEETINGS = 128, 4096
-"""Meetings that there is memory for: of each pair of parts, and of all."""
+MOST_OF_PARTS, MOST_MEETINGS, MOST_OF_POINT = 128, 4096, 12
+"""Meetings that there is memory for: of each pair of parts, and of all; and of each single point, over all of them."""
 MOST_PAIRS, MOST_PLACES = 256, 16
 """Pairs of nodes that wait while two trees are descended; places of one circle."""
+CHAIN_BITS = 2
+"""There are so many times two fewer chains of meetings than there is memory for meetings."""
 SAME_PLACE = 4.0
 """In touch tolerances: meetings nearer to each other are at one place."""
 SAME_NORMAL = 1e-9
@@ -45,6 +47,8 @@ class Touching:
         Indices.
     twin, cage_twin
         Features that meet at the same place with the same normal and bend more; -1: none do.
+    beside, cage_beside
+        A face of either body that is flush there with that which meets; -1: none is.
     angle
         Where on a circle, if one of them is one, radians; of two, on the object's.
     before, after
@@ -64,6 +68,8 @@ class Touching:
     cage_feature: int
     twin: int
     cage_twin: int
+    beside: int
+    cage_beside: int
     angle: float
     before: float
     after: float
@@ -84,6 +90,10 @@ class Meetings(NamedTuple):
         that a motion keeps at other places of a circle than are listed, (2,).
     rows
         One for each meeting.
+    order
+        Memory for their indices in another order.
+    heads, behind
+        Memory for chains of rows, see `neighbours`: the first of each, and the next one behind each row.
     pairs
         Memory for pairs of nodes, (MOST_PAIRS, 2).
     places, kept
@@ -96,6 +106,9 @@ class Meetings(NamedTuple):
 
     used: IntArray
     rows: Rows[Touching]
+    order: IntArray
+    heads: IntArray
+    behind: IntArray
     pairs: IntArray
     places: Rows[Place]
     kept: Rows[Kept]
@@ -103,9 +116,9 @@ class Meetings(NamedTuple):
     heights: FloatArray
 
 
-def most_meetings(n_parts: int, n_cage_parts: int) -> int:
-    """Return how many meetings of so many parts there is memory for (plain Python)."""
-    return min(MOST_OF_PARTS * n_parts * n_cage_parts, MOST_MEETINGS)
+def most_meetings(n_parts: int, n_points: int, n_others: int) -> int:
+    """Return how many meetings there is memory for of so many parts with single points and others (plain Python)."""
+    return MOST_OF_POINT * n_points + min(MOST_OF_PARTS * n_parts * n_others, MOST_MEETINGS)
 
 
 def empty_meetings(n_features: int, n_rows: int = MOST_MEETINGS) -> Meetings:
@@ -114,6 +127,9 @@ def empty_meetings(n_features: int, n_rows: int = MOST_MEETINGS) -> Meetings:
     return Meetings(
         np.zeros(2, np.int64),
         empty_rows(Touching, n_rows),
+        np.zeros(n_rows, np.int64),
+        np.zeros(1 << max(3, n_rows.bit_length() - CHAIN_BITS), np.int64),
+        np.zeros(n_rows, np.int64),
         pairs,
         places,
         empty_rows(Kept, MOST_PLACES),

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.vector import minus, norm, vector_from
 from cagepose.kernels.boundary.bend import bends_by, curvatures
-from cagepose.kernels.boundary.features import CIRCLE, PlacedBoundary
+from cagepose.kernels.boundary.features import CIRCLE, FACE, PlacedBoundary
 from cagepose.kernels.boundary.met import Meeting
+from cagepose.kernels.boundary.neighbours import first_in_layer, layer_of, put_in_layer
 from cagepose.kernels.boundary.touching import SAME_NORMAL, Along, Meetings, Touching, is_around, is_at_place
 from cagepose.kernels.native.kernel import kernel
 
@@ -28,15 +29,41 @@ def append_meeting(
         return
     row = found.rows[at]
     row.twin, row.cage_twin, row.gap, row.is_kept, row.group = -1, -1, met.gap, False, at
+    row.beside, row.cage_beside = -1, -1
     write_features(i, j, along, row)
     for k in range(3):
         row.normal[k], row.place[k] = met.normal[k], met.place[k]
-    for before in range(at):
-        turned = norm(minus(vector_from(found.rows[before].normal), met.normal))
-        if turned <= SAME_NORMAL and is_at_place(found, before, at, touch_m):
-            note_twin(held, cage, found.rows[before], row)
-            return
+    before = same_before(found, at, touch_m)
+    if before >= 0:
+        note_flush(held, cage, found.rows[before], row)
+        note_twin(held, cage, found.rows[before], row)
+        return
+    put_in_layer(found, at, touch_m)
     found.used[0] = at + 1
+
+
+@kernel
+def same_before(found: Meetings, at: int, touch_m: float) -> int:
+    """Return which meeting is listed already at the place of another one, with its normal; -1: none is."""
+    layer, normal = layer_of(found, at, touch_m), vector_from(found.rows[at].normal)
+    for beside in range(layer - 1, layer + 2):
+        before = first_in_layer(found, beside)
+        while before >= 0:
+            turned = norm(minus(vector_from(found.rows[before].normal), normal))
+            if turned <= SAME_NORMAL and is_at_place(found, before, at, touch_m):
+                return before
+            before = int(found.behind[before])
+    return -1
+
+
+@kernel
+def note_flush(held: PlacedBoundary, cage: PlacedBoundary, told: Touching, new: Touching) -> None:
+    """Note that two faces of a body meet one feature of the other one at a place: they are flush there."""
+    kind, cage_kind = held.own.features[new.feature].kind, cage.own.features[new.cage_feature].kind
+    if kind == FACE and told.cage_feature == new.cage_feature:
+        told.beside = new.feature
+    if cage_kind == FACE and told.feature == new.feature:
+        told.cage_beside = new.cage_feature
 
 
 @kernel

@@ -17,20 +17,20 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.tolerances import PROBE, PROBE_MARGIN, KernelTolerances
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, row, scaled
-from cagepose.kernels.collision.geometry import (
-    Geometry,
-    Placement,
+from cagepose.kernels.collision.boxes import (
+    BoxesAndPoints,
+    PlacedBoxes,
     box_gap,
     box_point,
-    empty_placement,
-    place_object,
+    empty_placed_boxes,
+    place_boxes_at,
     point_in_box,
 )
 from cagepose.kernels.native.kernel import kernel
 
 
 @kernel
-def face_normal(placement: Placement, box: int, axis: int, side: float) -> Vector:
+def face_normal(placement: PlacedBoxes, box: int, axis: int, side: float) -> Vector:
     """Return the outward normal, in the world, of the face of ``box`` at ``side`` (+1 or -1) of its axis 0, 1 or 2."""
     r = placement.box_rotations
     return (side * r[box, 0, axis], side * r[box, 1, axis], side * r[box, 2, axis])
@@ -43,7 +43,9 @@ def touches_face(point_box: Vector, half_size: Vector, axis: int, touch_m: float
 
 
 @kernel
-def inside_another_box(geometry: Geometry, placement: Placement, box: int, probe_box: Vector, touch_m: float) -> bool:
+def inside_another_box(
+    geometry: BoxesAndPoints, placement: PlacedBoxes, box: int, probe_box: Vector, touch_m: float
+) -> bool:
     """Whether a probe point, given in the frame of ``box``, lies well inside any other box."""
     r = placement.box_rotations[box]
     probe_world = row(placement.box_positions, box)
@@ -68,7 +70,9 @@ def moved_coordinate(point: Vector, axis: int, value: float) -> Vector:
 
 
 @kernel
-def is_hidden(geometry: Geometry, placement: Placement, box: int, point: int, axis: int, touch_m: float) -> bool:
+def is_hidden(
+    geometry: BoxesAndPoints, placement: PlacedBoxes, box: int, point: int, axis: int, touch_m: float
+) -> bool:
     """Whether the face that the point touches along ``axis`` is covered by another box at this place (2.7)."""
     half_size = row(geometry.half_sizes, box)
     probe = box_point(placement, box, point)
@@ -83,22 +87,8 @@ def is_hidden(geometry: Geometry, placement: Placement, box: int, point: int, ax
 
 
 @kernel
-def is_near_edge(geometry: Geometry, placement: Placement, box: int, point: int, axis: int, touch_m: float) -> bool:
-    """Whether the point lies within the touch tolerance of an edge where the union's surface really ends."""
-    half_size = row(geometry.half_sizes, box)
-    point_box = box_point(placement, box, point)
-    for k in range(3):
-        if k != axis and abs(point_box[k]) > half_size[k] - touch_m:
-            beyond = moved_coordinate(point_box, k, math.copysign(half_size[k] + PROBE * touch_m, point_box[k]))
-            below = math.copysign(half_size[axis] - PROBE * touch_m, point_box[axis])
-            if not inside_another_box(geometry, placement, box, moved_coordinate(beyond, axis, below), touch_m):
-                return True
-    return False
-
-
-@kernel
 def steepest_contact(
-    geometry: Geometry, placement: Placement, point: int, load_direction: Vector, tolerances: KernelTolerances
+    geometry: BoxesAndPoints, placement: PlacedBoxes, point: int, load_direction: Vector, tolerances: KernelTolerances
 ) -> tuple[bool, Vector, bool]:
     """Return (touches, normal, tie): of the faces that the point touches, the one that faces the load most.
 
@@ -131,12 +121,14 @@ def steepest_contact(
     return best_cosine > -math.inf, best_normal, is_tie
 
 
-def deepest_boxes(geometry: Geometry, position: Vector, quaternion: Quaternion) -> tuple[FloatArray, NDArray[np.int64]]:
+def deepest_boxes(
+    geometry: BoxesAndPoints, position: Vector, quaternion: Quaternion
+) -> tuple[FloatArray, NDArray[np.int64]]:
     """Return, for each cage point, the greatest depth inside a box (below zero: outside) in metres, and that box.
 
     A box index of ``n_own_boxes`` or more is a bridge: the point lies in the seam between two boxes. Plain Python.
     """
-    placement = empty_placement(geometry)
-    place_object(geometry, position, quaternion, placement)
+    placement = empty_placed_boxes(geometry)
+    place_boxes_at(geometry, position, quaternion, placement)
     depths = (geometry.half_sizes[:, :, None] - np.abs(placement.points_box)).min(axis=1)
     return placement.depths, depths.argmax(axis=0)

@@ -11,33 +11,20 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.algebra.tolerances import KernelTolerances
-from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row
-from cagepose.kernels.collision.geometry import Geometry, Placement, box_point, point_in_box, vector_in_box
-from cagepose.kernels.collision.screw import screw_entry
+from cagepose.kernels.algebra.tolerances import KernelTolerances, allowed_depth
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, row
+from cagepose.kernels.collision.boxes import BoxesAndPoints, PlacedBoxes, box_point, point_in_box, vector_in_box
 from cagepose.kernels.collision.travel import travel_entry
 from cagepose.kernels.collision.turn import turn_entry
 from cagepose.kernels.native.kernel import kernel
 
 SAFE = 1.0 + 1e-12
 """So that rounding passes over nothing that is just in reach."""
-THIN = 0.5
-"""Share of half the thickness of a box. No point may go deeper, or it could come out on the other side."""
-
-
-@kernel
-def allowed_depth(depth_m: float, tolerances: KernelTolerances) -> float:
-    """Return how deep a point may go that starts at ``depth_m``: no deeper than it is, rounding apart.
-
-    The depth is that in the whole object, not in one box: a point that slides a rounding below the common face of two
-    flush boxes is not caught by the seam between them.
-    """
-    return max(tolerances.resolution_m, depth_m + tolerances.rounding_m)
 
 
 @kernel
 def first_contact_travel(
-    geometry: Geometry, placement: Placement, direction: Vector, skip_gap_m: float, tolerances: KernelTolerances
+    geometry: BoxesAndPoints, placement: PlacedBoxes, direction: Vector, skip_gap_m: float, tolerances: KernelTolerances
 ) -> tuple[float, int, int]:
     """Return (distance, point index, box index) of the first contact on a travel along ``direction``; (inf, -1, -1):
     none ahead.
@@ -77,7 +64,7 @@ def is_out_of_reach(gap_m: float, arm_m2: float, key: float) -> bool:
 
 @kernel
 def first_contact_turn(
-    geometry: Geometry, placement: Placement, through: Vector, axis: Vector, tolerances: KernelTolerances
+    geometry: BoxesAndPoints, placement: PlacedBoxes, through: Vector, axis: Vector, tolerances: KernelTolerances
 ) -> tuple[float, int]:
     """Return (key, point index) of the first contact on a right-handed turn; (inf, -1): none in a full turn.
 
@@ -110,8 +97,8 @@ def first_contact_turn(
 
 @kernel
 def turn_is_blocked_at_once(
-    geometry: Geometry,
-    placement: Placement,
+    geometry: BoxesAndPoints,
+    placement: PlacedBoxes,
     points: NDArray[np.int64],
     n_points: int,
     through: Vector,
@@ -139,55 +126,3 @@ def turn_is_blocked_at_once(
             if entry == -math.inf:
                 return True
     return False
-
-
-@kernel
-def first_contact_screw(
-    geometry: Geometry,
-    placement: Placement,
-    center: Vector,
-    velocity: Vector,
-    axis: Vector,
-    angle_end_rad: float,
-    skip_gap_m: float,
-    near_m: float,
-    near_depth_m: float,
-    tolerances: KernelTolerances,
-) -> tuple[float, int, int]:
-    """Return (angle, point index, box index) of the first contact on a screw before ``angle_end_rad``; (inf, -1, -1):
-    none.
-
-    ``velocity`` is that of the object at ``center`` for each radian about the unit vector ``axis``, metres. Points
-    within ``skip_gap_m`` of a box are not asked about that box; others within ``near_m`` may go ``near_depth_m`` deep.
-    """
-    least, first_point, first_box = math.inf, -1, -1
-    angle_end = angle_end_rad
-    for box in range(len(geometry.half_sizes)):
-        half_size = row(geometry.half_sizes, box)
-        near_depth = min(near_depth_m, THIN * min(half_size[0], half_size[1], half_size[2]))
-        axis_box = vector_in_box(placement, box, axis)
-        velocity_box = vector_in_box(placement, box, velocity)
-        center_box = point_in_box(placement, box, center)
-        for point in range(len(geometry.points_world)):
-            point_box = box_point(placement, box, point)
-            point_velocity = plus(velocity_box, cross(axis_box, minus(point_box, center_box)))
-            gap = placement.gaps[box, point]
-            # No point moves farther than its path is long, and a screw's path has a constant speed.
-            if gap <= skip_gap_m or gap > norm(point_velocity) * angle_end:
-                continue
-            allowed = allowed_depth(placement.depths[point], tolerances)
-            if gap <= near_m:
-                allowed = max(allowed, near_depth)
-            entry = screw_entry(
-                point_box,
-                point_velocity,
-                axis_box,
-                angle_end,
-                half_size,
-                allowed,
-                tolerances.resolution_m,
-            )
-            if entry < least:
-                least, first_point, first_box = entry, point, box
-                angle_end = entry
-    return least, first_point, first_box

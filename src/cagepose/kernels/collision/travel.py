@@ -20,7 +20,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.vector import Vector
-from cagepose.kernels.collision.geometry import box_gap
+from cagepose.kernels.collision.boxes import box_gap
 from cagepose.kernels.native.kernel import kernel
 
 

@@ -20,7 +20,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, scaled
-from cagepose.kernels.collision.geometry import box_gap
+from cagepose.kernels.collision.boxes import box_gap
 from cagepose.kernels.native.kernel import kernel
 
 SAFE = 1e-12

@@ -1,25 +1,28 @@
 """The contacts at one pose as the mechanics needs them: a row for each place where two parts touch, with its wrenches.
 
-A point that touches several faces of one box lies on an edge: going in means that every one of them goes in (2.4), so
-one face that holds or leaves is enough. Such faces form a group, of which one is chosen at a time. Faces of different
-boxes hold each on its own. The same holds for sharp features of two shapes that meet at one place with several normals.
+A point that touches several faces lies on an edge: going in means that every one of them goes in (2.4), so one face
+that holds or leaves is enough. Such faces form a group, of which one is chosen at a time. The same holds for all sharp
+features of two bodies that meet at one place with several normals; where the edge between the faces is hollow, each
+holds on its own.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
-from cagepose.kernels.algebra.vector import Vector, cross, norm, scaled
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, scaled
 from cagepose.kernels.boundary.bend import Bend
-from cagepose.kernels.collision.geometry import Geometry, most_rows
+from cagepose.kernels.boundary.geometry import Geometry, most_rows
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.native.kernel import kernel
 
-CONTACTS_PER_POINT = 12
-"""Faces that a point may touch, taken over all points. More: the run stalls, by name."""
+STEEP = 0.55
+"""Cosine. Each normal is nearer to an axis than this; few ordinary ones are so far from one that rounding would change
+which is taken."""
 
 
 class ContactRow:
@@ -27,19 +30,16 @@ class ContactRow:
 
     Attributes
     ----------
-    point, box
-        Indices of the cage's point or shape, and of the object's box or shape.
-    axis, side
-        Of the box's face over a point: index of the axis, and +1 or -1.
+    part, cage_part
+        Indices of the parts of the object and of the cage.
     feature, cage_feature
-        Of shapes that touch: indices of their features; -1: they are a point and a box.
+        Indices of their features that touch.
     angle
-        Of shapes: where along a circle, if one of the features is one, radians.
+        Where along a circle, if one of the features is one, radians.
     gap
         Distance, below zero: how deep, metres.
     group
-        The first row of the same point and box; -1: the row does not count, as flush faces of another box say all
-        that it does.
+        The first row of those of which one counts at a time.
     is_added
         Whether it is a place of a circle that was not listed at first, see `on_circle`.
     directions, arm
@@ -51,10 +51,8 @@ class ContactRow:
         without play lock is taken out of them, see `self_stress`.
     """
 
-    point: int
-    box: int
-    axis: int
-    side: float
+    part: int
+    cage_part: int
     feature: int
     cage_feature: int
     angle: float
@@ -107,7 +105,7 @@ class ContactState:
 class ContactSet(NamedTuple):
     """The contacts at one pose, 0 to used - 1 (``used`` is (1,)): their geometry, and what they do.
 
-    ``bends`` are those of rows whose ``feature`` is not -1; there are none without shapes.
+    ``bends`` say of each row how its surfaces bend.
     """
 
     used: IntArray
@@ -116,25 +114,19 @@ class ContactSet(NamedTuple):
     bends: Rows[Bend]
 
 
-def empty_contact_set(n_rows: int, n_bends: int = 0) -> ContactSet:
+def empty_contact_set(n_rows: int) -> ContactSet:
     """Return a set with memory for ``n_rows`` contacts (plain Python)."""
     return ContactSet(
         np.zeros(1, np.int64),
         empty_rows(ContactRow, n_rows),
         empty_rows(ContactState, n_rows),
-        empty_rows(Bend, n_bends),
+        empty_rows(Bend, n_rows),
     )
-
-
-def most_contacts(geometry: Geometry) -> int:
-    """Return how many contacts there may be at one pose (plain Python)."""
-    return most_rows(geometry) + CONTACTS_PER_POINT * len(geometry.points_world)
 
 
 def contact_set_for(geometry: Geometry) -> ContactSet:
     """Return a set with memory for all contacts that there may be at one pose (plain Python)."""
-    n_rows = most_contacts(geometry)
-    return empty_contact_set(n_rows, most_rows(geometry))
+    return empty_contact_set(most_rows(geometry))
 
 
 @kernel
@@ -167,21 +159,25 @@ def count_chosen(contacts: ContactSet) -> None:
 
 @kernel
 def tangents_to(normal: Vector) -> tuple[Vector, Vector]:
-    """Return two unit vectors across a unit normal and each other."""
-    x, y, z = abs(normal[0]), abs(normal[1]), abs(normal[2])
-    least = (
-        1.0 if x <= y and x <= z else 0.0,
-        1.0 if y < x and y <= z else 0.0,
-        1.0 if z < x and z < y else 0.0,
-    )
-    one = cross(normal, least)
+    """Return two unit vectors across a unit normal and each other: of the three axes the two that follow the one that
+    the normal leads along, turned to be across it. For nearly the same normal they are nearly the same.
+    """
+    x, y, z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+    if abs(normal[2]) >= STEEP:
+        first, second = x, y
+    elif abs(normal[1]) >= STEEP:
+        first, second = z, x
+    else:
+        first, second = y, z
+    one = minus(first, scaled(normal, dot(first, normal)))
     one = scaled(one, 1.0 / norm(one))
-    return one, cross(normal, one)
+    other = cross(normal, one)
+    return one, scaled(other, math.copysign(1.0, dot(other, second)))
 
 
 @kernel
 def write_directions(contact: ContactRow, normal: Vector, arm: Vector, share: float, frame: Frame) -> None:
-    """Write normal and tangents of a contact of shapes, and its wrenches; the tangents are ``share`` long."""
+    """Write normal and tangents of a contact, and its wrenches; the tangents are ``share`` long."""
     one, other = tangents_to(normal)
     directions = (normal, scaled(one, share), scaled(other, share))
     for k in range(3):

@@ -36,9 +36,8 @@ def add_face_curvature(
     normal, arm = vector_from(contact.directions[0]), vector_from(contact.arm)
     add_turned_arm(normal, arm, -carried, frame.axes, frame.radii, out)
     add_coupling(normal, -carried, frame.axes, frame.radii, out)
-    if contact.feature >= 0:
-        bend = contacts.bends[i]
-        add_matrix(bend.twin_sliding if curved and bend.has_twin else bend.sliding, -carried, out)
+    bend = contacts.bends[i]
+    add_matrix(bend.twin_sliding if curved and bend.has_twin else bend.sliding, -carried, out)
 
 
 @kernel
@@ -62,10 +61,9 @@ def add_sticking_curvature(
     """Add what a contact that sticks adds to S with a force: force . Hess u."""
     contact = contacts.rows[i]
     add_turned_arm(force, vector_from(contact.arm), 1.0, frame.axes, frame.radii, out)
-    if contact.feature >= 0:
-        bend = contacts.bends[i]
-        parallel = matrix_from(bend.twin_parallel if curved and bend.has_twin else bend.parallel)
-        add_rolling(force, vector_from(contact.directions[0]), parallel, frame, out)
+    bend = contacts.bends[i]
+    parallel = matrix_from(bend.twin_parallel if curved and bend.has_twin else bend.parallel)
+    add_rolling(force, vector_from(contact.directions[0]), parallel, frame, out)
 
 
 @kernel

@@ -64,7 +64,7 @@ def has_one_choice(contacts: ContactSet) -> bool:
     """Whether there is no edge, so that all faces count."""
     one = True
     for i in range(contacts.used[0]):
-        one = one and (contacts.rows[i].group < 0 or contacts.rows[i].group == i)
+        one = one and contacts.rows[i].group == i
     return one
 
 

@@ -32,8 +32,6 @@ MOST_FOLLOWED = 30
 @kernel
 def is_under_circle(contacts: ContactSet, i: int, touch_m: float) -> bool:
     """Whether a contact is of a circle that a face lies on, to the touch tolerance."""
-    if contacts.rows[i].feature < 0:
-        return False
     around, normal = contacts.bends[i].on_circle, vector_from(contacts.rows[i].directions[0])
     if around.length == 0.0 or around.is_on_ball:
         return False
@@ -45,8 +43,6 @@ def is_along_wall(contacts: ContactSet, i: int) -> bool:
     """Whether a contact is of a circle that lies along the wall of a hole. One that lies around a cone is held by it as
     by a wedge, and one around a ball stays where it is.
     """
-    if contacts.rows[i].feature < 0:
-        return False
     around, row = contacts.bends[i].on_circle, contacts.rows[i]
     if around.length == 0.0 or not around.is_on_ball:
         return False
@@ -58,7 +54,7 @@ def is_along_wall(contacts: ContactSet, i: int) -> bool:
 def is_of_same_circle(contacts: ContactSet, i: int, other: int) -> bool:
     """Whether another contact is of the same circle, around the same round side."""
     row, one = contacts.rows[i], contacts.rows[other]
-    if row.feature < 0 or one.feature != row.feature or one.cage_feature != row.cage_feature:
+    if one.feature != row.feature or one.cage_feature != row.cage_feature:
         return False
     around, beside = contacts.bends[i].on_circle, contacts.bends[other].on_circle
     return bool(around.length != 0.0 and beside.length != 0.0 and around.is_on_ball and beside.is_on_ball)
@@ -69,7 +65,7 @@ def keeps_on_circle(
     contacts: ContactSet, i: int, velocity: Vector, spin: Vector, touch_m: float, slowest: float
 ) -> bool:
     """Whether a contact is of a circle that a motion leaves all on what it lies on, to a speed and to first order."""
-    if contacts.rows[i].feature < 0 or contacts.bends[i].on_circle.length == 0.0:
+    if contacts.bends[i].on_circle.length == 0.0:
         return False
     around, normal = contacts.bends[i].on_circle, vector_from(contacts.rows[i].directions[0])
     if is_along_wall(contacts, i):  # all normals lead through one place; but as it tilts, it is an ellipse to the wall
@@ -86,7 +82,7 @@ def is_on_flat(contacts: ContactSet, i: int) -> bool:
     row, found = contacts.rows[i], False
     for j in range(contacts.used[0]):
         other = contacts.rows[j]
-        is_same = other.box == row.box and other.point == row.point
+        is_same = other.part == row.part and other.cage_part == row.cage_part
         if is_same and contacts.states[j].stays_flat:
             turned = dot(vector_from(other.directions[0]), vector_from(row.directions[0]))
             found = found or turned > SAME_WAY
@@ -158,7 +154,7 @@ def write_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> Non
     row, place = contacts.rows[i], contacts.used[0]
     arm, normal = place_on_circle(contacts, i, angle)
     new = contacts.rows[place]
-    new.point, new.box, new.axis, new.side, new.gap, new.group = row.point, row.box, 0, 1.0, row.gap, place
+    new.part, new.cage_part, new.gap, new.group = row.part, row.cage_part, row.gap, place
     new.is_added = True
     new.feature, new.cage_feature, new.angle = row.feature, row.cage_feature, row.angle + angle
     write_directions(new, normal, arm, norm(vector_from(row.directions[1])), frame)
@@ -209,14 +205,12 @@ def add_on_circles(contacts: ContactSet, frame: Frame, friction: float, y: Float
     With friction y is a twist that forces are asked to resist, which they do up to mu |v_t| faster. What y is the rest
     of has ``terms`` of this length: slower than their rounding, nothing goes in.
     """
-    if len(contacts.bends) == 0:
-        return False
     velocity, spin = twist_of(y, frame)
     n_listed, fastest, least = contacts.used[0], -1, max(SPEED_OF_ENTRY * length(y, WRENCH), ROUNDING_OF_SPEED * terms)
     at_fastest = 0.0
     for i in range(n_listed):
         around = contacts.bends[i].on_circle
-        if contacts.rows[i].feature < 0 or around.length == 0.0 or contacts.used[0] == len(contacts.rows):
+        if around.length == 0.0 or contacts.used[0] == len(contacts.rows):
             continue
         deepest = angle_of_deepest(contacts, i, 0.0, velocity, spin, 0.0)
         for k in range(2 if friction > 0.0 else 1):  # with it, uphill from the deepest place, and from the listed one

@@ -13,7 +13,7 @@ import math
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.bend import NOTHING, Curvatures, across, write_bend
 from cagepose.kernels.boundary.features import CIRCLE, LINE
-from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.boundary.geometry import Geometry
 from cagepose.kernels.contact.contact_set import ContactSet, write_directions
 from cagepose.kernels.contact.metric import Frame
 from cagepose.kernels.contact.on_circle import is_of_same_circle

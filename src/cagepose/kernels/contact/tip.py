@@ -38,13 +38,13 @@ def tips_on_circle(contacts: ContactSet, frame: Frame, friction: float, work: Co
     work
         Given: the load.
     """
-    if len(contacts.bends) == 0 or work.locked.used > 0 or not has_one_normal_each(contacts):
+    if work.locked.used > 0 or not has_one_normal_each(contacts):
         return False
     n_before = contacts.used[0]
     left = solve_cones(contacts, friction, work)
     for i in range(n_before):
         rim = contacts.bends[i].on_circle
-        if contacts.rows[i].feature < 0 or rim.length == 0.0 or rim.is_on_ball or is_of_circle_before(contacts, i):
+        if rim.length == 0.0 or rim.is_on_ball or is_of_circle_before(contacts, i):
             continue
         solve_cones(contacts, friction, work)
         start = angle_to_deepest(contacts, i, 0.0, work.cone.passive.residual, frame)
@@ -63,10 +63,9 @@ def has_one_normal_each(contacts: ContactSet) -> bool:
     """Whether all faces of each group have one normal, as where two rims cross at one height: any choice will do."""
     one = True
     for i in range(contacts.used[0]):
-        first = contacts.rows[i].group
-        if first >= 0:
-            turned = dot(vector_from(contacts.rows[first].directions[0]), vector_from(contacts.rows[i].directions[0]))
-            one = one and turned > PARALLEL_COSINE
+        first = contacts.rows[contacts.rows[i].group]
+        turned = dot(vector_from(first.directions[0]), vector_from(contacts.rows[i].directions[0]))
+        one = one and turned > PARALLEL_COSINE
     return one
 
 
@@ -81,7 +80,7 @@ def solve_cones(contacts: ContactSet, friction: float, work: ContactWorkspace) -
 def is_of_same_circle(contacts: ContactSet, i: int, j: int) -> bool:
     """Whether two contacts are of the same parts, with the same normal."""
     one, other = contacts.rows[i], contacts.rows[j]
-    if other.feature < 0 or one.box != other.box or one.point != other.point:
+    if one.part != other.part or one.cage_part != other.cage_part:
         return False
     return dot(vector_from(one.directions[0]), vector_from(other.directions[0])) > PARALLEL_COSINE
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from cagepose.kernels.collision.geometry import PlacedCage
+from cagepose.kernels.boundary.geometry import PlacedCage
 from cagepose.kernels.contact.metric import frame_at
 from cagepose.kernels.native.kernel import entry
 from cagepose.kernels.outcome.cases import Cases, Part, start_of
@@ -44,7 +44,7 @@ def critical_friction(phase: int, part: Part, cases: Cases, cage: PlacedCage, at
     Parameters as for `judge_start`.
     """
     start = start_of(0, part, cases, cage)
-    load, touch_m = start.actions[phase], start.tolerances.touch_m
-    if not stand_at(start.geometry, part.body, start.position, start.quaternion, load, start.friction, touch_m, at):
+    load = start.actions[phase]
+    if not stand_at(start.geometry, part.body, start.position, start.quaternion, load, start.friction, at):
         return math.nan
     return least_friction_of_faces(frame_at(part.body, start.quaternion), at)

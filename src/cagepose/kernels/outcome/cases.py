@@ -9,9 +9,9 @@ from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances, scaled_tolerances
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, row, scaled, vector_from
 from cagepose.kernels.boundary.features import Boundary, place_boundary, placed_in
+from cagepose.kernels.boundary.geometry import Geometry, PlacedCage, Placement, held_at
 from cagepose.kernels.boundary.overlap import find_overlap
 from cagepose.kernels.boundary.refit import refit_vertices
-from cagepose.kernels.collision.geometry import Geometry, PlacedCage, Placement, held_at, is_shaped, place_object
 from cagepose.kernels.contact.friction import Friction, friction_of
 from cagepose.kernels.contact.loads import PhaseLoad
 from cagepose.kernels.contact.metric import Body
@@ -23,21 +23,21 @@ class Part(NamedTuple):
 
     Attributes
     ----------
-    half_sizes, box_positions, box_rotations, n_own_boxes
-        As in `Geometry`, but seen from the centre of gravity.
     boundary
-        That of all its parts, its own boxes first, likewise seen; empty where it has boxes and the cage points alone.
+        That of all its parts, its own boxes first, as seen from the centre of gravity.
+    half_sizes, box_positions, box_rotations, n_own_boxes
+        Its boxes, likewise seen, for the paper's method: as in `cagepose.kernels.collision.boxes`.
     body
         Its inertia.
     center_object
         Centre of gravity in the object's own frame, metres.
     """
 
+    boundary: Boundary
     half_sizes: FloatArray
     box_positions: FloatArray
     box_rotations: FloatArray
     n_own_boxes: int
-    boundary: Boundary
     body: Body
     center_object: Vector
 
@@ -52,8 +52,7 @@ class Cases(NamedTuple):
     points_cage
         (n, n_points, 3), metres.
     boundary_cage
-        That of all parts of the cage, its points first, in its frame, the same for all but for where single points are;
-        empty like `Part.boundary`.
+        That of all parts of the cage, its points first, in its frame, the same for all but for where single points are.
     object_positions, object_quaternions
         The object's pose in the world at the start.
     sizes_m
@@ -148,16 +147,7 @@ def start_of(case: int, part: Part, cases: Cases, cage: PlacedCage) -> Start:
     size_m = cases.sizes_m[row_of(len(cases.sizes_m), case)]
     tolerances = scaled_tolerances(cases.tolerances, size_m)
     return Start(
-        Geometry(
-            part.half_sizes,
-            part.box_positions,
-            part.box_rotations,
-            part.n_own_boxes,
-            cage.points_world,
-            part.boundary,
-            placed_cage,
-            tolerances.touch_m,
-        ),
+        Geometry(part.boundary, placed_cage, tolerances.touch_m),
         plus(minus(position, origin), rotated(quaternion, part.center_object)),
         quaternion,
         origin,
@@ -187,7 +177,7 @@ def own_boundary(boundary: Boundary, points: FloatArray, cage: PlacedCage) -> Bo
         boundary.planes,
     )
     is_elsewhere = False
-    for point in range(len(points) if len(own.parts) > 0 else 0):
+    for point in range(len(points)):
         feature = own.features[own.parts[point].point]
         for k in range(3):
             is_elsewhere = is_elsewhere or feature.point[k] != points[point, k]
@@ -200,26 +190,15 @@ def own_boundary(boundary: Boundary, points: FloatArray, cage: PlacedCage) -> Bo
 @kernel
 def is_valid(start: Start, farthest: float, points_vary: bool, placement: Placement, cage: PlacedCage) -> bool:
     """Whether the object starts within ``farthest`` sizes of the cage, nothing of it is inside it, and no two points
-    that vary are one. The placement is that of the start afterwards.
+    that vary are one. The placement is scratch.
     """
     if norm(start.position) > farthest * start.size_m:
         return False
-    geometry, touch_m = start.geometry, start.tolerances.touch_m
-    place_object(geometry, start.position, start.quaternion, placement)
-    if is_shaped(geometry):
-        held = held_at(geometry, placement)
-        if find_overlap(held, geometry.cage, touch_m, cage.overlap).feature >= 0:
-            return False
-        return not points_vary or are_single(geometry, touch_m)
-    points = geometry.points_world
-    for point in range(len(points)):
-        if placement.depths[point] > touch_m:
-            return False
-        if points_vary:
-            for other in range(point):
-                if norm(minus(row(points, other), row(points, point))) <= touch_m:
-                    return False
-    return True
+    held = held_at(start.geometry, placement)
+    place_boundary(held, start.position, start.quaternion)
+    if find_overlap(held, start.geometry.cage, start.tolerances.touch_m, cage.overlap).feature >= 0:
+        return False
+    return not points_vary or are_single(start.geometry, start.tolerances.touch_m)
 
 
 @kernel

@@ -7,9 +7,8 @@ import math
 from cagepose.kernels.algebra.pose import Quaternion, write_upright
 from cagepose.kernels.algebra.vector import Vector, plus, vector_from
 from cagepose.kernels.boundary.features import FACE
-from cagepose.kernels.boundary.reach import beyond_face
-from cagepose.kernels.collision.contacts import is_near_edge
-from cagepose.kernels.collision.geometry import held_at
+from cagepose.kernels.boundary.geometry import held_at
+from cagepose.kernels.boundary.surface_end import ends_near
 from cagepose.kernels.contact.metric import frame_at, twist_of
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.cases import Part, Start, object_position
@@ -45,7 +44,6 @@ def judge_end(
         start.actions[phase],
         start.friction,
         start.size_m,
-        start.tolerances,
         at,
     )
 
@@ -156,14 +154,12 @@ def publish_events(
 
 @kernel
 def is_at_edge(start: Start, position: Vector, at: ProofWorkspace, i: int) -> bool:
-    """Whether a contact is of a point of the cage within the touch tolerance of where a face ends."""
-    found, geometry, touch_m = at.contacts.rows[i], start.geometry, start.tolerances.touch_m
-    if found.feature < 0:
-        return is_near_edge(geometry, at.placement, found.box, found.point, found.axis, touch_m)
-    if geometry.held.features[found.feature].kind != FACE or geometry.cage.own.parts[found.point].point < 0:
+    """Whether a contact is of a point of the cage within the touch tolerance of where the object's surface ends."""
+    found, geometry = at.contacts.rows[i], start.geometry
+    if geometry.held.features[found.feature].kind != FACE or geometry.cage.own.parts[found.cage_part].point < 0:
         return False
-    place = plus(position, vector_from(found.arm))
-    return beyond_face(held_at(geometry, at.placement), found.feature, place) > -touch_m
+    held, place = held_at(geometry, at.placement), plus(position, vector_from(found.arm))
+    return ends_near(held, found.feature, place, geometry.touch_m, at.placement.meetings.waiting)
 
 
 @kernel
@@ -172,7 +168,12 @@ def publish_contacts(start: Start, position: Vector, at: ProofWorkspace, outcome
     for i in range(at.contacts.used[0]):
         found, forces = at.contacts.rows[i], at.contacts.states[i].forces
         contact = outcome.contacts[outcome.counts[CONTACTS]]
-        contact.point, contact.box, contact.gap, contact.group = found.point, found.box, found.gap, found.group
+        contact.part, contact.cage_part, contact.gap, contact.group = (
+            found.part,
+            found.cage_part,
+            found.gap,
+            found.group,
+        )
         contact.near_edge = is_at_edge(start, position, at, i)
         contact.force_normal, contact.is_shared = forces[0], at.statuses[i].is_shared
         for k in range(3):

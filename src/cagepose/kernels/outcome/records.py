@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
-from cagepose.kernels.collision.geometry import Geometry, most_elements
-from cagepose.kernels.contact.contact_set import most_contacts
+from cagepose.kernels.boundary.geometry import Geometry, most_elements, most_rows
 from cagepose.kernels.outcome.trace import StepRecord
 
 
@@ -88,23 +87,22 @@ class ContactRecord:
 
     Attributes
     ----------
-    point, box
-        Indices of the cage's point or shape and of the object's box or shape.
+    part, cage_part
+        Indices of the parts of the object and of the cage.
     place, normal, gap
         Where in the world, outward unit normal of the object, and the distance, below zero inside.
     near_edge
-        Whether a point lies within the touch tolerance of an edge of the surface of the union of boxes.
+        Whether a point lies within the touch tolerance of where a face ends.
     group
-        Which of the phase's contacts, counted from 0, is the first of those of which one counts at a time; -1: it does
-        not count, as others say all that it does.
+        Which of the phase's contacts, counted from 0, is the first of those of which one counts at a time.
     force_normal, force_tangential
         Force on the object: its part along -n, and the rest.
     is_shared
         Whether its normal force could be another.
     """
 
-    point: int
-    box: int
+    part: int
+    cage_part: int
     place: Annotated[FloatArray, 3]
     normal: Annotated[FloatArray, 3]
     gap: float
@@ -153,7 +151,7 @@ def empty_outcome(geometry: Geometry, n_phases: int, n_steps: int, n_ordered: in
         np.zeros(4, np.int64),
         empty_rows(PhaseRecord, n_phases),
         empty_rows(EventRecord, n_events),
-        empty_rows(ContactRecord, n_phases * most_contacts(geometry)),
+        empty_rows(ContactRecord, n_phases * most_rows(geometry)),
         np.zeros((n_events, n_elements), np.bool_),
         np.zeros((n_events, n_elements), np.bool_),
         np.zeros((n_events, 7)),

@@ -15,7 +15,7 @@ from cagepose.kernels.algebra.linear_program import FAILED, OPTIMAL, UNBOUNDED, 
 from cagepose.kernels.algebra.program_bound import dual_bound, extents
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_record
 from cagepose.kernels.algebra.vector import Vector, cross, norm, row, scaled, vector_from
-from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.collision.boxes import BoxesAndPoints
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.goal import PITCH, SHIFT, YAW, Goal, write_slope
 from cagepose.kernels.play.polytope import START_MOTION, PlayWorkspace, write_start
@@ -162,7 +162,7 @@ def is_within(
 
 
 @kernel
-def status_of(geometry: Geometry, pair: int, work: PlayWorkspace, proof: CertificateWorkspace) -> int:
+def status_of(geometry: BoxesAndPoints, pair: int, work: PlayWorkspace, proof: CertificateWorkspace) -> int:
     """Return KEPT if the point stays over its face and above the opposite one in the whole polytope (7.9)."""
     certificate = proof.certificate
     travel, turn = vector_from(certificate.travel), vector_from(certificate.turn)
@@ -187,7 +187,7 @@ def status_of(geometry: Geometry, pair: int, work: PlayWorkspace, proof: Certifi
 
 
 @kernel
-def move_out(geometry: Geometry, work: PlayWorkspace, proof: CertificateWorkspace) -> bool:
+def move_out(geometry: BoxesAndPoints, work: PlayWorkspace, proof: CertificateWorkspace) -> bool:
     """Compare each row with what linearising leaves out; True: every row is far enough out, and its point stays."""
     certificate = proof.certificate
     travel, turn = vector_from(certificate.travel), vector_from(certificate.turn)
@@ -219,7 +219,7 @@ def tightest_given_up(proof: CertificateWorkspace) -> int:
 
 
 @kernel
-def close_polytope(geometry: Geometry, work: PlayWorkspace, proof: CertificateWorkspace) -> int:
+def close_polytope(geometry: BoxesAndPoints, work: PlayWorkspace, proof: CertificateWorkspace) -> int:
     """Move the rows out until what linearising leaves out is less (7.7)."""
     certificate = proof.certificate
     for _ in range(MOST_ROUNDS):
@@ -266,7 +266,7 @@ def shift_bound(goal: Goal, work: PlayWorkspace, certificate: Certificate) -> fl
 
 @entry
 def certify(
-    geometry: Geometry,
+    geometry: BoxesAndPoints,
     touch: float,
     goals: Rows[Goal],
     bounds: FloatArray,

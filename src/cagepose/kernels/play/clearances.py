@@ -13,7 +13,7 @@ from cagepose.kernels.algebra.least_squares import inner
 from cagepose.kernels.algebra.linear_program import OPTIMAL, solve_program
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import vector_from
-from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.collision.boxes import BoxesAndPoints
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.extreme import Extreme
 from cagepose.kernels.play.goal import Goal, write_slope
@@ -89,7 +89,7 @@ def gain_of(pair: int, bound: float, work: PlayWorkspace) -> float:
 
 @entry
 def find_limiting_gaps(
-    geometry: Geometry, goal: Goal, extreme: Extreme, found: Rows[LimitingGap], work: PlayWorkspace
+    geometry: BoxesAndPoints, goal: Goal, extreme: Extreme, found: Rows[LimitingGap], work: PlayWorkspace
 ) -> int:
     """Find what limits a goal at the motion that reaches its end; return how many gaps.
 

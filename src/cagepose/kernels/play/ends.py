@@ -9,7 +9,7 @@ from cagepose.kernels.algebra.linear_program import OPTIMAL, solve_program
 from cagepose.kernels.algebra.pose import quaternion_about, quaternion_product
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import norm, plus, scaled
-from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.collision.boxes import BoxesAndPoints
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.play.extreme import OPEN, UNFINISHED, Extreme
 from cagepose.kernels.play.goal import Goal, value_at, write_slope
@@ -50,7 +50,7 @@ def moved(motion: Motion, step: FloatArray) -> Motion:
 
 
 @kernel
-def put_on_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> Motion:
+def put_on_faces(geometry: BoxesAndPoints, motion: Motion, work: PlayWorkspace) -> Motion:
     """Take the last steps, which are of the size of rounding, so that no limiting point is left inside."""
     for _ in range(RESTORING_STEPS):
         inside = write_rows(geometry, motion, work)
@@ -62,7 +62,7 @@ def put_on_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> Mot
 
 
 @kernel
-def find_prices(geometry: Geometry, goal: Goal, motion: Motion, work: PlayWorkspace) -> tuple[float, float]:
+def find_prices(geometry: BoxesAndPoints, goal: Goal, motion: Motion, work: PlayWorkspace) -> tuple[float, float]:
     """Find the multipliers with which the rows that touch hold the value.
 
     Returns the factor taken out of its slope, and what the rows leave of it: the rate at which the value, as scaled,
@@ -76,7 +76,7 @@ def find_prices(geometry: Geometry, goal: Goal, motion: Motion, work: PlayWorksp
 
 
 @kernel
-def change_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> bool:
+def change_faces(geometry: BoxesAndPoints, motion: Motion, work: PlayWorkspace) -> bool:
     """Let points stay beyond the faces that they are farther beyond than their own; True: some do.
 
     None changes that is inside: it may come out behind the box, or have cut its edge.
@@ -93,7 +93,7 @@ def change_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> boo
 
 
 @kernel
-def face_around_edge(geometry: Geometry, pair: int, work: PlayWorkspace) -> int:
+def face_around_edge(geometry: BoxesAndPoints, pair: int, work: PlayWorkspace) -> int:
     """Return another face of the box at whose edge the point is; -1: it is at none, or has been turned already."""
     if work.is_turned[pair]:
         return -1
@@ -104,7 +104,7 @@ def face_around_edge(geometry: Geometry, pair: int, work: PlayWorkspace) -> int:
 
 
 @kernel
-def turn_around_edges(geometry: Geometry, goal: Goal, motion: Motion, work: PlayWorkspace) -> bool:
+def turn_around_edges(geometry: BoxesAndPoints, goal: Goal, motion: Motion, work: PlayWorkspace) -> bool:
     """Let limiting points that are at edges stay beyond the other faces, one by one; True: now the value can grow.
 
     False: all are as they were, and so are the multipliers.
@@ -151,7 +151,7 @@ def note_open(goal: Goal, extreme: Extreme) -> None:
 
 
 @kernel
-def start_beyond_others(geometry: Geometry, extreme: Extreme, work: PlayWorkspace) -> bool:
+def start_beyond_others(geometry: BoxesAndPoints, extreme: Extreme, work: PlayWorkspace) -> bool:
     """Let the points that limit an extreme start beyond other faces than there; False: each starts beyond one alone."""
     place(geometry, START_MOTION, work)
     limits, changed = extreme.limits, False

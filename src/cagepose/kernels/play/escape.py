@@ -12,8 +12,8 @@ from cagepose.kernels.algebra.pose import Quaternion, moved_pose, rotated
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, row, scaled, vector_from
+from cagepose.kernels.collision.boxes import BoxesAndPoints, PlacedBoxes, place_boxes_at
 from cagepose.kernels.collision.first_contact import first_contact_travel, first_contact_turn
-from cagepose.kernels.collision.geometry import Geometry, Placement, place_object
 from cagepose.kernels.native.kernel import entry, kernel
 
 N_RANDOM = 12
@@ -50,7 +50,7 @@ class Station:
 
 
 @kernel
-def random_direction(samples: FloatArray, placement: Placement) -> Vector:
+def random_direction(samples: FloatArray, placement: PlacedBoxes) -> Vector:
     """Return a unit vector from four numbers in [0, 1): any one, an axis of the cage, or one of a box."""
     kind = samples[0]
     if kind < 0.5:
@@ -82,11 +82,11 @@ def distance_from_start(position: Vector, quaternion: Quaternion, middle: Vector
 
 @entry
 def grow_tree(
-    geometry: Geometry,
+    geometry: BoxesAndPoints,
     samples: FloatArray,
     stations: Rows[Station],
     n_stations: int,
-    placement: Placement,
+    placement: PlacedBoxes,
     tolerances: KernelTolerances,
 ) -> tuple[int, bool]:
     """Try one motion for each row of random samples; return (number of stations, whether the last one is out).
@@ -112,7 +112,7 @@ def grow_tree(
         start = stations[parent]
         position, q = vector_from(start.position), start.quaternion
         quaternion = (q[0], q[1], q[2], q[3])
-        place_object(geometry, position, quaternion, placement)
+        place_boxes_at(geometry, position, quaternion, placement)
         along = random_direction(sample[3:7], placement)
         through = (0.0, 0.0, 0.0)
         distance, angle = 0.0, 0.0

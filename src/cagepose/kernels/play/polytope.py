@@ -16,7 +16,7 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.program_bound import extents
 from cagepose.kernels.algebra.record import FloatArray, IntArray, empty_record
 from cagepose.kernels.algebra.vector import Vector, cross, minus, row
-from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement, place_object
+from cagepose.kernels.collision.boxes import BoxesAndPoints, PlacedBoxes, empty_placed_boxes, place_boxes_at
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.newton import NewtonStep
 from cagepose.kernels.play.tolerances import GAP_OF_TOUCH, ROUNDING_OF_GAP, ROUNDING_OF_TERMS
@@ -60,7 +60,7 @@ class PlayWorkspace(NamedTuple):
 
     points: IntArray
     boxes: IntArray
-    placement: Placement
+    placement: PlacedBoxes
     faces: IntArray
     last_faces: IntArray
     start_faces: IntArray
@@ -77,7 +77,7 @@ class PlayWorkspace(NamedTuple):
     newton: NewtonStep
 
 
-def empty_play_workspace(geometry: Geometry) -> PlayWorkspace:
+def empty_play_workspace(geometry: BoxesAndPoints) -> PlayWorkspace:
     """Return a workspace for a scene (plain Python)."""
     n_points, n_boxes = len(geometry.points_world), geometry.n_own_boxes
     n_pairs = n_points * n_boxes
@@ -85,7 +85,7 @@ def empty_play_workspace(geometry: Geometry) -> PlayWorkspace:
     return PlayWorkspace(
         points=np.repeat(np.arange(n_points), n_boxes),
         boxes=np.tile(np.arange(n_boxes), n_points),
-        placement=empty_placement(geometry),
+        placement=empty_placed_boxes(geometry),
         faces=np.zeros(n_pairs, np.int64),
         last_faces=np.zeros(n_pairs, np.int64),
         start_faces=np.zeros(n_pairs, np.int64),
@@ -104,12 +104,12 @@ def empty_play_workspace(geometry: Geometry) -> PlayWorkspace:
 
 
 @kernel
-def place(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> None:
-    place_object(geometry, motion[0], motion[1], work.placement)
+def place(geometry: BoxesAndPoints, motion: Motion, work: PlayWorkspace) -> None:
+    place_boxes_at(geometry, motion[0], motion[1], work.placement)
 
 
 @kernel
-def gap_beyond(geometry: Geometry, pair: int, face: int, work: PlayWorkspace) -> float:
+def gap_beyond(geometry: BoxesAndPoints, pair: int, face: int, work: PlayWorkspace) -> float:
     """Return how far the point is beyond the plane of a face."""
     box, axis = work.boxes[pair], face if face < 3 else face - 3
     along = work.placement.points_box[box, axis, work.points[pair]]
@@ -118,14 +118,14 @@ def gap_beyond(geometry: Geometry, pair: int, face: int, work: PlayWorkspace) ->
 
 
 @kernel
-def gap_at(geometry: Geometry, pair: int, work: PlayWorkspace) -> float:
+def gap_at(geometry: BoxesAndPoints, pair: int, work: PlayWorkspace) -> float:
     """Return the gap of a point to the face that it stays beyond, with its spare."""
     gap: float = gap_beyond(geometry, pair, work.faces[pair], work) + work.spare[pair]
     return gap
 
 
 @kernel
-def least_gap(geometry: Geometry, work: PlayWorkspace) -> float:
+def least_gap(geometry: BoxesAndPoints, work: PlayWorkspace) -> float:
     least = math.inf
     for pair in range(len(work.faces)):
         least = min(least, gap_at(geometry, pair, work))
@@ -133,7 +133,7 @@ def least_gap(geometry: Geometry, work: PlayWorkspace) -> float:
 
 
 @kernel
-def farthest_face(geometry: Geometry, pair: int, work: PlayWorkspace) -> int:
+def farthest_face(geometry: BoxesAndPoints, pair: int, work: PlayWorkspace) -> int:
     """Return the face of the box that the point is farthest beyond."""
     best = 0
     for face in range(1, 6):
@@ -143,7 +143,7 @@ def farthest_face(geometry: Geometry, pair: int, work: PlayWorkspace) -> int:
 
 
 @kernel
-def write_farthest_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> None:
+def write_farthest_faces(geometry: BoxesAndPoints, motion: Motion, work: PlayWorkspace) -> None:
     """Let each point stay beyond the face that it is farthest beyond at a motion."""
     place(geometry, motion, work)
     for pair in range(len(work.faces)):
@@ -151,13 +151,13 @@ def write_farthest_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace
 
 
 @kernel
-def is_beyond(geometry: Geometry, pair: int, face: int, work: PlayWorkspace) -> bool:
+def is_beyond(geometry: BoxesAndPoints, pair: int, face: int, work: PlayWorkspace) -> bool:
     """Whether the point is beyond that face by more than one that touches it can be by rounding."""
     return gap_beyond(geometry, pair, face, work) > GAP_OF_TOUCH
 
 
 @kernel
-def write_row(geometry: Geometry, motion: Motion, pair: int, work: PlayWorkspace) -> None:
+def write_row(geometry: BoxesAndPoints, motion: Motion, pair: int, work: PlayWorkspace) -> None:
     """Write the row (n, (c - t) x n) and the bound of one pair (7.1)."""
     face = work.faces[pair]
     sign, axis = (1.0, face) if face < 3 else (-1.0, face - 3)
@@ -173,7 +173,7 @@ def write_row(geometry: Geometry, motion: Motion, pair: int, work: PlayWorkspace
 
 
 @kernel
-def write_rows(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> float:
+def write_rows(geometry: BoxesAndPoints, motion: Motion, work: PlayWorkspace) -> float:
     """Place the object and write the rows of all pairs; return how deep the deepest point is inside, 0: none is."""
     place(geometry, motion, work)
     least = 0.0
@@ -196,7 +196,7 @@ def write_trust_region(work: PlayWorkspace, radius: float) -> None:
 
 
 @kernel
-def write_touching_rows(geometry: Geometry, motion: Motion, radius: float, work: PlayWorkspace) -> None:
+def write_touching_rows(geometry: BoxesAndPoints, motion: Motion, radius: float, work: PlayWorkspace) -> None:
     """Write the rows of the pairs that touch, with bounds of zero, and a trust region; the others do not count."""
     write_rows(geometry, motion, work)
     for pair in range(len(work.faces)):
@@ -205,7 +205,7 @@ def write_touching_rows(geometry: Geometry, motion: Motion, radius: float, work:
 
 
 @kernel
-def has_choice(geometry: Geometry, pair: int, work: PlayWorkspace) -> bool:
+def has_choice(geometry: BoxesAndPoints, pair: int, work: PlayWorkspace) -> bool:
     """Whether the point is beyond more than one face of the box."""
     n_beyond = 0
     for face in range(6):
@@ -226,7 +226,7 @@ def gap_at_worst(pair: int, work: PlayWorkspace) -> float:
 
 
 @kernel
-def choose_faces(geometry: Geometry, work: PlayWorkspace) -> None:
+def choose_faces(geometry: BoxesAndPoints, work: PlayWorkspace) -> None:
     """Choose the face that each point stays beyond (7.2), at the start.
 
     Where a point is beyond several faces of a box, it is enough that it stays beyond one. Of these the face is best
@@ -259,7 +259,7 @@ def choose_faces(geometry: Geometry, work: PlayWorkspace) -> None:
 
 
 @entry
-def write_start(geometry: Geometry, work: PlayWorkspace) -> None:
+def write_start(geometry: BoxesAndPoints, work: PlayWorkspace) -> None:
     """Choose faces and write the rows (7.1) of the start, without a trust region.
 
     Parameters

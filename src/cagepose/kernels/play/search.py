@@ -14,7 +14,7 @@ from cagepose.kernels.algebra.linear_program import OPTIMAL, renew_rows, solve_p
 from cagepose.kernels.algebra.pose import euler_zyx_from_quaternion
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.algebra.vector import norm, vector_from
-from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.collision.boxes import BoxesAndPoints
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.play.ends import (
     change_faces,
@@ -86,7 +86,7 @@ def is_out(goal: Goal, motion: Motion) -> bool:
 
 
 @kernel
-def merit_at(geometry: Geometry, goal: Goal, motion: Motion, penalty: float, work: PlayWorkspace) -> float:
+def merit_at(geometry: BoxesAndPoints, goal: Goal, motion: Motion, penalty: float, work: PlayWorkspace) -> float:
     """Return the value less the penalty on the deepest point."""
     place(geometry, motion, work)
     return value_at(goal, motion) + penalty * min(least_gap(geometry, work), 0.0)
@@ -130,7 +130,7 @@ def write_newton_step(
 
 
 @kernel
-def moved_along_faces(geometry: Geometry, motion: Motion, work: PlayWorkspace) -> Motion:
+def moved_along_faces(geometry: BoxesAndPoints, motion: Motion, work: PlayWorkspace) -> Motion:
     """Return the motion after Newton's step, put back on the faces that the step's curvature has left.
 
     Without this the penalty would refuse good steps along curved limits.
@@ -152,7 +152,7 @@ def copy_faces(faces: IntArray, copy: IntArray) -> None:
 
 
 @kernel
-def climb(geometry: Geometry, goal: Goal, start: Motion, work: PlayWorkspace, extreme: Extreme) -> None:
+def climb(geometry: BoxesAndPoints, goal: Goal, start: Motion, work: PlayWorkspace, extreme: Extreme) -> None:
     """Follow linear programs in a trust region to a greatest value (7.5), from a pose beyond all points.
 
     Where their limiting rows leave something free, Newton's step on these rows is tried too, and the better one taken.
@@ -241,7 +241,7 @@ def climb(geometry: Geometry, goal: Goal, start: Motion, work: PlayWorkspace, ex
 
 
 @entry
-def find_play(geometry: Geometry, goals: Rows[Goal], extremes: Rows[Extreme], work: PlayWorkspace) -> None:
+def find_play(geometry: BoxesAndPoints, goals: Rows[Goal], extremes: Rows[Extreme], work: PlayWorkspace) -> None:
     """Find the linear and the exact extreme for each goal.
 
     Parameters
@@ -273,7 +273,7 @@ def find_play(geometry: Geometry, goals: Rows[Goal], extremes: Rows[Extreme], wo
 
 @entry
 def find_play_from(
-    geometry: Geometry,
+    geometry: BoxesAndPoints,
     goals: Rows[Goal],
     extremes: Rows[Extreme],
     positions: FloatArray,

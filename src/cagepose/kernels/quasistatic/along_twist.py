@@ -15,7 +15,7 @@ from cagepose.kernels.algebra.vector import (
     times,
     vector_from,
 )
-from cagepose.kernels.collision.geometry import Placement, place_object
+from cagepose.kernels.boundary.geometry import Placement, place_object
 from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
 from cagepose.kernels.contact.loads import (
     total_load,
@@ -34,7 +34,6 @@ from cagepose.kernels.quasistatic.pushing_out import (
     StepWorkspace,
     allow_depths,
     constrain_contacts,
-    constrain_to_face,
     pushed_out,
 )
 from cagepose.kernels.quasistatic.setting import Setting
@@ -70,10 +69,8 @@ def turn_of_normals(contacts: ContactSet, velocity: Vector, spin: Vector) -> flo
     A contact that carries nothing counts where a straight way would lead into it, as along the wall of a hole.
     """
     fastest = 0.0
-    for i in range(contacts.used[0] if len(contacts.bends) > 0 else 0):
+    for i in range(contacts.used[0]):
         contact = contacts.rows[i]
-        if contact.feature < 0:
-            continue
         way = plus(velocity, cross(spin, vector_from(contact.arm)))
         bend, rolls = contacts.bends[i], cross(vector_from(contact.directions[0]), spin)
         bent = times(matrix_from(bend.relative), way)
@@ -134,15 +131,12 @@ def stepped(
     placement is that of the new pose, or of the old one.
     """
     geometry = setting.geometry
-    constrain_contacts(geometry, placement, contacts, setting.tolerances.rounding_m, work.constraints)
+    constrain_contacts(contacts, setting.tolerances.rounding_m, work.constraints)
     way = amount * (norm(twist.velocity) + setting.body.reach_m * norm(twist.spin))
     work.constraints.scratch[0].may_slip_m = max(setting.tolerances.touch_m, MAY_SLIP * way)
     moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
     if hit.feature >= 0:
         constrain_features(work.constraints, hit.feature, hit.cage_feature, hit.angle, GAP, 0.0)
-    elif hit.point >= 0:
-        place_object(geometry, moved[0], moved[1], placement)
-        constrain_to_face(geometry, placement, hit.point, hit.box, work.constraints)
     done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], work)
     strayed = way_between(moved[0], moved[1], new_position, new_quaternion, setting.body.reach_m)
     if done and strayed <= way + setting.tolerances.touch_m:
@@ -180,7 +174,7 @@ def furthest_step(
         quaternion,
         twist.velocity,
         twist.spin,
-        twist.end,
+        min(twist.end, amount),
         setting.tolerances.touch_m,
     )
     if edge_crossing < amount:

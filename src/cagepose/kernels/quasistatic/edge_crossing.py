@@ -1,4 +1,4 @@
-"""Where a sliding contact runs over the edge of its face: the point's other two coordinates on the screw (2.3)."""
+"""Where a sliding contact runs over the end of one of its features."""
 
 from __future__ import annotations
 
@@ -6,23 +6,15 @@ import math
 
 from cagepose.kernels.algebra.motion import Motion, motion_of
 from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled, vector_from
-from cagepose.kernels.boundary.features import PlacedBoundary
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, vector_from
+from cagepose.kernels.boundary.features import CIRCLE, FACE, PlacedBoundary
 from cagepose.kernels.boundary.first_touch import place_after
+from cagepose.kernels.boundary.geometry import Geometry, Placement, held_at, held_moved
 from cagepose.kernels.boundary.kept import meeting_kept
 from cagepose.kernels.boundary.meeting import both_reach
 from cagepose.kernels.boundary.meetings import slack_of
 from cagepose.kernels.boundary.met import Meeting
-from cagepose.kernels.collision.geometry import (
-    Geometry,
-    Placement,
-    box_point,
-    held_at,
-    held_moved,
-    point_in_box,
-    vector_in_box,
-)
-from cagepose.kernels.collision.screw import next_below
+from cagepose.kernels.boundary.reach import beyond_face
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.on_circle import is_kept
 from cagepose.kernels.contact.tolerances import SAME_NORMAL_RAD, SAME_WAY
@@ -32,16 +24,10 @@ from cagepose.kernels.quasistatic.straying import STRAYED, strayed
 
 CLEAR = 2.0
 """In touch tolerances: how far beyond the edge a contact is let go, so that it does not touch the next face too."""
+NEAR_GUESS, FALSE_POSITIONS = 1e-13, 12
+"""In amounts of the whole motion: an end that is guessed, in so many trials, is looked for so near to it first."""
 HALVINGS = 50
 """A motion is halved so many times to find where a contact of two shapes ends."""
-
-
-@kernel
-def travel_to_edge(coordinate: float, rate: float, limit: float) -> float:
-    """Return when a coordinate that grows by ``rate`` leaves [-limit, limit]."""
-    if rate == 0.0:
-        return math.inf
-    return max(0.0, (math.copysign(limit, rate) - coordinate) / rate)
 
 
 @kernel
@@ -93,6 +79,43 @@ def reach_within(
 
 
 @kernel
+def end_of_face(
+    geometry: Geometry, placement: Placement, contacts: ContactSet, i: int, motion: Motion, end: float, touch_m: float
+) -> float:
+    """Return the amount of a motion, up to ``end``, after which a vertex runs over the border of a face, by false
+    position (Illinois); inf: it does not, or the features are others.
+    """
+    contact, cage, moved = contacts.rows[i], geometry.cage, held_moved(geometry, placement)
+    one, other = contact.feature, contact.cage_feature
+    of_held = geometry.held.features[one].kind == FACE
+    if not (of_held or cage.own.features[other].kind == FACE) or geometry.held.features[one].kind == CIRCLE:
+        return math.inf
+    if cage.own.features[other].kind == CIRCLE:
+        return math.inf
+    low, high, at_low, at_high, amount = 0.0, end, 0.0, 0.0, 0.0
+    for trial in range(FALSE_POSITIONS):
+        place_after(held_at(geometry, placement), one, motion, amount, moved)
+        if of_held:
+            beyond = beyond_face(moved, one, vector_from(cage.features[other].point))
+        else:
+            beyond = beyond_face(cage, other, vector_from(moved.features[one].point))
+        beyond -= 2.0 * CLEAR * touch_m
+        if trial == 0:
+            at_low, amount = beyond, end
+            continue
+        if trial == 1:
+            at_high = beyond
+        elif beyond < 0.0:
+            low, at_low, at_high = amount, beyond, 0.5 * at_high
+        else:
+            high, at_high, at_low = amount, beyond, 0.5 * at_low
+        if at_low >= 0.0 or at_high <= 0.0 or high - low <= NEAR_GUESS * end:
+            break
+        amount = low - at_low * (high - low) / (at_high - at_low)
+    return amount if at_low < 0.0 < at_high else math.inf
+
+
+@kernel
 def end_of_meeting(
     geometry: Geometry,
     placement: Placement,
@@ -107,13 +130,24 @@ def end_of_meeting(
     """
     if end == math.inf:
         row = contacts.rows[i]
-        apart_m = geometry.held.parts[row.box].reach + geometry.cage.own.parts[row.point].reach + touch_m
+        apart_m = geometry.held.parts[row.part].reach + geometry.cage.own.parts[row.cage_part].reach + touch_m
         end = 2.0 * apart_m / norm(motion.velocity)
     if still_meet(geometry, placement, contacts, i, motion, end, touch_m, 0.0):
         return math.inf, math.inf
     low, high = 0.0, end
+    guess = end_of_face(geometry, placement, contacts, i, motion, end, touch_m)
+    for side in (-NEAR_GUESS, NEAR_GUESS):
+        near = guess + side * end
+        if not low < near < high:
+            continue
+        if still_meet(geometry, placement, contacts, i, motion, near, touch_m, 0.0):
+            low = near
+        else:
+            high = near
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
+        if not low < middle < high:
+            break
         if still_meet(geometry, placement, contacts, i, motion, middle, touch_m, 0.0):
             low = middle
         else:
@@ -139,46 +173,15 @@ def first_edge_crossing(
     where one of them has no place there any more: it may have one when it is put back.
     """
     first = math.inf
-    rate = norm(spin)
     for i in range(contacts.used[0]):
-        contact = contacts.rows[i]
         if not is_kept(contacts, i):
             continue
-        if contact.feature >= 0:
-            motion = motion_of(center, velocity, spin)
-            before, crossing = end_of_meeting(geometry, placement, contacts, i, motion, min(end, first), touch_m)
-            if crossing < first:
-                reach = STRAYED * strayed(
-                    geometry, placement, contacts, center, quaternion, velocity, spin, before, math.inf
-                )
-                if still_meet(geometry, placement, contacts, i, motion, 0.0, touch_m, reach):
-                    first = crossing
-            continue
-        box = contact.box
-        half_size = row(geometry.half_sizes, box)
-        point_box = box_point(placement, box, contact.point)
-        spin_box = vector_in_box(placement, box, spin)
-        arm = minus(point_box, point_in_box(placement, box, center))
-        moves = plus(vector_in_box(placement, box, velocity), cross(spin_box, arm))
-        for k in range(3):
-            if k == contact.axis:
-                continue
-            limit = half_size[k] + CLEAR * touch_m
-            if rate == 0.0:
-                first = min(first, travel_to_edge(point_box[k], -moves[k], limit))
-                continue
-            axis = scaled(spin_box, 1.0 / rate)
-            per_radian = scaled(moves, 1.0 / rate)
-            rise = scaled(axis, dot(axis, per_radian))
-            across = minus(per_radian, rise)
-            lever = cross(across, axis)
-            for side in (1.0, -1.0):
-                wave = (limit - side * point_box[k], -side * lever[k], side * across[k], side * rise[k])
-                crossing = next_below(wave, 0.0, end * rate) / rate
-                if crossing < first and crossing <= end:
-                    reach = STRAYED * strayed(
-                        geometry, placement, contacts, center, quaternion, velocity, spin, crossing, math.inf
-                    )
-                    if wave[0] > reach:
-                        first = crossing
+        motion = motion_of(center, velocity, spin)
+        before, crossing = end_of_meeting(geometry, placement, contacts, i, motion, min(end, first), touch_m)
+        if crossing < first:
+            reach = STRAYED * strayed(
+                geometry, placement, contacts, center, quaternion, velocity, spin, before, math.inf
+            )
+            if still_meet(geometry, placement, contacts, i, motion, 0.0, touch_m, reach):
+                first = crossing
     return first if first <= end else math.inf

@@ -1,4 +1,4 @@
-"""The first contact along a twist, but for what touches already: of points and boxes, or of two boundaries."""
+"""The first contact along a twist, but for what touches already."""
 
 from __future__ import annotations
 
@@ -7,12 +7,11 @@ from typing import NamedTuple
 
 from cagepose.kernels.algebra.motion import motion_of
 from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, vector_from
 from cagepose.kernels.boundary.features import middle_of_part
 from cagepose.kernels.boundary.first_meeting import Search, first_to_meet
+from cagepose.kernels.boundary.geometry import Placement, held_at, held_moved
 from cagepose.kernels.boundary.touching import Meetings
-from cagepose.kernels.collision.first_contact import first_contact_screw, first_contact_travel
-from cagepose.kernels.collision.geometry import Placement, held_at, held_moved, is_shaped
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.on_circle import is_kept
 from cagepose.kernels.native.kernel import kernel
@@ -46,36 +45,17 @@ class Hit(NamedTuple):
     ----------
     amount
         Inf: nothing is.
-    point, box
-        Of a point that reaches a box; -1: none does.
     feature, cage_feature, angle
-        Of features that do, -1: none do; and where along a circle, if one of them is one.
+        The features that do, -1: none do; and where along a circle, if one of them is one.
     """
 
     amount: float
-    point: int
-    box: int
     feature: int
     cage_feature: int
     angle: float
 
 
-NO_HIT = Hit(math.inf, -1, -1, -1, -1, 0.0)
-
-
-@kernel
-def first_contact(
-    setting: Setting,
-    placement: Placement,
-    contacts: ContactSet,
-    position: Vector,
-    quaternion: Quaternion,
-    twist: Twist,
-) -> Hit:
-    """Return the first contact along a twist, but for what touches already."""
-    if is_shaped(setting.geometry):
-        return first_of_boundaries(setting, placement, contacts, position, quaternion, twist)
-    return first_point(setting, placement, contacts, position, quaternion, twist)
+NO_HIT = Hit(math.inf, -1, -1, 0.0)
 
 
 @kernel
@@ -113,7 +93,7 @@ def note_kept(meetings: Meetings, contacts: ContactSet, center: Vector) -> None:
 
 
 @kernel
-def first_of_boundaries(
+def first_contact(
     setting: Setting,
     placement: Placement,
     contacts: ContactSet,
@@ -121,7 +101,7 @@ def first_of_boundaries(
     quaternion: Quaternion,
     twist: Twist,
 ) -> Hit:
-    """Return the first contact of two boundaries along a twist.
+    """Return the first contact along a twist, but for what touches already.
 
     Contacts that stay on their faces stray on a screw, by the square of its length, and are put back afterwards. Where
     something is met because of that, not because it came nearer, it is passed over: whether it is reached shows at the
@@ -145,8 +125,8 @@ def first_of_boundaries(
         if found.feature < 0:
             return NO_HIT
         if found.is_open:  # nothing is reached before; the next step asks from there
-            return Hit(found.amount, -1, -1, -1, -1, 0.0)
-        hit = Hit(found.amount, -1, -1, found.feature, found.cage_feature, found.angle)
+            return Hit(found.amount, -1, -1, 0.0)
+        hit = Hit(found.amount, found.feature, found.cage_feature, found.angle)
         if found.gap <= near or motion.rate == 0.0:
             break
         reach = STRAYED * strayed(
@@ -156,61 +136,3 @@ def first_of_boundaries(
             break
         near = reach
     return hit
-
-
-@kernel
-def first_point(
-    setting: Setting,
-    placement: Placement,
-    contacts: ContactSet,
-    position: Vector,
-    quaternion: Quaternion,
-    twist: Twist,
-) -> Hit:
-    """Return the first contact of a point and a box along a twist, but for what touches already.
-
-    Contacts that stay on their faces stray on a screw, by the square of its length, and are put back afterwards. Where
-    a point is met because of that, not because it came nearer, it is passed over: whether it is reached shows at the
-    end.
-    """
-    end = twist.end
-    touch_m = setting.tolerances.touch_m
-    rate = norm(twist.spin)
-    if rate == 0.0:
-        speed = norm(twist.velocity)
-        distance, point, box = first_contact_travel(
-            setting.geometry, placement, scaled(twist.velocity, 1.0 / speed), touch_m, setting.tolerances
-        )
-        amount = distance / speed
-    else:
-        astray = strayed(
-            setting.geometry, placement, contacts, position, quaternion, twist.velocity, twist.spin, end, 0.0
-        )
-        near, near_depth = 0.0, STRAYED * astray
-        angle, point, box = math.inf, -1, -1
-        for _ in range(len(setting.geometry.points_world)):
-            angle, point, box = first_contact_screw(
-                setting.geometry,
-                placement,
-                position,
-                scaled(twist.velocity, 1.0 / rate),
-                scaled(twist.spin, 1.0 / rate),
-                end * rate,
-                touch_m,
-                near,
-                near_depth,
-                setting.tolerances,
-            )
-            if point < 0 or placement.gaps[box, point] <= near:
-                break
-            met = angle / rate
-            reach = STRAYED * strayed(
-                setting.geometry, placement, contacts, position, quaternion, twist.velocity, twist.spin, met, 0.0
-            )
-            if placement.gaps[box, point] > reach:
-                break
-            near = reach
-        amount = angle / rate
-    if amount > end or point < 0:
-        return NO_HIT
-    return Hit(amount, point, box, -1, -1, 0.0)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
-
 from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, row, scaled
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, scaled
 from cagepose.kernels.boundary.features import middle_of_part
 from cagepose.kernels.contact.loads import BENT, BOUND, STRAIGHT, drift_and_sway, flight
 from cagepose.kernels.native.kernel import kernel
@@ -19,8 +17,9 @@ OUT_OF_REACH = 10.0
 def nothing_ahead(setting: Setting, position: Vector, quaternion: Quaternion, velocity: Vector, spin: Vector) -> bool:
     """Whether an object that touches nothing, and begins to move with a velocity and a spin, has got away (5.32).
 
-    Where the way of its centre of gravity is known for ever, straight or winding, no cage point may be met on it. A way
-    that is not straight also leads away where it is out of reach and goes on. A spring with stiffness brings it back.
+    Where the way of its centre of gravity is known for ever, straight or winding, no part of the cage may be met on
+    it. A way that is not straight also leads away where it is out of reach and goes on. A spring with stiffness brings
+    it back.
     """
     kind = flight(setting.load)
     if kind == BOUND:
@@ -34,16 +33,6 @@ def nothing_ahead(setting: Setting, position: Vector, quaternion: Quaternion, ve
     if size == 0.0:
         return False
     along = scaled(drift, 1.0 / size)
-    for point in range(len(setting.geometry.points_world)):
-        ahead = 0.0
-        distance = 0.0
-        for k in range(3):
-            ahead += (setting.geometry.points_world[point, k] - position[k]) * along[k]
-        for k in range(3):
-            away = setting.geometry.points_world[point, k] - position[k] - max(ahead, 0.0) * along[k]
-            distance += away * away
-        if math.sqrt(distance) <= setting.body.reach_m + sway:
-            return False
     cage = setting.geometry.cage
     for part in range(len(cage.own.parts)):
         arm = minus(middle_of_part(cage, part), position)
@@ -55,13 +44,9 @@ def nothing_ahead(setting: Setting, position: Vector, quaternion: Quaternion, ve
 
 @kernel
 def is_out_of_reach(setting: Setting, position: Vector, velocity: Vector) -> bool:
-    """Whether the object is sizes of the scene away from all cage points, and goes away from their middle."""
+    """Whether the object is sizes of the scene away from all of the cage, and goes away from their middle."""
     if dot(position, velocity) <= 0.0:
         return False
-    for point in range(len(setting.geometry.points_world)):
-        away = norm(minus(row(setting.geometry.points_world, point), position))
-        if away <= OUT_OF_REACH * setting.size_m + setting.body.reach_m:
-            return False
     cage = setting.geometry.cage
     for part in range(len(cage.own.parts)):
         away = norm(minus(middle_of_part(cage, part), position)) - cage.own.parts[part].reach

@@ -7,7 +7,7 @@ import math
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.boundary.circle_places import within_turn
-from cagepose.kernels.collision.geometry import place_object
+from cagepose.kernels.boundary.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.find_contacts import find_contacts
 from cagepose.kernels.contact.loads import write_load
@@ -40,9 +40,7 @@ def find_touched_before(
     """Fill ``work.ahead`` and the load where the object is placed, without contacts that ``work.contacts`` do not have;
     False: there are too many.
     """
-    if not find_contacts(
-        setting.geometry, work.placement, setting.friction, position, frame, setting.tolerances.touch_m, work.ahead
-    ):
+    if not find_contacts(setting.geometry, work.placement, setting.friction, position, frame, work.ahead):
         return False
     kept = 0
     for i in range(work.ahead.used[0]):
@@ -57,13 +55,13 @@ def find_touched_before(
 
 @kernel
 def place_before(contacts: ContactSet, one: ContactRow) -> int:
-    """Return which of the contacts is of the same point and box, or features, and of a circle at the nearest place; -1:
+    """Return which of the contacts is of the same features, and of a circle at the nearest place; -1:
     none is.
     """
     found, least = -1, math.inf
     for i in range(contacts.used[0]):
         row = contacts.rows[i]
-        if (row.point, row.box, row.feature, row.cage_feature) == (one.point, one.box, one.feature, one.cage_feature):
+        if (row.feature, row.cage_feature) == (one.feature, one.cage_feature):
             away = abs(within_turn(row.angle - one.angle))
             if away < least:
                 found, least = i, away
@@ -77,14 +75,13 @@ def move_contact(contacts: ContactSet, source: int, target: int) -> None:
         return
     rows = contacts.rows
     old, new = rows[source], rows[target]
-    new.point, new.box, new.feature, new.cage_feature = old.point, old.box, old.feature, old.cage_feature
+    new.part, new.cage_part, new.feature, new.cage_feature = old.part, old.cage_part, old.feature, old.cage_feature
     new.angle = old.angle
-    new.group = -1 if old.group < 0 else old.group - source + target
+    new.group = old.group - source + target
     for j in range(3):
         new.arm[j] = old.arm[j]
         for k in range(3):
             new.directions[j, k] = old.directions[j, k]
         for k in range(6):
             new.columns[j, k] = old.columns[j, k]
-    if old.feature >= 0:
-        contacts.bends[target] = contacts.bends[source]  # type: ignore[index]
+    contacts.bends[target] = contacts.bends[source]  # type: ignore[index]

@@ -11,22 +11,20 @@ from typing import Annotated, NamedTuple
 
 from cagepose.kernels.algebra.dense import cholesky, remove_span, solve_lower, solve_upper
 from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, inner
-from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion, rotated
+from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import (
     Vector,
     cross,
-    dot,
     minus,
     plus,
     row,
-    scaled,
     transposed_times,
 )
 from cagepose.kernels.boundary.circle_places import within_turn
 from cagepose.kernels.boundary.features import place_feature, place_feature_at
+from cagepose.kernels.boundary.geometry import Geometry, Placement, held_moved
 from cagepose.kernels.boundary.kept import crossed, meeting_kept
-from cagepose.kernels.collision.geometry import Geometry, Placement, held_moved
 from cagepose.kernels.contact.contact_set import tangents_to
 from cagepose.kernels.contact.metric import (
     WRENCH,
@@ -41,8 +39,10 @@ from cagepose.kernels.contact.metric import (
 from cagepose.kernels.native.kernel import kernel
 
 ROUNDS = 12
-ON_FACE = 4e-16
-"""In sizes of the scene: a gap that is rounding."""
+ON_FACE, NEARLY_ON_FACE = 4e-16, 4e-13
+"""In sizes of the scene: a gap that is rounding; and one that will do where rounding does not let it come nearer, as of
+an object whose centre of gravity is hundreds of sizes away.
+"""
 
 
 DEPENDENT = 1e-5
@@ -63,19 +63,12 @@ class PositionConstraint:
 
     Attributes
     ----------
-    point, box, axis, side
-        Of a point and a box, as in `ContactRow`: side * (coordinate of the point along the box's axis) ...
     feature, cage_feature, angle, which
-        ... or of two features, -1 if they are not: their gap, or how far they slip from now on, at an angle of a circle
-        if one of them is one ...
+        The gap of two features, or how far they slip from now on, at an angle of a circle if one of them is one ...
     target
-        ... is to be this, metres: half the size of the box for a point on its face, zero for a slip.
+        ... is to be this, metres: zero for a slip.
     """
 
-    point: int
-    box: int
-    axis: int
-    side: float
     feature: int
     cage_feature: int
     angle: float
@@ -128,24 +121,6 @@ def empty_constraints(n_constraints: int) -> Constraints:
 
 
 @kernel
-def add_constraint(constraints: Constraints, point: int, box: int, axis: int, side: float, target: float) -> bool:
-    """Add a constraint; False: there is no room, or it is there already."""
-    n = constraints.scratch[0].used
-    if n == len(constraints.rows):
-        return False
-    for i in range(n):
-        constraint = constraints.rows[i]
-        if constraint.point == point and constraint.box == box and constraint.axis == axis:
-            return False
-    constraint = constraints.rows[n]
-    constraint.point, constraint.box, constraint.axis, constraint.side = point, box, axis, side
-    constraint.feature = constraint.cage_feature = -1
-    constraint.target = target
-    constraints.scratch[0].used = n + 1
-    return True
-
-
-@kernel
 def constrain_features(
     constraints: Constraints, feature: int, cage_feature: int, angle: float, which: int, target: float
 ) -> bool:
@@ -159,7 +134,6 @@ def constrain_features(
         if is_same and abs(within_turn(constraint.angle - angle)) <= SAME_ANGLE:
             return False
     constraint = constraints.rows[n]
-    constraint.point = constraint.box = constraint.axis = -1
     constraint.feature, constraint.cage_feature, constraint.angle = feature, cage_feature, angle
     constraint.which, constraint.target = which, target
     constraints.scratch[0].used = n + 1
@@ -173,13 +147,6 @@ def drop_constraint(constraints: Constraints, i: int) -> None:
     for k in range(i, n):
         constraints.rows[k] = constraints.rows[k + 1]  # type: ignore[index]
     constraints.scratch[0].used = n
-
-
-@kernel
-def box_axis(geometry: Geometry, box: int, axis: int) -> Vector:
-    """Return an axis of a box in the object's frame."""
-    r = geometry.box_rotations
-    return (r[box, 0, axis], r[box, 1, axis], r[box, 2, axis])
 
 
 class Lack(NamedTuple):
@@ -199,12 +166,6 @@ def lack(
     placement: Placement,
 ) -> Lack:
     """Return what one of the constraints lacks at a pose; inf: it means nothing there."""
-    if constraint.feature < 0:
-        back = (quaternion[0], -quaternion[1], -quaternion[2], -quaternion[3])
-        axis_object = scaled(box_axis(geometry, constraint.box, constraint.axis), constraint.side)
-        arm = minus(row(geometry.points_world, constraint.point), position)
-        from_box = minus(rotated(back, arm), row(geometry.box_positions, constraint.box))
-        return Lack(dot(axis_object, from_box) - constraint.target, rotated(quaternion, axis_object), arm)
     i, j, is_fixed = constraint.feature, constraint.cage_feature, constraint.which == FIXED
     moved, places = held_moved(geometry, placement), placement.meetings.places
     place_feature_at(moved, i, position, matrix_from_quaternion(quaternion))
@@ -242,8 +203,8 @@ def keep_stopped(stopped: PassiveSet, position: Vector, frame: Frame, constraint
 
 @kernel
 def is_slip(constraint: PositionConstraint) -> bool:
-    """Whether a constraint is that two features do not slip, which lacks nothing; of a box, it lacks the way back."""
-    return bool(constraint.feature >= 0 and constraint.which not in (GAP, FIXED))
+    """Whether a constraint is that two features do not slip, which lacks nothing."""
+    return constraint.which not in (GAP, FIXED)
 
 
 @kernel
@@ -381,7 +342,7 @@ def projected(
             elif slips:
                 n_left_out += 1
         if worst <= ON_FACE * size_m or worst >= worst_before:
-            return worst <= 1e3 * ON_FACE * size_m, position, quaternion
+            return worst <= NEARLY_ON_FACE * size_m, position, quaternion
         worst_before = worst
         write_shortest(work)
         if n_left_out > 0:
@@ -392,4 +353,4 @@ def projected(
             return False, position, quaternion
         velocity, spin = twist_of(work.y, frame)
         position, quaternion = moved_along_twist(position, quaternion, velocity, spin, 1.0)
-    return False, position, quaternion
+    return worst_before <= NEARLY_ON_FACE * size_m, position, quaternion

@@ -9,12 +9,11 @@ import numpy as np
 
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.algebra.tolerances import KernelTolerances
+from cagepose.kernels.algebra.tolerances import KernelTolerances, allowed_depth
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, vector_from
+from cagepose.kernels.boundary.geometry import Geometry, Placement, most_rows, place_object
 from cagepose.kernels.boundary.meetings import EQUALLY_FAR
 from cagepose.kernels.boundary.touching import SAME_PLACE, Touching, is_around
-from cagepose.kernels.collision.first_contact import allowed_depth
-from cagepose.kernels.collision.geometry import Geometry, Placement, most_rows, place_object
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.on_circle import is_along_wall, is_kept, is_of_same_circle
 from cagepose.kernels.contact.tolerances import SAME_NORMAL_RAD
@@ -25,7 +24,6 @@ from cagepose.kernels.quasistatic.projection import (
     GAP,
     Constraints,
     PositionConstraint,
-    add_constraint,
     constrain_features,
     drop_constraint,
     empty_constraints,
@@ -36,43 +34,20 @@ from cagepose.kernels.quasistatic.projection import (
 )
 from cagepose.kernels.quasistatic.setting import Setting
 
-POINTS_PUSHED = 8
-"""Points and shapes that may be pushed out of the object after a step."""
+MEETINGS_PUSHED = 8
+"""So many times what is in each other may be pushed out after a step."""
 
 
 class StepWorkspace(NamedTuple):
-    """Workspace for one step: contacts to keep, and the depth allowed to each point, (n_points,), and to shapes, (1,),
-    metres.
-    """
+    """Workspace for one step: contacts to keep, and how deep the bodies may be in each other, (1,), metres."""
 
     constraints: Constraints
-    allowed: FloatArray
-    allowed_shapes: FloatArray
+    allowed_m: FloatArray
 
 
 def empty_step_workspace(geometry: Geometry) -> StepWorkspace:
     """Return a workspace for one step (plain Python)."""
-    n_points = len(geometry.points_world)
-    n_constraints = 3 * (n_points + most_rows(geometry)) + POINTS_PUSHED
-    return StepWorkspace(empty_constraints(n_constraints), np.zeros(n_points), np.zeros(1))
-
-
-@kernel
-def shallowest_face(geometry: Geometry, placement: Placement, point: int, box: int) -> tuple[int, float]:
-    """Return (axis, side) of the face of ``box`` that the point is nearest to from inside, or farthest beyond."""
-    best_axis, best_gap = 0, -math.inf
-    for axis in range(3):
-        gap = abs(placement.points_box[box, axis, point]) - geometry.half_sizes[box, axis]
-        if gap > best_gap:
-            best_axis, best_gap = axis, gap
-    return best_axis, math.copysign(1.0, placement.points_box[box, best_axis, point])
-
-
-@kernel
-def constrain_to_face(geometry: Geometry, placement: Placement, point: int, box: int, constraints: Constraints) -> bool:
-    """Constrain a point to the face of a box that it has reached."""
-    axis, side = shallowest_face(geometry, placement, point, box)
-    return add_constraint(constraints, point, box, axis, side, geometry.half_sizes[box, axis])
+    return StepWorkspace(empty_constraints(3 * most_rows(geometry) + MEETINGS_PUSHED), np.zeros(1))
 
 
 @kernel
@@ -98,9 +73,7 @@ def least_along_wall(contacts: ContactSet, i: int, closed_m: float) -> float:
 
 
 @kernel
-def constrain_contacts(
-    geometry: Geometry, placement: Placement, contacts: ContactSet, closed_m: float, constraints: Constraints
-) -> None:
+def constrain_contacts(contacts: ContactSet, closed_m: float, constraints: Constraints) -> None:
     """Constrain the contacts that stay on their faces, and where they stick also in the face.
 
     Gaps above ``closed_m`` are kept: to close them could take work, or bring another point in.
@@ -110,49 +83,16 @@ def constrain_contacts(
         contact = contacts.rows[i]
         if not is_kept(contacts, i):
             continue
-        if contact.feature >= 0:
-            kept = contact.gap if contact.gap > closed_m else 0.0
-            if is_along_wall(contacts, i):
-                kept = least_along_wall(contacts, i, closed_m)
-            which = FIXED if is_fixed(contacts, i) else GAP
-            constrain_features(constraints, contact.feature, contact.cage_feature, contact.angle, which, kept)
-        else:
-            at = geometry.half_sizes[contact.box, contact.axis]
-            if contact.gap > closed_m:
-                at += contact.gap
-            add_constraint(constraints, contact.point, contact.box, contact.axis, contact.side, at)
+        kept = contact.gap if contact.gap > closed_m else 0.0
+        if is_along_wall(contacts, i):
+            kept = least_along_wall(contacts, i, closed_m)
+        which = FIXED if is_fixed(contacts, i) else GAP
+        constrain_features(constraints, contact.feature, contact.cage_feature, contact.angle, which, kept)
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
         if contacts.states[i].forces[0] > 0.0 and contacts.states[i].is_sticking:
-            for turn in range(1, 3):
-                if contact.feature >= 0:
-                    constrain_features(constraints, contact.feature, contact.cage_feature, contact.angle, turn, 0.0)
-                    continue
-                axis = (contact.axis + turn) % 3
-                at = placement.points_box[contact.box, axis, contact.point]
-                add_constraint(constraints, contact.point, contact.box, axis, 1.0, at)
-
-
-@kernel
-def deepest_offender(placement: Placement, allowed: FloatArray) -> int:
-    """Return the point that is farthest deeper than it may; -1: none."""
-    worst_point, worst = -1, 0.0
-    for point in range(len(allowed)):
-        excess = placement.depths[point] - allowed[point]
-        if excess > worst:
-            worst_point, worst = point, excess
-    return worst_point
-
-
-@kernel
-def box_around(geometry: Geometry, placement: Placement, point: int) -> int:
-    """Return the box that the point lies deepest in."""
-    best_box, best_gap = 0, math.inf
-    for box in range(len(geometry.half_sizes)):
-        gap = placement.gaps[box, point]
-        if gap < best_gap:
-            best_box, best_gap = box, gap
-    return best_box
+            for which in range(ALONG, ALONG + 2):
+                constrain_features(constraints, contact.feature, contact.cage_feature, contact.angle, which, 0.0)
 
 
 @kernel
@@ -171,32 +111,27 @@ def put_back(
 def pushed_out(
     setting: Setting, placement: Placement, position: Vector, quaternion: Quaternion, work: StepWorkspace
 ) -> tuple[bool, Vector, Quaternion]:
-    """Make all constraints hold, and push points out of the object that this has brought in; placement is filled."""
+    """Make all constraints hold, and push out what this has brought into the cage; placement is filled."""
     geometry = setting.geometry
     holds = True
-    for _ in range(POINTS_PUSHED):
+    for _ in range(MEETINGS_PUSHED):
         if work.constraints.scratch[0].used > 0:
             holds, position, quaternion = put_back(setting, placement, position, quaternion, work.constraints)
         place_object(geometry, position, quaternion, placement)
-        point, meeting = deepest_offender(placement, work.allowed), deepest_meeting(placement, work)
-        if not holds or (point < 0 and meeting < 0):
+        meeting = deepest_meeting(placement, work)
+        if not holds or meeting < 0:
             break
-        if point >= 0:
-            box = box_around(geometry, placement, point)
-            if not constrain_to_face(geometry, placement, point, box, work.constraints):
-                return False, position, quaternion
-        elif not constrain_meeting(geometry, placement, meeting, position, quaternion, work.constraints):
+        if not constrain_meeting(geometry, placement, meeting, position, quaternion, work.constraints):
             return False, position, quaternion
-    is_out = deepest_offender(placement, work.allowed) < 0 and deepest_meeting(placement, work) < 0
-    return holds and is_out, position, quaternion
+    return holds and deepest_meeting(placement, work) < 0, position, quaternion
 
 
 @kernel
 def deepest_meeting(placement: Placement, work: StepWorkspace) -> int:
-    """Return the meeting of shapes that is farthest deeper than it may, of each group the one that is least deep; -1:
+    """Return the meeting that is farthest deeper than it may, of each group the one that is least deep; -1:
     none is.
     """
-    rows, found, worst = placement.meetings.rows, -1, work.allowed_shapes[0]
+    rows, found, worst = placement.meetings.rows, -1, work.allowed_m[0]
     for at in range(placement.meetings.used[0]):
         if rows[at].group == at:
             outermost = outermost_of_group(placement, at)
@@ -225,7 +160,7 @@ def is_at_meeting(
     placement: Placement,
 ) -> bool:
     """Whether features that are kept together meet at the place and with the normal of others that meet at a pose."""
-    if constraint.feature < 0 or constraint.which == FIXED:
+    if constraint.which == FIXED:
         return False
     kept = lack(geometry, constraint, position, quaternion, placement)
     away = minus(plus(position, kept.arm), vector_from(row.place))
@@ -263,12 +198,10 @@ def constrain_meeting(
 
 @kernel
 def allow_depths(placement: Placement, tolerances: KernelTolerances, work: StepWorkspace) -> None:
-    """Write how deep each point, and what of the shapes, may be after the step: no deeper than it is, or than a circle
-    that lies all around may be between its places.
+    """Write how deep the bodies may be in each other after the step: no deeper than they are, or than a circle that
+    lies all around may be between its places.
     """
-    for point in range(len(work.allowed)):
-        work.allowed[point] = allowed_depth(placement.depths[point], tolerances)
-    work.allowed_shapes[0] = allowed_depth(0.0, tolerances)
+    work.allowed_m[0] = allowed_depth(0.0, tolerances)
     rows = placement.meetings.rows
     for at in range(placement.meetings.used[0]):
         if rows[at].group != at:
@@ -276,4 +209,4 @@ def allow_depths(placement: Placement, tolerances: KernelTolerances, work: StepW
         depth = allowed_depth(-rows[outermost_of_group(placement, at)].gap, tolerances)
         if is_around(rows[at]):
             depth = max(depth, EQUALLY_FAR * tolerances.touch_m)
-        work.allowed_shapes[0] = max(work.allowed_shapes[0], depth)
+        work.allowed_m[0] = max(work.allowed_m[0], depth)

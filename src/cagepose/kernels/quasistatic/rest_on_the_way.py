@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
-from cagepose.kernels.collision.geometry import place_object
+from cagepose.kernels.boundary.geometry import place_object
 from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, ON_THE_WAY, equilibrium
 from cagepose.kernels.contact.metric import frame_at
 from cagepose.kernels.native.kernel import kernel

@@ -154,7 +154,7 @@ def run_quasistatic_cases(
                     verdict = STALLED
             write_ending(endings, case, phase, verdict, n_steps, position, quaternion, start, part)
             for i in range(work.contacts.used[0]):
-                endings.touching[case, phase, work.contacts.rows[i].point] = True
+                endings.touching[case, phase, work.contacts.rows[i].cage_part] = True
             if verdict != RESTS:
                 break
 

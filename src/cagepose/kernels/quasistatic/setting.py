@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from cagepose.kernels.algebra.tolerances import KernelTolerances
-from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.boundary.geometry import Geometry
 from cagepose.kernels.contact.friction import Friction
 from cagepose.kernels.contact.loads import PhaseLoad
 from cagepose.kernels.contact.metric import Body

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, norm, scaled, vector_from
-from cagepose.kernels.collision.geometry import place_object
+from cagepose.kernels.boundary.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
 from cagepose.kernels.contact.curvature import curvature_along, write_curvature
 from cagepose.kernels.contact.equilibrium import (
@@ -190,7 +190,7 @@ def gap_under_circles(contacts: ContactSet, touch_m: float) -> float:
     A face is on all of a rim with its full digits or not at all: tilted by the touch tolerance it is a slope.
     """
     greatest = 0.0
-    for i in range(contacts.used[0] if len(contacts.bends) > 0 else 0):
+    for i in range(contacts.used[0]):
         if is_under_circle(contacts, i, touch_m):
             greatest = max(greatest, abs(contacts.rows[i].gap))
     return greatest
@@ -206,7 +206,7 @@ def refined(
         contacts.states[i].is_sticking = contacts.states[i].stays_flat = False
     allow_depths(work.placement, setting.tolerances, work.path)
     if is_rest:
-        constrain_contacts(setting.geometry, work.placement, contacts, math.inf, constraints)
+        constrain_contacts(contacts, math.inf, constraints)
     else:
         constraints.scratch[0].used = 0
         for i in range(contacts.used[0]):
@@ -226,7 +226,7 @@ def note_touching(work: QuasistaticWorkspace) -> None:
     for point in range(len(work.touched)):
         work.touched[point] = False
     for i in range(work.contacts.used[0]):
-        work.touched[work.contacts.rows[i].point] = True
+        work.touched[work.contacts.rows[i].cage_part] = True
 
 
 @kernel
@@ -245,7 +245,7 @@ def write_step(
     for point in range(len(work.touched)):
         trace.touching[step, point] = False
     for i in range(work.contacts.used[0]):
-        trace.touching[step, work.contacts.rows[i].point] = True
+        trace.touching[step, work.contacts.rows[i].cage_part] = True
     for point in range(len(work.touched)):
         trace.hit[step, point] = trace.touching[step, point] and not work.touched[point]
         if work.touched[point] and not trace.touching[step, point]:
@@ -277,9 +277,7 @@ def find_placed_contacts(
 ) -> bool:
     """Find the contacts where the object is placed already; see `stand_at`."""
     frame = frame_at(setting.body, quaternion)
-    return find_contacts(
-        setting.geometry, work.placement, setting.friction, position, frame, setting.tolerances.touch_m, work.contacts
-    )
+    return find_contacts(setting.geometry, work.placement, setting.friction, position, frame, work.contacts)
 
 
 @kernel

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion, rotated
-from cagepose.kernels.algebra.vector import Vector, dot, minus, row
+from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
+from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.boundary.features import place_feature, place_feature_at
+from cagepose.kernels.boundary.geometry import Geometry, Placement, held_moved
 from cagepose.kernels.boundary.kept import crossed, meeting_kept
-from cagepose.kernels.collision.geometry import Geometry, Placement, held_moved
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.metric import moved_along_twist
 from cagepose.kernels.contact.on_circle import is_along_wall, is_kept
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.projection import box_axis
 from cagepose.kernels.quasistatic.pushing_out import is_fixed
 
 STRAYED = 2.0
@@ -36,28 +35,21 @@ def strayed(
     that crossed, for nothing.
     """
     end, turned = moved_along_twist(position, quaternion, velocity, spin, amount)
-    back = (turned[0], -turned[1], -turned[2], -turned[3])
     farthest, moved, places = 0.0, held_moved(geometry, placement), placement.meetings.places
     for i in range(contacts.used[0]):
         if not is_kept(contacts, i):
             continue
         contact = contacts.rows[i]
-        if contact.feature >= 0:
-            i_held, i_cage, fixed = contact.feature, contact.cage_feature, is_fixed(contacts, i)
-            place_feature_at(moved, i_held, end, matrix_from_quaternion(turned))
-            place_feature(geometry.cage, i_cage)
-            met = meeting_kept(moved, i_held, geometry.cage, i_cage, contact.angle, fixed, geometry.touch_m, places)
-            if met.is_one:
-                farthest = max(farthest, abs(met.gap - contact.gap))
-            elif not (
-                contacts.states[i].stays_flat
-                or is_along_wall(contacts, i)
-                or crossed(moved.features[i_held], geometry.cage.features[i_cage])
-            ):
-                farthest = max(farthest, where_over)
-        else:
-            from_center = rotated(back, minus(row(geometry.points_world, contact.point), end))
-            from_box = minus(from_center, row(geometry.box_positions, contact.box))
-            along = contact.side * dot(box_axis(geometry, contact.box, contact.axis), from_box)
-            farthest = max(farthest, abs(along - geometry.half_sizes[contact.box, contact.axis] - contact.gap))
+        i_held, i_cage, fixed = contact.feature, contact.cage_feature, is_fixed(contacts, i)
+        place_feature_at(moved, i_held, end, matrix_from_quaternion(turned))
+        place_feature(geometry.cage, i_cage)
+        met = meeting_kept(moved, i_held, geometry.cage, i_cage, contact.angle, fixed, geometry.touch_m, places)
+        if met.is_one:
+            farthest = max(farthest, abs(met.gap - contact.gap))
+        elif not (
+            contacts.states[i].stays_flat
+            or is_along_wall(contacts, i)
+            or crossed(moved.features[i_held], geometry.cage.features[i_cage])
+        ):
+            farthest = max(farthest, where_over)
     return farthest

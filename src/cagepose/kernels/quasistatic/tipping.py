@@ -6,7 +6,7 @@ import math
 
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, scaled, vector_from
-from cagepose.kernels.collision.geometry import place_object
+from cagepose.kernels.boundary.geometry import place_object
 from cagepose.kernels.contact.contact_set import stays_on_face
 from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, HELD_WITHOUT_FRICTION, MOVES
 from cagepose.kernels.contact.metric import frame_at, twist_of

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import Rows, empty_rows
-from cagepose.kernels.collision.geometry import (
+from cagepose.kernels.boundary.geometry import (
     Geometry,
     PlacedCage,
     Placement,

@@ -7,10 +7,9 @@ from typing import NamedTuple
 from cagepose.kernels.algebra.least_squares import System, clear, empty_system
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import Rows, empty_rows
-from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector
-from cagepose.kernels.collision.geometry import Geometry, Placement, empty_placement, place_object
-from cagepose.kernels.contact.contact_set import ContactSet, contact_set_for, most_contacts
+from cagepose.kernels.boundary.geometry import Geometry, Placement, empty_placement, most_rows, place_object
+from cagepose.kernels.contact.contact_set import ContactSet, contact_set_for
 from cagepose.kernels.contact.edges import (
     CHOICES_LIMIT,
     EVERY,
@@ -98,7 +97,7 @@ class ProofWorkspace(NamedTuple):
 
 def empty_proof_workspace(geometry: Geometry) -> ProofWorkspace:
     """Return a workspace for one proof (plain Python)."""
-    n_contacts = most_contacts(geometry)
+    n_contacts = most_rows(geometry)
     return ProofWorkspace(
         empty_placement(geometry),
         contact_set_for(geometry),
@@ -116,7 +115,6 @@ def stand_at(
     quaternion: Quaternion,
     load: PhaseLoad,
     friction: Friction,
-    touch_m: float,
     at: ProofWorkspace,
 ) -> bool:
     """Fill placement, contacts and load at a pose; False: too many contacts."""
@@ -124,7 +122,7 @@ def stand_at(
     place_object(geometry, position, quaternion, at.placement)
     solver = at.scratch[0].solver
     solver.load_terms = write_load(load, position, quaternion, frame, solver.load)
-    return find_contacts(geometry, at.placement, friction, position, frame, touch_m, at.contacts)
+    return find_contacts(geometry, at.placement, friction, position, frame, at.contacts)
 
 
 @kernel
@@ -136,7 +134,6 @@ def prove(
     load: PhaseLoad,
     friction: Friction,
     size_m: float,
-    tolerances: KernelTolerances,
     at: ProofWorkspace,
 ) -> tuple[int, int, int]:
     """Judge a pose; return (code of the proof, code of stability, number of undetermined freedoms).
@@ -150,12 +147,12 @@ def prove(
         The scene, boxes as seen from the centre of gravity, and the load that acts.
     position, quaternion
         Centre of gravity, metres, and unit quaternion (w, x, y, z).
-    friction, size_m, tolerances
-        Coefficients of friction, the scene's size in metres, and what counts as touching.
+    friction, size_m
+        Coefficients of friction, and the scene's size, metres.
     at
         Filled: the proof.
     """
-    if not stand_at(geometry, body, position, quaternion, load, friction, tolerances.touch_m, at):
+    if not stand_at(geometry, body, position, quaternion, load, friction, at):
         at.scratch[0].solver.residual = 1.0  # no forces were asked for: all of the load is left
         return TOO_MANY_CONTACTS, STABLE_REST, 0
     contacts, scratch = at.contacts, at.scratch[0]

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector
-from cagepose.kernels.collision.geometry import Geometry
+from cagepose.kernels.boundary.geometry import Geometry
 from cagepose.kernels.contact.edges import CHOICES_LIMIT, EVERY, first_choice, has_one_choice, keep_choice
 from cagepose.kernels.contact.equilibrium import (
     AT_REST,
@@ -171,7 +170,6 @@ def judge(
     load: PhaseLoad,
     friction: Friction,
     size_m: float,
-    tolerances: KernelTolerances,
     at: ProofWorkspace,
 ) -> tuple[int, int, int]:
     """Judge a pose, with the search for another onset where rest needs friction, and the motion where the object moves.
@@ -179,7 +177,7 @@ def judge(
     Parameters and result as for `cagepose.kernels.stability.proof.prove`.
     """
     at.scratch[0].wedged = False
-    code, steady, n_undetermined = prove(geometry, body, position, quaternion, load, friction, size_m, tolerances, at)
+    code, steady, n_undetermined = prove(geometry, body, position, quaternion, load, friction, size_m, at)
     at.scratch[0].n_asked = at.contacts.used[0]
     if code == UNIQUENESS_NOT_SHOWN:
         frame = frame_at(body, quaternion)

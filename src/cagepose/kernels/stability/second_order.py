@@ -257,11 +257,14 @@ def list_one_sided(
 
 
 @kernel
-def is_same_face(contacts: ContactSet, i: int, k: int) -> bool:
-    """Whether two rows are one, or flush faces of two boxes over one point."""
+def is_listed_twice(contacts: ContactSet, i: int, k: int) -> bool:
+    """Whether two rows are one, or one contact that is in two groups."""
     one, other = contacts.rows[i], contacts.rows[k]
-    is_one_point = one.point == other.point and one.feature < 0 and other.feature < 0
-    return i == k or (is_one_point and inner(one.directions[0], other.directions[0], 3) > 1.0 - PART_OUTSIDE_SPAN)
+    is_same = one.group != other.group
+    for axis in range(3):
+        is_same = is_same and one.arm[axis] == other.arm[axis]
+        is_same = is_same and one.directions[0, axis] == other.directions[0, axis]
+    return i == k or is_same
 
 
 @kernel
@@ -278,7 +281,7 @@ def extend_by_equalities(contacts: ContactSet, statuses: Rows[ContactStatus], wi
     for place in range(span.used):
         span.labels[place] = -1
     for i in range(contacts.used[0]):
-        if statuses[i].is_equality and not (without >= 0 and is_same_face(contacts, i, without)):
+        if statuses[i].is_equality and not (without >= 0 and is_listed_twice(contacts, i, without)):
             span.labels[span.used] = i
             extend(span, rows[i].columns[0], PART_OUTSIDE_SPAN)
 
@@ -298,7 +301,7 @@ def find_shared(contacts: ContactSet, statuses: Rows[ContactStatus], work: Stabi
         adds = False
         for place in range(whole.used):
             k = whole.labels[place]
-            adds = adds or (k >= 0 and is_same_face(contacts, k, i))
+            adds = adds or (k >= 0 and is_listed_twice(contacts, k, i))
         span = whole
         if adds:
             span = work.held
@@ -333,10 +336,10 @@ def hold_some(contacts: ContactSet, n_one_sided: int, chosen: int, work: Stabili
 @kernel
 def has_twins(contacts: ContactSet) -> bool:
     """Whether a contact that carries is where features meet that bend by different amounts."""
-    for i in range(contacts.used[0] if len(contacts.bends) > 0 else 0):
-        if contacts.rows[i].feature >= 0 and contacts.bends[i].has_twin and contacts.states[i].forces[0] > 0.0:
-            return True
-    return False
+    found = False
+    for i in range(contacts.used[0]):
+        found = found or (contacts.bends[i].has_twin and contacts.states[i].forces[0] > 0.0)
+    return found
 
 
 @kernel

@@ -17,16 +17,16 @@ from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
-from cagepose.kernels.collision.first_contact import first_contact_travel
-from cagepose.kernels.collision.geometry import (
-    Geometry,
-    PlacedCage,
-    Placement,
-    empty_cage,
-    empty_placement,
+from cagepose.kernels.boundary.geometry import Geometry, PlacedCage, empty_cage
+from cagepose.kernels.boundary.overlap import forget_shells
+from cagepose.kernels.collision.boxes import (
+    BoxesAndPoints,
+    PlacedBoxes,
+    empty_placed_boxes,
     is_clear_of,
-    place_points,
+    place_boxes_at,
 )
+from cagepose.kernels.collision.first_contact import first_contact_travel
 from cagepose.kernels.contact.loads import PhaseLoad, arm_of
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.outcome.cases import Cases, Part, Start, is_valid, start_of
@@ -81,8 +81,8 @@ class StepwiseRules(NamedTuple):
 
 @kernel
 def turn_or_hold(
-    geometry: Geometry,
-    placement: Placement,
+    geometry: BoxesAndPoints,
+    placement: PlacedBoxes,
     touching: Touching,
     n_chosen: int,
     load: PointLoad,
@@ -103,8 +103,8 @@ def turn_or_hold(
 
 @kernel
 def next_step(
-    geometry: Geometry,
-    placement: Placement,
+    geometry: BoxesAndPoints,
+    placement: PlacedBoxes,
     touching: Touching,
     load: PointLoad,
     is_push: bool,
@@ -184,6 +184,7 @@ def load_at(load: PhaseLoad, position: Vector, quaternion: Quaternion) -> PointL
 @kernel
 def phase_run(
     start: Start,
+    boxes: BoxesAndPoints,
     phase: int,
     position: Vector,
     quaternion: Quaternion,
@@ -196,22 +197,22 @@ def phase_run(
     The contacts of the phase before keep their order. A step depends on the pose and on that order alone, so that any
     step of a run can be made again.
     """
-    geometry, tolerances, actions = start.geometry, start.tolerances, start.actions[phase]
+    tolerances, actions = start.tolerances, start.actions[phase]
     placement, touching, trace = work.placement, work.touching, work.trace
     rules = rules_of(of_size, start.friction.scene, start.size_m)
     pushes = is_push(actions)
-    place_points(geometry, position, quaternion, placement)
+    place_boxes_at(boxes, position, quaternion, placement)
     load = load_at(actions, position, quaternion)
-    find_touching(geometry, placement, load, tolerances, touching)
+    find_touching(boxes, placement, load, tolerances, touching)
     for count in range(step_limit):
         # Decide.
         write_start(trace, count, position, quaternion, touching)
-        step = next_step(geometry, placement, touching, load, pushes, rules, tolerances)
+        step = next_step(boxes, placement, touching, load, pushes, rules, tolerances)
         if pushes and step.note == PLAIN and has_face_tie(touching):
             step = Step(step.rule, step.motion, step.along, step.through, step.amount, step.hit_point, EDGE_TIE)
         if step.motion == NONE:
             write_step(trace.rows[count], step, position, quaternion)
-            for point in range(len(geometry.points_world)):
+            for point in range(len(boxes.points_world)):
                 trace.touching[count, point], trace.hit[count, point] = touching.is_touching[point], False
             return STABLE, count + 1, position, quaternion
         # Move.
@@ -221,14 +222,14 @@ def phase_run(
         write_step(trace.rows[count], step, position, quaternion)
         # Find the contacts there, and which of them the motion has reached.
         load = load_at(actions, position, quaternion)
-        place_points(geometry, position, quaternion, placement)
-        find_touching(geometry, placement, load, tolerances, touching)
-        for point in range(len(geometry.points_world)):
+        place_boxes_at(boxes, position, quaternion, placement)
+        find_touching(boxes, placement, load, tolerances, touching)
+        for point in range(len(boxes.points_world)):
             is_hit = touching.is_touching[point]
             trace.touching[count, point] = is_hit
             if is_hit and touching.was_touching[point] and point != step.hit_point:
                 # Reached anew, if it did not touch halfway, as in a swing back.
-                is_hit = is_clear_of(geometry, halfway[0], halfway_rotation, point, tolerances.touch_m)
+                is_hit = is_clear_of(boxes, halfway[0], halfway_rotation, point, tolerances.touch_m)
             trace.hit[count, point] = is_hit
         # Look for an end.
         if step.amount == math.inf:
@@ -284,23 +285,29 @@ class StepwiseWorkspace(NamedTuple):
         Workspace for the proof of a phase's end.
     """
 
-    placement: Placement
+    placement: PlacedBoxes
     touching: Touching
     trace: Trace
     cage: PlacedCage
     proof: ProofWorkspace
 
 
-def empty_stepwise_workspace(geometry: Geometry, step_limit: int) -> StepwiseWorkspace:
+def empty_stepwise_workspace(geometry: Geometry, boxes: BoxesAndPoints, step_limit: int) -> StepwiseWorkspace:
     """Return a workspace for one run at a time (plain Python)."""
-    n_points = len(geometry.points_world)
+    n_points = len(boxes.points_world)
     return StepwiseWorkspace(
-        empty_placement(geometry),
+        empty_placed_boxes(boxes),
         empty_touching(n_points),
         empty_trace(step_limit, n_points, n_points),
         empty_cage(geometry),
         empty_proof_workspace(geometry),
     )
+
+
+@kernel
+def boxes_of(part: Part, cage: PlacedCage) -> BoxesAndPoints:
+    """Return the boxes of the object, and the cage points of a case."""
+    return BoxesAndPoints(part.half_sizes, part.box_positions, part.box_rotations, part.n_own_boxes, cage.points_world)
 
 
 @entry
@@ -320,11 +327,13 @@ def run_stepwise(part: Part, cases: Cases, rules: StepwiseRules, work: StepwiseW
 
     """
     begin(outcome)
-    start = start_of(0, part, cases, work.cage)
+    start, boxes = start_of(0, part, cases, work.cage), boxes_of(part, work.cage)
     position, quaternion = start.position, start.quaternion
     forget_contacts(work.touching)
     for phase in range(len(start.actions)):
-        verdict, n_steps, end, turned = phase_run(start, phase, position, quaternion, rules, rules.step_limit, work)
+        verdict, n_steps, end, turned = phase_run(
+            start, boxes, phase, position, quaternion, rules, rules.step_limit, work
+        )
         publish_events(work.trace, n_steps, False, position, quaternion, start, part, outcome)
         verdict = end_phase(verdict, phase, end, turned, start, part, work.proof, outcome)
         if verdict != STABLE:
@@ -354,16 +363,17 @@ def run_stepwise_cases(
     endings
         Filled.
     """
+    forget_shells(work.cage.overlap)
     for case in range(first, last):
-        start = start_of(case, part, cases, work.cage)
-        if not is_valid(start, farthest, len(cases.points_cage) > 1, work.placement, work.cage):
+        start, boxes = start_of(case, part, cases, work.cage), boxes_of(part, work.cage)
+        if not is_valid(start, farthest, len(cases.points_cage) > 1, work.proof.placement, work.cage):
             endings.verdicts[case, 0] = INVALID
             continue
         position, quaternion = start.position, start.quaternion
         forget_contacts(work.touching)
         for phase in range(len(start.actions)):
             verdict, n_steps, position, quaternion = phase_run(
-                start, phase, position, quaternion, rules, rules.step_limit, work
+                start, boxes, phase, position, quaternion, rules, rules.step_limit, work
             )
             write_ending(endings, case, phase, verdict, n_steps, position, quaternion, start, part)
             for point in range(len(work.cage.points_world)):
@@ -406,5 +416,5 @@ def repeat_stepwise(
             touching.order[place] = order[place]
             touching.is_touching[order[place]] = True
             touching.n_touching[0] = place + 1
-    phase_run(start, phase, position, quaternion, rules, n_steps, work)
+    phase_run(start, boxes_of(part, work.cage), phase, position, quaternion, rules, n_steps, work)
     publish_events(work.trace, n_steps, False, position, quaternion, start, part, outcome)

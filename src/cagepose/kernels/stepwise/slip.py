@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, row, scaled
+from cagepose.kernels.collision.boxes import BoxesAndPoints, PlacedBoxes
 from cagepose.kernels.collision.first_contact import first_contact_travel, first_contact_turn
-from cagepose.kernels.collision.geometry import Geometry, Placement
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import PLAIN, TRAVEL, TURN
 from cagepose.kernels.stepwise.step import Step
@@ -72,8 +72,8 @@ def independent_normals(
 
 @kernel
 def turn_on_face(
-    geometry: Geometry,
-    placement: Placement,
+    geometry: BoxesAndPoints,
+    placement: PlacedBoxes,
     contacts: NDArray[np.int64],
     n_contacts: int,
     normals: FloatArray,
@@ -111,7 +111,7 @@ def turn_on_face(
 
 @kernel
 def travel_between_faces(
-    geometry: Geometry, placement: Placement, across: Vector, load: PointLoad, tolerances: KernelTolerances
+    geometry: BoxesAndPoints, placement: PlacedBoxes, across: Vector, load: PointLoad, tolerances: KernelTolerances
 ) -> Step:
     """R7 (Slp-2): travel along n1 x n2 in the sense in which the load does work; held if it does none or is blocked."""
     work = dot(across, load.direction)
@@ -126,8 +126,8 @@ def travel_between_faces(
 
 @kernel
 def slip_step(
-    geometry: Geometry,
-    placement: Placement,
+    geometry: BoxesAndPoints,
+    placement: PlacedBoxes,
     contacts: NDArray[np.int64],
     n_contacts: int,
     alphas: FloatArray,

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, row, scaled
+from cagepose.kernels.collision.boxes import BoxesAndPoints, PlacedBoxes
 from cagepose.kernels.collision.first_contact import first_contact_turn, turn_is_blocked_at_once
-from cagepose.kernels.collision.geometry import Geometry, Placement
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import BALANCED, NONE, PLAIN, SMALL_TURN, TIE, TURN
 from cagepose.kernels.stepwise.step import Step
@@ -64,8 +64,8 @@ def held(rule: int, note: int) -> Step:
 
 @kernel
 def turn_about_one(
-    geometry: Geometry,
-    placement: Placement,
+    geometry: BoxesAndPoints,
+    placement: PlacedBoxes,
     contact: int,
     load: PointLoad,
     turn_rule: int,
@@ -102,8 +102,8 @@ def driven_axis(one: Vector, other: Vector, load: PointLoad, tie: float) -> tupl
 
 @kernel
 def turn_about_two(
-    geometry: Geometry,
-    placement: Placement,
+    geometry: BoxesAndPoints,
+    placement: PlacedBoxes,
     first: int,
     second: int,
     load: PointLoad,
@@ -121,8 +121,8 @@ def turn_about_two(
 
 @kernel
 def pairwise_stability(
-    geometry: Geometry,
-    placement: Placement,
+    geometry: BoxesAndPoints,
+    placement: PlacedBoxes,
     contacts: NDArray[np.int64],
     n_contacts: int,
     load: PointLoad,

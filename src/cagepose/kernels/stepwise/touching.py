@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.tolerances import KernelTolerances
 from cagepose.kernels.algebra.vector import Vector, cross, dot, norm
+from cagepose.kernels.collision.boxes import BoxesAndPoints, PlacedBoxes
 from cagepose.kernels.collision.contacts import steepest_contact
-from cagepose.kernels.collision.geometry import Geometry, Placement
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stepwise.support import PointLoad
 
@@ -70,7 +70,7 @@ def load_angle(normal: Vector, direction: Vector) -> float:
 
 @kernel
 def find_touching(
-    geometry: Geometry, placement: Placement, load: PointLoad, tolerances: KernelTolerances, touching: Touching
+    geometry: BoxesAndPoints, placement: PlacedBoxes, load: PointLoad, tolerances: KernelTolerances, touching: Touching
 ) -> None:
     """Step (*): find all contacts again. Points that still touch keep their place in the order, new ones come after."""
     for point in range(len(geometry.points_world)):

@@ -49,4 +49,5 @@ def shifted(boundary: Boundary, by: FloatArray) -> Boundary:
     moved.parts["middle"] += by
     moved.covers["point"] += by
     moved.planes[3] += moved.planes[:3].T @ by
+    moved.planes[5:] += np.concatenate([by, by])[:, None]
     return Boundary(*moved)

@@ -50,7 +50,8 @@ def packed(blocks: Sequence[Block], parts: Sequence[Shape | FloatArray], touch_m
     covers.rows["first_bound"] += len(bounds)
     covers.rows["last_bound"] += len(bounds)
     heights = (made["point"] * made["direction"]).sum(axis=1) + made["radius"]
-    planes = np.ascontiguousarray(np.column_stack([made["direction"], heights, made["least"]]).T)
+    columns = made["direction"], heights, made["least"], boxes[order].reshape(-1, 6)
+    planes = np.ascontiguousarray(np.column_stack(columns).T)
     of_body = body_parts(parts)
     for index in np.nonzero(made["kind"] == VERTEX)[0].tolist():
         if isinstance(parts[made["part"][index]], np.ndarray):

@@ -1,8 +1,4 @@
-"""What does not change during a run (`Geometry`), and what follows from one pose (`Placement`).
-
-Cage points against boxes are told by the boxes' faces, here; where there are other shapes, all parts by their features,
-in `cagepose.kernels.boundary`.
-"""
+"""Boxes held by points alone, as the paper's method and the search for a way out take them, and the boxes at a pose."""
 
 from __future__ import annotations
 
@@ -11,24 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
-from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
+from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Matrix, Vector, matrix, minus, plus, row, times, transposed_times
-from cagepose.kernels.boundary.features import (
-    BodyPart,
-    Boundary,
-    Feature,
-    PlacedBoundary,
-    Placing,
-    empty_placing,
-    place_boundary,
-    placed_in,
-)
-from cagepose.kernels.boundary.groups import number_groups
-from cagepose.kernels.boundary.meetings import find_meetings
-from cagepose.kernels.boundary.overlap import OverlapWork, empty_overlap_work
-from cagepose.kernels.boundary.queue import MOST_WAITING, Queue, empty_queue
-from cagepose.kernels.boundary.touching import Meetings, empty_meetings, most_meetings
-from cagepose.kernels.boundary.tree import Node
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import entry, kernel
 
@@ -36,8 +16,8 @@ FEATURES_OF_PART = 64
 """What has so many times more features may touch in as many times more places."""
 
 
-class Geometry(NamedTuple):
-    """Boxes in the object's frame and cage points in the world; or, where there are other shapes, two boundaries.
+class BoxesAndPoints(NamedTuple):
+    """Boxes in the object's frame and cage points in the world.
 
     Where two boxes meet flush, the plane between them belongs to the inside of the object, but to the inside of
     neither box. A further box bridges each such seam (see `cagepose.model.seams`): it lies within the two, so it
@@ -53,11 +33,6 @@ class Geometry(NamedTuple):
         How many of the boxes are no bridges.
     points_world
         (n_points, 3), metres.
-    held, cage
-        All parts of the object, its own boxes first, in its frame, and of the cage, its points first, in the world.
-        Boxes and points are not listed then; where there are only these, both are empty.
-    touch_m
-        Parts within this distance touch.
     """
 
     half_sizes: FloatArray
@@ -65,12 +40,9 @@ class Geometry(NamedTuple):
     box_rotations: FloatArray
     n_own_boxes: int
     points_world: FloatArray
-    held: Boundary
-    cage: PlacedBoundary
-    touch_m: float
 
 
-class Placement(NamedTuple):
+class PlacedBoxes(NamedTuple):
     """The boxes at one pose of the object, and the cage points seen from each of them.
 
     Attributes
@@ -87,14 +59,6 @@ class Placement(NamedTuple):
         metres.
     arms
         Memory for the squared distance of each point from the axis of a turn, (n_points,), square metres.
-    body
-        Memory for the object's boundary, see `held_at`.
-    moved
-        Memory for it at a pose that is tried, see `held_moved`.
-    meetings
-        Where it touches the cage's.
-    queue
-        Memory for pairs of nodes that may touch on the way.
     """
 
     box_positions: FloatArray
@@ -104,17 +68,12 @@ class Placement(NamedTuple):
     gaps: FloatArray
     depths: FloatArray
     arms: FloatArray
-    body: Placing
-    moved: Placing
-    meetings: Meetings
-    queue: Queue
 
 
-def empty_placement(geometry: Geometry) -> Placement:
-    """Return a workspace for one placement (plain Python: making arrays in compiled code is slow to compile)."""
-    n_boxes = len(geometry.half_sizes)
-    n_points = len(geometry.points_world)
-    return Placement(
+def empty_placed_boxes(geometry: BoxesAndPoints) -> PlacedBoxes:
+    """Return a workspace for boxes at one pose (plain Python: making arrays in compiled code is slow to compile)."""
+    n_boxes, n_points = len(geometry.half_sizes), len(geometry.points_world)
+    return PlacedBoxes(
         np.empty((n_boxes, 3)),
         np.empty((n_boxes, 3, 3)),
         np.empty((3, n_points)),
@@ -122,74 +81,7 @@ def empty_placement(geometry: Geometry) -> Placement:
         np.empty((n_boxes, n_points)),
         np.empty(n_points),
         np.empty(n_points),
-        empty_placing(geometry.held),
-        empty_placing(geometry.held),
-        empty_meetings(max(len(geometry.held.features), len(geometry.cage.features)), most_rows(geometry)),
-        empty_queue(most_waiting(geometry)),
     )
-
-
-def most_waiting(geometry: Geometry) -> int:
-    """Return how many pairs of nodes may wait (plain Python): none without boundaries."""
-    n_features = len(geometry.held.features) + len(geometry.cage.own.features)
-    return max(MOST_WAITING, n_features) if len(geometry.held.features) > 0 else 0
-
-
-def most_rows(geometry: Geometry) -> int:
-    """Return how many meetings of the two boundaries there is memory for (plain Python)."""
-    n_parts, n_cage_parts = (
-        max(len(body.parts), len(body.features) // FEATURES_OF_PART) for body in (geometry.held, geometry.cage.own)
-    )
-    return most_meetings(n_parts, n_cage_parts)
-
-
-def most_elements(geometry: Geometry) -> int:
-    """Return how many points and shapes the cage has (plain Python)."""
-    return max(len(geometry.points_world), len(geometry.cage.own.parts))
-
-
-class PlacedCage(NamedTuple):
-    """Memory for the cage of a case, in the world: its points, (n_points, 3), metres; its boundary at a pose; as single
-    points may be elsewhere from case to case, features, parts and trees of its own; and for the start check.
-    """
-
-    points_world: FloatArray
-    placing: Placing
-    features: Rows[Feature]
-    parts: Rows[BodyPart]
-    nodes: Rows[Node]
-    overlap: OverlapWork
-
-
-def empty_cage(geometry: Geometry) -> PlacedCage:
-    """Return memory for the cage of a case (plain Python)."""
-    own = geometry.cage.own
-    return PlacedCage(
-        np.empty_like(geometry.points_world),
-        empty_placing(own),
-        empty_rows(Feature, len(own.features)),
-        empty_rows(BodyPart, len(own.parts)),
-        empty_rows(Node, len(own.nodes)),
-        empty_overlap_work(geometry.held, own),
-    )
-
-
-@kernel
-def is_shaped(geometry: Geometry) -> bool:
-    """Whether the object and the cage are two boundaries."""
-    return len(geometry.held.features) > 0
-
-
-@kernel
-def held_at(geometry: Geometry, placement: Placement) -> PlacedBoundary:
-    """Return the object's boundary at its pose."""
-    return placed_in(geometry.held, placement.body)
-
-
-@kernel
-def held_moved(geometry: Geometry, placement: Placement) -> PlacedBoundary:
-    """Return memory for the object's boundary at a pose that is tried."""
-    return placed_in(geometry.held, placement.moved)
 
 
 @kernel
@@ -213,8 +105,8 @@ def place_boxes(
     gaps_boxes: FloatArray,
     depths: FloatArray,
 ) -> None:
-    """Place boxes at a pose of the object: the first four arguments are those of `Geometry`, the last six of
-    `Placement`. Passing either as a whole takes as long as placing a few points.
+    """Place boxes at a pose of the object: the first four arguments are those of `BoxesAndPoints`, the last six
+    of `PlacedBoxes`. Passing either as a whole takes as long as placing a few points.
     """
     heed_interrupt()
     rotation = matrix_from_quaternion(quaternion)
@@ -249,9 +141,9 @@ def place_boxes(
                 depths[point] = max(depths[point], -gaps[point])
 
 
-@kernel
-def place_points(geometry: Geometry, position: Vector, quaternion: Quaternion, placement: Placement) -> None:
-    """Fill what ``placement`` has of boxes and points for the object at the given pose; so short that it is inlined."""
+@entry
+def place_boxes_at(geometry: BoxesAndPoints, position: Vector, quaternion: Quaternion, placement: PlacedBoxes) -> None:
+    """Fill ``placement`` for the object at the given pose."""
     place_boxes(
         geometry.half_sizes,
         geometry.box_positions,
@@ -268,20 +160,9 @@ def place_points(geometry: Geometry, position: Vector, quaternion: Quaternion, p
     )
 
 
-@entry
-def place_object(geometry: Geometry, position: Vector, quaternion: Quaternion, placement: Placement) -> None:
-    """Fill ``placement`` for the object at the given pose."""
-    place_points(geometry, position, quaternion, placement)
-    if is_shaped(geometry):
-        held = held_at(geometry, placement)
-        place_boundary(held, position, quaternion)
-        find_meetings(held, geometry.cage, geometry.touch_m, placement.meetings)
-        number_groups(held, geometry.cage, geometry.touch_m, placement.meetings)
-
-
 @kernel
-def is_clear_of(geometry: Geometry, position: Vector, rotation: Matrix, point: int, touch_m: float) -> bool:
-    """Whether one point touches no box, as `Placement.gaps` has it, when the object is at the given pose."""
+def is_clear_of(geometry: BoxesAndPoints, position: Vector, rotation: Matrix, point: int, touch_m: float) -> bool:
+    """Whether one point touches no box, as `PlacedBoxes.gaps` has it, when the object is at the given pose."""
     point_object = transposed_times(rotation, minus(row(geometry.points_world, point), position))
     for box in range(len(geometry.half_sizes)):
         from_box = minus(point_object, row(geometry.box_positions, box))
@@ -292,7 +173,7 @@ def is_clear_of(geometry: Geometry, position: Vector, rotation: Matrix, point: i
 
 
 @kernel
-def box_point(placement: Placement, box: int, point: int) -> Vector:
+def box_point(placement: PlacedBoxes, box: int, point: int) -> Vector:
     """Return a cage point in the frame of one box."""
     return (
         placement.points_box[box, 0, point],
@@ -302,12 +183,12 @@ def box_point(placement: Placement, box: int, point: int) -> Vector:
 
 
 @kernel
-def vector_in_box(placement: Placement, box: int, vector_world: Vector) -> Vector:
+def vector_in_box(placement: PlacedBoxes, box: int, vector_world: Vector) -> Vector:
     """Turn a world vector into the frame of one box."""
     return transposed_times(matrix(placement.box_rotations, box), vector_world)
 
 
 @kernel
-def point_in_box(placement: Placement, box: int, point_world: Vector) -> Vector:
+def point_in_box(placement: PlacedBoxes, box: int, point_world: Vector) -> Vector:
     """Turn a world point into the frame of one box."""
     return vector_in_box(placement, box, minus(point_world, row(placement.box_positions, box)))
