@@ -208,10 +208,9 @@ def first_touch(
                 step, is_over = max(step, min(narrow, span)), narrow >= span
                 span *= NARROWER
             place_after(a, i, motion, amount, moved)
-            clear = (
-                clear_step(moved, i, b, j, motion, reach_m) if level == 0.0 else 0.0
-            )  # that does not tell how deep they are
-            step, is_jump = max(step, clear), clear > step
+            if level == 0.0:  # else it does not tell how deep they are
+                clear = clear_step(moved, i, b, j, motion, reach_m)
+                step, is_jump = max(step, clear), clear > step
             if stay_parallel(moved.features[i], other, motion, rest):
                 return math.inf
         if step >= rest:
@@ -223,8 +222,5 @@ def first_touch(
         amount, behind = gone_on(amount, step, end, behind)
         if amount >= end:
             return math.inf
-    return (
-        amount
-        if touches_after(a, i, b, j, motion, amount, level, slack, touch_m, reach_m, moved, waiting)
-        else math.inf
-    )
+    reaches = touches_after(a, i, b, j, motion, amount, level, slack, touch_m, reach_m, moved, waiting)
+    return amount if reaches else math.inf

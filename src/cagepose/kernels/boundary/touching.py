@@ -13,7 +13,9 @@ from cagepose.kernels.boundary.circle_places import Kept, Place
 from cagepose.kernels.native.kernel import kernel
 
 MOST_OF_PARTS, MOST_MEETINGS, MOST_OF_POINT = 128, 4096, 12
-"""Meetings that there is memory for: of each pair of parts, and of all; and of each single point, over all of them."""
+"""Meetings that there is memory for: of each pair of parts, and of all; and of each single point, over all of them,
+beside those of one pair, as where a tip of many faces stands on a point.
+"""
 MOST_PAIRS, MOST_PLACES = 256, 16
 """Pairs of nodes that wait while two trees are descended; places of one circle."""
 CHAIN_BITS = 2
@@ -118,7 +120,8 @@ class Meetings(NamedTuple):
 
 def most_meetings(n_parts: int, n_points: int, n_others: int) -> int:
     """Return how many meetings there is memory for of so many parts with single points and others (plain Python)."""
-    return MOST_OF_POINT * n_points + min(MOST_OF_PARTS * n_parts * n_others, MOST_MEETINGS)
+    n_pairs = n_parts * n_others + min(n_points, 1)
+    return MOST_OF_POINT * n_points + min(MOST_OF_PARTS * n_pairs, MOST_MEETINGS)
 
 
 def empty_meetings(n_features: int, n_rows: int = MOST_MEETINGS) -> Meetings:

@@ -22,9 +22,9 @@ def append_meeting(
     touch_m: float,
     found: Meetings,
 ) -> None:
-    """Append a meeting, or note it beside one that has its normal at its place."""
+    """Append a meeting, or note it beside one that has its normal at its place; there is no room: none are known."""
     at = found.used[0]
-    if at == len(found.rows):
+    if at < 0 or at == len(found.rows):
         found.used[0] = -1
         return
     row = found.rows[at]

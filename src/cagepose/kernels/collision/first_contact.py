@@ -1,4 +1,4 @@
-"""First contact of all cage points with all boxes: the least entry of equations (2.1) to (2.3).
+"""First contact of all cage points with all boxes: the least entry of equations (2.1) and (2.2).
 
 Only points that can be hit matter, so there is no in-face test to get wrong: a face hidden inside another box cannot be
 reached without entering that box first.

@@ -3,7 +3,7 @@
 Seen from the box the point moves along q(s) = q0 - s v. Each slab |q_k| <= h_k gives one interval of s; the point is
 inside where all three meet.
 
-All three kernels of this family (travel, turn, screw) decide contact the same way, equation (2.5):
+Both kernels of this family (travel, turn) decide contact the same way, equation (2.5):
 
 1. *Does it go in?* Find the first interval of the box shrunken by ``allowed_depth_m``. None: no contact. So sliding
 in a

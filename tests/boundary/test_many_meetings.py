@@ -1,0 +1,34 @@
+"""As many meetings as there is memory for are known, or none of them; a tip of many faces stands on a point."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from boundary.asked import Asked
+from cagepose import Cage, Convex, Load, Object, Pose, Scene, run
+from cagepose.kernels.boundary.touching import empty_meetings
+
+
+def tip(n_sides: int, at: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Convex:
+    """A pyramid that stands on its tip."""
+    around = np.linspace(0.0, 2.0 * np.pi, n_sides, endpoint=False) + 0.1
+    rim = np.column_stack([0.3 * np.cos(around), 0.3 * np.sin(around), np.ones(n_sides)])
+    return Convex(np.vstack([np.zeros(3), rim]) + np.array(at))
+
+
+@pytest.mark.parametrize("n_rows", [3, 10, 19, 26, 27, 45])
+def test_meetings_for_which_there_is_no_room_are_not_taken_for_fewer(n_rows):
+    points = [np.zeros(3), np.array([0.0, 3.0, 0.0])]
+    asked = Asked([tip(26), tip(20, (0.0, 3.0, 0.0))], points, 1e-9)
+    asked.found = empty_meetings(len(asked.held.own.features), n_rows)
+    assert asked.place(Pose()).used[0] == -1
+    asked.found = empty_meetings(len(asked.held.own.features), 64)
+    assert asked.place(Pose()).used[0] == 46
+
+
+@pytest.mark.parametrize("n_sides", [6, 13, 40])
+def test_a_tip_of_many_faces_on_a_point_falls_over(n_sides):
+    held = Object(shapes=[tip(n_sides)], center_of_gravity_m=(0.01, 0.0, 0.7))
+    scene = Scene(held, Cage(np.zeros((1, 3))), [Load("weight", gravity=(0.0, 0.0, -1.0))], friction_coefficient=0.3)
+    assert run(scene).verdict == "escapes"
