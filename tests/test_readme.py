@@ -1,4 +1,4 @@
-"""The README's Python example runs and prints what the README says it prints."""
+"""The README's examples run and print what the README says they print."""
 
 from __future__ import annotations
 
@@ -6,6 +6,11 @@ import contextlib
 import io
 import re
 from pathlib import Path
+
+import pytest
+
+from cagepose.cli.app import main
+from test_tutorial import timeless
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -26,3 +31,10 @@ def test_the_python_example_prints_what_stands_below_it():
 
 def test_the_scene_shown_is_the_sample():
     assert block("yaml", holding="name: sample") == (ROOT / "scenes" / "sample.yaml").read_text(encoding="utf-8")
+
+
+def test_the_rail_prints_its_listing(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    command, _, expected = block("text", holding="$ cagepose run scenes/rail-pitch.yaml").partition("\n")
+    monkeypatch.chdir(ROOT)
+    assert main(command.split()[2:]) == 0
+    assert timeless(capsys.readouterr().out) == timeless(expected)
