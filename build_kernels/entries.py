@@ -14,20 +14,9 @@ from cagepose.kernels.algebra.pose import write_euler_zyx, write_quaternions
 from cagepose.kernels.algebra.program_bound import extents
 from cagepose.kernels.algebra.record import dtype_of, empty_record, empty_rows
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
-from cagepose.kernels.boundary.arcs import Arc
-from cagepose.kernels.boundary.candidates import find_pairs
-from cagepose.kernels.boundary.cones import find_cones
-from cagepose.kernels.boundary.corners import find_corners
-from cagepose.kernels.boundary.fans import find_arcs
 from cagepose.kernels.boundary.features import NO_BOUNDARY, empty_placed
-from cagepose.kernels.boundary.flat_regions import find_flat_regions
 from cagepose.kernels.boundary.geometry import Geometry, empty_cage, empty_placement, overlap_at, place_object
-from cagepose.kernels.boundary.inside import is_in_face
-from cagepose.kernels.boundary.lines import empty_fan_work
-from cagepose.kernels.boundary.loops import Border, Loop, find_loops
 from cagepose.kernels.boundary.overlap import empty_overlap_work
-from cagepose.kernels.boundary.pieces import Piece, PieceEdge, PieceFace, Pieces, Plane, find_planes
-from cagepose.kernels.boundary.places import find_groups, merge_places, settle_vertices
 from cagepose.kernels.collision.boxes import BoxesAndPoints, empty_placed_boxes, place_boxes_at
 from cagepose.kernels.contact.loads import Action
 from cagepose.kernels.contact.metric import Body
@@ -60,6 +49,16 @@ from cagepose.kernels.stepwise.run import (
 )
 from cagepose.kernels.stepwise.slip import SlipRules
 from cagepose.kernels.stepwise.support import SupportRules
+from cagepose.kernels.union.arcs import Arc
+from cagepose.kernels.union.candidates import find_pairs
+from cagepose.kernels.union.cones import find_cones
+from cagepose.kernels.union.corners import find_corners
+from cagepose.kernels.union.fans import find_arcs
+from cagepose.kernels.union.flat_regions import find_flat_regions
+from cagepose.kernels.union.lines import empty_fan_work
+from cagepose.kernels.union.loops import Border, Loop, find_loops
+from cagepose.kernels.union.pieces import Piece, PieceEdge, PieceFace, Pieces, Plane, find_planes
+from cagepose.kernels.union.vertices import find_groups, merge_places, settle_vertices
 
 ORIGIN = (0.0, 0.0, 0.0)
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
@@ -144,4 +143,3 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     of_triangles = (np.zeros((1, 3, 3)), vectors, is_true, indices, vectors, numbers)
     yield find_flat_regions, (indices, triples, *of_triangles, 0.0, indices, indices, indices)
     yield find_cones, (indices, vectors, np.zeros((2, 1, 3)), triples, is_true)
-    yield is_in_face, (ORIGIN, ORIGIN, borders, 0, 1, 0.0)

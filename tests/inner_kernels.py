@@ -31,16 +31,16 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     from cagepose.kernels.algebra.motion import Motion
     from cagepose.kernels.algebra.record import empty_record, empty_rows
     from cagepose.kernels.boundary import first_meeting as of_boundaries
-    from cagepose.kernels.boundary.circle_and_circle import follow_by_circle, places_by_circle
-    from cagepose.kernels.boundary.circle_and_round import Round, follow_by_round, places_by_round
     from cagepose.kernels.boundary.circle_first import first_touch_of_curved
-    from cagepose.kernels.boundary.circle_places import Circle, Place
     from cagepose.kernels.boundary.features import NO_BOUNDARY, empty_placed, place_boundary
     from cagepose.kernels.boundary.groups import number_groups
     from cagepose.kernels.boundary.meetings import find_meetings
     from cagepose.kernels.boundary.overlap import empty_overlap_work, find_overlap
     from cagepose.kernels.boundary.queue import empty_queue
     from cagepose.kernels.boundary.touching import empty_meetings
+    from cagepose.kernels.circles.beside_circle import places_by_circle
+    from cagepose.kernels.circles.beside_round import Round, places_by_round
+    from cagepose.kernels.circles.places import Circle, Place
     from cagepose.kernels.contact.cone import ConeWorkspace, cone_residual
     from cagepose.kernels.contact.contact_set import empty_contact_set
     from cagepose.kernels.contact.coulomb import coulomb_onset
@@ -57,8 +57,6 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     circle, line, places = Circle(origin, origin, origin, 0.0), Round(origin, origin, 0.0, 0.0), empty_rows(Place, 1)
     yield places_by_round, (circle, line, 0.0, places)
     yield places_by_circle, (circle, circle, 0.0, places)
-    yield follow_by_round, (circle, line, places[0], places)
-    yield follow_by_circle, (circle, circle, places[0], places)
     body, found, motion = empty_placed(NO_BOUNDARY), empty_meetings(0), Motion(origin, origin, 0.0, origin)
     yield place_boundary, (body, origin, (1.0, 0.0, 0.0, 0.0))
     yield find_meetings, (body, body, 0.0, found)

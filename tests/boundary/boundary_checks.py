@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.boundary.inside import is_in_face
 from cagepose.model.boundary.trimmed import TrimmedUnion
 
 FloatArray = NDArray[np.float64]
@@ -27,19 +26,23 @@ def volume(boundary: TrimmedUnion) -> float:
 
 def faces_at(boundary: TrimmedUnion, place: FloatArray, normal: FloatArray, tolerance_m: float) -> list[int]:
     """Return the faces with this outward normal that a place on their plane lies in."""
-    faces, last = boundary.faces, np.cumsum(boundary.faces.n_borders)
-    near = (faces.normals @ normal > 1.0 - 1e-9) & (np.abs(faces.normals @ place - faces.offsets_m) <= tolerance_m)
-    found = []
-    for f in np.flatnonzero(near).tolist():
-        outward = tuple(faces.normals[f].tolist())
-        span = int(last[f] - faces.n_borders[f]), int(last[f])
-        if is_in_face(tuple(place.tolist()), outward, faces.borders, *span, tolerance_m):
-            found.append(f)
+    _, faces, is_in = faces_near(boundary, place[None], normal[None], tolerance_m)
+    found: list[int] = faces[is_in].tolist()
     return found
 
 
 def n_faces_at(boundary: TrimmedUnion, places: FloatArray, normals: FloatArray, tolerance_m: float) -> FloatArray:
-    """Say in how many faces with its outward normal each place (n, 3) lies: as `faces_at`, without a kernel."""
+    """Say in how many faces with its outward normal each place (n, 3) lies, (n,)."""
+    which, _, is_in = faces_near(boundary, places, normals, tolerance_m)
+    return np.bincount(which, is_in, len(places))
+
+
+def faces_near(
+    boundary: TrimmedUnion, places: FloatArray, normals: FloatArray, tolerance_m: float
+) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.bool_]]:
+    """Return (place, face, whether it lies in it) for each place (n, 3) and each face whose plane it is on, with its
+    outward normal: a ray crosses the face's borders an odd number of times, or one of them is within the tolerance.
+    """
     faces, borders = boundary.faces, boundary.faces.borders
     along, above = normals @ faces.normals.T, places @ faces.normals.T - faces.offsets_m
     which, face = np.nonzero((along > 1.0 - 1e-9) & (np.abs(above) <= tolerance_m))
@@ -56,8 +59,7 @@ def n_faces_at(boundary: TrimmedUnion, places: FloatArray, normals: FloatArray, 
     is_passed = (x > 0.0) != (end_x > 0.0)
     heights = y - x / np.where(is_passed, end_x - x, 1.0) * (end_y - y)
     n_crossings = np.bincount(pair, is_passed & (heights > 0.0), len(face))
-    is_in = (np.bincount(pair, is_on, len(face)) > 0.0) | (n_crossings % 2.0 == 1.0)
-    return np.bincount(which, is_in, len(places))
+    return which, face, (np.bincount(pair, is_on, len(face)) > 0.0) | (n_crossings % 2.0 == 1.0)
 
 
 def faults_of_surface(boundary: TrimmedUnion, tolerance_m: float) -> list[str]:

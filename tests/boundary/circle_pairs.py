@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.boundary.circle_and_round import Round
-from cagepose.kernels.boundary.circle_places import Circle
+from cagepose.kernels.circles.beside_round import Round
+from cagepose.kernels.circles.places import Circle
 
 Array = NDArray[Any]
 

@@ -15,11 +15,11 @@ import pytest
 from cagepose import Box, Pose
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.boundary.bend import Bend, curvatures, write_bend
-from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE
 from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, VERTEX, empty_placed, place_boundary, place_feature
 from cagepose.kernels.boundary.meeting import both_reach
 from cagepose.kernels.boundary.meetings import can_touch, find_circle_places, meeting_at
 from cagepose.kernels.boundary.touching import empty_meetings
+from cagepose.kernels.circles.places import GREATEST, SADDLE, WHOLE
 from cagepose.model.boundary.features import boundary_of
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Disc, Shape, Sphere

@@ -10,21 +10,20 @@ import pytest
 from boundary import circle_pairs
 from boundary.circle_sampling import Asked, Sampled, changes, size_of, stationary
 from cagepose.kernels.algebra.record import empty_rows
-from cagepose.kernels.boundary.circle_and_circle import common_with_circle, follow_by_circle, places_by_circle
-from cagepose.kernels.boundary.circle_and_flat import (
+from cagepose.kernels.circles.beside_circle import common_with_circle, places_by_circle
+from cagepose.kernels.circles.beside_flat import (
     common_with_plane,
     common_with_point,
     places_by_plane,
     places_by_point,
 )
-from cagepose.kernels.boundary.circle_and_round import (
+from cagepose.kernels.circles.beside_round import (
     Round,
     common_with_line,
     common_with_round,
-    follow_by_round,
     places_by_round,
 )
-from cagepose.kernels.boundary.circle_places import (
+from cagepose.kernels.circles.places import (
     FLAT,
     GREATEST,
     LEAST,
@@ -32,8 +31,6 @@ from cagepose.kernels.boundary.circle_places import (
     WHOLE,
     Circle,
     Place,
-    on_circle,
-    radius_of_curvature,
 )
 from inner_kernels import as_machine_code
 
@@ -147,31 +144,6 @@ def test_what_is_told_is_stationary_and_has_a_common_normal(name, cases):
             assert abs(abs(gap) - abs(told)) < EXACT * size, (pair, place)
 
 
-@pytest.mark.parametrize("name", PAIRS)
-def test_a_place_is_known_again_after_a_small_motion(name, cases):
-    """After a motion of 1e-4 radii each least place is followed to the nearest one that the full search tells."""
-    rng = np.random.default_rng(5)
-    n_followed = 0
-    for _ in range(cases(100, 2000)):
-        circle, other = PAIRS[name](rng)
-        is_circle, size = name == "circle", size_of(circle, other)
-        n_before, before, _ = found_by(circle, other, 1e-9 * size)
-        moved = circle._replace(centre=tuple(np.array(circle.centre) + 1e-4 * circle.radius * rng.normal(size=3)))
-        n_after, after, (along, _) = found_by(moved, other, 1e-9 * size)
-        follow, row = as_machine_code(follow_by_circle if is_circle else follow_by_round), empty_rows(Place, 16)
-        if WHOLE in (n_before, n_after):
-            continue
-        for angle, place in before:
-            same = [at for at, row in after if row["kind"] == place["kind"] and row["is_near"] == place["is_near"]]
-            if place["kind"] != LEAST or not same or any(row["kind"] == FLAT for _, row in before + after):
-                continue
-            assert follow(moved, other, place, row)
-            followed = float(row[0]["angle" if along is moved else "other_angle"])
-            assert abs(apart(followed, angle) - min(apart(at, angle) for at in same)) < 1e-7
-            n_followed += 1
-    assert n_followed > 0
-
-
 def test_a_point_and_a_plane_by_hand():
     places = empty_rows(Place, 2)
     assert places_by_point(UNIT, (0.0, 2.0, 0.0), 1e-9, places) == 2
@@ -207,10 +179,3 @@ def test_a_line_that_touches_a_circle_in_its_plane_is_met_at_one_place():
     assert abs(at) < 1e-7
     met = common_with_line(UNIT, tangent, at)
     assert abs(met.gap) < 1e-14
-
-
-def test_a_mouth_bends_toward_the_normals_that_lead_into_it():
-    here = on_circle(UNIT, 0.3)
-    inward = (-0.8 * here.outward[0], -0.8 * here.outward[1], 0.6)
-    assert radius_of_curvature(UNIT, here.outward, inward) == pytest.approx(-1.25)
-    assert radius_of_curvature(UNIT, here.outward, (0.0, 0.0, 1.0)) == math.inf

@@ -11,9 +11,9 @@ import pytest
 from boundary.asked import Asked
 from cagepose import Box, Pose
 from cagepose.kernels.boundary.circle import circle_of
-from cagepose.kernels.boundary.circle_places import on_circle
 from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, OUTSIDE, SEGMENT
 from cagepose.kernels.boundary.reach import beyond_face
+from cagepose.kernels.circles.places import on_circle
 from cagepose.model.boundary import features
 from cagepose.model.boundary.convex_pieces import piece_of_box
 from cagepose.model.hole import Hole

@@ -11,10 +11,10 @@ from boundary.motions import motion_of, random_direction
 from cagepose import Box, Pose
 from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE
 from cagepose.kernels.boundary.circle_first import place_near, root_of_gap
-from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE
 from cagepose.kernels.boundary.features import CIRCLE, LINE, place_feature
 from cagepose.kernels.boundary.first_touch import place_after
 from cagepose.kernels.boundary.meetings import find_circle_places, meeting_at
+from cagepose.kernels.circles.places import GREATEST, SADDLE
 from cagepose.model.shapes import Cylinder
 from shapes.convex_bodies import random_turn
 

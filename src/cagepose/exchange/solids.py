@@ -61,8 +61,6 @@ class Assembly:
         Where they come from, with poses, mass and loads.
     object, cage
         Their solids, in the frames of the object and of the cage.
-    point_radius_m
-        Radius of the balls that stand for cage points, metres.
     error_m
         By how much a surface is off at most, metres.
     notes
@@ -74,7 +72,6 @@ class Assembly:
     scene: Scene
     object: tuple[Solid, ...]
     cage: tuple[Solid, ...]
-    point_radius_m: float
     error_m: float
     notes: tuple[str, ...]
     frictions_of_parts: Mapping[str, Sequence[str]]
@@ -115,7 +112,7 @@ def assembly_of(scene: Scene) -> Assembly:
     if problems:
         raise SceneError(problems)
     held, cage = bodies
-    return Assembly(scene, tuple(held), (*cage_points, *cage), radius_m, max(errors_m), tuple(notes), replaced)
+    return Assembly(scene, tuple(held), (*cage_points, *cage), max(errors_m), tuple(notes), replaced)
 
 
 def _alone(holes: Sequence[Hole]) -> list[Hole]:

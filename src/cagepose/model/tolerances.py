@@ -15,8 +15,6 @@ GRAZING_BAND_DEFAULT_RAD = float(np.radians(1.0))
 
 OVERLAP_OF_TOUCH = 1e-12
 """Share of their reach. Shapes that overlap by no more only touch: that is rounding."""
-SHARE_SHRUNK = 1e-6
-"""Share of its size. A part is shrunk by this so that it does not touch."""
 PARALLEL_SINE = 1e-9
 """Sine between two directions. With a smaller one they give no third direction across both."""
 DISTANCE_OF_FACE = 1e-6

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.meshes.tolerances import VOLUME_NOT_CONVEX
 
-BLUNT, FLAT, SEVERAL = 0.9, 0.9997, 4
-"""Cosines between the faces of an edge of a round (others are a little hollow by chance), and how many tell one."""
-
+BLUNT = 0.9
+"""Cosine between the faces of an edge. One with a greater cosine is a step of a round, and blunt."""
 AT_ONCE = 1000
 """Points whose depths are found together: arrays of more take much memory."""
 
@@ -35,13 +34,6 @@ def edges_of(mesh: Triangles) -> Edges:
     order = np.lexsort((sides.max(axis=1), sides.min(axis=1)))
     pairs = order.reshape(-1, 2)  # each edge is a side of two triangles
     return Edges(np.sort(sides[pairs[:, 0]], axis=1), face[pairs])
-
-
-def is_hollow_and_round(mesh: Triangles, allowed: float) -> bool:
-    """Whether a surface has several hollow edges of a blunt angle in it, as a fillet does; ``allowed`` as below."""
-    faces = mesh.normals[reflex_edges(mesh, allowed).faces]
-    cosines = np.einsum("ij,ij->i", faces[:, 0], faces[:, 1])
-    return int(((cosines > BLUNT) & (cosines < FLAT)).sum()) >= SEVERAL
 
 
 def reflex_edges(mesh: Triangles, allowed: float) -> Edges:

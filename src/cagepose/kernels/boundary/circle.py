@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, scaled, vector_from
-from cagepose.kernels.boundary.circle_places import Circle, within_turn
 from cagepose.kernels.boundary.features import Feature
+from cagepose.kernels.circles.places import Circle, within_turn
 from cagepose.kernels.native.kernel import kernel
 
 WHOLE_TURN = 2.0 * math.pi - 1e-9

@@ -1,5 +1,5 @@
 """For how long a curve, all of it, surely does not come to touch a surface: how its gaps close, and bounds on how they
-bend, equation (2.14).
+bend. Without bounds on pieces it is equation (2.14).
 
 A curve is a circle, or a line, as far as it reaches; the surface is what it meets. At each point of the curve the gap
 is a function of the amount with a known value and slope. Its second derivative is that of the point's way along the
@@ -21,7 +21,6 @@ from cagepose.kernels.algebra.motion import Motion, velocity_at
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, norm, scaled
 from cagepose.kernels.boundary.circle_meeting import is_sharp
-from cagepose.kernels.boundary.circle_places import Kept, Place, within_turn
 from cagepose.kernels.boundary.curve_beside import (
     Beside,
     Piece,
@@ -32,6 +31,7 @@ from cagepose.kernels.boundary.curve_beside import (
     piece_of,
 )
 from cagepose.kernels.boundary.features import CIRCLE, VERTEX, Feature
+from cagepose.kernels.circles.places import Kept, Place, within_turn
 from cagepose.kernels.native.kernel import kernel
 
 PIECES = 8

@@ -17,7 +17,12 @@ from cagepose.kernels.algebra.vector import dot, minus, norm, plus, scaled, vect
 from cagepose.kernels.boundary.along_motion import BEHIND, LEAST_STEP, between_segments, gone_on
 from cagepose.kernels.boundary.circle import circle_of, outward_at
 from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE, clear_ahead
-from cagepose.kernels.boundary.circle_places import (
+from cagepose.kernels.boundary.closing import closing_of, surely_clear
+from cagepose.kernels.boundary.features import CIRCLE, Feature, PlacedBoundary
+from cagepose.kernels.boundary.first_touch import place_after
+from cagepose.kernels.boundary.hollow_end import reach_in_hollow
+from cagepose.kernels.boundary.meetings import PLACES_AROUND, find_circle_places, meeting_at
+from cagepose.kernels.circles.places import (
     GREATEST,
     SADDLE,
     WHOLE,
@@ -27,11 +32,6 @@ from cagepose.kernels.boundary.circle_places import (
     within_turn,
     write_place,
 )
-from cagepose.kernels.boundary.closing import closing_of, surely_clear
-from cagepose.kernels.boundary.features import CIRCLE, Feature, PlacedBoundary
-from cagepose.kernels.boundary.first_touch import place_after
-from cagepose.kernels.boundary.hollow_end import reach_in_hollow
-from cagepose.kernels.boundary.meetings import PLACES_AROUND, find_circle_places, meeting_at
 from cagepose.kernels.native.kernel import kernel
 
 ADVANCES = 2000

@@ -5,18 +5,18 @@ from __future__ import annotations
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import cross, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.circle import circle_of
-from cagepose.kernels.boundary.circle_and_circle import common_with_circle, places_by_circle
-from cagepose.kernels.boundary.circle_and_flat import (
+from cagepose.kernels.boundary.features import CIRCLE, FACE, VERTEX, Feature, PlacedBoundary
+from cagepose.kernels.boundary.meeting import is_turned
+from cagepose.kernels.boundary.met import SHARP, Meeting, without_normal
+from cagepose.kernels.circles.beside_circle import common_with_circle, places_by_circle
+from cagepose.kernels.circles.beside_flat import (
     common_with_plane,
     common_with_point,
     places_by_plane,
     places_by_point,
 )
-from cagepose.kernels.boundary.circle_and_round import Round, common_with_line, common_with_round, places_by_round
-from cagepose.kernels.boundary.circle_places import Common, Place
-from cagepose.kernels.boundary.features import CIRCLE, FACE, VERTEX, Feature, PlacedBoundary
-from cagepose.kernels.boundary.meeting import is_turned
-from cagepose.kernels.boundary.met import SHARP, Meeting, without_normal
+from cagepose.kernels.circles.beside_round import Round, common_with_line, common_with_round, places_by_round
+from cagepose.kernels.circles.places import Common, Place
 from cagepose.kernels.native.kernel import kernel
 
 SIDE_BY_SIDE = 1e-6

@@ -63,8 +63,8 @@ def speed_toward_round(
 
 @kernel
 def closing_of(one: Feature, other: Feature, motion: Motion) -> Closing:
-    """Return how fast a feature of the object, at its place on the way, and one of the cage may come nearer, of which
-    one is a circle: the velocity of the object's material at the circle, without what leads along the other one.
+    """Return how fast a curved pair, a feature of the object at its place on the way and one of the cage, may come
+    nearer: the velocity of the object's material at the smaller one, without what leads along the other one.
     """
     small, wide = (one, other) if is_smaller(one, other) else (other, one)
     middle, reach = middle_of(small), small.length if small.kind == CIRCLE else 0.5 * small.length

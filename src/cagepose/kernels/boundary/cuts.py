@@ -6,14 +6,14 @@ import math
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
-from cagepose.kernels.boundary.circle_and_round import Round, common_with_round, places_by_round
-from cagepose.kernels.boundary.circle_places import Circle, Place, on_circle
 from cagepose.kernels.boundary.features import FACE, VERTEX, Boundary
 from cagepose.kernels.boundary.reach import beyond_borders
 from cagepose.kernels.boundary.strands import Strand, circle_under, on_strand
 from cagepose.kernels.boundary.surfaces import beyond_cone, crossing, has_surface, height_over, normal_of_face
 from cagepose.kernels.boundary.tree import FACES, Node
 from cagepose.kernels.boundary.within import root_has_surfaces
+from cagepose.kernels.circles.beside_round import Round, common_with_round, places_by_round
+from cagepose.kernels.circles.places import Circle, Place, on_circle
 from cagepose.kernels.native.kernel import kernel
 
 MOST_CUTS = 1024

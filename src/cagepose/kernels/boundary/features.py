@@ -2,8 +2,8 @@
 
 A part need not be convex: it is known by what can touch. A vertex and an edge have outward normals where the material
 beside them is convex; a face ends at its bounds. A radius is added on all sides: a sphere is a vertex with a radius, a
-capsule a line with one. The round side of a cylinder or a cone is a line with a radius that all of its normals are
-within; with a radius below zero it is the wall of a hole.
+capsule a line with one. The round side of a cylinder or a cone is a line with a radius and without bounds: all normals
+around it count. With a radius below zero it is the wall of a hole.
 
 Bounds stay in the frame of the body, and what is asked of them is turned into that frame: that is one normal and one
 place for a pair of features, where each of them may have a dozen bounds.
@@ -56,9 +56,10 @@ class Feature:
         Of a circle and of a hole's wall: unit vector across its axis that angles are measured from, right-handed about
         the axis. Of a face with segments: one in its plane, along which rays lead.
     length
-        Of a line, metres; the radius of a circle.
+        Of a line, metres: of the side of a cone, along the axis between where the normals of its ends meet it. The
+        radius of a circle.
     radius
-        Added on all sides, metres. Below zero: a line is the axis of a hole.
+        Added on all sides, metres; of the side of a cone, at its start. Below zero: a line is the axis of a hole.
     taper
         Sine that the outward normals of a line make with the plane across it: its radius shrinks by as much a metre.
     low, high
@@ -69,8 +70,8 @@ class Feature:
         Its bounds, the last one not included.
     least
         Length of the shortest edge at a vertex or of a line, the radius of a circle, metres; inf: there is none. Of the
-        tip of a cone, the radius of its wide end. What
-        touches along it is told by the touch tolerance up to a tilt of one over the other.
+        tip of a cone, the radius of its wide end. What touches along it is told by the touch tolerance up to a tilt of
+        one over the other.
     first_cover, last_cover
         What may cover it, in `Boundary.cover_list`, the last one not included.
     """
@@ -208,7 +209,7 @@ NO_BOUNDARY = Boundary(
     empty_rows(Cover, 0),
     np.zeros(0, np.int64),
     empty_rows(Node, 0),
-    np.zeros((5, 0)),
+    np.zeros((11, 0)),
 )
 """A body without features."""
 

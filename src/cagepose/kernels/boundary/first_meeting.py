@@ -14,7 +14,6 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import cross, dot, minus, norm, scaled, vector_from
 from cagepose.kernels.boundary.along_motion import ahead, safe_step
 from cagepose.kernels.boundary.circle_first import first_touch_of_curved, kept_at, lines_apart
-from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE
 from cagepose.kernels.boundary.features import (
     CIRCLE,
     FACE,
@@ -41,6 +40,7 @@ from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.boundary.queue import Queue, put, take_first
 from cagepose.kernels.boundary.touching import SAME_PLACE, Meetings
 from cagepose.kernels.boundary.tree import Node, may_touch, span_of_overlap
+from cagepose.kernels.circles.places import GREATEST, SADDLE, WHOLE
 from cagepose.kernels.native.kernel import kernel
 
 LEAVES_OF_SPEED = 1e-6

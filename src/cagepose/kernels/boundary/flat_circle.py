@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, scaled, vector_from
 from cagepose.kernels.boundary.circle import WHOLE_TURN, circle_of
-from cagepose.kernels.boundary.circle_places import Circle, angle_toward, on_circle
 from cagepose.kernels.boundary.features import (
     HALF_SPACE,
     SEGMENT,
@@ -24,6 +23,7 @@ from cagepose.kernels.boundary.features import (
     seen_from_feature,
 )
 from cagepose.kernels.boundary.reach import beyond_face
+from cagepose.kernels.circles.places import Circle, angle_toward, on_circle
 from cagepose.kernels.native.kernel import kernel
 
 SAME_ANGLE = 1e-12

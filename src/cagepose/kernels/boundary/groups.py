@@ -176,30 +176,22 @@ def list_again(found: Meetings, at: int, group: int, touch_m: float) -> bool:
 
 
 @kernel
-def next_group(held: PlacedBoundary, cage: PlacedBoundary, at: int, last: int, touch_m: float, found: Meetings) -> int:
-    """Return the first group behind a number that a meeting fits; -1: none."""
+def next_alternative(
+    held: PlacedBoundary, cage: PlacedBoundary, at: int, joins: bool, last: int, touch_m: float, found: Meetings
+) -> int:
+    """Return the first row behind ``last`` of a group that a meeting joins; or, where ``joins`` is false, of a meeting
+    before it that joins its own group. -1: there is none.
+    """
     layer, least = layer_of(found, at, touch_m), NONE
     for beside in range(layer - 1, layer + 2):
-        group = first_in_layer(found, beside)
-        while group >= 0:
-            is_next = found.rows[group].group == group and group > last and (least < 0 or group < least)
-            if is_next and fits_group(held, cage, group, at, touch_m, found):
-                least = group
-            group = int(found.behind[group])
-    return least
-
-
-@kernel
-def next_before(held: PlacedBoundary, cage: PlacedBoundary, at: int, last: int, touch_m: float, found: Meetings) -> int:
-    """Return the first meeting behind a number, and before another one, that fits the group of that; -1: none."""
-    layer, least = layer_of(found, at, touch_m), NONE
-    for beside in range(layer - 1, layer + 2):
-        before = first_in_layer(found, beside)
-        while before >= 0:
-            is_next = last < before < at and (least < 0 or before < least)
-            if is_next and fits_group(held, cage, at, before, touch_m, found):
-                least = before
-            before = int(found.behind[before])
+        other = first_in_layer(found, beside)
+        while other >= 0:
+            is_asked = found.rows[other].group == other if joins else other < at
+            if is_asked and other > last and (least < 0 or other < least):
+                group, member = (other, at) if joins else (at, other)
+                if fits_group(held, cage, group, member, touch_m, found):
+                    least = other
+            other = int(found.behind[other])
     return least
 
 
@@ -211,16 +203,16 @@ def number_groups(held: PlacedBoundary, cage: PlacedBoundary, touch_m: float, fo
     """
     forget_layers(found)
     for at in range(found.used[0]):
-        group = next_group(held, cage, at, NONE, touch_m, found)
+        group = next_alternative(held, cage, at, True, NONE, touch_m, found)
         found.rows[at].group = at if group < 0 else group
         put_in_layer(found, at, touch_m)
-        before = next_before(held, cage, at, NONE, touch_m, found) if group < 0 else NONE
+        before = next_alternative(held, cage, at, False, NONE, touch_m, found) if group < 0 else NONE
         while group >= 0 or before >= 0:
             if group >= 0:
-                group = next_group(held, cage, at, group, touch_m, found)
+                group = next_alternative(held, cage, at, True, group, touch_m, found)
                 fits = group < 0 or list_again(found, at, group, touch_m)
             else:
                 fits = list_again(found, before, at, touch_m)
-                before = next_before(held, cage, at, before, touch_m, found)
+                before = next_alternative(held, cage, at, False, before, touch_m, found)
             if not fits:
                 return

@@ -9,11 +9,11 @@ from cagepose.kernels.algebra.vector import cross, norm, vector_from
 from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE
 from cagepose.kernels.boundary.circle_first import place_near
 from cagepose.kernels.boundary.circle_meeting import is_sharp
-from cagepose.kernels.boundary.circle_places import Place, write_place
 from cagepose.kernels.boundary.features import CIRCLE, LINE, VERTEX, Feature, PlacedBoundary
 from cagepose.kernels.boundary.meeting import meeting, seated
 from cagepose.kernels.boundary.meetings import meeting_at
 from cagepose.kernels.boundary.met import PARALLEL, Meeting, apart, swapped
+from cagepose.kernels.circles.places import Place, write_place
 from cagepose.kernels.native.kernel import kernel
 
 

@@ -11,6 +11,8 @@ from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.boundary.touching import SAME_PLACE, Meetings, Touching
 from cagepose.kernels.native.kernel import kernel
 
+ANY_GROUP = -1
+"""Instead of the number of a group: all of them."""
 ON_AXIS = 0.5
 """Of its distance: a ball that comes nearer to the axis of a wall passes it."""
 
@@ -48,18 +50,27 @@ def is_there(meetings: Meetings, met: Meeting, is_kept: bool, touch_m: float) ->
 @kernel
 def is_beside_kept(i: int, j: int, meetings: Meetings, met: Meeting, touch_m: float) -> bool:
     """Whether two features meet where an alternative is kept, which holds the object out of what they would: as where a
-    flat foot slides over the edge of a table that it is flush with. Those that touch are of the same group; those that
-    are past the edge are not listed.
+    flat foot slides over the edge of a table that it is flush with. Those that touch have one in each group that they
+    are listed in; those that are past the edge are in none, and any that is kept there will do.
     """
-    group, found = -1, False
+    is_listed = False
     for at in range(meetings.used[0]):
         row = meetings.rows[at]
         if row.feature == i and row.cage_feature == j and is_at(row, met, touch_m):
-            group = row.group
+            is_listed = True
+            if not is_kept_at(meetings, met, row.group, touch_m):
+                return False
+    return is_listed or is_kept_at(meetings, met, ANY_GROUP, touch_m)
+
+
+@kernel
+def is_kept_at(meetings: Meetings, met: Meeting, group: int, touch_m: float) -> bool:
+    """Whether a meeting of a group is kept where two features meet."""
     for at in range(meetings.used[1]):
         row = meetings.rows[at]
-        found = found or (row.is_kept and (group < 0 or row.group == group) and is_at(row, met, touch_m))
-    return found
+        if row.is_kept and group in (row.group, ANY_GROUP) and is_at(row, met, touch_m):
+            return True
+    return False
 
 
 @kernel

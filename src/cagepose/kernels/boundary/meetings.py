@@ -8,7 +8,6 @@ from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import dot, minus, plus, scaled, vector_from
 from cagepose.kernels.boundary.circle import WHOLE_TURN, is_on_arc
 from cagepose.kernels.boundary.circle_meeting import circle_meeting, find_places
-from cagepose.kernels.boundary.circle_places import GREATEST, SADDLE, WHOLE, Place, write_place
 from cagepose.kernels.boundary.far_sides import drop_far_sides
 from cagepose.kernels.boundary.features import (
     CIRCLE,
@@ -30,6 +29,7 @@ from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, SAME_P
 from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
 from cagepose.kernels.boundary.twins import append_meeting
 from cagepose.kernels.boundary.within import is_within, nearest_surface
+from cagepose.kernels.circles.places import GREATEST, SADDLE, WHOLE, Place, write_place
 from cagepose.kernels.native.kernel import kernel
 
 DEEPEST_OF_LEAST = 0.05
@@ -47,8 +47,10 @@ FLAT, EQUALLY_FAR = 2.0, 0.5
 
 @kernel
 def can_touch(one: Feature, other: Feature) -> bool:
-    """Whether features of these kinds can touch: a face meets vertices and circles, two lines cross, and what has a
-    radius meets all but faces of the same kind.
+    """Whether features of these kinds can touch.
+
+    A face does vertices and circles; a line does lines, unless one of them is the wall of a hole; a circle does lines
+    and circles. A vertex does vertices, lines and circles if one of the two has a radius.
     """
     if one.kind == FACE or other.kind == FACE:
         return one.kind in (VERTEX, CIRCLE) or other.kind in (VERTEX, CIRCLE)

@@ -19,7 +19,6 @@ import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import Vector, minus, plus, scaled, transposed_times, vector_from
-from cagepose.kernels.boundary.circle_places import Place
 from cagepose.kernels.boundary.cuts import MOST_CUTS, find_cuts
 from cagepose.kernels.boundary.dents import find_dents
 from cagepose.kernels.boundary.features import Boundary, PlacedBoundary, position_of, rotation_of
@@ -36,6 +35,7 @@ from cagepose.kernels.boundary.strands import (
 from cagepose.kernels.boundary.touching import MOST_PAIRS, MOST_PLACES
 from cagepose.kernels.boundary.tree import EDGES, VERTICES, Node
 from cagepose.kernels.boundary.within import AT_SURFACE, Nearest, depth_in, limits_of
+from cagepose.kernels.circles.places import Place
 from cagepose.kernels.native.kernel import kernel
 
 MOST_WAITING = 128

@@ -6,7 +6,6 @@ import math
 
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.circle import beyond_circle, circle_of, is_on_arc, outward_at
-from cagepose.kernels.boundary.circle_places import angle_toward
 from cagepose.kernels.boundary.features import (
     CIRCLE,
     FACE,
@@ -20,6 +19,7 @@ from cagepose.kernels.boundary.features import (
     in_body,
     seen_from_feature,
 )
+from cagepose.kernels.circles.places import angle_toward
 from cagepose.kernels.native.kernel import kernel
 
 

@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, minus, norm, plus, scaled, times, vector_from
 from cagepose.kernels.boundary.circle import WHOLE_TURN
-from cagepose.kernels.boundary.circle_places import Circle, on_circle
 from cagepose.kernels.boundary.features import CIRCLE, Boundary
 from cagepose.kernels.boundary.surfaces import out_of_axis, slant_of_side
+from cagepose.kernels.circles.places import Circle, on_circle
 from cagepose.kernels.native.kernel import kernel
 
 GENERATOR = 0.7548

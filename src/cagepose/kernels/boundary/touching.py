@@ -9,7 +9,7 @@ import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import minus, norm, vector_from
-from cagepose.kernels.boundary.circle_places import Kept, Place
+from cagepose.kernels.circles.places import Kept, Place
 from cagepose.kernels.native.kernel import kernel
 
 MOST_OF_PARTS, MOST_MEETINGS, MOST_OF_POINT = 128, 4096, 12

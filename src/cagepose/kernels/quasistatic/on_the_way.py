@@ -6,8 +6,8 @@ import math
 
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
-from cagepose.kernels.boundary.circle_places import within_turn
 from cagepose.kernels.boundary.geometry import place_object
+from cagepose.kernels.circles.places import within_turn
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.find_contacts import find_contacts
 from cagepose.kernels.contact.loads import write_load

@@ -21,10 +21,10 @@ from cagepose.kernels.algebra.vector import (
     row,
     transposed_times,
 )
-from cagepose.kernels.boundary.circle_places import within_turn
 from cagepose.kernels.boundary.features import place_feature, place_feature_at
 from cagepose.kernels.boundary.geometry import Geometry, Placement, held_moved
 from cagepose.kernels.boundary.kept import crossed, meeting_kept
+from cagepose.kernels.circles.places import within_turn
 from cagepose.kernels.contact.contact_set import tangents_to
 from cagepose.kernels.contact.metric import (
     WRENCH,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import dtype_of
-from cagepose.kernels.boundary.pieces import NO_PLANE, Piece, PieceEdge, PieceFace, Pieces
+from cagepose.kernels.union.pieces import NO_PLANE, Piece, PieceEdge, PieceFace, Pieces
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray
 from cagepose.model.hull import Hull, hull_of

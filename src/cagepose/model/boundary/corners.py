@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.boundary.corners import find_corners
-from cagepose.kernels.boundary.pieces import Pieces
+from cagepose.kernels.union.corners import find_corners
+from cagepose.kernels.union.pieces import Pieces
 from cagepose.model.boundary.trimmed import Vertices
 
 

@@ -126,15 +126,15 @@ def _turned_rows(part: Turned, number: int) -> list[Row]:
     slant = math.atan2(wide - narrow, high - low) if high > low else 0.0
     rows = []
     for height, radius, out in ((low, wide, -1.0), (high, narrow, 1.0)):
-        sine = slant * out
+        lowest_rad = slant * out
         if radius == 0.0:
             rows.append(_tip(pose, height, out, slant, max(wide, narrow), number))
             continue
         if isinstance(part, Disc):
-            sine = -0.5 * math.pi
-        rows.append(_round_face(pose, height, radius, out, number))
+            lowest_rad = -0.5 * math.pi
+        rows.append(_disc_face(pose, height, radius, out, number))
         if not isinstance(part, Disc) or out > 0.0:
-            rows.append(_circle(pose, height, radius, out, (sine, 0.5 * math.pi), number))
+            rows.append(_circle(pose, height, radius, out, (lowest_rad, 0.5 * math.pi), number))
     if not isinstance(part, Disc):
         rows.append(_side(pose, (low, wide), (high, narrow), number))
     return rows
@@ -153,7 +153,7 @@ def _hole_rows(hole: Hole, solids: Sequence[Shape], number: int) -> list[Row]:
     if is_open:
         rows.append(_circle(pose, -depth, hole.radius_m, -1.0, (0.5 * math.pi, math.pi), number))
     else:
-        rows.append(_round_face(pose, -depth, hole.radius_m, 1.0, number))
+        rows.append(_disc_face(pose, -depth, hole.radius_m, 1.0, number))
     return rows
 
 
@@ -175,7 +175,7 @@ def _circle(pose: Pose, height: float, radius: float, out: float, normals: tuple
     return Row(CIRCLE, number, center, axis, turn[:, 0], *numbers, [], radius, box)
 
 
-def _round_face(pose: Pose, height: float, radius: float, out: float, number: int) -> Row:
+def _disc_face(pose: Pose, height: float, radius: float, out: float, number: int) -> Row:
     """Return a flat face inside of a circle about the shape's z axis."""
     circle = _circle(pose, height, radius, out, (0.0, 0.0), number)
     bounds = [(INSIDE, NOWHERE, NOWHERE, radius)]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import dtype_of
-from cagepose.kernels.boundary.loops import NONE, Border, Loop, find_loops
+from cagepose.kernels.union.loops import NONE, Border, Loop, find_loops
 from cagepose.model.boundary.trimmed import Faces
 
 Rows = NDArray[np.void]
@@ -29,7 +29,7 @@ def faces_of(planes: Rows, arcs: Rows, ends: NDArray[np.int64]) -> tuple[Faces, 
     Parameters
     ----------
     arcs
-        Around all lines, see `kernels.boundary.arcs.Arc`.
+        Around all lines, see `kernels.union.arcs.Arc`.
     ends
         Of each, the places at which it starts and ends, (n, 2).
     """

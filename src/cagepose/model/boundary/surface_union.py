@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import dtype_of
-from cagepose.kernels.boundary.cones import find_cones
-from cagepose.kernels.boundary.flat_regions import THIN, find_flat_regions
-from cagepose.kernels.boundary.loops import NONE, Border, Loop, find_loops
+from cagepose.kernels.union.cones import find_cones
+from cagepose.kernels.union.flat_regions import THIN, find_flat_regions
+from cagepose.kernels.union.loops import NONE, Border, Loop, find_loops
 from cagepose.model.boundary.regions import FacePlanes, regions_of
 from cagepose.model.boundary.trimmed import Edges, TrimmedUnion, Vertices
 from cagepose.model.checks import FloatArray, unit_rows
@@ -33,15 +33,12 @@ class FlatRegions(NamedTuple):
         Of each region, the unit normal and normal . x, (n, 3) and (n,).
     parts
         That each region is of, (n,).
-    off_m
-        How far corners are from the plane of their region at most, metres.
     """
 
     of_triangles: IntArray
     normals: FloatArray
     offsets: FloatArray
     parts: IntArray
-    off_m: float
 
 
 class _Tangents(NamedTuple):
@@ -147,8 +144,7 @@ def flat_regions(
         offsets[merged] = np.einsum("ij,ij->i", chosen, spans[several]) / whole[several]
         by_size = np.argsort(-np.linalg.norm(total, axis=1), kind="stable")
         order = np.concatenate([seeds[by_size], np.setdiff1d(order, seeds)])
-    heights = np.einsum("ijk,ik->ij", corners, normals[seeds][found]) - offsets[seeds][found][:, None]
-    return FlatRegions(found, normals[seeds], offsets[seeds], parts[seeds], float(np.abs(heights).max()))
+    return FlatRegions(found, normals[seeds], offsets[seeds], parts[seeds])
 
 
 def _joined(

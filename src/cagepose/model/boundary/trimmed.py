@@ -83,7 +83,7 @@ class Faces:
     n_borders
         How many bound it, (n,).
     borders
-        Of all, one after the other, and of each loop in its order: records of `kernels.boundary.loops.Border`.
+        Of all, one after the other, and of each loop in its order: records of `kernels.union.loops.Border`.
     """
 
     normals: FloatArray

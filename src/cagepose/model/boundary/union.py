@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import dtype_of
-from cagepose.kernels.boundary.arcs import CONVEX, Arc
-from cagepose.kernels.boundary.candidates import find_pairs
-from cagepose.kernels.boundary.fans import NO_ROOM, find_arcs
-from cagepose.kernels.boundary.lines import empty_fan_work
-from cagepose.kernels.boundary.pieces import Pieces, Plane, find_planes
-from cagepose.kernels.boundary.places import find_groups, merge_places, settle_vertices
+from cagepose.kernels.union.arcs import CONVEX, Arc
+from cagepose.kernels.union.candidates import find_pairs
+from cagepose.kernels.union.fans import NO_ROOM, find_arcs
+from cagepose.kernels.union.lines import empty_fan_work
+from cagepose.kernels.union.pieces import Pieces, Plane, find_planes
+from cagepose.kernels.union.vertices import find_groups, merge_places, settle_vertices
 from cagepose.model.boundary.convex_pieces import ConvexPiece, packed
 from cagepose.model.boundary.corners import vertices_of
 from cagepose.model.boundary.regions import faces_of

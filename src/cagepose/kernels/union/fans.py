@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import IntArray, Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, norm, plus, scaled, vector_from
-from cagepose.kernels.boundary.arcs import CONCAVE, CONVEX, SMOOTH, Arc, is_continued
-from cagepose.kernels.boundary.lines import (
+from cagepose.kernels.native.kernel import entry, kernel
+from cagepose.kernels.union.arcs import CONCAVE, CONVEX, SMOOTH, Arc, is_continued
+from cagepose.kernels.union.lines import (
     LEAST_SINE,
     FanWork,
     Line,
@@ -24,8 +25,7 @@ from cagepose.kernels.boundary.lines import (
     line_of,
     note_planes,
 )
-from cagepose.kernels.boundary.pieces import Pieces, Plane, outward
-from cagepose.kernels.native.kernel import entry, kernel
+from cagepose.kernels.union.pieces import Pieces, Plane, outward
 
 NO_ROOM = -1
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, Protocol
 
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, plus, scaled, vector_from
-from cagepose.kernels.boundary.inside import crossings_above
 from cagepose.kernels.native.kernel import entry, kernel
 
 NONE = -1
@@ -64,6 +63,33 @@ class Loop:
     area: float
     is_convex: bool
     region: int
+
+
+class Segment(Protocol):
+    """What has a start and an end, metres."""
+
+    start: FloatArray
+    end: FloatArray
+
+
+@kernel
+def crossings_above(border: Segment, place: Vector, normal: Vector) -> int:
+    """Return 1 if a segment crosses the way from a place along one axis of its plane, else 0.
+
+    The plane is seen along the axis of space that its normal is closest to: that changes no crossing.
+    """
+    start, end = border.start, border.end
+    size = (abs(normal[0]), abs(normal[1]), abs(normal[2]))
+    if size[0] >= size[1] and size[0] >= size[2]:
+        x, y, at_x, at_y = 1, 2, place[1], place[2]
+    elif size[1] >= size[2]:
+        x, y, at_x, at_y = 2, 0, place[2], place[0]
+    else:
+        x, y, at_x, at_y = 0, 1, place[0], place[1]
+    if (start[x] > at_x) == (end[x] > at_x):
+        return 0
+    height = start[y] + (at_x - start[x]) / (end[x] - start[x]) * (end[y] - start[y])
+    return 1 if height > at_y else 0
 
 
 @entry

@@ -1,7 +1,7 @@
 """A circle and a straight line, or the surface of a cylinder or a cone, from outside or inside.
 
 The distance of a place from the surface along its normal is sense cos(taper) rho + sin(taper) height - radius, with rho
-and height as in `circle_equation`, and a sense of -1 in a hole; a line is a cylinder without a radius. Its slope times
+and height as in `equation`, and a sense of -1 in a hole; a line is a cylinder without a radius. Its slope times
 rho is F.
 """
 
@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled
-from cagepose.kernels.boundary.circle_equation import (
+from cagepose.kernels.circles.equation import (
     COSINES,
     ROUNDING,
     SAMPLED,
@@ -23,7 +23,7 @@ from cagepose.kernels.boundary.circle_equation import (
     equation_of,
     seen_along,
 )
-from cagepose.kernels.boundary.circle_places import (
+from cagepose.kernels.circles.places import (
     WHOLE,
     Circle,
     CirclePoint,
@@ -32,7 +32,7 @@ from cagepose.kernels.boundary.circle_places import (
     common_of_sharp,
     on_circle,
 )
-from cagepose.kernels.boundary.circle_search import search, write_followed
+from cagepose.kernels.circles.search import search
 from cagepose.kernels.native.kernel import kernel
 
 
@@ -93,12 +93,6 @@ def places_by_round(circle: Circle, other: Round, flat_m: float, places: Rows[Pl
     if is_whole_equally_far(equation.ellipse, slant_of(other), other.taper, flat_m / circle.radius):
         return WHOLE
     return search(equation, True, 0, places)
-
-
-@kernel
-def follow_by_round(circle: Circle, other: Round, before: Place, places: Rows[Place]) -> bool:
-    """Write into the first row where a place of a circle is after a small motion; False: nowhere."""
-    return write_followed(round_equation(circle, other), before.angle, before.kind, True, places)
 
 
 @kernel

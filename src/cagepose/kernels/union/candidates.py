@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.record import IntArray, Rows
 from cagepose.kernels.algebra.vector import row
-from cagepose.kernels.boundary.pieces import PieceFace, Pieces, Plane, are_within_reach, height_over
 from cagepose.kernels.native.kernel import entry, kernel
+from cagepose.kernels.union.pieces import PieceFace, Pieces, Plane, are_within_reach, height_over
 
 
 @entry

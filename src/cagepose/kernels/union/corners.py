@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled
-from cagepose.kernels.boundary.pieces import Piece, Pieces, Plane, height_over, outward
 from cagepose.kernels.native.kernel import entry, kernel
+from cagepose.kernels.union.pieces import Piece, Pieces, Plane, height_over, outward
 
 NO_CORNER = 0
 WITHIN = 1e-9

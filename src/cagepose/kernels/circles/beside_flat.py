@@ -6,7 +6,7 @@ import math
 
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, scaled
-from cagepose.kernels.boundary.circle_places import (
+from cagepose.kernels.circles.places import (
     GREATEST,
     LEAST,
     WHOLE,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, row, scaled
-from cagepose.kernels.boundary.pieces import Pieces, Plane, are_within_reach, height_over, outward
 from cagepose.kernels.native.kernel import entry, kernel
+from cagepose.kernels.union.pieces import Pieces, Plane, are_within_reach, height_over, outward
 
 SETTLED = 0.1
 """A vertex this close to its planes, as a share of what touches, stays where it is."""

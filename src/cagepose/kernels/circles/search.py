@@ -1,4 +1,4 @@
-"""All roots of the equation of `circle_equation`, or the one nearest to an angle: no root is passed over.
+"""All roots of the equation of `equation`: no root is passed over.
 
 Sections of the circle are decided one after the other. In one half as wide as w around an angle with values F and F',
 and with |F''| at most B, there is no root if |F| > |F'| w + B w^2 / 2, and one root at most if |F'| > B w. Any other
@@ -11,8 +11,8 @@ import math
 from typing import NamedTuple
 
 from cagepose.kernels.algebra.record import Rows
-from cagepose.kernels.boundary.circle_equation import Equation, bend_within, expanded, slope_within
-from cagepose.kernels.boundary.circle_places import FLAT, GREATEST, LEAST, Place, within_turn, write_place
+from cagepose.kernels.circles.equation import Equation, bend_within, expanded, slope_within
+from cagepose.kernels.circles.places import FLAT, GREATEST, LEAST, Place, within_turn, write_place
 from cagepose.kernels.native.kernel import kernel
 
 BEGIN = -3.1
@@ -145,39 +145,3 @@ def root_between(equation: Equation, low: float, high: float, starts_below: bool
         if not low < angle < high:
             angle = 0.5 * (low + high)
     return angle
-
-
-@kernel
-def write_followed(equation: Equation, angle: float, kind: int, is_near: bool, places: Rows[Place]) -> bool:
-    """Write into the first row the root of a kind that is nearest to where one was before a small motion; False: there
-    is none. What is flat may have been, or become, any kind.
-
-    Where one of Newton's steps leads, and as far to the other side, there is often one root: that is the nearest one
-    then. Else all are searched.
-    """
-    start, rises = angle - equation.ellipse.start, kind == LEAST
-    at = expanded(equation, start)
-    if kind != FLAT and at.slope != 0.0 and (at.slope > 0.0) == rises:
-        half = 2.0 * abs(at.value / at.slope) + FINEST
-        if decide(equation, start, half).has_one_at_most:
-            starts_below, ends_below = is_below(equation, start - half), is_below(equation, start + half)
-            if starts_below != ends_below:
-                note_root(equation, start - half, start + half, starts_below, ends_below, is_near, 0, places)
-                return True
-    return keep_nearest(angle, kind, search(equation, is_near, 0, places), places)
-
-
-@kernel
-def keep_nearest(angle: float, kind: int, n_places: int, places: Rows[Place]) -> bool:
-    """Move the place of a kind that is nearest to an angle to the first row; False: there is none."""
-    nearest, least = -1, math.inf
-    for k in range(n_places):
-        away = abs(within_turn(places[k].angle - angle))
-        is_meant = kind == FLAT or places[k].kind == FLAT or places[k].kind == kind
-        if is_meant and away < least:
-            nearest, least = k, away
-    if nearest < 0:
-        return False
-    found = places[nearest]
-    write_place(places[0], found.angle, found.other_angle, found.kind, found.is_near)
-    return True

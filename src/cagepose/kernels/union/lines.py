@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
-from cagepose.kernels.boundary.pieces import Piece, Pieces, Plane, height_over, outward
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.union.pieces import Piece, Pieces, Plane, height_over, outward
 
 LEAST_SINE = 1e-9
 """Planes at a smaller angle cross in no line."""

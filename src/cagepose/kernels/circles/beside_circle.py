@@ -2,7 +2,7 @@
 
 Places are searched along the smaller circle. From each of its places, at a height and a distance rho from the axis of
 the larger one of radius R, the distance has a near and a far extreme along the larger one: the square root of
-height^2 + (rho - R)^2, and with -R for R. The slope of either, times itself and rho, is F of `circle_equation`: with a
+height^2 + (rho - R)^2, and with -R for R. The slope of either, times itself and rho, is F of `equation`: with a
 the way between the centres along the tangent, a (rho - R) + R height height'.
 """
 
@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.record import Rows
-from cagepose.kernels.boundary.circle_equation import (
+from cagepose.kernels.circles.equation import (
     COSINES,
     ROUNDING,
     SAMPLED,
@@ -23,7 +23,7 @@ from cagepose.kernels.boundary.circle_equation import (
     equation_of,
     seen_along,
 )
-from cagepose.kernels.boundary.circle_places import (
+from cagepose.kernels.circles.places import (
     GREATEST,
     LEAST,
     SADDLE,
@@ -36,7 +36,7 @@ from cagepose.kernels.boundary.circle_places import (
     on_circle,
     write_place,
 )
-from cagepose.kernels.boundary.circle_search import search, write_followed
+from cagepose.kernels.circles.search import search
 from cagepose.kernels.native.kernel import kernel
 
 
@@ -86,20 +86,6 @@ def places_by_circle(circle: Circle, other: Circle, flat_m: float, places: Rows[
     for k in range(n_places):
         complete(small, large, is_small, places[k])
     return n_places
-
-
-@kernel
-def follow_by_circle(circle: Circle, other: Circle, before: Place, places: Rows[Place]) -> bool:
-    """Write into the first row where a pair of places of two circles is after a small motion; False: nowhere."""
-    is_small = circle.radius <= other.radius
-    small, large = (circle, other) if is_small else (other, circle)
-    equation = circle_equation(small, large, seen_along(small, large.centre, large.axis), before.is_near)
-    angle = before.angle if is_small else before.other_angle
-    kind = along_one_or_both(before.kind, before.is_near)
-    if not write_followed(equation, angle, kind, before.is_near, places):
-        return False
-    complete(small, large, is_small, places[0])
-    return True
 
 
 @kernel

@@ -1,8 +1,8 @@
 """Places of a whole circle: what is known of one, and points, tangents and curvature there.
 
 A circle has a common normal with another feature where the distance between them is stationary along it. All such
-places are found: by `circle_and_flat` in closed form, by `circle_and_round` and `circle_and_circle` as the roots of one
-equation (`circle_equation`, `circle_search`).
+places are found: by `beside_flat` in closed form, by `beside_round` and `beside_circle` as the roots of one
+equation (`equation`, `search`).
 """
 
 from __future__ import annotations
@@ -144,17 +144,6 @@ def angle_toward(circle: Circle, point: Vector) -> float:
     """Return the angle of the place of a circle that is nearest to a point; of one on the axis, some."""
     seen = minus(point, circle.centre)
     return math.atan2(dot(seen, cross(circle.axis, circle.toward)), dot(seen, circle.toward))
-
-
-@kernel
-def radius_of_curvature(circle: Circle, outward: Vector, normal: Vector) -> float:
-    """Return the radius of curvature along the tangent of a circle, as a body with this unit normal has it, metres.
-
-    Its size is r / |n x a|. It is below zero where the circle bends toward the normal, as the mouth of a hole does, and
-    infinite where the normal is along the axis.
-    """
-    cosine = dot(outward, normal)
-    return circle.radius / cosine if cosine != 0.0 else math.inf
 
 
 @kernel

@@ -20,7 +20,7 @@ import math
 from typing import NamedTuple
 
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, plus, scaled
-from cagepose.kernels.boundary.circle_places import Circle
+from cagepose.kernels.circles.places import Circle
 from cagepose.kernels.native.kernel import kernel
 
 SAMPLED = 8
