@@ -10,8 +10,8 @@ import numpy as np
 from cagepose.model.checks import FloatArray, unit_vector
 from cagepose.runs.actions import wrench_at
 from cagepose.runs.run import Run
+from cagepose.studies.arcs import Arcs
 from cagepose.studies.tolerances import PARALLEL_SINE, ROUNDING_OF_CORNER
-from cagepose.studies.whole_rims import more_places
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,10 +62,11 @@ def load_view(run: Run, phase_index: int) -> LoadView:
     touching = [index for index, name in enumerate(run.scene.cage.names) if name in names]
     on_shapes = [
         contact.place_world
-        for contact in (*phase.contacts, *more_places(run.scene, phase))
+        for contact in phase.contacts
         if contact.point not in run.scene.cage.names and contact.place_world is not None
     ]
-    places = np.concatenate([run.scene.cage.points_world()[touching], np.reshape(on_shapes, (-1, 3))])
+    along = Arcs(run, phase_index).places_world()
+    places = np.concatenate([run.scene.cage.points_world()[touching], np.reshape(on_shapes, (-1, 3)), along])
     polygon = convex_hull(places @ axes)
     return LoadView(right, up, load_point, polygon, _margin(polygon, load_point))
 

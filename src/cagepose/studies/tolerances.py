@@ -66,7 +66,3 @@ VIOLATION_OF_CONE = 1e-9
 DISTANCE_OF_CORNER = 1e-3
 """Fraction of a corner's distance from the centre of gravity, or from the farthest contact. A corner is no farther
 outside."""
-DEPTH_OF_PROBE = 10.0
-"""In touch tolerances. So far into either part it is asked whether there is material."""
-SAME_NORMAL_SINE = 1e-6
-"""Sine of the angle between normals that are one."""

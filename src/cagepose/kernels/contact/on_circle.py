@@ -11,17 +11,17 @@ from __future__ import annotations
 
 import math
 
-from cagepose.kernels.algebra.least_squares import inner, length
+from cagepose.kernels.algebra.least_squares import length
 from cagepose.kernels.algebra.pose import matrix_from_quaternion, quaternion_about
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.bend import write_turned
-from cagepose.kernels.contact.cone import ConeWorkspace, steepest_tangent
+from cagepose.kernels.contact.cone import ConeWorkspace
 from cagepose.kernels.contact.contact_set import ContactSet, choose, stays_on_face, write_directions
 from cagepose.kernels.contact.edges import has_one_choice
 from cagepose.kernels.contact.metric import WRENCH, Frame, twist_of
 from cagepose.kernels.contact.tolerances import LAST_TURN_RAD, ROUNDING_OF_SPEED, SAME_WAY, SPEED_OF_ENTRY
-from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.native.kernel import entry, kernel
 
 MOST_ADDED_POINTS = 40
 """So many points of circles are added for one question."""
@@ -147,25 +147,59 @@ def angle_of_deepest(
 
 
 @kernel
-def write_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
-    """Write the row of the contact at an angle along the circle from a place of it that touches, behind all that
-    count.
+def deepest_on_arc(
+    contacts: ContactSet, i: int, friction: float, velocity: Vector, spin: Vector
+) -> tuple[float, float]:
+    """Return (angle, speed): where a contact along the arc around a place that touches would resist a motion most, and
+    by n . v + mu |v_t| there, which is the support function of its forces; (0, -inf): at the place alone.
+
+    With friction there may be several maxima: uphill from the place, and from the one without friction.
     """
-    row, place = contacts.rows[i], contacts.used[0]
-    arm, normal = place_on_circle(contacts, i, angle)
-    new = contacts.rows[place]
-    new.part, new.cage_part, new.gap, new.group = row.part, row.cage_part, row.gap, place
-    new.is_added = True
-    new.feature, new.cage_feature, new.angle = row.feature, row.cage_feature, row.angle + angle
-    write_directions(new, normal, arm, norm(vector_from(row.directions[1])), frame)
+    around, share = contacts.bends[i].on_circle, norm(vector_from(contacts.rows[i].directions[1]))
+    found, fastest = 0.0, -math.inf
+    if around.length == 0.0:
+        return found, fastest
+    deepest = angle_of_deepest(contacts, i, 0.0, velocity, spin, 0.0)
+    for k in range(2 if friction > 0.0 else 1):
+        angle = deepest
+        if friction > 0.0:
+            angle = angle_of_deepest(contacts, i, friction, velocity, spin, deepest if k == 0 else 0.0)
+        if angle == 0.0 or abs(angle) > (1.0 + SPEED_OF_ENTRY) * (around.after if angle > 0.0 else around.before):
+            continue
+        arm, normal = place_on_circle(contacts, i, angle)
+        way = plus(velocity, cross(spin, arm))
+        speed = dot(normal, way)
+        speed += friction * share * norm(minus(way, scaled(normal, speed)))
+        if speed > fastest:
+            found, fastest = angle, speed
+    return found, fastest
+
+
+@entry
+def find_deepest_on_arcs(
+    contacts: ContactSet, friction: float, velocity: Vector, spin: Vector, arms: FloatArray, normals: FloatArray
+) -> None:
+    """Write where the arc around each contact resists a motion most, and its normal there, each (n, 3), of a set of n
+    contacts; not a number: it is of none, or resists it most at its own place. ``friction`` is the greatest of all.
+    """
+    for i in range(contacts.used[0]):
+        angle, speed = deepest_on_arc(contacts, i, friction, velocity, spin)
+        arm, normal = place_on_circle(contacts, i, angle)
+        for k in range(3):
+            arms[i, k] = arm[k] if speed > -math.inf else math.nan
+            normals[i, k] = normal[k] if speed > -math.inf else math.nan
 
 
 @kernel
 def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
     """Append the contact at an angle along the circle from a place of it that touches."""
-    write_point(contacts, i, angle, frame)
-    place = contacts.used[0]
+    row, place = contacts.rows[i], contacts.used[0]
+    arm, normal = place_on_circle(contacts, i, angle)
     new, state, around = contacts.rows[place], contacts.states[place], contacts.bends[i].on_circle
+    new.part, new.cage_part, new.gap, new.group = row.part, row.cage_part, row.gap, place
+    new.is_added = True
+    new.feature, new.cage_feature, new.angle = row.feature, row.cage_feature, row.angle + angle
+    write_directions(new, normal, arm, norm(vector_from(row.directions[1])), frame)
     choose(contacts, place, True)
     state.is_locked = state.is_sticking = state.has_carried = state.kept_chosen = False
     for k in range(3):
@@ -206,27 +240,13 @@ def add_on_circles(contacts: ContactSet, frame: Frame, friction: float, y: Float
     of has ``terms`` of this length: slower than their rounding, nothing goes in.
     """
     velocity, spin = twist_of(y, frame)
-    n_listed, fastest, least = contacts.used[0], -1, max(SPEED_OF_ENTRY * length(y, WRENCH), ROUNDING_OF_SPEED * terms)
-    at_fastest = 0.0
-    for i in range(n_listed):
-        around = contacts.bends[i].on_circle
-        if around.length == 0.0 or contacts.used[0] == len(contacts.rows):
-            continue
-        deepest = angle_of_deepest(contacts, i, 0.0, velocity, spin, 0.0)
-        for k in range(2 if friction > 0.0 else 1):  # with it, uphill from the deepest place, and from the listed one
-            angle = deepest
-            if friction > 0.0:
-                angle = angle_of_deepest(contacts, i, friction, velocity, spin, deepest if k == 0 else 0.0)
-            if angle == 0.0 or abs(angle) > (1.0 + SPEED_OF_ENTRY) * (around.after if angle > 0.0 else around.before):
-                continue
-            write_point(contacts, i, angle, frame)
-            new = contacts.rows[n_listed]
-            speed = inner(new.columns[0], y, WRENCH)
-            if friction > 0.0:
-                speed += friction * steepest_tangent(new, y)[0]
-            if speed > least:
-                fastest, at_fastest, least = i, angle, speed
-    if fastest < 0:
+    fastest, at_fastest = -1, 0.0
+    least = max(SPEED_OF_ENTRY * length(y, WRENCH), ROUNDING_OF_SPEED * terms)
+    for i in range(contacts.used[0]):
+        angle, speed = deepest_on_arc(contacts, i, friction, velocity, spin)
+        if speed > least:
+            fastest, at_fastest, least = i, angle, speed
+    if fastest < 0 or contacts.used[0] == len(contacts.rows):
         return False
     add_point(contacts, fastest, at_fastest, frame)
     return True
