@@ -101,3 +101,35 @@ def test_a_couple_turns_a_free_body_until_its_forces_are_in_line(raised_mm):
     assert result.contacts == ()
     arm = result.pose.rotation @ (push.at_object_m - held.center_of_gravity_m)
     assert arm / np.linalg.norm(arm) == pytest.approx([0, 0, 1], abs=1e-9)
+
+
+CORNERS = [(-0.02, -0.01, 0), (-0.02, 0.01, 0), (0.02, -0.01, 0), (0.02, 0.01, 0)]
+
+
+@pytest.mark.parametrize("center", [(0, 0, 0), (-0.003, 0.001, 0)])
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("inward_m", [0.0, 1e-6])
+def test_what_falls_only_as_points_are_exactly_on_its_edges_says_so(center, friction, inward_m):
+    """A plate on four points under its corners: of real ones rounding decides whether they hold it."""
+    plate = Object([Box((0.04, 0.02, 0.01))], center, pose=Pose((0, 0, 0.005)))
+    points = np.array(CORNERS) - inward_m * np.sign(CORNERS)
+    result = run(Scene(plate, Cage(points), GRAVITY, friction_coefficient=friction))
+    at_edges = [warning for warning in result.warnings if "exactly on edges" in warning]
+    if inward_m > 0.0:
+        assert result.verdict == "rests"
+        assert not at_edges
+    else:
+        assert result.verdict == "escapes"
+        assert result.phases[0].events[0].note == "edge"
+        assert at_edges == [warning for warning in result.warnings if "event 1" in warning]
+
+
+def test_what_would_slide_off_an_edge_with_any_face_is_not_told_as_let_go_by_it():
+    """The same plate pushed along by more than friction holds, with one of three points on an edge along the push."""
+    plate = Object([Box((0.04, 0.02, 0.01))], mass_kg=1.0, pose=Pose((0, 0, 0.005)))
+    points = [(-0.01, -0.01, 0), (-0.01, 0.005, 0), (0.015, 0.0, 0)]
+    push = Force((1, 0, 0), (0, 0, 0), 20.0)
+    loads = [Load("push", gravity=(0, 0, -9.81), force=push)]
+    result = run(Scene(plate, Cage(points), loads, friction_coefficient=0.3))
+    assert result.verdict == "escapes"
+    assert result.phases[0].events[0].note is None

@@ -21,7 +21,7 @@ from cagepose.runs.frames import contact_columns, data_frame, event_columns
 from cagepose.runs.proof import Proof
 
 MotionKind = Literal["travel", "turn", "screw"]
-Note = Literal["tie", "balanced", "small turn", "edge tie"]
+Note = Literal["tie", "balanced", "small turn", "edge tie", "edge"]
 Verdict = Literal["stable", "rests", "may rest", "moves", "escapes", "spins", "cycling", "stalled", "limit"]
 
 FAILURES: frozenset[Verdict] = frozenset({"spins", "cycling", "stalled", "limit"})
@@ -154,7 +154,8 @@ class Event:
         What a careful reader should know of it: "tie" (the load has no moment about the axis, so the sense of turning
         was decided by convention), "balanced" (the load's line passes through the one contact that holds), "small
         turn" (held, though the load could still turn the object by less than counts), "edge tie" (a contact on an edge
-        whose faces make the same angle with the push); None: nothing.
+        whose faces make the same angle with the push), "edge" (it begins to move only because a contact lies exactly on
+        an edge: with another face of that the contacts would hold it); None: nothing.
     path
         Poses on the way to ``pose_world_object``, the last of them, where the way is not that of ``motion`` alone (a
         sliding contact bends it); empty: it is.

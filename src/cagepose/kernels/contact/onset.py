@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.contact.contact_set import ContactSet, is_smooth
+from cagepose.kernels.contact.contact_set import ContactSet, choose, is_smooth
 from cagepose.kernels.contact.coulomb import allowed_error, coulomb_onset
 from cagepose.kernels.contact.edges import CHOICES_LIMIT, ONLY_CARRYING, has_one_choice, keep_choice
 from cagepose.kernels.contact.equilibrium import (
@@ -17,6 +17,8 @@ from cagepose.kernels.contact.equilibrium import (
     MOVES_SOMEHOW,
     equilibrium,
     equilibrium_of_choice,
+    is_balance,
+    least_residual,
     next_choice_unlocked,
     return_to_choice,
 )
@@ -92,6 +94,19 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
             carry_by_locked(contacts, frame, friction, work)
     drop_idle(contacts, work.cone)
     return code
+
+
+@kernel
+def holds_with_all_faces(contacts: ContactSet, friction: float, work: ContactWorkspace) -> bool:
+    """Whether contacts, of which some are on edges, would hold the load in ``work`` if all faces there counted at once:
+    an object that moves all the same does so only because of the edges. Asked before `onset`; the forces are lost.
+    """
+    if has_one_choice(contacts):
+        return False
+    for i in range(contacts.used[0]):
+        choose(contacts, i, True)
+    left = least_residual(contacts, friction, work.load, work.load_terms, work)
+    return is_balance(contacts, left, friction, AT_REST, work)
 
 
 @kernel

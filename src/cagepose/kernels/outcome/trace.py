@@ -26,13 +26,14 @@ VERDICT_NAMES: tuple[Literal["stable", "escapes", "spins", "cycling", "limit", "
 )
 
 
-TIE, BALANCED, SMALL_TURN, EDGE_TIE, PLAIN, LET_GO = 0, 1, 2, 3, 4, 5
+TIE, BALANCED, SMALL_TURN, EDGE_TIE, AT_EDGE, PLAIN, LET_GO = 0, 1, 2, 3, 4, 5, 6
 """Codes of notes: the index into `NOTE_NAMES`; PLAIN and LET_GO (a contact was lost) have no name."""
-NOTE_NAMES: tuple[Literal["tie", "balanced", "small turn", "edge tie"], ...] = (
+NOTE_NAMES: tuple[Literal["tie", "balanced", "small turn", "edge tie", "edge"], ...] = (
     "tie",
     "balanced",
     "small turn",
     "edge tie",
+    "edge",
 )
 
 

@@ -30,9 +30,20 @@ from cagepose.kernels.contact.load_curvature import has_circulation, write_circu
 from cagepose.kernels.contact.loads import longest_pull, write_load
 from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, way_between
 from cagepose.kernels.contact.on_circle import is_under_circle
-from cagepose.kernels.contact.onset import find_sticking, onset
+from cagepose.kernels.contact.onset import find_sticking, holds_with_all_faces, onset
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.outcome.trace import ESCAPES, LET_GO, NONE, PLAIN, RESTS, SCREW, STALLED, TRAVEL, StepRecord
+from cagepose.kernels.outcome.trace import (
+    AT_EDGE,
+    ESCAPES,
+    LET_GO,
+    NONE,
+    PLAIN,
+    RESTS,
+    SCREW,
+    STALLED,
+    TRAVEL,
+    StepRecord,
+)
 from cagepose.kernels.quasistatic.along_twist import furthest_step, longest_step, straightened, turn_of_normals
 from cagepose.kernels.quasistatic.first_contact import Twist
 from cagepose.kernels.quasistatic.flight import nothing_ahead
@@ -231,9 +242,17 @@ def note_touching(work: QuasistaticWorkspace) -> None:
 
 @kernel
 def write_step(
-    work: QuasistaticWorkspace, step: int, rule: int, motion: int, position: Vector, quaternion: Quaternion
+    work: QuasistaticWorkspace,
+    step: int,
+    rule: int,
+    motion: int,
+    is_at_edge: bool,
+    position: Vector,
+    quaternion: Quaternion,
 ) -> None:
-    """Write a step; which points touch, and which were reached, follows from the contacts after it."""
+    """Write a step; which points touch, and which were reached, follows from the contacts after it. ``is_at_edge``: it
+    moves only because a contact is on an edge.
+    """
     trace = work.trace
     record = trace.rows[step]
     record.rule, record.motion, record.note = rule, motion, PLAIN
@@ -250,14 +269,21 @@ def write_step(
         trace.hit[step, point] = trace.touching[step, point] and not work.touched[point]
         if work.touched[point] and not trace.touching[step, point]:
             record.note = LET_GO
+    if is_at_edge:
+        record.note = AT_EDGE
 
 
 @kernel
 def write_escape(
-    work: QuasistaticWorkspace, step: int, velocity: Vector, position: Vector, quaternion: Quaternion
+    work: QuasistaticWorkspace,
+    step: int,
+    is_at_edge: bool,
+    velocity: Vector,
+    position: Vector,
+    quaternion: Quaternion,
 ) -> None:
     """Write the last step of an object that gets away, from a pose: its centre of gravity travels without end."""
-    write_step(work, step, AWAY, TRAVEL, position, quaternion)
+    write_step(work, step, AWAY, TRAVEL, is_at_edge, position, quaternion)
     along = scaled(velocity, 1.0 / norm(velocity))
     work.trace.rows[step].distance = math.inf
     for k in range(3):
@@ -303,11 +329,12 @@ def next_step(
     write_state(work.trace.rows[step], state)
 
     # What happens from rest at this pose? A rest is put on its faces, and looked at again.
-    code, is_rest = UNSOLVED, False
+    code, is_rest, would_hold = UNSOLVED, False, False
     for _ in range(REFINEMENTS + 1):
         note_touching(work)
         frame = frame_at(setting.body, quaternion)
         solver.load_terms = write_load(setting.load, position, quaternion, frame, solver.load)
+        would_hold = fits and holds_with_all_faces(work.contacts, setting.friction.greatest, solver)
         code = impending_motion(setting, frame, work) if fits else UNSOLVED
         keep_stopped(solver.stopped, position, frame, work.path.constraints)
         is_rest = code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
@@ -319,7 +346,7 @@ def next_step(
         n_refined += 1
     here = State(position, quaternion, state.turn_step_rad, state.n_still, n_refined)
     if code != MOVES:
-        write_step(work, step, HELD if is_rest else STUCK, NONE, position, quaternion)
+        write_step(work, step, HELD if is_rest else STUCK, NONE, False, position, quaternion)
         return (RESTS if is_rest else STALLED), here, fits
 
     # Which way, and how far?
@@ -329,13 +356,13 @@ def next_step(
     if rule == FREE:
         velocity, spin = twist_of(solver.y, frame_at(setting.body, quaternion))
         if nothing_ahead(setting, position, quaternion, velocity, spin):
-            write_escape(work, step, velocity, position, quaternion)
+            write_escape(work, step, would_hold, velocity, position, quaternion)
             return ESCAPES, here, fits
     amount, as_planned, end, turned = furthest_step(
         setting, work.placement, work.contacts, position, quaternion, twist, work.path
     )
     if amount == math.inf:
-        write_escape(work, step, twist.velocity, position, quaternion)
+        write_escape(work, step, would_hold, twist.velocity, position, quaternion)
         return ESCAPES, here, fits
     turn_step = 0.25 * state.turn_step_rad
     if as_planned:
@@ -354,7 +381,7 @@ def next_step(
     moved = way_between(position, quaternion, end, turned, setting.body.reach_m)
     n_still = 0 if moved > STILL * setting.size_m else state.n_still + 1
     fits = find_placed_contacts(setting, end, turned, work)
-    write_step(work, step, rule, motion, end, turned)
+    write_step(work, step, rule, motion, would_hold, end, turned)
     there = State(end, turned, turn_step, n_still, n_refined)
     return (STALLED if n_still == STILL_STEPS else GOES_ON), there, fits
 
