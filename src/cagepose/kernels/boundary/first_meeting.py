@@ -14,6 +14,7 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import cross, dot, minus, norm, scaled, vector_from
 from cagepose.kernels.boundary.along_motion import ahead, safe_step
 from cagepose.kernels.boundary.circle_first import first_touch_of_curved, kept_at, lines_apart
+from cagepose.kernels.boundary.extents import extent_of, surely_apart
 from cagepose.kernels.boundary.features import (
     CIRCLE,
     FACE,
@@ -215,12 +216,19 @@ def first_of_leaves(
         return first_of_vertices(cage, other, held, one, True, until, search, meetings, moved, hit)
     if kind == VERTEX and cage_kind == FACE:
         return first_of_vertices(held, one, cage, other, False, until, search, meetings, moved, hit)
+    reach_m = reach_of(search) + SAME_PLACE * max(search.near_m, search.touch_m)
     for i in range(one.first, one.last):
+        if not held.is_placed[i]:
+            place_feature(held, i)
+        box = extent_of(held.features[i])
         for j in range(other.first, other.last):
             if not can_touch(held.own.features[i], cage.own.features[j]):
                 continue
-            place_feature(held, i)
-            place_feature(cage, j)
+            if not cage.is_placed[j]:
+                place_feature(cage, j)
+            apart = surely_apart(held.features[i], box, cage.features[j]) - reach_m
+            if apart >= min(until, hit.amount) * search.speed:
+                continue
             hit = sooner(held, i, cage, j, min(until, hit.amount), search, meetings, moved, hit)
     return hit
 

@@ -8,6 +8,7 @@ from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import dot, minus, plus, scaled, vector_from
 from cagepose.kernels.boundary.circle import WHOLE_TURN, is_on_arc
 from cagepose.kernels.boundary.circle_meeting import circle_meeting, find_places
+from cagepose.kernels.boundary.extents import extent_of, surely_apart
 from cagepose.kernels.boundary.far_sides import drop_far_sides
 from cagepose.kernels.boundary.features import (
     CIRCLE,
@@ -126,12 +127,17 @@ def meet_leaves(
 ) -> None:
     """Append the meetings of two ranges of features."""
     for i in range(first, last):
+        if not held.is_placed[i]:
+            place_feature(held, i)
+        box = extent_of(held.features[i])
         for j in range(cage_first, cage_last):
             one, other = held.own.features[i], cage.own.features[j]
             if not can_touch(one, other):
                 continue
-            place_feature(held, i)
-            place_feature(cage, j)
+            if not cage.is_placed[j]:
+                place_feature(cage, j)
+            if surely_apart(held.features[i], box, cage.features[j]) > farthest_listed(one, other, touch_m):
+                continue
             if one.kind == CIRCLE or other.kind == CIRCLE:
                 meet_circle(held, i, cage, j, touch_m, found)
                 continue
@@ -139,6 +145,15 @@ def meet_leaves(
                 meet_seat(held, i, cage, j, touch_m, found)
                 continue
             append_touching(held, i, cage, j, AT_ONE_PLACE, meeting(held, i, cage, j), touch_m, found)
+
+
+@kernel
+def farthest_listed(one: Feature, other: Feature, touch_m: float) -> float:
+    """Return a length that features which touch are no farther apart; or, of sharp edges that are deep in each other,
+    which are as far apart, no deeper.
+    """
+    is_sharp = one.radius == 0.0 and other.radius == 0.0 and one.kind != FACE and other.kind != FACE
+    return max(4.0 * touch_m, DEEPEST_OF_LEAST * min(one.least, other.least) if is_sharp else 0.0)
 
 
 @kernel
