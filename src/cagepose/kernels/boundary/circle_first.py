@@ -37,7 +37,8 @@ from cagepose.kernels.native.kernel import kernel
 ADVANCES = 2000
 """Steps for one pair of features; only where they graze each other more than some tens are taken."""
 COARSE_STEPS = 8
-"""After so many steps by a speed they graze, and it is worth the while to ask how each gap closes and bends."""
+"""After so many steps by a speed they graze, and it is worth the while to ask how each gap closes and bends; where that
+told no more, again after twice as many steps as before."""
 NEWTON_STEPS = 12
 ROOT_OF_TOUCH, CONVERGES = 1e-3, 0.5
 """Of the touch tolerance: a gap that is less is a root; and of such a gap: a step that leaves more no longer helps."""
@@ -183,6 +184,7 @@ def first_touch_of_curved(
         Places that touch now. They are written over.
     """
     amount, before, behind, kept_step = 0.0, 0.0, BEHIND * end, KEPT_STEP * end
+    asks_at, waits = COARSE_STEPS, 1
     for n_steps in range(ADVANCES):
         place_after(a, i, motion, amount, moved)
         one, other = moved.features[i], b.features[j]
@@ -246,9 +248,11 @@ def first_touch_of_curved(
             if abs(gap) < least:
                 least, nearest, facing = abs(gap), k, scaled(met.normal, math.copysign(1.0, gap))
         step = surely_clear(closing, least)
-        if step < end - amount and n_steps >= COARSE_STEPS:
+        if step < end - amount and n_steps >= asks_at:
             found = places[nearest]
-            step = clear_ahead(one, other, motion, touch_m, found, facing, kept, n_kept, step, end - amount)
+            ahead = clear_ahead(one, other, motion, touch_m, found, facing, kept, n_kept, step, end - amount)
+            waits = 1 if ahead > step else 2 * waits
+            step, asks_at = ahead, n_steps + waits
         if is_past and closing.speed > 0.0:  # a root that is no contact: on so short a way none is hidden that counts
             step = max(step, touch_m / closing.speed)
         if n_kept > 0:
