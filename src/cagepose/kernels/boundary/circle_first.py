@@ -21,7 +21,7 @@ from cagepose.kernels.boundary.closing import closing_of, surely_clear
 from cagepose.kernels.boundary.features import CIRCLE, Feature, PlacedBoundary
 from cagepose.kernels.boundary.first_touch import place_after
 from cagepose.kernels.boundary.hollow_end import reach_in_hollow
-from cagepose.kernels.boundary.meetings import PLACES_AROUND, find_circle_places, meeting_at
+from cagepose.kernels.boundary.meetings import PLACES_AROUND, find_circle_places, find_places_near, meeting_at
 from cagepose.kernels.circles.places import (
     GREATEST,
     SADDLE,
@@ -74,7 +74,7 @@ def place_near(one: Feature, other: Feature, angle: float, farthest: float, touc
     """Write the places of two features and return which of them is nearest to an angle; -1: none is nearer than
     ``farthest``, radians.
     """
-    n_places = find_circle_places(one, other, touch_m, places)
+    n_places = find_places_near(one, other, angle, touch_m, places)
     nearest, least = -1, farthest
     if n_places == WHOLE:
         write_place(places[0], angle, 0.0, 0, True)

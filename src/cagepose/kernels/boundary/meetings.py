@@ -6,8 +6,8 @@ import math
 
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import dot, minus, plus, scaled, vector_from
-from cagepose.kernels.boundary.circle import WHOLE_TURN, is_on_arc
-from cagepose.kernels.boundary.circle_meeting import circle_meeting, find_places
+from cagepose.kernels.boundary.circle import WHOLE_TURN, circle_of, is_on_arc
+from cagepose.kernels.boundary.circle_meeting import circle_meeting, find_places, round_of
 from cagepose.kernels.boundary.extents import extent_of, surely_apart
 from cagepose.kernels.boundary.far_sides import drop_far_sides
 from cagepose.kernels.boundary.features import (
@@ -30,6 +30,7 @@ from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, SAME_P
 from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
 from cagepose.kernels.boundary.twins import append_meeting
 from cagepose.kernels.boundary.within import is_within, nearest_surface
+from cagepose.kernels.circles.beside_round import place_by_round_near
 from cagepose.kernels.circles.places import GREATEST, SADDLE, WHOLE, Place, write_place
 from cagepose.kernels.native.kernel import kernel
 
@@ -228,6 +229,15 @@ def find_circle_places(one: Feature, other: Feature, touch_m: float, places: Row
         for k in range(PLACES_AROUND):
             write_place(places[k], math.pi * (2 * k + 1) / PLACES_AROUND, 0.0, 0, True)
     return n_places
+
+
+@kernel
+def find_places_near(one: Feature, other: Feature, angle: float, touch_m: float, places: Rows[Place]) -> int:
+    """As `find_circle_places`, but the place that is nearest to an angle alone, if that is told without the others."""
+    circle, beside = (one, other) if one.kind == CIRCLE else (other, one)
+    if circle.kind != CIRCLE or beside.kind != LINE:
+        return find_circle_places(one, other, touch_m, places)
+    return place_by_round_near(circle_of(circle), round_of(beside), angle, EQUALLY_FAR * touch_m, places)
 
 
 @kernel

@@ -32,7 +32,7 @@ from cagepose.kernels.circles.places import (
     common_of_sharp,
     on_circle,
 )
-from cagepose.kernels.circles.search import search
+from cagepose.kernels.circles.search import find_least_near, search
 from cagepose.kernels.native.kernel import kernel
 
 
@@ -93,6 +93,17 @@ def places_by_round(circle: Circle, other: Round, flat_m: float, places: Rows[Pl
     if is_whole_equally_far(equation.ellipse, slant_of(other), other.taper, flat_m / circle.radius):
         return WHOLE
     return search(equation, True, 0, places)
+
+
+@kernel
+def place_by_round_near(circle: Circle, other: Round, angle: float, flat_m: float, places: Rows[Place]) -> int:
+    """As `places_by_round`, but of the places where the distance is least the one nearest to an angle, if that is told
+    without the others.
+    """
+    equation = round_equation(circle, other)
+    if is_whole_equally_far(equation.ellipse, slant_of(other), other.taper, flat_m / circle.radius):
+        return WHOLE
+    return 1 if find_least_near(equation, angle, places) else search(equation, True, 0, places)
 
 
 @kernel

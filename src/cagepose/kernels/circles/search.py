@@ -145,3 +145,20 @@ def root_between(equation: Equation, low: float, high: float, starts_below: bool
         if not low < angle < high:
             angle = 0.5 * (low + high)
     return angle
+
+
+@kernel
+def find_least_near(equation: Equation, angle: float, places: Rows[Place]) -> bool:
+    """Write the place that is nearest to an angle, where the distance is least, if a step of Newton's method tells so;
+    False: it does not. As far as it leads, and to the other side, there often is one root, which is the nearest then.
+    """
+    start = angle - equation.ellipse.start
+    at = expanded(equation, start)
+    if at.slope <= 0.0:
+        return False
+    half = 2.0 * abs(at.value / at.slope) + FINEST
+    if not decide(equation, start, half).has_one_at_most:
+        return False
+    if not is_below(equation, start - half) or is_below(equation, start + half):
+        return False
+    return note_root(equation, start - half, start + half, True, False, True, 0, places) == 1
