@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from cagepose.kernels.algebra.motion import Motion, moved_point, turned, turned_by_amount, velocity_at
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
-from cagepose.kernels.boundary.features import FACE, LINE, VERTEX, Feature, PlacedBoundary
+from cagepose.kernels.boundary.features import FACE, LINE, VERTEX, Feature
 from cagepose.kernels.boundary.met import PARALLEL
 from cagepose.kernels.native.kernel import kernel
 
@@ -132,41 +132,31 @@ def lines_ahead(
 
 
 @kernel
-def ahead(
-    a: PlacedBoundary,
-    i: int,
-    b: PlacedBoundary,
-    j: int,
-    motion: Motion,
-    amount: float,
-    level: float,
-    side: float,
-    span: float,
-) -> Ahead:
-    """Return F for feature i of the object after an amount, and feature j of the cage; F is above zero until they are
-    deeper in each other than ``level``.
+def ahead(held: Feature, cage: Feature, motion: Motion, amount: float, level: float, side: float, span: float) -> Ahead:
+    """Return F for a feature of the object after an amount, and one of the cage; F is above zero until they are deeper
+    in each other than ``level``.
     """
-    one, other = a.features[i].kind, b.features[j].kind
-    radius = a.features[i].radius + b.features[j].radius
+    one, other = held.kind, cage.kind
+    radius = held.radius + cage.radius
     so_far = turned_by_amount(motion, amount)
-    p = moved_point(motion, vector_from(a.features[i].point), so_far)
-    q = vector_from(b.features[j].point)
+    p = moved_point(motion, vector_from(held.point), so_far)
+    q = vector_from(cage.point)
     if one == VERTEX and other == FACE:
-        normal = vector_from(b.features[j].direction)
+        normal = vector_from(cage.direction)
         return plane_ahead(motion, normal, dot(normal, minus(p, q)) - radius, velocity_at(motion, p), level)
     if one == VERTEX:
         between, way = minus(p, q), velocity_at(motion, p)
         if other == LINE:
-            along = vector_from(b.features[j].direction)
-            return side_ahead(motion, b.features[j], along, between, way, radius, level, span)
+            along = vector_from(cage.direction)
+            return side_ahead(motion, cage, along, between, way, radius, level, span)
         return distance_ahead(motion, between, way, radius, level, span)
-    along = turned(motion, vector_from(a.features[i].direction), so_far)
+    along = turned(motion, vector_from(held.direction), so_far)
     way = scaled(velocity_at(motion, q), -1.0)
     if one == FACE:
         return plane_ahead(motion, along, dot(along, minus(q, p)) - radius, way, level)
     if other == VERTEX:
-        return side_ahead(motion, a.features[i], along, minus(q, p), way, radius, level, span)
-    return lines_ahead(motion, p, along, q, vector_from(b.features[j].direction), radius, level, side, span)
+        return side_ahead(motion, held, along, minus(q, p), way, radius, level, span)
+    return lines_ahead(motion, p, along, q, vector_from(cage.direction), radius, level, side, span)
 
 
 @kernel

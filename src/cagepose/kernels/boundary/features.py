@@ -350,7 +350,13 @@ def middle_of_part(body: PlacedBoundary, part: int) -> Vector:
 @kernel
 def in_body(body: PlacedBoundary, direction: Vector) -> Vector:
     """Return a direction of the world as the body has it."""
-    return transposed_times(rotation_of(body), direction)
+    return in_frame(body.pose, direction)
+
+
+@kernel
+def in_frame(pose: FloatArray, direction: Vector) -> Vector:
+    """As `in_body`, of a body's pose alone: it is a tenth of what a body is handed over as."""
+    return transposed_times((row(pose, 1), row(pose, 2), row(pose, 3)), direction)
 
 
 @kernel

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from cagepose.kernels.algebra.motion import Motion, velocity_at
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.algebra.vector import cross, dot, minus, norm, scaled, vector_from
+from cagepose.kernels.algebra.vector import cross, dot, minus, norm, row, scaled, vector_from
 from cagepose.kernels.boundary.along_motion import ahead, safe_step
 from cagepose.kernels.boundary.circle_first import first_touch_of_curved, kept_at, lines_apart
 from cagepose.kernels.boundary.extents import extent_of, surely_apart
@@ -23,9 +23,8 @@ from cagepose.kernels.boundary.features import (
     Feature,
     PlacedBoundary,
     box_of,
-    in_body,
+    in_frame,
     place_feature,
-    position_of,
 )
 from cagepose.kernels.boundary.first_touch import clear_step, distance_from, first_touch, keeps_radius
 from cagepose.kernels.boundary.kept_meetings import hold_places, is_beside_kept, is_there, passes_axis
@@ -249,14 +248,19 @@ def first_of_vertices(
     """Return what the vertices of a leaf, which are those of the cage or of the object, and some faces reach if that is
     sooner than ``hit``, and else this.
     """
-    sense = -1.0 if of_cage else 1.0
+    sense, heights = -1.0 if of_cage else 1.0, meetings.heights
     held, cage = (faces, vertices) if of_cage else (vertices, faces)
     for i in range(one.first, one.last):
         latest = min(until, hit.amount)
-        find_clearances(vertices, i, faces, other.first, other.last, sense, latest, search, meetings.heights)
+        if not vertices.is_placed[i]:
+            place_feature(vertices, i)
+        find_clearances(
+            vertices.features[i], faces.pose, faces.own.planes, other.first, other.last, sense, latest, search, heights
+        )
         for j in range(other.first, other.last):
-            if meetings.heights[j] <= 0.0:
-                place_feature(faces, j)
+            if heights[j] <= 0.0:
+                if not faces.is_placed[j]:
+                    place_feature(faces, j)
                 at, cage_at = (j, i) if of_cage else (i, j)
                 hit = sooner(held, at, cage, cage_at, min(until, hit.amount), search, meetings, moved, hit)
     return hit
@@ -264,9 +268,9 @@ def first_of_vertices(
 
 @kernel
 def find_clearances(
-    vertices: PlacedBoundary,
-    i: int,
-    faces: PlacedBoundary,
+    vertex: Feature,
+    pose: FloatArray,
+    planes: FloatArray,
     first: int,
     last: int,
     sense: float,
@@ -274,18 +278,16 @@ def find_clearances(
     search: Search,
     out: FloatArray,
 ) -> None:
-    """Write how far a vertex of one body surely stays from some faces of the other one, on its side of their planes or
-    beside the boxes around them, up to an amount; at most zero: it may reach them. ``sense`` is 1 where the vertex
-    moves, and -1 where the faces do.
+    """Write how far a vertex of one body surely stays from some faces of the other one, with its pose and its planes,
+    on its side of these or beside the boxes around the faces, up to an amount; at most zero: it may reach them.
+    ``sense`` is 1 where the vertex moves, and -1 where the faces do.
 
     Along each direction it goes straight, give or take the way's curvature.
     """
-    place_feature(vertices, i)
-    vertex, planes, motion = vertices.features[i], faces.own.planes, search.motion
-    point, radius = vector_from(vertex.point), vertex.radius
+    motion, point, radius = search.motion, vector_from(vertex.point), vertex.radius
     way = scaled(velocity_at(motion, point), sense)
-    x, y, z = in_body(faces, minus(point, position_of(faces)))
-    u, v, w = in_body(faces, way)
+    x, y, z = in_frame(pose, minus(point, row(pose, 0)))
+    u, v, w = in_frame(pose, way)
     bend = 0.5 * motion.rate * norm(cross(motion.axis, way)) * until * until
     margin = bend + 2.0 * search.touch_m
     around = margin + radius + max(reach_of(search), SAME_PLACE * max(search.near_m, search.touch_m))
@@ -322,7 +324,7 @@ def sooner(
         if (curved_apart(held, i, cage, j) - search.touch_m) >= until * search.speed:
             return hit
         return first_of_curved(held, i, cage, j, until, search, meetings, moved, hit)
-    if safe_step(ahead(held, i, cage, j, motion, 0.0, 0.0, 1.0, until)) >= until:
+    if safe_step(ahead(held.features[i], cage.features[j], motion, 0.0, 0.0, 1.0, until)) >= until:
         return hit
     clear = clear_step(held, i, cage, j, motion, reach_of(search))
     is_near = clear * search.speed <= SAME_PLACE * max(search.near_m, search.touch_m)  # and may be deep already

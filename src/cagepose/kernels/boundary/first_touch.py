@@ -181,11 +181,11 @@ def first_touch(
     one, other = a.features[i], b.features[j]
     is_sharp = one.kind == LINE and other.kind == LINE and one.radius + other.radius == 0.0
     if is_sharp and side == 0.0:
-        side = math.copysign(1.0, ahead(a, i, b, j, motion, 0.0, 0.0, 1.0, end).value)
+        side = math.copysign(1.0, ahead(one, other, motion, 0.0, 0.0, 1.0, end).value)
     amount, was_apart, is_jump, behind = 0.0, False, False, BEHIND * end
     for _ in range(EVALUATIONS):
         rest = end - amount
-        now = ahead(a, i, b, j, motion, amount, level, side, rest)
+        now = ahead(one, other, motion, amount, level, side, rest)
         if level > 0.0 and now.is_clear:
             level = 0.0
             continue
@@ -204,7 +204,7 @@ def first_touch(
         if NARROWER * step < rest:
             span, is_over = NARROWER * step, True
             while is_over and 0.0 < span < rest:
-                narrow = safe_step(ahead(a, i, b, j, motion, amount, level, side, span))
+                narrow = safe_step(ahead(one, other, motion, amount, level, side, span))
                 step, is_over = max(step, min(narrow, span)), narrow >= span
                 span *= NARROWER
             place_after(a, i, motion, amount, moved)

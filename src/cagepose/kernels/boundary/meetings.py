@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.record import FloatArray, Rows
-from cagepose.kernels.algebra.vector import dot, minus, plus, scaled, vector_from
+from cagepose.kernels.algebra.vector import dot, minus, plus, row, scaled, vector_from
 from cagepose.kernels.boundary.circle import WHOLE_TURN, circle_of, is_on_arc
 from cagepose.kernels.boundary.circle_meeting import circle_meeting, find_places, round_of
 from cagepose.kernels.boundary.extents import extent_of, surely_apart
@@ -19,11 +19,12 @@ from cagepose.kernels.boundary.features import (
     PlacedBoundary,
     box_of,
     in_body,
+    in_frame,
     place_feature,
     position_of,
 )
 from cagepose.kernels.boundary.flat_circle import Arc, next_arc, part_to_ask
-from cagepose.kernels.boundary.meeting import both_reach, is_seated, meeting, seated
+from cagepose.kernels.boundary.meeting import both_reach, is_seated, meeting, seated, vertex_over_face
 from cagepose.kernels.boundary.met import Meeting, swapped
 from cagepose.kernels.boundary.neighbours import forget_layers
 from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, SAME_PLACE, Along, Meetings
@@ -159,14 +160,13 @@ def farthest_listed(one: Feature, other: Feature, touch_m: float) -> float:
 
 @kernel
 def find_beyond(
-    vertices: PlacedBoundary, i: int, faces: PlacedBoundary, first: int, last: int, touch_m: float, out: FloatArray
+    vertex: Feature, pose: FloatArray, planes: FloatArray, first: int, last: int, touch_m: float, out: FloatArray
 ) -> int:
-    """Write how far a vertex of one body is from touching some faces of another one: above their planes, so deep below
-    that it is on their far side, or beside the boxes around them; at most zero: it may touch. Return of how many.
+    """Write how far a vertex of one body is from touching some faces of another one, with its pose and its planes:
+    above these, so deep below that it is on their far side, or beside the boxes around the faces; at most zero: it may
+    touch. Return of how many.
     """
-    place_feature(vertices, i)
-    vertex, planes = vertices.features[i], faces.own.planes
-    x, y, z = in_body(faces, minus(vector_from(vertex.point), position_of(faces)))
+    x, y, z = in_frame(pose, minus(vector_from(vertex.point), row(pose, 0)))
     radius = vertex.radius
     n, m, k, above = planes[0, first:last], planes[1, first:last], planes[2, first:last], planes[3, first:last]
     least, here = planes[4, first:last], out[first:last]  # slices from zero on, so that several are worked out at once
@@ -194,14 +194,21 @@ def meet_vertices(
 ) -> None:
     """Append the meetings of the vertices of a leaf, which are those of the cage or of the object, with some faces."""
     for i in range(one.first, one.last):
-        if find_beyond(vertices, i, faces, other.first, other.last, touch_m, found.heights) == 0:
+        if not vertices.is_placed[i]:
+            place_feature(vertices, i)
+        vertex = vertices.features[i]
+        if find_beyond(vertex, faces.pose, faces.own.planes, other.first, other.last, touch_m, found.heights) == 0:
             continue
         for j in range(other.first, other.last):
             if found.heights[j] <= 0.0:
-                place_feature(faces, j)
+                if not faces.is_placed[j]:
+                    place_feature(faces, j)
+                met = vertex_over_face(vertex, faces.features[j])
+                if met.gap > touch_m:
+                    continue
                 held, cage = (faces, vertices) if of_cage else (vertices, faces)
                 at, cage_at = (j, i) if of_cage else (i, j)
-                met = meeting(held, at, cage, cage_at)
+                met = swapped(met) if of_cage else met
                 append_touching(held, at, cage, cage_at, AT_ONE_PLACE, met, touch_m, found)
 
 
