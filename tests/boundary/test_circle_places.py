@@ -21,6 +21,7 @@ from cagepose.kernels.circles.beside_round import (
     Round,
     common_with_line,
     common_with_round,
+    place_by_round_near,
     places_by_round,
 )
 from cagepose.kernels.circles.places import (
@@ -142,6 +143,28 @@ def test_what_is_told_is_stationary_and_has_a_common_normal(name, cases):
             shift = other.radius if name == "round" else 0.0
             told = sampled.distance(np.array([angle]))[0] - shift
             assert abs(abs(gap) - abs(told)) < EXACT * size, (pair, place)
+
+
+@pytest.mark.parametrize("name", ["line", "round"])
+def test_the_place_nearest_to_an_angle_is_the_nearest_of_all(name, cases, say):
+    """Where one alone is told, it is the nearest of those where the distance is least."""
+    rng, n_alone, n_asked = np.random.default_rng(5), 0, 0
+    near = empty_rows(Place, 16)
+    for _ in range(cases(100, 4000)):
+        circle, other = PAIRS[name](rng)
+        flat_m = 1e-9 * size_of(circle, other)
+        n_found, found, _ = found_by(circle, other, flat_m)
+        for angle, place in found:
+            if place["kind"] != LEAST or any(row["kind"] == FLAT for _, row in found):
+                continue
+            asked = angle + float(rng.normal() * 10.0 ** rng.uniform(-6.0, 0.0))
+            n_near = place_by_round_near(circle, other, asked, flat_m, near)
+            least = [apart(at, asked) for at, row in found if row["kind"] == LEAST]
+            told = [apart(float(near[k]["angle"]), asked) for k in range(n_near) if near[k]["kind"] == LEAST]
+            assert abs(min(told) - min(least)) < 1e-7
+            n_asked, n_alone = n_asked + 1, n_alone + (n_near == 1 < n_found)
+    say(f"{name}: of {n_asked} places near an angle {n_alone} are told without the others")
+    assert n_alone > 0
 
 
 def test_a_point_and_a_plane_by_hand():
