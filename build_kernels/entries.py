@@ -20,7 +20,6 @@ from cagepose.kernels.boundary.overlap import empty_overlap_work
 from cagepose.kernels.collision.boxes import BoxesAndPoints, empty_placed_boxes, place_boxes_at
 from cagepose.kernels.contact.loads import Action
 from cagepose.kernels.contact.metric import Body
-from cagepose.kernels.contact.on_circle import find_deepest_on_arcs
 from cagepose.kernels.outcome.at_pose import critical_friction, judge_start
 from cagepose.kernels.outcome.cases import Cases, Part
 from cagepose.kernels.outcome.endings import empty_endings
@@ -101,7 +100,6 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield overlap_at, (geometry, ORIGIN, UPRIGHT, empty_placement(geometry), empty_overlap_work(none, none))
     yield judge_start, (0, part, cases, cage, proof, outcome)
     yield critical_friction, (0, part, cases, cage, proof)
-    yield find_deepest_on_arcs, (proof.contacts, 0.0, ORIGIN, ORIGIN, vectors, vectors)
     yield balance_with_faces, (0.0, proof)
     yield search_with_faces, (0.0, proof)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, run
+from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, Spring, run
 
 GRAVITY = [Load("gravity", gravity=(0, 0, -1))]
 
@@ -133,3 +133,16 @@ def test_what_would_slide_off_an_edge_with_any_face_is_not_told_as_let_go_by_it(
     result = run(Scene(plate, Cage(points), loads, friction_coefficient=0.3))
     assert result.verdict == "escapes"
     assert result.phases[0].events[0].note is None
+
+
+def test_a_slide_along_edges_is_one_event_and_warns_once_at_most():
+    """A plate on a floor, with four points exactly at the lower edges of its sides, is pulled along by a spring."""
+    floor = Box((0.6, 0.04, 0.02), Pose((0, 0, -0.01)))
+    beside = [(x, y, 0.0) for x in (-0.04, 0.04) for y in (-0.03, 0.03)]
+    plate = Object([Box((0.4, 0.06, 0.01))], mass_kg=1.0, pose=Pose((0, 0, 0.005)))
+    pull = Spring((0.05, 0.0, 0.0), (0.3, 0.0, 0.005), 10.0, 5.0)
+    loads = [Load("pull", gravity=(0, 0, -9.81), springs=[pull])]
+    result = run(Scene(plate, Cage(beside, shapes=[floor]), loads, friction_coefficient=0.3))
+    assert result.verdict in ("rests", "may rest")
+    assert len(result.phases[0].events) <= 3
+    assert sum("exactly on edges" in warning for warning in result.warnings) <= 1

@@ -49,7 +49,7 @@ def quasistatic_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: flo
     yield from lost_weight_warnings(scene, len(phases))
     for phase in phases:
         yield from edge_warnings(phase)
-        yield from _let_go_warnings(phase)
+        yield from _edge_motion_warnings(phase)
         yield from spring_warnings(scene, phase)
     if not any(spring_warnings(scene, phases[-1])):  # they say why
         yield from _failure_warnings(phases[-1], scene.loads[len(phases) - 1])
@@ -57,14 +57,15 @@ def quasistatic_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: flo
     yield from proof_warnings(phases, friction)
 
 
-def _let_go_warnings(phase: PhaseRun) -> Iterator[str]:
-    """Events that begin because a contact is exactly on an edge."""
+def _edge_motion_warnings(phase: PhaseRun) -> Iterator[str]:
+    """The first event of a phase that begins because a contact is exactly on an edge."""
     for number, event in enumerate(phase.events, start=1):
         if event.note == "edge":
             yield (
                 f"{phase.name}, event {number}: it moves because contacts lie exactly on edges; with other faces of"
                 " these edges they would hold it. Of real parts rounding decides that: move them off the edges"
             )
+            return
 
 
 def _failure_warnings(phase: PhaseRun, load: Load) -> Iterator[str]:

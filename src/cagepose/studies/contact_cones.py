@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from cagepose.kernels.algebra.linear_program import N_UNKNOWNS, OPTIMAL, UNBOUNDED, Program, solve_program
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.model.checks import FloatArray
-from cagepose.studies.arcs import Arcs
 
 Contacts = int | NDArray[np.int64]
 FIRST_RAYS = 8
@@ -36,15 +35,15 @@ class ContactCones(NamedTuple):
     friction
         Coefficient of each, (n,).
     length_m
-        Metres.
+        Metres: the longest arm.
     """
 
     columns: FloatArray
     friction: FloatArray
     length_m: float
 
-    def some(self, which: NDArray[np.bool_ | np.int64]) -> ContactCones:
-        """Return the cones of some of the contacts: which of all, (n,), or their indices."""
+    def some(self, which: NDArray[np.bool_]) -> ContactCones:
+        """Return the cones of some of the contacts, (n,)."""
         return self._replace(columns=self.columns[which], friction=self.friction[which])
 
     def wrench(self, forces: FloatArray) -> FloatArray:
@@ -52,9 +51,7 @@ class ContactCones(NamedTuple):
         return np.asarray(np.einsum("ij,ijk->k", forces, self.columns))
 
 
-def contact_cones(
-    normals: FloatArray, arms_m: FloatArray, friction: FloatArray, length_m: float | None = None
-) -> ContactCones:
+def contact_cones(normals: FloatArray, arms_m: FloatArray, friction: FloatArray) -> ContactCones:
     """Return the cones of n contacts.
 
     Parameters
@@ -65,11 +62,8 @@ def contact_cones(
         Where, as seen from the centre of gravity, (n, 3), metres.
     friction
         Coefficients, (n,).
-    length_m
-        That lengths are divided by; the longest arm.
     """
-    if length_m is None:
-        length_m = float(np.linalg.norm(arms_m, axis=1).max(initial=0.0)) or 1.0
+    length_m = float(np.linalg.norm(arms_m, axis=1).max(initial=0.0)) or 1.0
     axes = np.eye(3)[np.abs(normals).argmin(axis=1)]
     first = np.cross(normals, axes)
     first /= np.linalg.norm(first, axis=1)[:, None]
@@ -79,61 +73,28 @@ def contact_cones(
     )
 
 
-class Rays:
-    """Rays n + mu d of contacts' cones, and of those all along arcs, as rows of wrenches: they are made as motions ask
-    for them.
-
-    Attributes
-    ----------
-    wrenches
-        Of unit normal forces with their friction, (m, 6), as `ContactCones.columns`.
-    contacts
-        Whose they are, (m,): indices of the cones; those of arcs have the one behind.
-    """
-
-    def __init__(self, cones: ContactCones, arcs: Arcs | None, cut_from: float) -> None:
-        self.cones, self.arcs, self.cut_from = cones, arcs, cut_from
-        self.contacts, self.wrenches = np.zeros(0, np.int64), np.zeros((0, N_UNKNOWNS))
-        every = np.arange(len(cones.columns))
-        angles = 2.0 * np.pi * np.arange(FIRST_RAYS if cones.friction.any() else 1) / FIRST_RAYS
-        for angle in angles:
-            self._add(every, cones, np.tile((np.cos(angle), np.sin(angle)), (len(every), 1)))
-
-    def _add(self, contacts: NDArray[np.int64], cones: ContactCones, tangents: FloatArray) -> None:
-        """Add the rays n + mu d of contacts with these cones and unit tangents d, (n, 2)."""
-        rays = cones.columns[:, 0] + cones.friction[:, None] * np.einsum("ij,ijk->ik", tangents, cones.columns[:, 1:])
-        self.contacts, self.wrenches = np.append(self.contacts, contacts), np.concatenate([self.wrenches, rays])
-
-    def cut(self, motion: FloatArray, least: FloatArray) -> bool:
-        """Add the rays along which a motion does the least work, one of each contact or arc, where it is less than
-        ``least``, (n,), zero of arcs; False: it is nowhere less, but by ``cut_from`` of the motion.
-        """
-        n_before = len(self.contacts)
-        if self.cones.friction.any():
-            self._cut(np.arange(len(least)), self.cones, motion, least)
-        if self.arcs is not None:
-            there = self.arcs.deepest(motion[:3], motion[3:] / self.cones.length_m)
-            cones = contact_cones(-there.normals, there.arms, there.friction, self.cones.length_m)
-            self._cut(np.full(len(there.arms), len(least)), cones, motion, np.zeros(len(there.arms)))
-        return len(self.contacts) > n_before
-
-    def _cut(self, contacts: NDArray[np.int64], cones: ContactCones, motion: FloatArray, least: FloatArray) -> None:
-        along = cones.columns @ motion
-        slips = np.linalg.norm(along[:, 1:], axis=1)
-        is_less = least + cones.friction * slips - along[:, 0] > self.cut_from * np.linalg.norm(motion)
-        tangents = -along[:, 1:] / np.where(slips > 0.0, slips, 1.0)[:, None]
-        self._add(contacts[is_less], cones.some(is_less), tangents[is_less])
-
-
 class ConeProgram:
     """max objective . y over motions y with (ray of contact i) . y >= least_i for all of its rays n + mu d.
 
     Rays stay from one program to the next. A cone that a motion violates by less than ``cut_from`` of its length is
-    left as it is. Contacts along ``arcs`` count in all programs, with a least of zero.
+    left as it is.
     """
 
-    def __init__(self, cones: ContactCones, cut_from: float, arcs: Arcs | None = None) -> None:
-        self.rays, self.program = Rays(cones, arcs, cut_from), empty_record(Program)
+    def __init__(self, cones: ContactCones, cut_from: float) -> None:
+        self.cones, self.cut_from = cones, cut_from
+        self.contacts = np.zeros(0, np.int64)
+        self.rays = np.zeros((0, N_UNKNOWNS))
+        self.program = empty_record(Program)
+        indices = np.arange(len(cones.columns))
+        angles = 2.0 * np.pi * np.arange(FIRST_RAYS if cones.friction.any() else 1) / FIRST_RAYS
+        for angle in angles:
+            self._add(indices, np.tile((np.cos(angle), np.sin(angle)), (len(indices), 1)))
+
+    def _add(self, contacts: NDArray[np.int64], tangents: FloatArray) -> None:
+        """Add the rays n + mu d of contacts, with unit tangents d, (n, 2)."""
+        columns = self.cones.columns[contacts]
+        rays = columns[:, 0] + self.cones.friction[contacts, None] * np.einsum("ij,ijk->ik", tangents, columns[:, 1:])
+        self.contacts, self.rays = np.append(self.contacts, contacts), np.concatenate([self.rays, rays])
 
     def greatest(self, objective: FloatArray, least: FloatArray, row: FloatArray) -> tuple[int, FloatArray]:
         """Return how the program ended, and y.
@@ -155,15 +116,25 @@ class ConeProgram:
         self.program.objective[:] = objective
         self.program.passive.used = 0
         for _ in range(MOST_ROUNDS):
-            rows = np.concatenate([row[None], -self.rays.wrenches])
-            bounds = np.append(1.0, -np.append(least, 0.0)[self.rays.contacts])
+            rows, bounds = np.concatenate([row[None], -self.rays]), np.append(1.0, -least[self.contacts])
             outcome = solve_program(rows, bounds, self.program)
             if outcome not in (OPTIMAL, UNBOUNDED):
                 return outcome, np.zeros(N_UNKNOWNS)
             motion = np.array(self.program.ray if outcome == UNBOUNDED else self.program.x)
-            if not self.rays.cut(motion, least if outcome == OPTIMAL else np.where(np.isfinite(least), 0.0, least)):
+            if not self._cut(motion, least if outcome == OPTIMAL else np.where(np.isfinite(least), 0.0, least)):
                 break
         return outcome, motion
+
+    def _cut(self, motion: FloatArray, least: FloatArray) -> bool:
+        """Add the rays that a motion violates most, one of each contact; False: it violates none."""
+        if not self.cones.friction.any():
+            return False
+        along = self.cones.columns @ motion
+        slips = np.linalg.norm(along[:, 1:], axis=1)
+        excess = least + self.cones.friction * slips - along[:, 0]
+        cut = np.flatnonzero((excess > self.cut_from * np.linalg.norm(motion)) & (slips > 0.0))
+        self._add(cut, -along[cut, 1:] / slips[cut, None])
+        return len(cut) > 0
 
 
 def greatest_normal_force(program: ConeProgram, load: FloatArray, counts: FloatArray, contacts: Contacts) -> float:

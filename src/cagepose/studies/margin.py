@@ -18,7 +18,7 @@ from cagepose.runs.judge import judge_pose
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, Contact, Run
-from cagepose.studies.arcs import Arcs
+from cagepose.studies.arcs import places_on_arcs
 from cagepose.studies.contact_cones import (
     ConeProgram,
     ContactCones,
@@ -134,11 +134,11 @@ def margin(run: Run, phase: int = -1) -> Margin | None:
     choices = list(islice(product(*groups), CHOICES_LIMIT + 1))
     if len(choices) > CHOICES_LIMIT:
         return None
-    cones, arcs = _cones(run, number, contacts), Arcs(run, number)
+    cones = _cones(run, number, [*contacts, *places_on_arcs(run, number)])
     load, size_n = _load(run, number, cones)
     if size_n == 0.0:
         return None
-    found = _Choices(cones, arcs, load, [_counting(len(contacts), choice) for choice in choices])
+    found = _Choices(cones, len(contacts), load, [_counting(len(contacts), choice) for choice in choices])
     if not found.are_balanced:
         return None
     force, moment = found.least_extra_load(FORCES), found.least_extra_load(MOMENTS)
@@ -213,11 +213,11 @@ def _counting(n_contacts: int, choice: tuple[int, ...]) -> FloatArray:
 class _Choices:
     """The answers over all choices of faces at edges: the object is held only if it is with every one of them.
 
-    Places along arcs, beside the contacts that are listed, count where a load is to be balanced.
+    The first cones are those of contacts that are listed. Others, along arcs, count where a load is to be balanced.
     """
 
-    def __init__(self, cones: ContactCones, arcs: Arcs, load: FloatArray, counts: list[FloatArray]) -> None:
-        self.cones, self.arcs = cones, arcs
+    def __init__(self, cones: ContactCones, n_listed: int, load: FloatArray, counts: list[FloatArray]) -> None:
+        self.all_cones, self.cones = cones, cones.some(np.arange(len(cones.columns)) < n_listed)
         self.load, self.counts = load, counts
         forces = [self._forces(of_choice) for of_choice in counts]
         self.balanced = [self.cones.wrench(of_choice) for of_choice in forces]
@@ -236,10 +236,11 @@ class _Choices:
         return np.asarray(np.einsum("ij,ijk->ik", self.shares[:, 1:], self.cones.columns[:, 1:, :3]))
 
     def least_extra_load(self, axes: slice) -> ExtraLoad:
-        program = ConeProgram(self.cones, VIOLATION_FOR_BOUNDS, self.arcs)
+        program = ConeProgram(self.all_cones, VIOLATION_FOR_BOUNDS)
         least = ExtraLoad(math.inf, math.inf, np.zeros(3))
         for counts, load in zip(self.counts, self.balanced, strict=True):
-            found = least_extra_load(program, load / np.linalg.norm(load), counts, axes, least.certain)
+            all_counts = np.append(counts, np.zeros(len(self.all_cones.columns) - len(counts)))
+            found = least_extra_load(program, load / np.linalg.norm(load), all_counts, axes, least.certain)
             least = min(least, found, key=lambda extra: extra.certain)
         return least
 

@@ -10,7 +10,7 @@ import numpy as np
 from cagepose.model.checks import FloatArray, unit_vector
 from cagepose.runs.actions import wrench_at
 from cagepose.runs.run import Run
-from cagepose.studies.arcs import Arcs
+from cagepose.studies.arcs import places_on_arcs
 from cagepose.studies.tolerances import PARALLEL_SINE, ROUNDING_OF_CORNER
 
 
@@ -25,8 +25,8 @@ class LoadView:
     load_point
         Where the load's line passes, (2,).
     polygon
-        Corners of the convex hull of the contacts, counter-clockwise, (n, 2); 128 of a circle along which
-        parts touch all around.
+        Corners of the convex hull of the contacts, counter-clockwise, (n, 2); of arcs along which parts touch, places
+        every 3 degrees.
     margin_m
         Distance of the load's line from the hull's outline: above zero inside, below zero outside. A hull without area
         has no inside.
@@ -62,11 +62,10 @@ def load_view(run: Run, phase_index: int) -> LoadView:
     touching = [index for index, name in enumerate(run.scene.cage.names) if name in names]
     on_shapes = [
         contact.place_world
-        for contact in phase.contacts
+        for contact in (*phase.contacts, *places_on_arcs(run, phase_index))
         if contact.point not in run.scene.cage.names and contact.place_world is not None
     ]
-    along = Arcs(run, phase_index).places_world()
-    places = np.concatenate([run.scene.cage.points_world()[touching], np.reshape(on_shapes, (-1, 3)), along])
+    places = np.concatenate([run.scene.cage.points_world()[touching], np.reshape(on_shapes, (-1, 3))])
     polygon = convex_hull(places @ axes)
     return LoadView(right, up, load_point, polygon, _margin(polygon, load_point))
 

@@ -13,6 +13,7 @@ from itertools import islice, product
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.linear_program import (
     FAILED,
@@ -24,16 +25,22 @@ from cagepose.kernels.algebra.linear_program import (
     solve_program,
 )
 from cagepose.kernels.algebra.record import empty_record
-from cagepose.model.checks import FloatArray
+from cagepose.kernels.contact.contact_set import tangents_to
+from cagepose.model.checks import FloatArray, as_vector
+from cagepose.runs.cases import contact_friction
+from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import Run
-from cagepose.studies.arcs import Arcs
-from cagepose.studies.contact_cones import MOST_ROUNDS, ContactCones, Rays
+from cagepose.studies.arcs import places_on_arcs
 from cagepose.studies.contact_problem import ContactProblem, contact_problem
 from cagepose.studies.support import LoadView, convex_hull, polygon_within, without_doubles
 from cagepose.studies.tolerances import DISTANCE_OF_CORNER, PARALLEL_SINE, ROUNDING_OF_CORNER, VIOLATION_OF_CONE
 
 N_DIRECTIONS = 120
 """3 deg apart; and across each side of the contacts' polygon, so that a polygon comes out exactly."""
+FIRST_RAYS = 8
+"""Each friction cone starts with so many rays, evenly spread."""
+MOST_ROUNDS = 40
+"""Other rays come in so many times."""
 HALVINGS_OF_ANGLE = 30
 """The angle between a direction in which a region ends and one in which it does not is halved so many times."""
 WAY_WITHOUT_END = 1e3
@@ -75,8 +82,9 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
     choices = list(islice(product(*problem.groups), MOST_CHOICES + 1))
     if len(choices) > MOST_CHOICES:
         return None
-    cones, arcs = _cones(problem), Arcs(run, phase_index)
-    regions = [_Region(cones.some(np.array(choice, np.int64)), arcs, view) for choice in choices]
+    wrenches, friction = _with_arcs(problem, run, phase_index)
+    on_arcs = range(len(problem.faces), len(wrenches))
+    regions = [_Region(wrenches[at], friction[at], view) for at in ([*choice, *on_arcs] for choice in choices)]
     found = _common(regions, view)
     if found is None:
         return None
@@ -91,10 +99,18 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
     return SupportRegion(view.load_point + shown, margin_m)
 
 
-def _cones(problem: ContactProblem) -> ContactCones:
-    arms = np.linalg.norm(problem.wrenches[:, :, 3:], axis=2).max(initial=0.0)
-    length_m = float(arms) or 1.0
-    return ContactCones(-problem.wrenches / np.repeat([1.0, length_m], 3), problem.friction, length_m)
+def _with_arcs(problem: ContactProblem, run: Run, phase_index: int) -> tuple[FloatArray, FloatArray]:
+    """Return wrenches (n, 3, 6) and friction (n,) of the contacts of a problem, then of places along arcs."""
+    scene, ended = run.scene, run.phases[phase_index]
+    center, on_arcs = ended.pose.transform(scene.object.center_of_gravity_m), places_on_arcs(run, phase_index)
+    of_scene = chosen_method(scene, run.method).friction(scene)
+    wrenches = np.zeros((len(on_arcs), 3, 6))
+    for place, contact in enumerate(on_arcs):
+        assert contact.place_world is not None
+        directions = np.array([contact.normal_world, *tangents_to(as_vector(contact.normal_world))])
+        wrenches[place] = np.hstack([directions, np.cross(contact.place_world - center, directions)])
+    friction = [contact_friction(scene, of_scene, contact.point, contact.box) for contact in on_arcs]
+    return np.concatenate([problem.wrenches, wrenches]), np.concatenate([problem.friction, friction])
 
 
 def _is_empty(normals: FloatArray, heights: FloatArray) -> bool:
@@ -152,49 +168,30 @@ def _common(regions: Sequence[_Region], view: LoadView) -> _Bounds | None:
 
 
 class _Region:
-    """Where some contacts, and arcs, balance the weight.
+    """Where some contacts, with wrenches (n, 3, 6) and friction (n,), balance the weight.
 
     With unit forces F_r of rays and their moments, the centre of gravity is M x d off for a weight of 1 along d, if the
-    forces add up to -d and M has no part along d. The dual of what is greatest of it along a has four unknowns, a
-    velocity and a turn about the load, and forces for its multipliers.
+    forces add up to -d and M has no part along d. The dual of what is greatest of it along a has four unknowns, and
+    forces for its multipliers.
     """
 
-    def __init__(self, cones: ContactCones, arcs: Arcs, view: LoadView) -> None:
+    def __init__(self, wrenches: FloatArray, friction: FloatArray, view: LoadView) -> None:
         self.down = np.cross(view.up_world, view.right_world)
         self.seen = np.stack([view.right_world, view.up_world], axis=1)
-        self.rays, self.program = Rays(cones, arcs, VIOLATION_OF_CONE), empty_record(Program)
-        self.none, self.length_m = np.zeros(len(cones.columns)), cones.length_m
-        self.is_empty = self._solve(np.zeros(3)) == UNBOUNDED  # be it that moments have no end
+        self.rays, self.program = _Rays(wrenches, friction, self.down), empty_record(Program)
+        self.is_empty = self.rays.solve(self.program, np.zeros(3)) == UNBOUNDED  # be it that moments have no end
 
     def reach(self, normal: FloatArray) -> tuple[float, FloatArray] | None:
         """Return how far it goes along a unit vector, and the point there; None: the program had no sure answer."""
         if self.is_empty:
             return -math.inf, np.zeros(2)
-        outcome, program = self._solve(np.cross(self.down, self.seen @ normal)), self.program
+        program, rays = self.program, self.rays
+        outcome = rays.solve(program, np.cross(self.down, self.seen @ normal))
         if outcome == OPTIMAL:
             used = program.passive.used
-            moment = program.passive.x[:used] @ self.rays.wrenches[program.passive.labels[:used], 3:]
-            across = self.length_m * np.cross(moment, self.down)
-            return -self.length_m * float(self.down @ program.x[:3]), across @ self.seen
+            moment = program.passive.x[:used] @ rays.moments[program.passive.labels[:used]]
+            return -rays.length_m * float(self.down @ program.x[:3]), np.cross(moment, self.down) @ self.seen
         return (math.inf, np.zeros(2)) if outcome == INFEASIBLE else None  # the dual of what has no end
-
-    def _solve(self, across: FloatArray) -> int:
-        """Find what M . ``across`` is at most, in units of ``length_m``."""
-        program, rays = self.program, self.rays
-        program.objective[:3] = self.down
-        program.passive.used = 0
-        for _ in range(MOST_ROUNDS):
-            forces, moments = rays.wrenches[:, :3], rays.wrenches[:, 3:]
-            rows = np.zeros((len(forces), N_UNKNOWNS))
-            rows[:, :3], rows[:, 3] = -forces, -moments @ self.down
-            outcome = solve_program(rows, -moments @ across, program)
-            if outcome not in (OPTIMAL, UNBOUNDED):
-                return outcome
-            found = program.x if outcome == OPTIMAL else program.ray
-            turn = found[3] * self.down - (across if outcome == OPTIMAL else 0.0)
-            if not rays.cut(np.append(found[:3], turn), self.none):
-                return outcome
-        return outcome if outcome == OPTIMAL else FAILED
 
 
 def _farthest(region: _Region, normals: FloatArray) -> _Bounds | None:
@@ -215,7 +212,7 @@ def _farthest(region: _Region, normals: FloatArray) -> _Bounds | None:
     waiting = list(zip(ended, [*ended[1:], *ended[:1]], strict=True))
     while waiting:
         one, other = waiting.pop()
-        outward = _direction_between(one, other, region.length_m)
+        outward = _direction_between(one, other, region.rays.length_m)
         if outward is not None:
             end = region.reach(outward)
             if end is None:
@@ -255,3 +252,49 @@ def _last_ends(
             found.append((between, end))
             bounded = between
     return found
+
+
+class _Rays:
+    """Rays of round friction cones: those that a solution violates most come in, as in `ConeProgram`."""
+
+    def __init__(self, wrenches: FloatArray, friction: FloatArray, down: FloatArray) -> None:
+        self.wrenches, self.friction, self.down = wrenches, friction, down
+        moments = np.linalg.norm(wrenches[:, :, 3:], axis=(1, 2))  # of three unit forces across each other
+        self.length_m = float(moments.max(initial=0.0)) / math.sqrt(2.0) or 1.0
+        self.forces, self.moments = np.zeros((0, 3)), np.zeros((0, 3))
+        every = np.arange(len(wrenches))
+        for angle in 2.0 * np.pi * np.arange(FIRST_RAYS if friction.any() else 1) / FIRST_RAYS:
+            self._add(every, np.tile((math.cos(angle), math.sin(angle)), (len(wrenches), 1)))
+
+    def _add(self, contacts: NDArray[np.int64], tangents: FloatArray) -> None:
+        across = np.einsum("ij,ijk->ik", tangents, self.wrenches[contacts, 1:])
+        rays = -(self.wrenches[contacts, 0] + self.friction[contacts, None] * across)
+        self.forces = np.concatenate([self.forces, rays[:, :3]])
+        self.moments = np.concatenate([self.moments, rays[:, 3:]])
+
+    def solve(self, program: Program, across: FloatArray) -> int:
+        """Find what M . ``across`` is at most; the dual's unknowns are a velocity and a turn about the load."""
+        program.objective[:3] = self.down
+        program.passive.used = 0
+        for _ in range(MOST_ROUNDS):
+            rows = np.zeros((len(self.forces), N_UNKNOWNS))
+            rows[:, :3], rows[:, 3] = -self.forces, -self.moments @ self.down / self.length_m
+            outcome = solve_program(rows, -self.moments @ across / self.length_m, program)
+            if outcome not in (OPTIMAL, UNBOUNDED):
+                return outcome
+            found = program.x if outcome == OPTIMAL else program.ray
+            turn = found[3] * self.down - (across if outcome == OPTIMAL else 0.0)
+            if not self._cut(np.append(found[:3], turn / self.length_m)):
+                return outcome
+        return outcome if outcome == OPTIMAL else FAILED
+
+    def _cut(self, twist: FloatArray) -> bool:
+        """Add the ray of each contact that a twist violates most; False: it violates none."""
+        if not self.friction.any():
+            return False
+        along = self.wrenches @ twist
+        slips = np.linalg.norm(along[:, 1:], axis=1)
+        size = np.linalg.norm(twist * [1.0, 1.0, 1.0, *3 * [self.length_m]])
+        cut = np.nonzero((along[:, 0] + self.friction * slips > VIOLATION_OF_CONE * size) & (slips > 0.0))[0]
+        self._add(cut, along[cut, 1:] / slips[cut, None])
+        return len(cut) > 0

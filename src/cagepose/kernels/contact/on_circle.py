@@ -21,7 +21,7 @@ from cagepose.kernels.contact.contact_set import ContactSet, choose, stays_on_fa
 from cagepose.kernels.contact.edges import has_one_choice
 from cagepose.kernels.contact.metric import WRENCH, Frame, twist_of
 from cagepose.kernels.contact.tolerances import LAST_TURN_RAD, ROUNDING_OF_SPEED, SAME_WAY, SPEED_OF_ENTRY
-from cagepose.kernels.native.kernel import entry, kernel
+from cagepose.kernels.native.kernel import kernel
 
 MOST_ADDED_POINTS = 40
 """So many points of circles are added for one question."""
@@ -173,21 +173,6 @@ def deepest_on_arc(
         if speed > fastest:
             found, fastest = angle, speed
     return found, fastest
-
-
-@entry
-def find_deepest_on_arcs(
-    contacts: ContactSet, friction: float, velocity: Vector, spin: Vector, arms: FloatArray, normals: FloatArray
-) -> None:
-    """Write where the arc around each contact resists a motion most, and its normal there, each (n, 3), of a set of n
-    contacts; not a number: it is of none, or resists it most at its own place. ``friction`` is the greatest of all.
-    """
-    for i in range(contacts.used[0]):
-        angle, speed = deepest_on_arc(contacts, i, friction, velocity, spin)
-        arm, normal = place_on_circle(contacts, i, angle)
-        for k in range(3):
-            arms[i, k] = arm[k] if speed > -math.inf else math.nan
-            normals[i, k] = normal[k] if speed > -math.inf else math.nan
 
 
 @kernel

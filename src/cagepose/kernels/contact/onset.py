@@ -10,7 +10,14 @@ from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.contact_set import ContactSet, choose, is_smooth
 from cagepose.kernels.contact.coulomb import allowed_error, coulomb_onset
-from cagepose.kernels.contact.edges import CHOICES_LIMIT, ONLY_CARRYING, has_one_choice, keep_choice
+from cagepose.kernels.contact.edges import (
+    CHOICES_LIMIT,
+    EVERY,
+    ONLY_CARRYING,
+    first_choice,
+    has_one_choice,
+    keep_choice,
+)
 from cagepose.kernels.contact.equilibrium import (
     AT_REST,
     MOVES,
@@ -24,7 +31,7 @@ from cagepose.kernels.contact.equilibrium import (
 )
 from cagepose.kernels.contact.metric import Frame, twist_of
 from cagepose.kernels.contact.on_circle import MOST_ADDED_POINTS, add_on_circles, drop_idle, keeps_on_circle
-from cagepose.kernels.contact.self_stress import carry_by_locked, forget_locked
+from cagepose.kernels.contact.self_stress import begin_unlocked, carry_by_locked, forget_locked
 from cagepose.kernels.contact.tip import tips_on_circle
 from cagepose.kernels.contact.tolerances import FASTER_MOTION
 from cagepose.kernels.contact.workspace import ContactWorkspace
@@ -97,16 +104,26 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
 
 
 @kernel
-def holds_with_all_faces(contacts: ContactSet, friction: float, work: ContactWorkspace) -> bool:
-    """Whether contacts, of which some are on edges, would hold the load in ``work`` if all faces there counted at once:
+def holds_with_some_faces(contacts: ContactSet, frame: Frame, friction: float, work: ContactWorkspace) -> bool:
+    """Whether contacts, of which some are on edges, would hold the load in ``work`` with one of the choices of faces:
     an object that moves all the same does so only because of the edges. Asked before `onset`; the forces are lost.
     """
     if has_one_choice(contacts):
         return False
-    for i in range(contacts.used[0]):
+    for i in range(contacts.used[0]):  # what all faces at once do not hold, no choice does
         choose(contacts, i, True)
     left = least_residual(contacts, friction, work.load, work.load_terms, work)
-    return is_balance(contacts, left, friction, AT_REST, work)
+    if not is_balance(contacts, left, friction, AT_REST, work):
+        return False
+    begin_unlocked(contacts, work)
+    first_choice(contacts)
+    holds = False
+    for _ in range(CHOICES_LIMIT):
+        holds = equilibrium_of_choice(contacts, frame, friction, AT_REST, work) != MOVES
+        if holds or not next_choice_unlocked(contacts, frame, EVERY, work):
+            break
+    forget_locked(contacts, frame, work)
+    return holds
 
 
 @kernel

@@ -14,7 +14,7 @@ from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.cases import Part, Start, object_position
 from cagepose.kernels.outcome.motion import motion_between, motion_of_twist, rotation_vector
 from cagepose.kernels.outcome.records import Outcome, PhaseRecord
-from cagepose.kernels.outcome.trace import NONE, PLAIN, RESTS, SCREW, STALLED, Trace
+from cagepose.kernels.outcome.trace import AT_EDGE, LET_GO, NONE, RESTS, SCREW, STALLED, Trace
 from cagepose.kernels.stability.proof import OTHER_ONSET, PROVEN_MOVES, TOO_MANY_CONTACTS, ProofWorkspace
 from cagepose.kernels.stability.proof_search import judge
 
@@ -84,7 +84,7 @@ def goes_on(trace: Trace, step: int) -> bool:
     for point in range(trace.hit.shape[1]):
         if trace.hit[step, point]:
             return False
-    return bool(trace.rows[step].rule == trace.rows[step + 1].rule and trace.rows[step].note == PLAIN)
+    return bool(trace.rows[step].rule == trace.rows[step + 1].rule and trace.rows[step].note != LET_GO)
 
 
 @kernel
@@ -132,7 +132,8 @@ def publish_events(
         if joins_steps and step + 1 < n_steps and goes_on(trace, step):
             continue
         event = outcome.events[outcome.counts[EVENTS]]
-        event.rule, event.note, event.motion = record.rule, record.note, record.motion
+        begins_at_edge = outcome.steps[first_step].is_at_edge
+        event.rule, event.note, event.motion = record.rule, AT_EDGE if begins_at_edge else record.note, record.motion
         event.n_steps = outcome.counts[STEPS] - first_step
         first_step = outcome.counts[STEPS]
         along, through = vector_from(record.along), vector_from(record.through)

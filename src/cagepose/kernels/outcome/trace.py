@@ -52,6 +52,8 @@ class StepRecord:
         Pose after the step: of the object as seen from its centre of gravity, in the frame of the cage's middle.
     note
         Code of what a careful reader should know.
+    is_at_edge
+        Whether it begins only because a contact is on an edge.
     start_position, start_quaternion
         Pose before the step.
     turn_step, n_still, n_refined
@@ -67,6 +69,7 @@ class StepRecord:
     position: Annotated[FloatArray, 3]
     quaternion: Annotated[FloatArray, 4]
     note: int
+    is_at_edge: bool
     start_position: Annotated[FloatArray, 3]
     start_quaternion: Annotated[FloatArray, 4]
     turn_step: float

@@ -30,10 +30,9 @@ from cagepose.kernels.contact.load_curvature import has_circulation, write_circu
 from cagepose.kernels.contact.loads import longest_pull, write_load
 from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, way_between
 from cagepose.kernels.contact.on_circle import is_under_circle
-from cagepose.kernels.contact.onset import find_sticking, holds_with_all_faces, onset
+from cagepose.kernels.contact.onset import find_sticking, holds_with_some_faces, onset
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import (
-    AT_EDGE,
     ESCAPES,
     LET_GO,
     NONE,
@@ -255,7 +254,7 @@ def write_step(
     """
     trace = work.trace
     record = trace.rows[step]
-    record.rule, record.motion, record.note = rule, motion, PLAIN
+    record.rule, record.motion, record.note, record.is_at_edge = rule, motion, PLAIN, is_at_edge
     record.distance = 0.0  # told by the poses
     for k in range(3):
         record.position[k] = position[k]
@@ -269,8 +268,6 @@ def write_step(
         trace.hit[step, point] = trace.touching[step, point] and not work.touched[point]
         if work.touched[point] and not trace.touching[step, point]:
             record.note = LET_GO
-    if is_at_edge:
-        record.note = AT_EDGE
 
 
 @kernel
@@ -334,7 +331,7 @@ def next_step(
         note_touching(work)
         frame = frame_at(setting.body, quaternion)
         solver.load_terms = write_load(setting.load, position, quaternion, frame, solver.load)
-        would_hold = fits and holds_with_all_faces(work.contacts, setting.friction.greatest, solver)
+        would_hold = fits and holds_with_some_faces(work.contacts, frame, setting.friction.greatest, solver)
         code = impending_motion(setting, frame, work) if fits else UNSOLVED
         keep_stopped(solver.stopped, position, frame, work.path.constraints)
         is_rest = code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
