@@ -13,6 +13,8 @@ from audit import (
     drawn_families,
     exact_families,
     loose_families,
+    mechanism_families,
+    ordinary_families,
     prism_families,
     round_families,
     union_families,
@@ -49,6 +51,11 @@ DRAWN: dict[str, Callable[[np.random.Generator], Scene]] = {
     "caged-seams": caged_families.caged_seams,
     "pushed-block": caged_families.pushed_block,
     "union": union_families.union,
+    "cam": mechanism_families.cam,
+    "v-rollers": mechanism_families.v_rollers,
+    "dovetail": mechanism_families.dovetail,
+    "puck": mechanism_families.puck,
+    "ordinary": ordinary_families.ordinary,
 }
 """Families of random scenes."""
 

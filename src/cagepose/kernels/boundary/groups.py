@@ -77,6 +77,23 @@ def inward_at(body: PlacedBoundary, i: int, normal: Vector, place: Vector, touch
 
 
 @kernel
+def beyond_edge(body: PlacedBoundary, i: int, normal: Vector, place: Vector, touch_m: float) -> float:
+    """Return how far a direction is beyond the outward normals of a vertex or an edge at a place of it, a sine. A line
+    that goes on from there has none that lead along it.
+    """
+    beyond, feature = beyond_normals(body, i, normal, place), body.own.features[i]
+    if feature.kind != LINE:
+        return beyond
+    along = vector_from(body.features[i].direction)
+    height, leads = dot(along, minus(place, vector_from(body.features[i].point))), dot(along, normal)
+    if height < feature.length - NEAR * touch_m:
+        beyond = max(beyond, leads)
+    if height > NEAR * touch_m:
+        beyond = max(beyond, -leads)
+    return beyond
+
+
+@kernel
 def is_convex_between(
     body: PlacedBoundary,
     i: int,
@@ -91,9 +108,9 @@ def is_convex_between(
     if i == j:
         return True
     if not is_surface(body, i):
-        return beyond_normals(body, i, other_normal, place) <= slack
+        return beyond_edge(body, i, other_normal, place, touch_m) <= slack
     if not is_surface(body, j):
-        return beyond_normals(body, j, normal, place) <= slack
+        return beyond_edge(body, j, normal, place, touch_m) <= slack
     inward = inward_at(body, i, normal, place, touch_m)
     other_inward = inward_at(body, j, other_normal, place, touch_m)
     return dot(inward, other_normal) < -CONVEX_SINE and dot(other_inward, normal) < -CONVEX_SINE
