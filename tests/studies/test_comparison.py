@@ -87,7 +87,7 @@ def test_where_the_mechanics_ends_its_proof_is_the_ground():
 
 
 def test_a_fall_is_told_as_a_travel_though_rounding_turns_the_object():
-    (release, drag) = compare(scene_of("wedge"), [0.19]).partings
+    (release, drag) = compare(scene_of("wedge"), [0.18]).partings
     for parting in (release, drag):
         assert "quasistatic travels along (0, 0, -1) (slide: " in parting.reason
 
