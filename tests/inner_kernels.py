@@ -45,13 +45,14 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     from cagepose.kernels.contact.contact_set import empty_contact_set
     from cagepose.kernels.contact.coulomb import coulomb_onset
     from cagepose.kernels.contact.coulomb_newton import NewtonWorkspace
+    from cagepose.kernels.contact.coulomb_pivots import PivotWorkspace
     from cagepose.kernels.stability.relaxation import N_COLUMNS
     from cagepose.kernels.stability.strong import ModeTree, other_onset
 
     contacts, load = empty_contact_set(1), np.zeros(7)
     cone, newton, tree = empty_record(ConeWorkspace), empty_record(NewtonWorkspace), empty_record(ModeTree)
     yield cone_residual, (contacts, 0.0, cone)
-    yield coulomb_onset, (contacts, 0.0, load, cone, load, newton)
+    yield coulomb_onset, (contacts, 0.0, load, cone, load, newton, empty_record(PivotWorkspace))
     yield other_onset, (contacts, 0.0, load, tree, newton, empty_system(N_COLUMNS))
     origin = (0.0, 0.0, 0.0)
     circle, line, places = Circle(origin, origin, origin, 0.0), Round(origin, origin, 0.0, 0.0), empty_rows(Place, 1)

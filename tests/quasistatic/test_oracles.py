@@ -13,6 +13,7 @@ from cagepose.kernels.contact.cone import ConeWorkspace, clear_cone, cone_residu
 from cagepose.kernels.contact.contact_set import empty_contact_set
 from cagepose.kernels.contact.coulomb import coulomb_onset
 from cagepose.kernels.contact.coulomb_newton import NewtonWorkspace
+from cagepose.kernels.contact.coulomb_pivots import PivotWorkspace
 from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.contact.tolerances import RESIDUAL_AT_LIMIT
 from inner_kernels import as_machine_code
@@ -148,7 +149,7 @@ def test_the_onset_with_friction_obeys_coulombs_law(say, cases):
     for _ in range(cases(200, 2000)):
         n, friction = int(rng.integers(1, 9)), float(rng.uniform(0.05, 1.0))
         columns, b = contact_columns(rng, n), rng.normal(size=6)
-        cone, y = empty_record(ConeWorkspace), np.zeros(6)
+        cone, y, pivots = empty_record(ConeWorkspace), np.zeros(6), empty_record(PivotWorkspace)
         contacts, forces = contacts_with(columns)
         clear_cone(cone, b, WRENCH, np.linalg.norm(b))
         left = residual(contacts, friction, cone)
@@ -164,7 +165,7 @@ def test_the_onset_with_friction_obeys_coulombs_law(say, cases):
         resists = columns[:, 0] @ twist + friction * np.linalg.norm(columns[:, 1:] @ twist, axis=1)
         assert (resists <= 1e-9 * scale * np.linalg.norm(columns[:, 0], axis=1)).all()
         assert b @ twist > 0.0
-        if not onset(contacts, friction, b, cone, y, empty_record(NewtonWorkspace)):
+        if not onset(contacts, friction, b, cone, y, empty_record(NewtonWorkspace), pivots):
             n_unsolved += 1
             continue
         worst = max(worst, violation(columns, b, np.full(n, friction), forces))

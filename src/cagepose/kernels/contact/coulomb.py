@@ -18,13 +18,13 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.cone import ConeWorkspace, clear_cone, cone_residual, steepest_tangent, write_forces
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.coulomb_newton import (
-    OPENS,
     SLIPS,
     STICKS,
     NewtonWorkspace,
     add_carrying,
     newton_on_modes,
 )
+from cagepose.kernels.contact.coulomb_pivots import PivotWorkspace, pivoted_onset
 from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.contact.tolerances import (
     LEAST_SPEED_OF_LAW,
@@ -36,16 +36,13 @@ from cagepose.kernels.contact.tolerances import (
 )
 from cagepose.kernels.native.kernel import kernel
 
-SWEEPS_OF_ALL = 240
-SWEEPS_UNDAMPED = 60
-DAMPING_FACTOR = 0.4
-"""Contacts that take turns in slipping meet half way if each goes only this part of its way."""
+SWEEPS = 60
 FIRST_SWEEPS = 3
 """Newton's method is tried after each of the first sweeps, which mostly show the modes."""
 SWEEPS_BETWEEN = 6
 """After them it is tried each time that so many sweeps have passed."""
-MOST_ENUMERATED = 5
-"""Contacts up to which all combinations of modes are tried if the iteration goes round in circles: 243."""
+TIMES_TURNED = 6
+"""How often the sides of pyramids are turned to the slip."""
 
 
 @kernel
@@ -116,32 +113,31 @@ def solves_with_modes(
 
 
 @kernel
-def solves_with_any_modes(
+def solves_by_pivoting(
     contacts: ContactSet,
     friction: float,
     b: FloatArray,
-    cone: ConeWorkspace,
+    terms: float,
     y: FloatArray,
     newton: NewtonWorkspace,
+    pivots: PivotWorkspace,
 ) -> bool:
-    """Try all combinations of modes, for few contacts, each from the solution in ``cone``."""
-    n_chosen = 0
-    for i in range(contacts.used[0]):
-        if contacts.states[i].counts:
-            n_chosen += 1
-    if n_chosen > MOST_ENUMERATED:
-        return False
-    for combination in range(3**n_chosen):
-        read_cone(contacts, friction, b, cone, y)
-        newton.n_carrying = 0
-        digits = combination
-        for i in range(contacts.used[0]):
-            if contacts.states[i].counts:
-                if digits % 3 != OPENS:
-                    add_carrying(newton, i, digits % 3)
-                digits //= 3
-        if solves_with_modes(contacts, friction, b, cone.passive.terms, y, newton):
-            return True
+    """Whether Newton's method ends in Coulomb's law from what pyramids instead of cones say: first along the tangents,
+    then turned to the slip that they said before.
+    """
+    for k in range(6):
+        y[k] = 0.0
+    for _ in range(TIMES_TURNED):
+        if not pivoted_onset(contacts, friction, b, y, pivots):
+            return False
+        for k in range(6):
+            newton.begun[k] = y[k]
+        for slow in (SLIP_TRIED_STICKING, SLIP_TRIED_LAST):
+            read_modes(contacts, slow * length(y, 6), y, newton)
+            if solves_with_modes(contacts, friction, b, terms, y, newton):
+                return True
+        for k in range(6):
+            y[k] = newton.begun[k]
     return False
 
 
@@ -164,6 +160,7 @@ def coulomb_onset(
     cone: ConeWorkspace,
     y: FloatArray,
     newton: NewtonWorkspace,
+    pivots: PivotWorkspace,
 ) -> bool:
     """Find forces and motion that obey Coulomb's law at every contact; False: none was found.
 
@@ -175,13 +172,13 @@ def coulomb_onset(
         Its solution without correction: where the iteration starts.
     y
         Filled: the scaled twist of the motion, (at least 6,).
-    newton
+    newton, pivots
         Memory.
     """
     terms, states = cone.passive.terms, contacts.states
     for i in range(contacts.used[0]):
         states[i].slip_speed = 0.0
-    for turn in range(1, SWEEPS_OF_ALL + 1):
+    for turn in range(1, SWEEPS + 1):
         read_cone(contacts, friction, b, cone, y)
         if obeys(contacts, friction, terms, y):
             return True
@@ -191,14 +188,12 @@ def coulomb_onset(
             if solves_with_modes(contacts, friction, b, terms, y, newton):
                 return True
             read_cone(contacts, friction, b, cone, y)
-        share = 1.0 if turn <= SWEEPS_UNDAMPED else DAMPING_FACTOR
         for i in range(contacts.used[0]):
-            slip = steepest_tangent(contacts.rows[i], y)[0] if states[i].counts else 0.0
-            states[i].slip_speed += share * (slip - states[i].slip_speed)
+            states[i].slip_speed = steepest_tangent(contacts.rows[i], y)[0] if states[i].counts else 0.0
         clear_cone(cone, b, WRENCH, terms)
         cone.is_corrected = True
         cone_residual(contacts, friction, cone)
-    if solves_with_any_modes(contacts, friction, b, cone, y, newton):
+    if solves_by_pivoting(contacts, friction, b, terms, y, newton, pivots):
         return True
     read_cone(contacts, friction, b, cone, y)
     return coulomb_error(contacts, friction, y) <= VIOLATION_IN_LOADS * terms

@@ -45,7 +45,7 @@ def motion_with_faces(
     """Write the motion that a load begins which these faces do not balance, and the forces; False: none was found."""
     for k in range(6):
         y[k] = work.cone.passive.residual[k]
-    return friction == 0.0 or coulomb_onset(contacts, friction, b, work.cone, y, work.newton)
+    return friction == 0.0 or coulomb_onset(contacts, friction, b, work.cone, y, work.newton, work.pivots)
 
 
 @kernel

@@ -122,7 +122,7 @@ def way_from_tip(
     contacts.used[0] = n_before
     add_point(contacts, i, angle, frame)
     solve_cones(contacts, friction, work)
-    if not coulomb_onset(contacts, friction, work.load, work.cone, work.y, work.newton):
+    if not coulomb_onset(contacts, friction, work.load, work.cone, work.y, work.newton, work.pivots):
         return math.inf
     return angle_to_deepest(contacts, i, angle, work.y, frame)
 

@@ -8,6 +8,7 @@ from cagepose.kernels.algebra.least_squares import PassiveSet
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.cone import ConeWorkspace
 from cagepose.kernels.contact.coulomb_newton import NewtonWorkspace
+from cagepose.kernels.contact.coulomb_pivots import PivotWorkspace
 from cagepose.kernels.contact.metric import ScaledVector
 
 STRESS_LIMIT = 24
@@ -51,7 +52,7 @@ class ContactWorkspace:
     ----------
     load, load_terms
         Given: the scaled wrench of the load, and the length of its terms (which may cancel).
-    cone, newton
+    cone, newton, pivots
         See there. Without a balance ``cone.passive.residual`` is a scaled twist along which the load works and that no
         contact force resists (5.6).
     y, trial
@@ -75,6 +76,7 @@ class ContactWorkspace:
     load_terms: float
     cone: ConeWorkspace
     newton: NewtonWorkspace
+    pivots: PivotWorkspace
     y: ScaledVector
     trial: ScaledVector
     span: PassiveSet
