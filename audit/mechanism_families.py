@@ -18,16 +18,16 @@ ACROSS = Pose(euler_zyx=(0.0, 0.0, np.pi / 2))
 
 
 def cam(rng: Rng) -> Scene:
-    """An eccentric disc on a smooth pin is turned against a wall by a moment about its pin."""
+    """An eccentric disc on a pin is turned against a wall that it cannot pass, by a moment about its pin."""
     radius, off = float(rng.choice([20.0, 30.0, 40.0])), float(rng.choice([2.0, 4.0, 8.0]))
     clearance = float(rng.choice([0.001, 0.01, 0.05]))
-    angle = np.radians(rng.choice([20.0, 30.0, 45.0, 60.0, rng.uniform(5, 80)])) * rng.choice([-1.0, 1.0])
+    angle = np.radians(rng.choice([30.0, 45.0, 60.0, rng.uniform(30, 80)])) * rng.choice([-1.0, 1.0])
     aside = off * np.array([np.cos(angle), 0.0, np.sin(angle)])
     disc = Cylinder(radius * MM, 20 * MM, ACROSS, "cam")
     bore = Hole(
         (5.0 + clearance) * MM, 20 * MM, None, ("cam",), Pose((-aside + (0, -10, 0)) * MM, ACROSS.quaternion_wxyz)
     )
-    gap = rng.choice([0.0, 0.01, 0.5]) * off * (1.0 - np.cos(angle))
+    gap = rng.choice([0.0, 0.01, 0.5]) * (off * (1.0 - np.cos(angle)) - 3.0 * clearance)
     walls: list[Shape] = [
         Cylinder(5 * MM, 60 * MM, ACROSS, "pin"),
         _box((50, 200, 300), (aside[0] + radius + 25 + gap, 0, 0), "wall"),
