@@ -21,7 +21,7 @@ from cagepose.kernels.contact.loads import (
     total_load,
     work_done,
 )
-from cagepose.kernels.contact.metric import moved_along_twist, way_between
+from cagepose.kernels.contact.metric import moved_along_twist, twist_between, way_between
 from cagepose.kernels.contact.on_circle import is_kept
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
@@ -35,8 +35,10 @@ from cagepose.kernels.quasistatic.pushing_out import (
     allow_depths,
     constrain_contacts,
     pushed_out,
+    put_back,
 )
 from cagepose.kernels.quasistatic.setting import Setting
+from cagepose.kernels.quasistatic.straying import STRAYED, strayed_at_most
 
 MAY_SLIP = 0.01
 """Share of the way of a step. What sticks in two places may slip by as much, where it cannot turn without, as in a V.
@@ -45,6 +47,8 @@ TO_FIRST_ORDER = 2.0
 """Times what is worked out to first order."""
 HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
+HALVINGS_TO_FACES = 6
+"""How often a step is halved at whose end contacts cannot be put back on their faces."""
 ROUNDING = 1e-15
 """In lengths of the terms of a load: a slower motion may be no motion."""
 STRAIGHT_TRAVEL = 1e-14
@@ -112,6 +116,19 @@ def work_of_depths(contacts: ContactSet) -> float:
 
 
 @kernel
+def constrain_step(
+    setting: Setting, contacts: ContactSet, twist: Twist, amount: float, hit: Hit, work: StepWorkspace
+) -> float:
+    """Constrain the contacts that stay on their faces in a step, and what is hit; return the way of the step, metres."""
+    constrain_contacts(contacts, setting.tolerances.rounding_m, work.constraints)
+    way = amount * (norm(twist.velocity) + setting.body.reach_m * norm(twist.spin))
+    work.constraints.scratch[0].may_slip_m = max(setting.tolerances.touch_m, MAY_SLIP * way)
+    if hit.feature >= 0:
+        constrain_features(work.constraints, hit.feature, hit.cage_feature, hit.angle, GAP, 0.0)
+    return way
+
+
+@kernel
 def stepped(
     setting: Setting,
     placement: Placement,
@@ -131,12 +148,8 @@ def stepped(
     placement is that of the new pose, or of the old one.
     """
     geometry = setting.geometry
-    constrain_contacts(contacts, setting.tolerances.rounding_m, work.constraints)
-    way = amount * (norm(twist.velocity) + setting.body.reach_m * norm(twist.spin))
-    work.constraints.scratch[0].may_slip_m = max(setting.tolerances.touch_m, MAY_SLIP * way)
+    way = constrain_step(setting, contacts, twist, amount, hit, work)
     moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
-    if hit.feature >= 0:
-        constrain_features(work.constraints, hit.feature, hit.cage_feature, hit.angle, GAP, 0.0)
     done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], work)
     strayed = way_between(moved[0], moved[1], new_position, new_quaternion, setting.body.reach_m)
     if done and strayed <= way + setting.tolerances.touch_m:
@@ -146,6 +159,33 @@ def stepped(
             return True, new_position, new_quaternion
     place_object(geometry, position, quaternion, placement)
     return False, position, quaternion
+
+
+@kernel
+def along_faces(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    work: StepWorkspace,
+) -> tuple[Twist, bool]:
+    """Return the twist that leads, in an amount of one, to where contacts that stay on their faces are on them again at
+    the end of a twist, or a part of it; and whether it is all of it. A travel without end is kept.
+    """
+    if twist.end == math.inf:
+        return twist, True
+    amount = twist.end
+    for halving in range(HALVINGS_TO_FACES):
+        way = constrain_step(setting, contacts, twist, amount, NO_HIT, work)
+        moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
+        done, end, turned = put_back(setting, placement, moved[0], moved[1], work.constraints)
+        if done and way_between(moved[0], moved[1], end, turned, setting.body.reach_m) <= way:
+            velocity, spin = twist_between(position, quaternion, end, turned)
+            return Twist(velocity, straightened(velocity, spin, setting.body.reach_m, 0.0), 1.0), halving == 0
+        amount *= 0.5
+    return Twist(twist.velocity, twist.spin, amount), False
 
 
 @kernel
@@ -164,7 +204,12 @@ def furthest_step(
     nothing is ahead.
     """
     allow_depths(placement, setting.tolerances, work)
-    hit = first_contact(setting, placement, contacts, position, quaternion, twist)
+    reach_m = 0.0
+    if norm(twist.spin) > 0.0:
+        reach_m = STRAYED * strayed_at_most(
+            setting.geometry, placement, contacts, position, quaternion, twist.velocity, twist.spin, twist.end
+        )
+    hit = first_contact(setting, placement, contacts, position, twist, reach_m)
     amount = hit.amount
     edge_crossing = first_edge_crossing(
         setting.geometry,
@@ -175,6 +220,7 @@ def furthest_step(
         twist.velocity,
         twist.spin,
         min(twist.end, amount),
+        reach_m,
         setting.tolerances.touch_m,
     )
     if edge_crossing < amount:

@@ -43,7 +43,7 @@ from cagepose.kernels.outcome.trace import (
     TRAVEL,
     StepRecord,
 )
-from cagepose.kernels.quasistatic.along_twist import furthest_step, longest_step, straightened, turn_of_normals
+from cagepose.kernels.quasistatic.along_twist import along_faces, furthest_step, longest_step, straightened, turn_of_normals
 from cagepose.kernels.quasistatic.first_contact import Twist
 from cagepose.kernels.quasistatic.flight import nothing_ahead
 from cagepose.kernels.quasistatic.implicit_step import (
@@ -355,6 +355,7 @@ def next_step(
         if nothing_ahead(setting, position, quaternion, velocity, spin):
             write_escape(work, step, would_hold, velocity, position, quaternion)
             return ESCAPES, here, fits
+    twist, is_whole = along_faces(setting, work.placement, work.contacts, position, quaternion, twist, work.path)
     amount, as_planned, end, turned = furthest_step(
         setting, work.placement, work.contacts, position, quaternion, twist, work.path
     )
@@ -362,7 +363,7 @@ def next_step(
         write_escape(work, step, would_hold, twist.velocity, position, quaternion)
         return ESCAPES, here, fits
     turn_step = 0.25 * state.turn_step_rad
-    if as_planned:
+    if as_planned and is_whole:
         turn_step = min(2.0 * state.turn_step_rad, setting.turn_step_rad)
     could_rest = setting.friction.greatest > 0.0 and rule != FREE and amount > 0.0
     is_held = could_rest and is_held_on_the_way(setting, end, turned, work)
