@@ -28,6 +28,7 @@ from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
 from cagepose.kernels.quasistatic.first_contact import NO_HIT, Hit, Twist, first_contact
 from cagepose.kernels.quasistatic.projection import (
     GAP,
+    all_meet,
     constrain_features,
 )
 from cagepose.kernels.quasistatic.pushing_out import (
@@ -181,7 +182,8 @@ def along_faces(
         way = constrain_step(setting, contacts, twist, amount, NO_HIT, work)
         moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
         done, end, turned = put_back(setting, placement, moved[0], moved[1], work.constraints)
-        if done and way_between(moved[0], moved[1], end, turned, setting.body.reach_m) <= way:
+        done = done and way_between(moved[0], moved[1], end, turned, setting.body.reach_m) <= way
+        if done and all_meet(setting.geometry, work.constraints, end, turned, placement):
             velocity, spin = twist_between(position, quaternion, end, turned)
             return Twist(velocity, straightened(velocity, spin, setting.body.reach_m, 0.0), 1.0), halving == 0
         amount *= 0.5

@@ -188,6 +188,17 @@ def are_apart(geometry: Geometry, constraint: PositionConstraint, placement: Pla
 
 
 @kernel
+def all_meet(
+    geometry: Geometry, constraints: Constraints, position: Vector, quaternion: Quaternion, placement: Placement
+) -> bool:
+    """Whether all features that are constrained still meet at a pose."""
+    meet = True
+    for i in range(constraints.scratch[0].used):
+        meet = meet and lack(geometry, constraints.rows[i], position, quaternion, placement).value < math.inf
+    return meet
+
+
+@kernel
 def keep_stopped(stopped: PassiveSet, position: Vector, frame: Frame, constraints: Constraints) -> None:
     """Let no projection move along what contacts without play stop: their gaps do not show it, to first order."""
     work = constraints.scratch[0]
