@@ -28,8 +28,10 @@ from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
 from cagepose.kernels.quasistatic.first_contact import NO_HIT, Hit, Twist, first_contact
 from cagepose.kernels.quasistatic.projection import (
     GAP,
-    all_meet,
     constrain_features,
+    depth_left,
+    drop_constraint,
+    lack,
 )
 from cagepose.kernels.quasistatic.pushing_out import (
     StepWorkspace,
@@ -163,6 +165,75 @@ def stepped(
 
 
 @kernel
+def ends_on_faces(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    amount: float,
+    work: StepWorkspace,
+) -> tuple[bool, Vector, Quaternion]:
+    """Whether contacts that stay on their faces can be put back after an amount of a twist, by a way that is shorter; and
+    the pose then.
+    """
+    way = constrain_step(setting, contacts, twist, amount, NO_HIT, work)
+    moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
+    done, end, turned = put_back(setting, placement, moved[0], moved[1], work.constraints)
+    done = done and way_between(moved[0], moved[1], end, turned, setting.body.reach_m) <= way
+    if done:
+        done = depth_left(setting.geometry, work.constraints, end, turned, placement) <= work.allowed_m[0]
+    return done, end, turned
+
+
+@kernel
+def opens_at(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    i: int,
+    position: Vector,
+    quaternion: Quaternion,
+    work: StepWorkspace,
+) -> bool:
+    """Whether a contact that is not constrained has opened at a pose."""
+    row, constraints = contacts.rows[i], work.constraints
+    if not constrain_features(constraints, row.feature, row.cage_feature, row.angle, GAP, 0.0):
+        return False
+    last = constraints.scratch[0].used - 1
+    gap = lack(setting.geometry, constraints.rows[last], position, quaternion, placement).value
+    drop_constraint(constraints, last)
+    return setting.tolerances.rounding_m < gap < math.inf
+
+
+@kernel
+def ends_with_one_open(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    amount: float,
+    work: StepWorkspace,
+) -> tuple[bool, Vector, Quaternion]:
+    """As `ends_on_faces` where one of the contacts opens, by the square of the way: of four feet on a floor that bends
+    three carry. It carries nothing any more then.
+    """
+    for i in range(contacts.used[0]):
+        state, carried = contacts.states[i], contacts.states[i].forces[0]
+        if carried == 0.0 or state.is_locked or state.is_sticking or state.stays_flat:
+            continue
+        state.forces[0] = 0.0
+        done, end, turned = ends_on_faces(setting, placement, contacts, position, quaternion, twist, amount, work)
+        if done and opens_at(setting, placement, contacts, i, end, turned, work):
+            return True, end, turned
+        state.forces[0] = carried
+    return False, position, quaternion
+
+
+@kernel
 def along_faces(
     setting: Setting,
     placement: Placement,
@@ -175,15 +246,17 @@ def along_faces(
     """Return the twist that leads, in an amount of one, to where contacts that stay on their faces are on them again at
     the end of a twist, or a part of it; and whether it is all of it. A travel without end is kept.
     """
+    allow_depths(placement, setting.tolerances, work)
     if twist.end == math.inf:
         return twist, True
     amount = twist.end
     for halving in range(HALVINGS_TO_FACES):
-        way = constrain_step(setting, contacts, twist, amount, NO_HIT, work)
-        moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
-        done, end, turned = put_back(setting, placement, moved[0], moved[1], work.constraints)
-        done = done and way_between(moved[0], moved[1], end, turned, setting.body.reach_m) <= way
-        if done and all_meet(setting.geometry, work.constraints, end, turned, placement):
+        done, end, turned = ends_on_faces(setting, placement, contacts, position, quaternion, twist, amount, work)
+        if not done:
+            done, end, turned = ends_with_one_open(
+                setting, placement, contacts, position, quaternion, twist, amount, work
+            )
+        if done:
             velocity, spin = twist_between(position, quaternion, end, turned)
             return Twist(velocity, straightened(velocity, spin, setting.body.reach_m, 0.0), 1.0), halving == 0
         amount *= 0.5
@@ -200,12 +273,11 @@ def furthest_step(
     twist: Twist,
     work: StepWorkspace,
 ) -> tuple[float, bool, Vector, Quaternion]:
-    """Go along a twist to its end, the first contact or the edge of a face that carries, or less if need be.
+    """After `along_faces`: go along a twist to its end, the first contact or the edge of a face that carries, or less if need be.
 
     Return (amount, whether it went as far as it should, position, quaternion); amount 0: it could not move; inf:
     nothing is ahead.
     """
-    allow_depths(placement, setting.tolerances, work)
     reach_m = 0.0
     if norm(twist.spin) > 0.0:
         reach_m = STRAYED * strayed_at_most(

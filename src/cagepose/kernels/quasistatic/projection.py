@@ -188,14 +188,17 @@ def are_apart(geometry: Geometry, constraint: PositionConstraint, placement: Pla
 
 
 @kernel
-def all_meet(
+def depth_left(
     geometry: Geometry, constraints: Constraints, position: Vector, quaternion: Quaternion, placement: Placement
-) -> bool:
-    """Whether all features that are constrained still meet at a pose."""
-    meet = True
+) -> float:
+    """Return how much deeper than they should be constrained features are at a pose, at most, metres; inf: some do not
+    meet any more.
+    """
+    deepest = 0.0
     for i in range(constraints.scratch[0].used):
-        meet = meet and lack(geometry, constraints.rows[i], position, quaternion, placement).value < math.inf
-    return meet
+        value = lack(geometry, constraints.rows[i], position, quaternion, placement).value
+        deepest = max(deepest, -value if value < math.inf else math.inf)
+    return deepest
 
 
 @kernel
