@@ -115,7 +115,9 @@ def spare_friction(contacts: ContactSet, friction: float, b: FloatArray, terms: 
         if left <= RESIDUAL_AT_LIMIT:
             write_forces(work.cone, used, contacts)
             work.residual = left
-            break
+            return HELD_BY_FRICTION
+    work.residual = least_residual(contacts, friction, b, terms, work)
+    write_forces(work.cone, friction, contacts)
     return HELD_BY_FRICTION
 
 
