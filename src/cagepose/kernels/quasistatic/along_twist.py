@@ -28,6 +28,7 @@ from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
 from cagepose.kernels.quasistatic.first_contact import NO_HIT, Hit, Twist, first_contact
 from cagepose.kernels.quasistatic.projection import (
     GAP,
+    ON_FACE,
     constrain_features,
     depth_left,
     drop_constraint,
@@ -50,6 +51,10 @@ TO_FIRST_ORDER = 2.0
 """Times what is worked out to first order."""
 HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
+LEAST_SPEED = 1e-300
+"""Metres for each unit of an amount: a slower motion is a turn."""
+SECANTS = 6
+"""How often what is hit is looked for on the path."""
 HALVINGS_TO_FACES = 6
 """How often a step is halved at whose end contacts cannot be put back on their faces."""
 ROUNDING = 1e-15
@@ -188,6 +193,54 @@ def ends_on_faces(
 
 
 @kernel
+def gap_at(
+    setting: Setting, placement: Placement, hit: Hit, position: Vector, quaternion: Quaternion, work: StepWorkspace
+) -> float:
+    """Return the gap, at a pose, of features that are not constrained, metres; inf: they do not meet, or are."""
+    constraints = work.constraints
+    if not constrain_features(constraints, hit.feature, hit.cage_feature, hit.angle, GAP, 0.0):
+        return math.inf
+    last = constraints.scratch[0].used - 1
+    gap = lack(setting.geometry, constraints.rows[last], position, quaternion, placement).value
+    drop_constraint(constraints, last)
+    return gap
+
+
+@kernel
+def hit_on_path(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    hit: Hit,
+    work: StepWorkspace,
+) -> float:
+    """Return after which amount of a twist what is hit is reached where contacts that stay on their faces are on them:
+    the root of its gap there, by secants from what a screw says.
+
+    A gap that is closed by the projection afterwards would turn an object aside that reaches two things at once.
+    """
+    before, gap_before = 0.0, gap_at(setting, placement, hit, position, quaternion, work)
+    amount, best, least = hit.amount, hit.amount, math.inf
+    for _ in range(SECANTS):
+        done, end, turned = ends_on_faces(setting, placement, contacts, position, quaternion, twist, amount, work)
+        if not done:
+            break
+        gap = gap_at(setting, placement, hit, end, turned, work)
+        if not abs(gap) < least or amount == before:
+            break
+        best, least = amount, abs(gap)
+        slope = (gap - gap_before) / (amount - before)
+        before, gap_before = amount, gap
+        if least <= ON_FACE * setting.size_m or not slope < 0.0:
+            break
+        amount = min(max(amount - gap / slope, 0.5 * amount), twist.end)
+    return best
+
+
+@kernel
 def opens_at(
     setting: Setting,
     placement: Placement,
@@ -198,13 +251,9 @@ def opens_at(
     work: StepWorkspace,
 ) -> bool:
     """Whether a contact that is not constrained has opened at a pose."""
-    row, constraints = contacts.rows[i], work.constraints
-    if not constrain_features(constraints, row.feature, row.cage_feature, row.angle, GAP, 0.0):
-        return False
-    last = constraints.scratch[0].used - 1
-    gap = lack(setting.geometry, constraints.rows[last], position, quaternion, placement).value
-    drop_constraint(constraints, last)
-    return setting.tolerances.rounding_m < gap < math.inf
+    row = contacts.rows[i]
+    one = Hit(0.0, row.feature, row.cage_feature, row.angle)
+    return setting.tolerances.rounding_m < gap_at(setting, placement, one, position, quaternion, work) < math.inf
 
 
 @kernel
@@ -244,12 +293,13 @@ def along_faces(
     work: StepWorkspace,
 ) -> tuple[Twist, bool]:
     """Return the twist that leads, in an amount of one, to where contacts that stay on their faces are on them again at
-    the end of a twist, or a part of it; and whether it is all of it. A travel without end is kept.
+    the end of a twist, after the way of a size of the scene or a part of it; and whether it is all of it. A travel
+    without end is kept.
     """
     allow_depths(placement, setting.tolerances, work)
     if twist.end == math.inf:
         return twist, True
-    amount = twist.end
+    amount = min(twist.end, setting.size_m / max(norm(twist.velocity), LEAST_SPEED))
     for halving in range(HALVINGS_TO_FACES):
         done, end, turned = ends_on_faces(setting, placement, contacts, position, quaternion, twist, amount, work)
         if not done:
@@ -284,6 +334,9 @@ def furthest_step(
             setting.geometry, placement, contacts, position, quaternion, twist.velocity, twist.spin, twist.end
         )
     hit = first_contact(setting, placement, contacts, position, twist, reach_m)
+    if hit.feature >= 0 and norm(twist.spin) > 0.0:
+        amount = hit_on_path(setting, placement, contacts, position, quaternion, twist, hit, work)
+        hit = Hit(amount, hit.feature, hit.cage_feature, hit.angle)
     amount = hit.amount
     edge_crossing = first_edge_crossing(
         setting.geometry,
