@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from cagepose.kernels.algebra.motion import motion_of
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import (
     Vector,
@@ -24,7 +25,7 @@ from cagepose.kernels.contact.loads import (
 from cagepose.kernels.contact.metric import moved_along_twist, twist_between, way_between
 from cagepose.kernels.contact.on_circle import is_kept
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
+from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing, still_meet
 from cagepose.kernels.quasistatic.first_contact import NO_HIT, Hit, Twist, first_contact
 from cagepose.kernels.quasistatic.projection import (
     GAP,
@@ -53,6 +54,10 @@ HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
 LEAST_SPEED = 1e-300
 """Metres for each unit of an amount: a slower motion is a turn."""
+SLANTED, NEAR_END = 8.0, 0.25
+"""Times what contacts stray, that where one ends may be off along the way; and, in touch tolerances, how near to that
+it is looked for.
+"""
 SECANTS = 6
 """How often what is hit is looked for on the path."""
 HALVINGS_TO_FACES = 6
@@ -241,6 +246,62 @@ def hit_on_path(
 
 
 @kernel
+def meets_on_path(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    i: int,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    amount: float,
+    work: StepWorkspace,
+) -> bool:
+    """Whether a contact still reaches where its features meet, after an amount of a twist and back on the faces."""
+    done, end, turned = ends_on_faces(setting, placement, contacts, position, quaternion, twist, amount, work)
+    if not done:
+        return False
+    velocity, spin = twist_between(position, quaternion, end, turned)
+    motion, touch_m = motion_of(position, velocity, spin), setting.tolerances.touch_m
+    return still_meet(setting.geometry, placement, contacts, i, motion, 1.0, touch_m, 0.0)
+
+
+@kernel
+def crossing_on_path(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    i: int,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    crossing: float,
+    reach_m: float,
+    work: StepWorkspace,
+) -> float:
+    """Return after which amount of a twist a contact leaves its face where contacts are on their faces, by halving, from
+    what a screw says, which strays by at most ``reach_m``; inf: it does not, up to the end of the twist.
+    """
+    speed = norm(twist.velocity) + setting.body.reach_m * norm(twist.spin)
+    low, high = max(crossing - SLANTED * reach_m / speed, 0.0), min(crossing + SLANTED * reach_m / speed, twist.end)
+    if not meets_on_path(setting, placement, contacts, i, position, quaternion, twist, low, work):
+        low = 0.0
+    if meets_on_path(setting, placement, contacts, i, position, quaternion, twist, high, work):
+        low, high = high, twist.end
+        if low == high or meets_on_path(setting, placement, contacts, i, position, quaternion, twist, high, work):
+            return math.inf
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if (high - low) * speed <= NEAR_END * setting.tolerances.touch_m or not low < middle < high:
+            break
+        if meets_on_path(setting, placement, contacts, i, position, quaternion, twist, middle, work):
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+@kernel
 def opens_at(
     setting: Setting,
     placement: Placement,
@@ -294,10 +355,11 @@ def along_faces(
 ) -> tuple[Twist, bool]:
     """Return the twist that leads, in an amount of one, to where contacts that stay on their faces are on them again at
     the end of a twist, after the way of a size of the scene or a part of it; and whether it is all of it. A travel
-    without end is kept.
+    without end is kept, and so is a motion that nothing guides.
     """
     allow_depths(placement, setting.tolerances, work)
-    if twist.end == math.inf:
+    constrain_contacts(contacts, setting.tolerances.rounding_m, work.constraints)
+    if twist.end == math.inf or work.constraints.scratch[0].used == 0:
         return twist, True
     amount = min(twist.end, setting.size_m / max(norm(twist.velocity), LEAST_SPEED))
     for halving in range(HALVINGS_TO_FACES):
@@ -338,7 +400,7 @@ def furthest_step(
         amount = hit_on_path(setting, placement, contacts, position, quaternion, twist, hit, work)
         hit = Hit(amount, hit.feature, hit.cage_feature, hit.angle)
     amount = hit.amount
-    edge_crossing = first_edge_crossing(
+    edge_crossing, leaving = first_edge_crossing(
         setting.geometry,
         placement,
         contacts,
@@ -350,6 +412,10 @@ def furthest_step(
         reach_m,
         setting.tolerances.touch_m,
     )
+    if edge_crossing < amount and norm(twist.spin) > 0.0:
+        edge_crossing = crossing_on_path(
+            setting, placement, contacts, leaving, position, quaternion, twist, edge_crossing, reach_m, work
+        )
     if edge_crossing < amount:
         amount, hit = edge_crossing, NO_HIT
     if twist.end < amount:
