@@ -14,7 +14,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from audit.families import FAMILIES, ROUND
+from audit.families import FAMILIES, ROUND, WITH_SHAPES
 from audit.oracles import Finding, examine_drawn
 from audit.report import read_known, show_endings, show_failures, show_mended, show_oracles, show_times
 
@@ -66,8 +66,8 @@ def main() -> int:
 
 def _all(families: Sequence[str], n_scenes: int) -> list[tuple[str, int]]:
     """Family by family in turn, so that slow ones are spread over the processes."""
-    is_mixed = not set(families) <= set(ROUND)
-    shares = [1 / FEWER if is_mixed and family in ROUND else 1.0 for family in families]
+    is_mixed = not set(families) <= set(WITH_SHAPES)
+    shares = [1 / FEWER if is_mixed and family in WITH_SHAPES else 1.0 for family in families]
     counts = [math.ceil(n_scenes * share / sum(shares)) for share in shares]
     return [
         (family, index)

@@ -68,6 +68,8 @@ NUMBERED: dict[str, Callable[[int], Scene]] = {
 """Families of one drawing each, whose index sets the friction."""
 
 ROUND = ("tapered-pin", "square-hole", "ball-on-hole", "peg", "countersunk", "coin", "roller")
+"""Families with circles."""
+WITH_SHAPES = (*ROUND, "cam", "v-rollers", "dovetail", "puck", "ordinary")
 """Families with other shapes than points and boxes, which take most of the time: a quarter as many are asked, unless
 they are asked alone.
 """

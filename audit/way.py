@@ -28,7 +28,9 @@ LEAST_SAMPLES, MOST_SAMPLES = 8, 200
 
 
 def potential_falls(run: Run) -> Answer:
-    """From pose to pose of all events and their paths, the load does no negative work."""
+    """From pose to pose of all events and their paths, the load does no negative work; moments have no potential."""
+    if any(load.moments for load in run.scene.loads):
+        return None
     found = []
     for phase in run.phases:
         acts = acting(run.scene, load_of(run.scene, phase.name))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from audit.families import FAMILIES, ROUND, make_case
+from audit.families import FAMILIES, WITH_SHAPES, make_case
 from audit.groups import groups
 from cagepose import Box, Cage, Load, Object, Pose, Run, Scene, load_run, load_scene, margin, run, save_run
 
@@ -77,7 +77,7 @@ def test_the_margin_of_a_run_that_tells_no_groups_is_that_of_one_that_does(name:
             assert [c.point for c in one.contacts] == [c.point for c in other.contacts]
 
 
-@pytest.mark.parametrize("family", sorted(set(FAMILIES) - set(ROUND)))
+@pytest.mark.parametrize("family", sorted(set(FAMILIES) - set(WITH_SHAPES)))
 def test_groups_are_those_that_are_found_anew(family: str, cases) -> None:  # type: ignore[no-untyped-def]
     answers = [groups(run(make_case(family, index, 1).scene)) for index in range(cases(4, 60))]
     assert [answer for answer in answers if answer] == []

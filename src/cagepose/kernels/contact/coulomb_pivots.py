@@ -76,13 +76,15 @@ def n_generators(contacts: ContactSet, i: int) -> int:
 @kernel
 def generator_at(contacts: ContactSet, i: int, which: int, k: int, work: PivotWorkspace) -> float:
     """Return one number of a contact's force: the normal one, or one along a side of its pyramid."""
-    columns = contacts.rows[i].columns
+    columns, one, two = contacts.rows[i].columns, work.sides[i, 0], work.sides[i, 1]
+    sign = 1.0 if which % 2 == 1 else -1.0
     if which == 0:
-        return columns[0, k]
-    one, two, sign = work.sides[i, 0], work.sides[i, 1], 1.0 if which % 2 == 1 else -1.0
-    if which <= 2:
-        return sign * (one * columns[1, k] + two * columns[2, k])
-    return sign * (one * columns[2, k] - two * columns[1, k])
+        number = columns[0, k]
+    elif which <= 2:
+        number = sign * (one * columns[1, k] + two * columns[2, k])
+    else:
+        number = sign * (one * columns[2, k] - two * columns[1, k])
+    return float(number)
 
 
 @kernel
@@ -175,11 +177,9 @@ def solves_by_pivots(n: int, work: PivotWorkspace) -> bool:
 
 
 @kernel
-def pivoted_onset(
-    contacts: ContactSet, friction: float, b: FloatArray, y: FloatArray, work: PivotWorkspace
-) -> bool:
-    """Write the forces and the motion of the problem with pyramids that are turned to the slip of a motion ``y``; False:
-    none were found.
+def pivoted_onset(contacts: ContactSet, friction: float, b: FloatArray, y: FloatArray, work: PivotWorkspace) -> bool:
+    """Write the forces and the motion of the problem with pyramids that are turned to the slip of a motion ``y``, into
+    which that is written; False: none were found.
     """
     n = number_pivoted(contacts, y, work)
     if n <= 0:
