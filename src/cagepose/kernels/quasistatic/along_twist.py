@@ -39,11 +39,12 @@ from cagepose.kernels.quasistatic.pushing_out import (
     StepWorkspace,
     allow_depths,
     constrain_contacts,
+    has_fixed,
     pushed_out,
     put_back,
 )
 from cagepose.kernels.quasistatic.setting import Setting
-from cagepose.kernels.quasistatic.straying import STRAYED, strayed_at_most
+from cagepose.kernels.quasistatic.straying import STRAYED, STRAYED_AROUND, strayed_at_most
 
 MAY_SLIP = 0.01
 """Share of the way of a step. What sticks in two places may slip by as much, where it cannot turn without, as in a V.
@@ -392,7 +393,7 @@ def furthest_step(
     """
     reach_m = 0.0
     if norm(twist.spin) > 0.0:
-        reach_m = STRAYED * strayed_at_most(
+        reach_m = (STRAYED_AROUND if has_fixed(contacts) else STRAYED) * strayed_at_most(
             setting.geometry, placement, contacts, position, quaternion, twist.velocity, twist.spin, twist.end
         )
     hit = first_contact(setting, placement, contacts, position, twist, reach_m)
