@@ -44,7 +44,7 @@ from cagepose.kernels.quasistatic.pushing_out import (
     put_back,
 )
 from cagepose.kernels.quasistatic.setting import Setting
-from cagepose.kernels.quasistatic.straying import STRAYED, STRAYED_AROUND, strayed_at_most
+from cagepose.kernels.quasistatic.straying import STRAYED, strayed_at_most
 
 MAY_SLIP = 0.01
 """Share of the way of a step. What sticks in two places may slip by as much, where it cannot turn without, as in a V.
@@ -356,11 +356,12 @@ def along_faces(
 ) -> tuple[Twist, bool]:
     """Return the twist that leads, in an amount of one, to where contacts that stay on their faces are on them again at
     the end of a twist, after the way of a size of the scene or a part of it; and whether it is all of it. A travel
-    without end is kept, and so is a motion that nothing guides.
+    without end is kept, and so is a motion that nothing guides, and one of a circle that lies flat or fits all around,
+    whose places change as it tilts.
     """
     allow_depths(placement, setting.tolerances, work)
     constrain_contacts(contacts, setting.tolerances.rounding_m, work.constraints)
-    if twist.end == math.inf or work.constraints.scratch[0].used == 0:
+    if twist.end == math.inf or work.constraints.scratch[0].used == 0 or has_fixed(contacts):
         return twist, True
     amount = min(twist.end, setting.size_m / max(norm(twist.velocity), LEAST_SPEED))
     for halving in range(HALVINGS_TO_FACES):
@@ -393,7 +394,7 @@ def furthest_step(
     """
     reach_m = 0.0
     if norm(twist.spin) > 0.0:
-        reach_m = (STRAYED_AROUND if has_fixed(contacts) else STRAYED) * strayed_at_most(
+        reach_m = STRAYED * strayed_at_most(
             setting.geometry, placement, contacts, position, quaternion, twist.velocity, twist.spin, twist.end
         )
     hit = first_contact(setting, placement, contacts, position, twist, reach_m)

@@ -18,8 +18,6 @@ from cagepose.kernels.quasistatic.pushing_out import is_fixed
 
 STRAYED = 2.0
 """Times the way that contacts stray: a point or an edge that was nearer than this is met because they do."""
-STRAYED_AROUND = 8.0
-"""The same where a circle is kept at places all around: between these it goes deeper as it tilts."""
 
 
 @kernel
