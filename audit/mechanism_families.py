@@ -90,16 +90,12 @@ def puck(rng: Rng) -> Scene:
     along = np.array([np.cos(angle), np.sin(angle), float(rng.choice([0.0, -1.0, 0.5]))])
     at = np.array([*(radius * along[:2] * rng.choice([-1.0, 0.0, 1.0])), thick])
     force = Force(along, at * MM, float(rng.choice([1.0, 5.0])))
-    loads = [_gravity(), Load("push", gravity=(0, 0, -9.81), forces=[force])]
+    loads = [Load(name, gravity=(0, 0, -9.81), forces=pushes) for name, pushes in (("weight", []), ("push", [force]))]
     return Scene(held, Cage(shapes=[block], holes=[bore]), loads, friction_coefficient=_mu(rng))
 
 
 def _mu(rng: Rng) -> float:
     return float(rng.choice(FRICTIONS))
-
-
-def _gravity() -> Load:
-    return Load("weight", gravity=(0, 0, -9.81))
 
 
 def _pushes(rng: Rng, reach_mm: FloatArray, *, at_corner: bool = False) -> Load:

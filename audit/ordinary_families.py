@@ -28,7 +28,7 @@ def ordinary(rng: Rng) -> Scene:
 
 
 def _block_in_tray(rng: Rng) -> tuple[Object, Cage, FloatArray]:
-    """A block in a tray of four walls, dropped or laid, flat or turned about the vertical."""
+    """A block in a tray of one to four walls, dropped or laid."""
     size, play = _size(rng), float(rng.choice(PLAYS))
     low = size[:2] / 2 + play
     walls: list[Shape] = [_box((200, 200, 10), (0, 0, -5), "floor")]
@@ -69,7 +69,7 @@ def _shaft_in_bores(rng: Rng) -> tuple[Object, Cage, FloatArray]:
 
 
 def _bar_in_vees(rng: Rng) -> tuple[Object, Cage, FloatArray]:
-    """A round bar or a ball in two V blocks, or in a V groove, with a stop."""
+    """A bar with flat or round ends in two V blocks, or in a V groove, with a stop."""
     radius = float(rng.choice([5.0, 8.0, 10.0]))
     cheeks: list[Shape] = []
     for x, long in [(-30.0, 10.0), (30.0, 10.0)] if rng.random() < 0.5 else [(0.0, 100.0)]:
@@ -92,11 +92,8 @@ def _bracket(rng: Rng) -> tuple[Object, Cage, FloatArray]:
     play = float(rng.choice(PLAYS))
     boxes = [
         Box(np.array([long, 30, thick]) * MM, _at(-long / 2, 0, thick / 2), "top"),
-        Box(np.array([thick, 30, long]) * MM, _at(thick / 2 + play, 0, thick - long / 2), "side"),
+        Box(np.array([thick + play, 30, long]) * MM, _at((thick + play) / 2, 0, thick - long / 2), "side"),
     ]
-    if play > 0.0:
-        boxes[1] = Box(np.array([thick + play, 30, long]) * MM, _at((thick + play) / 2, 0, thick - long / 2), "side")
-        boxes[0] = Box(np.array([long, 30, thick]) * MM, _at(-long / 2, 0, thick / 2), "top")
     block: list[Shape] = [_box((80, 80, 80), (-40 - play, 0, -40), "block")]
     if rng.random() < 0.5:
         block.append(_box((20, 10, 40), (-20, 20 + play, 0), "cheek"))
@@ -124,7 +121,7 @@ def _stool(rng: Rng) -> tuple[Object, Cage, FloatArray]:
 
 
 def _plug(rng: Rng) -> tuple[Object, Cage, FloatArray]:
-    """A plug of one or two round pins in a socket plate."""
+    """A plug of two round pins in a socket plate."""
     radius, play = float(rng.choice([2.0, 4.0])), float(rng.choice([0.02, 0.1, 0.3]))
     apart = float(rng.choice([10.0, 19.0]))
     pins: list[Shape] = [Box(np.array([40, 20, 10]) * MM, _at(0, 0, 5), "body")]

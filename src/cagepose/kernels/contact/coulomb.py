@@ -24,7 +24,7 @@ from cagepose.kernels.contact.coulomb_newton import (
     add_carrying,
     newton_on_modes,
 )
-from cagepose.kernels.contact.coulomb_pivots import PivotWorkspace, pivoted_onset
+from cagepose.kernels.contact.coulomb_pivots import PivotWorkspace, pivot_to_forces
 from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.contact.tolerances import (
     LEAST_SPEED_OF_LAW,
@@ -126,18 +126,17 @@ def solves_by_pivoting(
     then turned to the slip that they said before.
     """
     for k in range(6):
-        y[k] = 0.0
+        pivots.turned_to[k] = 0.0
     for _ in range(TIMES_TURNED):
-        if not pivoted_onset(contacts, friction, b, y, pivots):
+        if not pivot_to_forces(contacts, friction, b, pivots):
             return False
+        motion_left(contacts, b, y)
         for k in range(6):
-            newton.begun[k] = y[k]
+            pivots.turned_to[k] = y[k]
         for slow in (SLIP_TRIED_STICKING, SLIP_TRIED_LAST):
             read_modes(contacts, slow * length(y, 6), y, newton)
             if solves_with_modes(contacts, friction, b, terms, y, newton):
                 return True
-        for k in range(6):
-            y[k] = newton.begun[k]
     return False
 
 

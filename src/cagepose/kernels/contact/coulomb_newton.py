@@ -41,8 +41,6 @@ class NewtonWorkspace:
         Which unknown each column holds, and memory, see `eliminate`.
     changes
         What a step adds to each unknown.
-    begun
-        The motion that the first step began from.
     """
 
     n_carrying: int
@@ -53,7 +51,6 @@ class NewtonWorkspace:
     order: Annotated[IntArray, UNKNOWNS]
     greatest_of: Annotated[FloatArray, UNKNOWNS]
     changes: Annotated[FloatArray, UNKNOWNS]
-    begun: Annotated[FloatArray, 6]
 
 
 @kernel

@@ -14,6 +14,7 @@ from cagepose.kernels.algebra.least_squares import length
 from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.contact.cone import steepest_tangent
 from cagepose.kernels.contact.contact_set import ContactSet, is_smooth
+from cagepose.kernels.contact.metric import ScaledVector
 from cagepose.kernels.native.kernel import kernel
 
 PIVOTED_LIMIT = 16
@@ -42,26 +43,27 @@ class PivotWorkspace:
         is complementary to them, and 2 n is Lemke's.
     firsts
         The first unknown of each contact; -1: it does not count.
-    sides
-        Unit vectors of each contact's pyramid in its tangents: one along the slip.
+    turned_to, sides
+        The motion to whose slip pyramids are turned, and a side of each contact's, in its tangents: along that slip.
     """
 
     dictionary: Annotated[FloatArray, UNKNOWNS, UNKNOWNS + 2]
     basic: Annotated[IntArray, UNKNOWNS]
     other: Annotated[IntArray, UNKNOWNS + 1]
     firsts: Annotated[IntArray, PIVOTED_LIMIT]
+    turned_to: ScaledVector
     sides: Annotated[FloatArray, PIVOTED_LIMIT, 2]
 
 
 @kernel
-def number_pivoted(contacts: ContactSet, y: FloatArray, work: PivotWorkspace) -> int:
-    """Number the unknowns, and turn each pyramid to the slip of a motion; return how many, -1: too many."""
+def number_pivoted(contacts: ContactSet, work: PivotWorkspace) -> int:
+    """Number the unknowns, and turn each pyramid; return how many, -1: too many."""
     n = 0
     if contacts.used[0] > PIVOTED_LIMIT:
         return -1
     for i in range(contacts.used[0]):
         work.firsts[i] = n if contacts.states[i].counts else -1
-        _, work.sides[i, 0], work.sides[i, 1] = steepest_tangent(contacts.rows[i], y)
+        _, work.sides[i, 0], work.sides[i, 1] = steepest_tangent(contacts.rows[i], work.turned_to)
         if contacts.states[i].counts:
             n += 1 if is_smooth(contacts.rows[i]) else 2 + SIDES
     return n
@@ -74,17 +76,20 @@ def n_generators(contacts: ContactSet, i: int) -> int:
 
 
 @kernel
+def side_of(i: int, which: int, work: PivotWorkspace) -> tuple[float, float]:
+    """Return a side of a contact's pyramid in its tangents: ``which`` from 1 to `SIDES`, opposite ones in pairs."""
+    one, two, sign = work.sides[i, 0], work.sides[i, 1], 1.0 if which % 2 == 1 else -1.0
+    return (sign * one, sign * two) if which <= 2 else (-sign * two, sign * one)
+
+
+@kernel
 def generator_at(contacts: ContactSet, i: int, which: int, k: int, work: PivotWorkspace) -> float:
     """Return one number of a contact's force: the normal one, or one along a side of its pyramid."""
-    columns, one, two = contacts.rows[i].columns, work.sides[i, 0], work.sides[i, 1]
-    sign = 1.0 if which % 2 == 1 else -1.0
+    columns = contacts.rows[i].columns
     if which == 0:
-        number = columns[0, k]
-    elif which <= 2:
-        number = sign * (one * columns[1, k] + two * columns[2, k])
-    else:
-        number = sign * (one * columns[2, k] - two * columns[1, k])
-    return float(number)
+        return float(columns[0, k])
+    one, two = side_of(i, which, work)
+    return float(one * columns[1, k] + two * columns[2, k])
 
 
 @kernel
@@ -177,11 +182,11 @@ def solves_by_pivots(n: int, work: PivotWorkspace) -> bool:
 
 
 @kernel
-def pivoted_onset(contacts: ContactSet, friction: float, b: FloatArray, y: FloatArray, work: PivotWorkspace) -> bool:
-    """Write the forces and the motion of the problem with pyramids that are turned to the slip of a motion ``y``, into
-    which that is written; False: none were found.
+def pivot_to_forces(contacts: ContactSet, friction: float, b: FloatArray, work: PivotWorkspace) -> bool:
+    """Write the forces of the problem with pyramids that are turned to the slip of ``work.turned_to``; False: none were
+    found.
     """
-    n = number_pivoted(contacts, y, work)
+    n = number_pivoted(contacts, work)
     if n <= 0:
         return False
     write_dictionary(contacts, friction, b, n, work)
@@ -193,22 +198,13 @@ def pivoted_onset(contacts: ContactSet, friction: float, b: FloatArray, y: Float
     for row in range(n):
         unknown, force = work.basic[row] - n, max(work.dictionary[row, n + 1], 0.0)
         for i in range(contacts.used[0] if unknown >= 0 else 0):
-            which = unknown - work.firsts[i]
+            which, forces = unknown - work.firsts[i], contacts.states[i].forces
             if work.firsts[i] < 0 or not 0 <= which < n_generators(contacts, i):
                 continue
-            forces, one, two = contacts.states[i].forces, work.sides[i, 0], work.sides[i, 1]
-            sign = 1.0 if which % 2 == 1 else -1.0
             if which == 0:
                 forces[0] = force
-            elif which <= 2:
-                forces[1] += sign * force * one
-                forces[2] += sign * force * two
-            else:
-                forces[1] -= sign * force * two
-                forces[2] += sign * force * one
-    for k in range(6):
-        y[k] = b[k]
-        for i in range(contacts.used[0]):
-            for j in range(3):
-                y[k] -= contacts.rows[i].columns[j, k] * contacts.states[i].forces[j]
+                continue
+            one, two = side_of(i, which, work)
+            forces[1] += force * one
+            forces[2] += force * two
     return True
