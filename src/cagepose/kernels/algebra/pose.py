@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.algebra.vector import Matrix, Vector, cross, minus, plus, scaled
+from cagepose.kernels.algebra.vector import Matrix, Vector, cross, minus, norm, plus, scaled
 from cagepose.kernels.native.kernel import entry, kernel
 
 Quaternion = tuple[float, float, float, float]
@@ -37,6 +37,16 @@ def turned_by(p: Quaternion, q: Quaternion) -> float:
     """Return twice the sine of half the angle between two orientations: the angle, where it is small."""
     turn = quaternion_product(q, (p[0], -p[1], -p[2], -p[3]))
     return 2.0 * math.sqrt(turn[1] ** 2 + turn[2] ** 2 + turn[3] ** 2)
+
+
+@kernel
+def rotation_vector(start: Quaternion, end: Quaternion) -> Vector:
+    """Return axis times angle, radians, of one step's turn; quaternions keep their sign from step to step."""
+    back = (start[0], -start[1], -start[2], -start[3])
+    turn = quaternion_product(end, back)
+    vector = (turn[1], turn[2], turn[3])
+    sine = norm(vector)
+    return scaled(vector, 2.0 * math.atan2(sine, turn[0]) / sine) if sine > 0.0 else (0.0, 0.0, 0.0)
 
 
 @kernel

@@ -30,6 +30,7 @@ from cagepose.kernels.boundary.first_touch import clear_step, distance_from, fir
 from cagepose.kernels.boundary.kept_meetings import hold_places, is_beside_kept, is_there, passes_axis
 from cagepose.kernels.boundary.meeting import both_reach, meeting
 from cagepose.kernels.boundary.meetings import (
+    MOST_SLACK,
     PLACES_AROUND,
     can_touch,
     find_circle_places,
@@ -412,7 +413,7 @@ def first_of_curved(
             row.angle, row.other_angle, row.is_held = place.angle, place.other_angle, is_held
             row.depth_m, row.is_grazing = math.inf if (is_passed or is_deep) and not is_grazing else depth, is_grazing
             n_kept += 1
-    exact, reach_m = max(LEAST_SLACK, touch_m / search.size_m), reach_of(search)
+    exact, reach_m = tilt_of(search, one, other), reach_of(search)
     places, waiting, kept = meetings.places, meetings.waiting, meetings.kept
     found = first_touch_of_curved(
         held, i, cage, j, search.motion, until, exact, reach_m, touch_m, moved, places, waiting, kept, n_kept
@@ -460,9 +461,18 @@ def first_of_features(
         if one.kind == LINE and other.kind == LINE:
             crossed = cross(vector_from(held.features[i].direction), vector_from(cage.features[j].direction))
             side = -math.copysign(1.0, dot(met.normal, crossed))
-    exact = max(LEAST_SLACK, touch_m / search.size_m)
+    exact = tilt_of(search, one, other)
     reach_m, waiting = reach_of(search), meetings.waiting
     return first_touch(held, i, cage, j, motion, until, level, side, exact, touch_m, reach_m, moved, waiting)
+
+
+@kernel
+def tilt_of(search: Search, one: Feature, other: Feature) -> float:
+    """Return the sine by which features may be tilted that count as reached: so much what strays from its face on a screw
+    tilts them.
+    """
+    strayed = min(search.near_depth_m / min(one.least, other.least), MOST_SLACK)
+    return max(LEAST_SLACK, search.touch_m / search.size_m, strayed)
 
 
 @kernel

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.record import FloatArray, Rows
-from cagepose.kernels.algebra.vector import dot, minus, plus, row, scaled, vector_from
+from cagepose.kernels.algebra.vector import dot, minus, plus, row, scaled, times, vector_from
 from cagepose.kernels.boundary.circle import WHOLE_TURN, circle_of, is_on_arc
 from cagepose.kernels.boundary.circle_meeting import circle_meeting, find_places, round_of
 from cagepose.kernels.boundary.extents import extent_of, surely_apart
@@ -22,11 +22,13 @@ from cagepose.kernels.boundary.features import (
     in_frame,
     place_feature,
     position_of,
+    rotation_of,
 )
 from cagepose.kernels.boundary.flat_circle import Arc, next_arc, part_to_ask
 from cagepose.kernels.boundary.meeting import both_reach, is_seated, meeting, seated, vertex_over_face
 from cagepose.kernels.boundary.met import Meeting, swapped
 from cagepose.kernels.boundary.neighbours import forget_layers
+from cagepose.kernels.boundary.reach import beyond_normals
 from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, SAME_PLACE, Along, Meetings
 from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
 from cagepose.kernels.boundary.twins import append_meeting
@@ -373,7 +375,7 @@ def append_touching(
     elif face.kind == FACE:
         reach_m = 2.0 * touch_m - BEYOND_OF_DEPTH * met.gap
         touches = met.gap >= -DEEPEST_OF_LEAST * face.least and both_reach(held, i, cage, j, met, slack, reach_m)
-        touches = touches and is_nearest(held, i, cage, met, touch_m, found)
+        touches = touches and is_nearest(held, i, cage, j, met, touch_m, found)
     else:
         deepest = DEEPEST_OF_LEAST * min(one.least, other.least)
         touches = met.gap >= -deepest and both_reach(held, i, cage, j, met, slack, -touch_m)
@@ -383,12 +385,21 @@ def append_touching(
 
 @kernel
 def is_nearest(
-    held: PlacedBoundary, i: int, cage: PlacedBoundary, met: Meeting, touch_m: float, found: Meetings
+    held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, met: Meeting, touch_m: float, found: Meetings
 ) -> bool:
-    """Whether what is deep in a face is in its body, and no other surface of that is nearer."""
-    of_held = held.own.features[i].kind == FACE
-    body, place = (held, plus(met.place, scaled(met.normal, met.gap))) if of_held else (cage, met.place)
+    """Whether what is deep in a face is in its body, and no other surface of that is nearer. A face that it cannot lie on,
+    as it has no such normal, does not count: a corner that is in a wall below its upper edge comes out of the wall.
+    """
+    if held.own.features[i].kind == FACE:
+        body, deep, at, place = held, cage, j, plus(met.place, scaled(met.normal, met.gap))
+    else:
+        body, deep, at, place = cage, held, i, met.place
     within = in_body(body, minus(place, position_of(body)))
-    if nearest_surface(body.own, within, -met.gap - touch_m, found.waiting).feature >= 0:
-        return False
+    nearer = nearest_surface(body.own, within, -met.gap - touch_m, found.waiting).feature
+    if nearer >= 0:
+        face = body.own.features[nearer]
+        back = scaled(times(rotation_of(body), vector_from(face.direction)), -1.0)
+        slack = slack_of(face, deep.own.features[at], touch_m)
+        if face.kind != FACE or beyond_normals(deep, at, back, place) <= slack:
+            return False
     return is_within(body.own, within, touch_m, found.waiting)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from cagepose.kernels.algebra.dense import remove_span
 from cagepose.kernels.algebra.least_squares import append_column, clear, inner, length
 from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.vector import norm, vector_from
 from cagepose.kernels.contact.cone import clear_cone, cone_residual, write_forces
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.edges import (
@@ -29,7 +30,13 @@ from cagepose.kernels.contact.self_stress import (
     take_out_stopped,
     write_residual,
 )
-from cagepose.kernels.contact.tolerances import RESIDUAL_AT_LIMIT, RESIDUAL_OF_LOAD, RESIDUAL_OF_SELF_STRESS
+from cagepose.kernels.contact.tolerances import (
+    RESIDUAL_AT_LIMIT,
+    RESIDUAL_BY_ROUNDING,
+    RESIDUAL_OF_LOAD,
+    RESIDUAL_OF_SELF_STRESS,
+    ROUNDING_OF_PLACE,
+)
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
@@ -51,13 +58,32 @@ def least_residual(contacts: ContactSet, friction: float, b: FloatArray, terms: 
 
 
 @kernel
+def rounding_of_normals(contacts: ContactSet, work: ContactWorkspace) -> float:
+    """Return what the rounding of places may leave of a load, in lengths of its terms: a pin in a bore that is a
+    thousandth wider turns its normal by the way over that thousandth.
+    """
+    turned = 0.0
+    for i in range(contacts.used[0]):
+        relative, most = contacts.bends[i].relative, 0.0
+        for j in range(3):
+            for k in range(3):
+                most = max(most, abs(relative[j, k]))
+        place = vector_from(contacts.rows[i].arm)
+        turned += contacts.states[i].forces[0] * most * ROUNDING_OF_PLACE * norm(place)
+    return turned / work.cone.passive.terms
+
+
+@kernel
 def is_balance(contacts: ContactSet, left: float, friction: float, strictness: float, work: ContactWorkspace) -> bool:
-    """Whether a residual counts as zero: up to RESIDUAL_OF_LOAD, and up to RESIDUAL_AT_LIMIT where contacts slip.
+    """Whether a residual counts as zero: up to RESIDUAL_OF_LOAD, or what the rounding of normals leaves, and up to
+    RESIDUAL_AT_LIMIT where contacts slip.
 
     The part of it that slips at no contact (a swing about one that sticks) has nothing to do with the limit of
     friction, and has all its digits.
     """
     if left <= strictness * RESIDUAL_OF_LOAD:
+        return True
+    if left <= strictness * RESIDUAL_BY_ROUNDING and left <= strictness * rounding_of_normals(contacts, work):
         return True
     if friction == 0.0 or left > strictness * RESIDUAL_AT_LIMIT:
         return False
@@ -79,8 +105,8 @@ def spare_friction(contacts: ContactSet, friction: float, b: FloatArray, terms: 
     that no contact looks as if it were about to slip. Return which.
     """
     left = least_residual(contacts, 0.0, b, terms, work)
-    if left <= RESIDUAL_OF_LOAD:
-        write_forces(work.cone, 0.0, contacts)
+    write_forces(work.cone, 0.0, contacts)
+    if is_balance(contacts, left, 0.0, AT_REST, work):
         work.residual = left
         return HELD_WITHOUT_FRICTION
     for share in SPARED:
@@ -89,7 +115,9 @@ def spare_friction(contacts: ContactSet, friction: float, b: FloatArray, terms: 
         if left <= RESIDUAL_AT_LIMIT:
             write_forces(work.cone, used, contacts)
             work.residual = left
-            break
+            return HELD_BY_FRICTION
+    work.residual = least_residual(contacts, friction, b, terms, work)
+    write_forces(work.cone, friction, contacts)
     return HELD_BY_FRICTION
 
 

@@ -7,17 +7,29 @@ moments can be compared with forces. A scaled vector is an array of six: three f
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, NamedTuple
 
 from cagepose.kernels.algebra.motion import motion_of, moved_point, turned_by_amount
-from cagepose.kernels.algebra.pose import Quaternion, quaternion_about, quaternion_product, rotated, turned_by
+from cagepose.kernels.algebra.pose import (
+    Quaternion,
+    quaternion_about,
+    quaternion_product,
+    rotated,
+    rotation_vector,
+    turned_by,
+)
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import (
     Matrix,
     Vector,
+    cross,
+    dot,
     minus,
     norm,
+    plus,
     row,
+    scaled,
     times,
     transposed_times,
 )
@@ -93,6 +105,23 @@ def moved_along_twist(
     if motion.rate * amount == 0.0:
         return moved, quaternion
     return moved, quaternion_product(quaternion_about(motion.axis, motion.rate * amount), quaternion)
+
+
+@kernel
+def twist_between(
+    position: Vector, quaternion: Quaternion, end: Vector, turned: Quaternion
+) -> tuple[Vector, Vector]:
+    """Return (velocity, angular velocity) of the constant twist that leads from one pose to another in an amount of one,
+    with a turn below half a turn.
+    """
+    way, spin = minus(end, position), rotation_vector(quaternion, turned)
+    angle = norm(spin)
+    if angle == 0.0:
+        return way, spin
+    axis = scaled(spin, 1.0 / angle)
+    across = minus(way, scaled(axis, dot(axis, way)))
+    side = minus(scaled(across, 0.5 * angle / math.tan(0.5 * angle)), scaled(cross(spin, across), 0.5))
+    return plus(minus(way, across), side), spin
 
 
 @kernel

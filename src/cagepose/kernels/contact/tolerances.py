@@ -9,6 +9,10 @@ RESIDUAL_OF_LOAD = 1e-11
 RESIDUAL_AT_LIMIT = 1e-9
 """In lengths of the load. The same at the limit of friction, where round cones leave more, since rounding counts there
 by its square root."""
+ROUNDING_OF_PLACE = 1e-14
+"""In distances from the centre of gravity: of a place where features touch."""
+RESIDUAL_BY_ROUNDING = 1e-8
+"""In lengths of the load. The rounding of places leaves no more."""
 SHARE_OF_FORCES = 1e-5
 """Share of the lengths of the forces that counts for the length that a residual is measured in. It allows for their
 rounding."""

@@ -38,16 +38,6 @@ class ScrewMotion(NamedTuple):
 
 
 @kernel
-def rotation_vector(start: Quaternion, end: Quaternion) -> Vector:
-    """Return axis times angle, radians, of one step's turn; quaternions keep their sign from step to step."""
-    back = (start[0], -start[1], -start[2], -start[3])
-    turn = quaternion_product(end, back)
-    vector = (turn[1], turn[2], turn[3])
-    sine = norm(vector)
-    return scaled(vector, 2.0 * math.atan2(sine, turn[0]) / sine) if sine > 0.0 else (0.0, 0.0, 0.0)
-
-
-@kernel
 def motion_between(
     start: Vector,
     start_quaternion: Quaternion,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from cagepose.kernels.algebra.pose import Quaternion, write_upright
+from cagepose.kernels.algebra.pose import Quaternion, rotation_vector, write_upright
 from cagepose.kernels.algebra.vector import Vector, plus, vector_from
 from cagepose.kernels.boundary.features import FACE
 from cagepose.kernels.boundary.geometry import held_at
@@ -12,7 +12,7 @@ from cagepose.kernels.boundary.surface_end import ends_near
 from cagepose.kernels.contact.metric import frame_at, twist_of
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.cases import Part, Start, object_position
-from cagepose.kernels.outcome.motion import motion_between, motion_of_twist, rotation_vector
+from cagepose.kernels.outcome.motion import motion_between, motion_of_twist
 from cagepose.kernels.outcome.records import Outcome, PhaseRecord
 from cagepose.kernels.outcome.trace import AT_EDGE, LET_GO, NONE, RESTS, SCREW, STALLED, Trace
 from cagepose.kernels.stability.proof import OTHER_ONSET, PROVEN_MOVES, TOO_MANY_CONTACTS, ProofWorkspace

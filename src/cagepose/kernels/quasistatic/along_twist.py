@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from cagepose.kernels.algebra.motion import motion_of
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import (
     Vector,
@@ -21,22 +22,29 @@ from cagepose.kernels.contact.loads import (
     total_load,
     work_done,
 )
-from cagepose.kernels.contact.metric import moved_along_twist, way_between
+from cagepose.kernels.contact.metric import moved_along_twist, twist_between, way_between
 from cagepose.kernels.contact.on_circle import is_kept
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
+from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing, still_meet
 from cagepose.kernels.quasistatic.first_contact import NO_HIT, Hit, Twist, first_contact
 from cagepose.kernels.quasistatic.projection import (
     GAP,
+    ON_FACE,
     constrain_features,
+    depth_left,
+    drop_constraint,
+    lack,
 )
 from cagepose.kernels.quasistatic.pushing_out import (
     StepWorkspace,
     allow_depths,
     constrain_contacts,
+    has_fixed,
     pushed_out,
+    put_back,
 )
 from cagepose.kernels.quasistatic.setting import Setting
+from cagepose.kernels.quasistatic.straying import STRAYED, strayed_at_most
 
 MAY_SLIP = 0.01
 """Share of the way of a step. What sticks in two places may slip by as much, where it cannot turn without, as in a V.
@@ -45,6 +53,16 @@ TO_FIRST_ORDER = 2.0
 """Times what is worked out to first order."""
 HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
+LEAST_SPEED = 1e-300
+"""Metres for each unit of an amount: a slower motion is a turn."""
+SLANTED, NEAR_END = 8.0, 0.25
+"""Times what contacts stray, that where one ends may be off along the way; and, in touch tolerances, how near to that
+it is looked for.
+"""
+SECANTS = 6
+"""How often what is hit is looked for on the path."""
+HALVINGS_TO_FACES = 6
+"""How often a step is halved at whose end contacts cannot be put back on their faces."""
 ROUNDING = 1e-15
 """In lengths of the terms of a load: a slower motion may be no motion."""
 STRAIGHT_TRAVEL = 1e-14
@@ -112,6 +130,19 @@ def work_of_depths(contacts: ContactSet) -> float:
 
 
 @kernel
+def constrain_step(
+    setting: Setting, contacts: ContactSet, twist: Twist, amount: float, hit: Hit, work: StepWorkspace
+) -> float:
+    """Constrain the contacts that stay on their faces in a step, and what is hit; return the way of the step, metres."""
+    constrain_contacts(contacts, setting.tolerances.rounding_m, work.constraints)
+    way = amount * (norm(twist.velocity) + setting.body.reach_m * norm(twist.spin))
+    work.constraints.scratch[0].may_slip_m = max(setting.tolerances.touch_m, MAY_SLIP * way)
+    if hit.feature >= 0:
+        constrain_features(work.constraints, hit.feature, hit.cage_feature, hit.angle, GAP, 0.0)
+    return way
+
+
+@kernel
 def stepped(
     setting: Setting,
     placement: Placement,
@@ -131,12 +162,8 @@ def stepped(
     placement is that of the new pose, or of the old one.
     """
     geometry = setting.geometry
-    constrain_contacts(contacts, setting.tolerances.rounding_m, work.constraints)
-    way = amount * (norm(twist.velocity) + setting.body.reach_m * norm(twist.spin))
-    work.constraints.scratch[0].may_slip_m = max(setting.tolerances.touch_m, MAY_SLIP * way)
+    way = constrain_step(setting, contacts, twist, amount, hit, work)
     moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
-    if hit.feature >= 0:
-        constrain_features(work.constraints, hit.feature, hit.cage_feature, hit.angle, GAP, 0.0)
     done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], work)
     strayed = way_between(moved[0], moved[1], new_position, new_quaternion, setting.body.reach_m)
     if done and strayed <= way + setting.tolerances.touch_m:
@@ -149,6 +176,208 @@ def stepped(
 
 
 @kernel
+def ends_on_faces(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    amount: float,
+    work: StepWorkspace,
+) -> tuple[bool, Vector, Quaternion]:
+    """Whether contacts that stay on their faces can be put back after an amount of a twist, by a way that is shorter; and
+    the pose then.
+    """
+    way = constrain_step(setting, contacts, twist, amount, NO_HIT, work)
+    moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
+    done, end, turned = put_back(setting, placement, moved[0], moved[1], work.constraints)
+    done = done and way_between(moved[0], moved[1], end, turned, setting.body.reach_m) <= way
+    if done:
+        done = depth_left(setting.geometry, work.constraints, end, turned, placement) <= work.allowed_m[0]
+    return done, end, turned
+
+
+@kernel
+def gap_at(
+    setting: Setting, placement: Placement, hit: Hit, position: Vector, quaternion: Quaternion, work: StepWorkspace
+) -> float:
+    """Return the gap, at a pose, of features that are not constrained, metres; inf: they do not meet, or are."""
+    constraints = work.constraints
+    if not constrain_features(constraints, hit.feature, hit.cage_feature, hit.angle, GAP, 0.0):
+        return math.inf
+    last = constraints.scratch[0].used - 1
+    gap = lack(setting.geometry, constraints.rows[last], position, quaternion, placement).value
+    drop_constraint(constraints, last)
+    return gap
+
+
+@kernel
+def hit_on_path(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    hit: Hit,
+    work: StepWorkspace,
+) -> float:
+    """Return after which amount of a twist what is hit is reached where contacts that stay on their faces are on them:
+    the root of its gap there, by secants from what a screw says.
+
+    A gap that is closed by the projection afterwards would turn an object aside that reaches two things at once.
+    """
+    before, gap_before = 0.0, gap_at(setting, placement, hit, position, quaternion, work)
+    amount, best, least = hit.amount, hit.amount, math.inf
+    for _ in range(SECANTS):
+        done, end, turned = ends_on_faces(setting, placement, contacts, position, quaternion, twist, amount, work)
+        if not done:
+            break
+        gap = gap_at(setting, placement, hit, end, turned, work)
+        if not abs(gap) < least or amount == before:
+            break
+        best, least = amount, abs(gap)
+        slope = (gap - gap_before) / (amount - before)
+        before, gap_before = amount, gap
+        if least <= ON_FACE * setting.size_m or not slope < 0.0:
+            break
+        amount = min(max(amount - gap / slope, 0.5 * amount), twist.end)
+    return best
+
+
+@kernel
+def meets_on_path(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    i: int,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    amount: float,
+    work: StepWorkspace,
+) -> bool:
+    """Whether a contact still reaches where its features meet, after an amount of a twist and back on the faces."""
+    done, end, turned = ends_on_faces(setting, placement, contacts, position, quaternion, twist, amount, work)
+    if not done:
+        return False
+    velocity, spin = twist_between(position, quaternion, end, turned)
+    motion, touch_m = motion_of(position, velocity, spin), setting.tolerances.touch_m
+    return still_meet(setting.geometry, placement, contacts, i, motion, 1.0, touch_m, 0.0)
+
+
+@kernel
+def crossing_on_path(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    i: int,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    crossing: float,
+    reach_m: float,
+    work: StepWorkspace,
+) -> float:
+    """Return after which amount of a twist a contact leaves its face where contacts are on their faces, by halving, from
+    what a screw says, which strays by at most ``reach_m``; inf: it does not, up to the end of the twist.
+    """
+    speed = norm(twist.velocity) + setting.body.reach_m * norm(twist.spin)
+    low, high = max(crossing - SLANTED * reach_m / speed, 0.0), min(crossing + SLANTED * reach_m / speed, twist.end)
+    if not meets_on_path(setting, placement, contacts, i, position, quaternion, twist, low, work):
+        low = 0.0
+    if meets_on_path(setting, placement, contacts, i, position, quaternion, twist, high, work):
+        low, high = high, twist.end
+        if low == high or meets_on_path(setting, placement, contacts, i, position, quaternion, twist, high, work):
+            return math.inf
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if (high - low) * speed <= NEAR_END * setting.tolerances.touch_m or not low < middle < high:
+            break
+        if meets_on_path(setting, placement, contacts, i, position, quaternion, twist, middle, work):
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+@kernel
+def opens_at(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    i: int,
+    position: Vector,
+    quaternion: Quaternion,
+    work: StepWorkspace,
+) -> bool:
+    """Whether a contact that is not constrained has opened at a pose."""
+    row = contacts.rows[i]
+    one = Hit(0.0, row.feature, row.cage_feature, row.angle)
+    return setting.tolerances.rounding_m < gap_at(setting, placement, one, position, quaternion, work) < math.inf
+
+
+@kernel
+def ends_with_one_open(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    amount: float,
+    work: StepWorkspace,
+) -> tuple[bool, Vector, Quaternion]:
+    """As `ends_on_faces` where one of the contacts opens, by the square of the way: of four feet on a floor that bends
+    three carry. It carries nothing any more then.
+    """
+    for i in range(contacts.used[0]):
+        state, carried = contacts.states[i], contacts.states[i].forces[0]
+        if carried == 0.0 or state.is_locked or state.is_sticking or state.stays_flat:
+            continue
+        state.forces[0] = 0.0
+        done, end, turned = ends_on_faces(setting, placement, contacts, position, quaternion, twist, amount, work)
+        if done and opens_at(setting, placement, contacts, i, end, turned, work):
+            return True, end, turned
+        state.forces[0] = carried
+    return False, position, quaternion
+
+
+@kernel
+def along_faces(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    work: StepWorkspace,
+) -> tuple[Twist, bool]:
+    """Return the twist that leads, in an amount of one, to where contacts that stay on their faces are on them again at
+    the end of a twist, after the way of a size of the scene or a part of it; and whether it is all of it. A travel
+    without end is kept, and so is a motion that nothing guides, and one of a circle that lies flat or fits all around,
+    whose places change as it tilts.
+    """
+    allow_depths(placement, setting.tolerances, work)
+    constrain_contacts(contacts, setting.tolerances.rounding_m, work.constraints)
+    if twist.end == math.inf or work.constraints.scratch[0].used == 0 or has_fixed(contacts):
+        return twist, True
+    amount = min(twist.end, setting.size_m / max(norm(twist.velocity), LEAST_SPEED))
+    for halving in range(HALVINGS_TO_FACES):
+        done, end, turned = ends_on_faces(setting, placement, contacts, position, quaternion, twist, amount, work)
+        if not done:
+            done, end, turned = ends_with_one_open(
+                setting, placement, contacts, position, quaternion, twist, amount, work
+            )
+        if done:
+            velocity, spin = twist_between(position, quaternion, end, turned)
+            return Twist(velocity, straightened(velocity, spin, setting.body.reach_m, 0.0), 1.0), halving == 0
+        amount *= 0.5
+    return Twist(twist.velocity, twist.spin, amount), False
+
+
+@kernel
 def furthest_step(
     setting: Setting,
     placement: Placement,
@@ -158,15 +387,22 @@ def furthest_step(
     twist: Twist,
     work: StepWorkspace,
 ) -> tuple[float, bool, Vector, Quaternion]:
-    """Go along a twist to its end, the first contact or the edge of a face that carries, or less if need be.
+    """After `along_faces`: go along a twist to its end, the first contact or the edge of a face that carries, or less if need be.
 
     Return (amount, whether it went as far as it should, position, quaternion); amount 0: it could not move; inf:
     nothing is ahead.
     """
-    allow_depths(placement, setting.tolerances, work)
-    hit = first_contact(setting, placement, contacts, position, quaternion, twist)
+    reach_m = 0.0
+    if norm(twist.spin) > 0.0:
+        reach_m = STRAYED * strayed_at_most(
+            setting.geometry, placement, contacts, position, quaternion, twist.velocity, twist.spin, twist.end
+        )
+    hit = first_contact(setting, placement, contacts, position, twist, reach_m)
+    if hit.feature >= 0 and norm(twist.spin) > 0.0:
+        amount = hit_on_path(setting, placement, contacts, position, quaternion, twist, hit, work)
+        hit = Hit(amount, hit.feature, hit.cage_feature, hit.angle)
     amount = hit.amount
-    edge_crossing = first_edge_crossing(
+    edge_crossing, leaving = first_edge_crossing(
         setting.geometry,
         placement,
         contacts,
@@ -175,8 +411,13 @@ def furthest_step(
         twist.velocity,
         twist.spin,
         min(twist.end, amount),
+        reach_m,
         setting.tolerances.touch_m,
     )
+    if edge_crossing < amount and norm(twist.spin) > 0.0:
+        edge_crossing = crossing_on_path(
+            setting, placement, contacts, leaving, position, quaternion, twist, edge_crossing, reach_m, work
+        )
     if edge_crossing < amount:
         amount, hit = edge_crossing, NO_HIT
     if twist.end < amount:

@@ -165,23 +165,25 @@ def first_edge_crossing(
     velocity: Vector,
     spin: Vector,
     end: float,
+    reach_m: float,
     touch_m: float,
-) -> float:
-    """Return the amount of a twist, up to ``end``, after which a contact leaves the face that it stays on; inf: none.
+) -> tuple[float, int]:
+    """Return the amount of a twist, up to ``end``, after which a contact leaves the face that it stays on, and which; inf:
+    none.
 
-    Where it would only because contacts stray, by the square of the way, it is passed over: they are put back. So it is
+    Where it would only because contacts stray, by the square of the way, within ``reach_m``, it is passed over: they are
+    put back. So it is
     where one of them has no place there any more: it may have one when it is put back.
     """
-    first = math.inf
+    first, which = math.inf, -1
     for i in range(contacts.used[0]):
         if not is_kept(contacts, i):
             continue
         motion = motion_of(center, velocity, spin)
         before, crossing = end_of_meeting(geometry, placement, contacts, i, motion, min(end, first), touch_m)
         if crossing < first:
-            reach = STRAYED * strayed(
-                geometry, placement, contacts, center, quaternion, velocity, spin, before, math.inf
-            )
+            astray = strayed(geometry, placement, contacts, center, quaternion, velocity, spin, before, math.inf)
+            reach = max(reach_m, STRAYED * astray)
             if still_meet(geometry, placement, contacts, i, motion, 0.0, touch_m, reach):
-                first = crossing
-    return first if first <= end else math.inf
+                first, which = crossing, i
+    return (first, which) if first <= end else (math.inf, -1)

@@ -12,7 +12,15 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from cagepose.kernels.algebra.dense import add_across, cholesky, confine, frobenius_norm, solve_lower, solve_upper
+from cagepose.kernels.algebra.dense import (
+    add_across,
+    cholesky,
+    confine,
+    frobenius_norm,
+    remove_span,
+    solve_lower,
+    solve_upper,
+)
 from cagepose.kernels.algebra.eigen import symmetric_eigen
 from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, inner, length
 from cagepose.kernels.algebra.record import FloatArray
@@ -20,6 +28,7 @@ from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.equilibrium import AT_REST, MOVES, equilibrium_with_faces
 from cagepose.kernels.contact.metric import WRENCH, ScaledVector
 from cagepose.kernels.contact.onset import motion_with_faces
+from cagepose.kernels.contact.sharing import SharingWorkspace
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
@@ -35,6 +44,8 @@ class ImplicitStepWorkspace:
 
     Attributes
     ----------
+    sharing
+        See there.
     curvature
         S, and then what `keep_along_faces` makes of it.
     circulation
@@ -47,6 +58,7 @@ class ImplicitStepWorkspace:
         Load and step in its coordinates, then the step.
     """
 
+    sharing: SharingWorkspace
     curvature: Annotated[FloatArray, 6, 6]
     circulation: Annotated[FloatArray, 6, 6]
     held: PassiveSet
@@ -57,15 +69,18 @@ class ImplicitStepWorkspace:
 
 
 @kernel
-def keep_along_faces(contacts: ContactSet, locked: PassiveSet, work: ImplicitStepWorkspace) -> float:
+def keep_along_faces(
+    contacts: ContactSet, locked: PassiveSet, dependent: float, work: ImplicitStepWorkspace
+) -> float:
     """Replace what S has across the faces (and, where contacts stick, along them) by the greatest curvature along them.
 
     Nothing moves there, nor where contacts without play lock it, but it could make the matrix look as if it were not
-    positive, or rounding of the forces as if it moved the object. Return the least rho that stands out from the
-    rounding.
+    positive, or rounding of the forces as if it moved the object. What a face holds but for a ``dependent`` part of
+    its wrench, others hold. Return the least rho that stands out from the rounding.
     """
     least_rho = LEAST_RHO * frobenius_norm(work.curvature)
     clear(work.held, WRENCH, 1.0)
+    work.held.dependent = dependent
     for i in range(contacts.used[0]):
         state = contacts.states[i]
         if state.forces[0] > 0.0:
@@ -116,6 +131,31 @@ def write_convex_matrix(work: ImplicitStepWorkspace, rho: float) -> None:
 
 
 @kernel
+def is_convex(rho: float, work: ImplicitStepWorkspace) -> bool:
+    """Whether rho 1 + S is positive; it is factored then."""
+    write_matrix(work, rho)
+    return cholesky(work.factor, 1e-3 * rho)
+
+
+@kernel
+def shared_step(rho: float, work: ImplicitStepWorkspace, solver: ContactWorkspace) -> bool:
+    """Write the step into ``work.delta`` that keeps all contacts closed that carry, for shared forces: Newton's, where S
+    is in ``work.curvature``. False: S is not convex.
+
+    Where contacts share forces in many ways and their normals all but depend on each other, as of a cone that touches
+    the edges of a square hole, the one that the onset takes may be unstable, and a balance between two is stable.
+    """
+    if not is_convex(rho, work):
+        return False
+    for k in range(6):
+        work.delta[k] = solver.load[k]
+    remove_span(work.delta, work.held)
+    solve_lower(work.factor, work.delta, work.delta)
+    solve_upper(work.factor, work.delta)
+    return True
+
+
+@kernel
 def implicit_step(
     contacts: ContactSet,
     turned: ContactSet,
@@ -130,8 +170,7 @@ def implicit_step(
     Given are the explicit motion ``solver.y``, ``work.curvature`` along the faces, and which contacts stick; ``turned``
     is memory for the contacts in the step's coordinates.
     """
-    write_matrix(work, rho)
-    if not cholesky(work.factor, 1e-3 * rho):
+    if not is_convex(rho, work):
         write_convex_matrix(work, rho)
         if not cholesky(work.factor, 1e-3 * rho):
             return False

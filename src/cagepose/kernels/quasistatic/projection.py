@@ -188,6 +188,20 @@ def are_apart(geometry: Geometry, constraint: PositionConstraint, placement: Pla
 
 
 @kernel
+def depth_left(
+    geometry: Geometry, constraints: Constraints, position: Vector, quaternion: Quaternion, placement: Placement
+) -> float:
+    """Return how much deeper than they should be constrained features are at a pose, at most, metres; inf: some do not
+    meet any more.
+    """
+    deepest = 0.0
+    for i in range(constraints.scratch[0].used):
+        value = lack(geometry, constraints.rows[i], position, quaternion, placement).value
+        deepest = max(deepest, -value if value < math.inf else math.inf)
+    return deepest
+
+
+@kernel
 def keep_stopped(stopped: PassiveSet, position: Vector, frame: Frame, constraints: Constraints) -> None:
     """Let no projection move along what contacts without play stop: their gaps do not show it, to first order."""
     work = constraints.scratch[0]

@@ -61,6 +61,15 @@ def is_fixed(contacts: ContactSet, i: int) -> bool:
 
 
 @kernel
+def has_fixed(contacts: ContactSet) -> bool:
+    """Whether a contact that a motion keeps stays at its place of a circle."""
+    found = False
+    for i in range(contacts.used[0]):
+        found = found or (is_kept(contacts, i) and is_fixed(contacts, i))
+    return found
+
+
+@kernel
 def least_along_wall(contacts: ContactSet, i: int, closed_m: float) -> float:
     """Return the gap that a rim keeps from the wall that it lies along, see `constrain_contacts`: the least of its
     contacts, where it is on the wall as it would be anywhere else after a turn.

@@ -13,7 +13,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cagepose.kernels.algebra.least_squares import length
 from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.tolerances import DEPENDENT_COLUMN
 from cagepose.kernels.algebra.vector import Vector, norm, scaled, vector_from
 from cagepose.kernels.boundary.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
@@ -31,6 +33,8 @@ from cagepose.kernels.contact.loads import longest_pull, write_load
 from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, way_between
 from cagepose.kernels.contact.on_circle import is_under_circle
 from cagepose.kernels.contact.onset import find_sticking, holds_with_some_faces, onset
+from cagepose.kernels.contact.sharing import share_evenly
+from cagepose.kernels.contact.tolerances import RESIDUAL_AT_LIMIT
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import (
     ESCAPES,
@@ -43,15 +47,17 @@ from cagepose.kernels.outcome.trace import (
     TRAVEL,
     StepRecord,
 )
-from cagepose.kernels.quasistatic.along_twist import furthest_step, longest_step, straightened, turn_of_normals
+from cagepose.kernels.quasistatic.along_twist import along_faces, furthest_step, longest_step, straightened, turn_of_normals
 from cagepose.kernels.quasistatic.first_contact import Twist
 from cagepose.kernels.quasistatic.flight import nothing_ahead
 from cagepose.kernels.quasistatic.implicit_step import (
     implicit_step,
+    is_convex,
     keep_along_faces,
     rho_against_circulation,
+    shared_step,
 )
-from cagepose.kernels.quasistatic.projection import FIXED, ON_FACE, constrain_features, keep_stopped
+from cagepose.kernels.quasistatic.projection import DEPENDENT, FIXED, ON_FACE, constrain_features, keep_stopped
 from cagepose.kernels.quasistatic.pushing_out import allow_depths, constrain_contacts, pushed_out
 from cagepose.kernels.quasistatic.rest_on_the_way import first_rest, is_held_on_the_way
 from cagepose.kernels.quasistatic.setting import Setting
@@ -77,6 +83,9 @@ AS_IT_TIPS = 64.0
 """By so much a step is shorter where the object begins to tip: its spin grows from nothing."""
 REFINEMENTS = 3
 """How often, in a phase, a rest is put on its faces and looked at again: what balanced before may not quite, then."""
+
+NEAR_BALANCE = 1e-6
+"""In lengths of the load's terms. So slow a motion leads to a balance near by, if there is one."""
 
 GOES_ON = -1
 """Instead of the code of a verdict: the phase goes on."""
@@ -135,7 +144,26 @@ def impending_motion(setting: Setting, frame: Frame, work: QuasistaticWorkspace)
 
 
 @kernel
-def next_twist(
+def is_shared(
+    setting: Setting, position: Vector, quaternion: Quaternion, frame: Frame, rho: float, work: QuasistaticWorkspace
+) -> bool:
+    """Whether there is a step to a stable balance with forces that are shared evenly; else all is as it was."""
+    contacts, stiff, solver = work.contacts, work.scratch[0].stiff, work.scratch[0].solver
+    if not share_evenly(contacts, solver.y, solver.load_terms, stiff.sharing):
+        return False
+    write_curvature(contacts, setting.load, position, quaternion, frame, False, stiff.curvature)
+    keep_along_faces(contacts, solver.locked, DEPENDENT, stiff)
+    if shared_step(rho, stiff, solver):
+        return True
+    for i in range(contacts.used[0]):
+        contacts.states[i].forces[0] = contacts.states[i].kept_forces[0]
+    write_curvature(contacts, setting.load, position, quaternion, frame, False, stiff.curvature)
+    keep_along_faces(contacts, solver.locked, DEPENDENT_COLUMN, stiff)
+    return False
+
+
+@kernel
+def twist_of_step(
     setting: Setting,
     position: Vector,
     quaternion: Quaternion,
@@ -143,7 +171,29 @@ def next_twist(
     turn_step_rad: float,
     work: QuasistaticWorkspace,
 ) -> Twist:
-    """Return the twist to follow from a pose that moves; forces and sticking are then those of the step."""
+    """Return the twist of an implicit step, as far as it may go."""
+    velocity, spin = twist_of(work.scratch[0].stiff.delta, frame)
+    spin = straightened(velocity, spin, setting.body.reach_m, 0.0)
+    longest = min(
+        longest_step(work.contacts, velocity, spin, True, turn_step_rad, setting.size_m),
+        longest_pull(setting.load, position, quaternion, velocity, spin, turn_step_rad, setting.size_m),
+    )
+    return Twist(velocity, spin, min(1.0, longest))
+
+
+@kernel
+def next_twist(
+    setting: Setting,
+    position: Vector,
+    quaternion: Quaternion,
+    frame: Frame,
+    turn_step_rad: float,
+    is_still: bool,
+    work: QuasistaticWorkspace,
+) -> Twist:
+    """Return the twist to follow from a pose that moves; forces and sticking are then those of the step. ``is_still``: a
+    step before it led nowhere.
+    """
     contacts, scratch, friction = work.contacts, work.scratch[0], setting.friction.greatest
     y = scratch.solver.y
     find_sticking(contacts, frame, friction, setting.tolerances.touch_m, scratch.solver.load_terms, y)
@@ -157,11 +207,15 @@ def next_twist(
     )
     if end < math.inf:
         write_curvature(contacts, load, position, quaternion, frame, False, scratch.stiff.curvature)
-        least_rho = keep_along_faces(contacts, scratch.solver.locked, scratch.stiff)
+        least_rho = keep_along_faces(contacts, scratch.solver.locked, DEPENDENT_COLUMN, scratch.stiff)
         if has_circulation(load):
             write_circulation(load, position, quaternion, frame, scratch.stiff.circulation)
             least_rho = max(least_rho, rho_against_circulation(scratch.stiff))
         rho = max(least_rho, 1.0 / end)
+        is_near = is_still and length(y, 6) <= NEAR_BALANCE * scratch.solver.load_terms
+        if friction == 0.0 and carries and (is_near or not is_convex(rho, scratch.stiff)):
+            if is_shared(setting, position, quaternion, frame, rho, work):
+                return twist_of_step(setting, position, quaternion, frame, turn_step_rad, work)
         is_stiff = abs(curvature_along(scratch.stiff.curvature, y)) * end > STIFF
         turns = turn_of_normals(contacts, velocity, spin)
         is_round = turns * end > STIFF * turn_step_rad and turns > ROUND * norm(spin)
@@ -325,9 +379,11 @@ def next_step(
     position, quaternion, n_refined = state.position, state.quaternion, state.n_refined
     write_state(work.trace.rows[step], state)
 
-    # What happens from rest at this pose? A rest is put on its faces, and looked at again.
+    # What happens from rest at this pose? A rest is put on its faces, and looked at again; where it is none then but
+    # for little, it ends where it was.
     code, is_rest, would_hold = UNSOLVED, False, False
-    for _ in range(REFINEMENTS + 1):
+    rest, has_rested = (position, quaternion), False
+    for _ in range(REFINEMENTS + 2):
         note_touching(work)
         frame = frame_at(setting.body, quaternion)
         solver.load_terms = write_load(setting.load, position, quaternion, frame, solver.load)
@@ -335,9 +391,14 @@ def next_step(
         code = impending_motion(setting, frame, work) if fits else UNSOLVED
         keep_stopped(solver.stopped, position, frame, work.path.constraints)
         is_rest = code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
+        if has_rested and code == MOVES and solver.residual <= RESIDUAL_AT_LIMIT:
+            (position, quaternion), n_refined, has_rested = rest, REFINEMENTS, False
+            fits = stand_at(setting, position, quaternion, work)
+            continue
         left = gap_left(work.contacts) if is_rest else gap_under_circles(work.contacts, setting.tolerances.touch_m)
         if n_refined == REFINEMENTS or left <= ON_FACE * setting.size_m:
             break
+        rest, has_rested = (position, quaternion), is_rest
         position, quaternion = refined(setting, position, quaternion, is_rest, work)
         fits = find_placed_contacts(setting, position, quaternion, work)
         n_refined += 1
@@ -347,7 +408,8 @@ def next_step(
         return (RESTS if is_rest else STALLED), here, fits
 
     # Which way, and how far?
-    twist = next_twist(setting, position, quaternion, frame_at(setting.body, quaternion), state.turn_step_rad, work)
+    frame, is_still = frame_at(setting.body, quaternion), state.n_still > 0
+    twist = next_twist(setting, position, quaternion, frame, state.turn_step_rad, is_still, work)
     rule = carried_by(work.contacts)
     motion = TRAVEL if norm(twist.spin) == 0.0 else SCREW
     if rule == FREE:
@@ -355,6 +417,7 @@ def next_step(
         if nothing_ahead(setting, position, quaternion, velocity, spin):
             write_escape(work, step, would_hold, velocity, position, quaternion)
             return ESCAPES, here, fits
+    twist, is_whole = along_faces(setting, work.placement, work.contacts, position, quaternion, twist, work.path)
     amount, as_planned, end, turned = furthest_step(
         setting, work.placement, work.contacts, position, quaternion, twist, work.path
     )
@@ -362,7 +425,7 @@ def next_step(
         write_escape(work, step, would_hold, twist.velocity, position, quaternion)
         return ESCAPES, here, fits
     turn_step = 0.25 * state.turn_step_rad
-    if as_planned:
+    if as_planned and is_whole:
         turn_step = min(2.0 * state.turn_step_rad, setting.turn_step_rad)
     could_rest = setting.friction.greatest > 0.0 and rule != FREE and amount > 0.0
     is_held = could_rest and is_held_on_the_way(setting, end, turned, work)

@@ -1,4 +1,7 @@
-"""How far contacts stray from their faces on a screw: it leaves curved constraints by the square of its length."""
+"""How far contacts stray from their faces on a screw: it leaves curved constraints by the square of its length.
+
+A screw from one pose on the faces to another one leaves them most about half way.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +18,25 @@ from cagepose.kernels.quasistatic.pushing_out import is_fixed
 
 STRAYED = 2.0
 """Times the way that contacts stray: a point or an edge that was nearer than this is met because they do."""
+
+
+@kernel
+def strayed_at_most(
+    geometry: Geometry,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    velocity: Vector,
+    spin: Vector,
+    end: float,
+) -> float:
+    """Return about how far the contacts that stay on their faces leave them on a screw at most, metres."""
+    farthest = 0.0
+    for amount in (0.5 * end, end):
+        away = strayed(geometry, placement, contacts, position, quaternion, velocity, spin, amount, 0.0)
+        farthest = max(farthest, away)
+    return farthest
 
 
 @kernel

@@ -1,0 +1,118 @@
+"""How contacts without friction share what they carry if they are equally stiff: the least squares of forces (5.25).
+
+By duality f_i = max(0, a_i . m), with the motion m at which w . m - 1/2 sum f_i^2 is greatest: contacts that push back
+in proportion to it. This is found by Newton's method.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from cagepose.kernels.algebra.dense import cholesky, solve_lower, solve_upper
+from cagepose.kernels.algebra.least_squares import inner, length
+from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.metric import ScaledVector
+from cagepose.kernels.native.kernel import kernel
+
+MOST_STEPS = 40
+LEAST_STIFFNESS = 1e-12
+"""In lengths of the columns squared: in directions that no contact resists."""
+NOT_SHARED = 1e-8
+"""In lengths of the wrench: so much of it may be left; a stiffness needs no more digits."""
+SHORTEST_PART, SHARE_OF_SLOPE = 1e-3, 0.1
+"""Of a step, and of the slope at its start: a step is halved that passes the best place by more."""
+OPENING = 1e-6
+"""In lengths of the load's terms. A contact that opens faster carries nothing."""
+
+
+class SharingWorkspace:
+    """Memory for one distribution of forces; a record.
+
+    Attributes
+    ----------
+    stiffness
+        Of all contacts that carry, and then its Cholesky factor, lower.
+    wrench, left
+        What is shared, and what is left of it.
+    motion, step, ahead
+        The motion m, what Newton's method adds to it, and where a part of that leads.
+    """
+
+    stiffness: Annotated[FloatArray, 6, 6]
+    wrench: ScaledVector
+    left: ScaledVector
+    motion: ScaledVector
+    step: ScaledVector
+    ahead: ScaledVector
+
+
+@kernel
+def write_left(contacts: ContactSet, motion: FloatArray, work: SharingWorkspace) -> None:
+    """Write the forces of a motion, of the contacts that count, and what they leave of the wrench."""
+    for k in range(6):
+        work.left[k] = work.wrench[k]
+    for i in range(contacts.used[0]):
+        state, normal = contacts.states[i], contacts.rows[i].columns[0]
+        state.forces[0] = max(inner(normal, motion, 6), 0.0) if state.counts else 0.0
+        for k in range(6):
+            work.left[k] -= state.forces[0] * normal[k]
+
+
+@kernel
+def write_stiffness(contacts: ContactSet, work: SharingWorkspace) -> None:
+    """Write the stiffness of the contacts that carry, with a little in all directions."""
+    total = 0.0
+    for j in range(6):
+        for k in range(6):
+            work.stiffness[j, k] = 0.0
+    for i in range(contacts.used[0]):
+        if contacts.states[i].forces[0] > 0.0:
+            normal = contacts.rows[i].columns[0]
+            total += inner(normal, normal, 6)
+            for j in range(6):
+                for k in range(6):
+                    work.stiffness[j, k] += normal[j] * normal[k]
+    for k in range(6):
+        work.stiffness[k, k] += LEAST_STIFFNESS * max(total, 1.0)
+
+
+@kernel
+def share_evenly(contacts: ContactSet, y: FloatArray, terms: float, work: SharingWorkspace) -> bool:
+    """Share what the contacts carry of a load, of terms so long, that begins the motion ``y``, among all that do not open
+    with it; False: it was not found, and the forces are as they were.
+    """
+    for k in range(6):
+        work.wrench[k] = 0.0
+    for i in range(contacts.used[0]):
+        state, normal = contacts.states[i], contacts.rows[i].columns[0]
+        state.kept_forces[0] = state.forces[0]
+        opens = -inner(normal, y, 6) > OPENING * length(normal, 6) * terms
+        state.counts = state.chosen and (state.forces[0] > 0.0 or not opens)
+        for k in range(6):
+            work.wrench[k] += state.forces[0] * normal[k]
+    for i in range(contacts.used[0]):  # with all of them: one linear system, where all come to carry
+        contacts.states[i].forces[0] = 1.0 if contacts.states[i].counts else 0.0
+    for k in range(6):
+        work.motion[k], work.left[k] = 0.0, work.wrench[k]
+    for _ in range(MOST_STEPS):
+        write_stiffness(contacts, work)
+        if not cholesky(work.stiffness, 0.0):
+            break
+        solve_lower(work.stiffness, work.left, work.step)
+        solve_upper(work.stiffness, work.step)
+        slope, part = inner(work.left, work.step, 6), 1.0
+        while True:
+            for k in range(6):
+                work.ahead[k] = work.motion[k] + part * work.step[k]
+            write_left(contacts, work.ahead, work)
+            if part < SHORTEST_PART or inner(work.left, work.step, 6) >= -SHARE_OF_SLOPE * slope:
+                break
+            part *= 0.5
+        for k in range(6):
+            work.motion[k] = work.ahead[k]
+        if length(work.left, 6) <= NOT_SHARED * length(work.wrench, 6):
+            return True
+    for i in range(contacts.used[0]):
+        contacts.states[i].forces[0] = contacts.states[i].kept_forces[0]
+    return False
