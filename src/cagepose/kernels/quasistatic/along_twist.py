@@ -131,14 +131,12 @@ def work_of_depths(contacts: ContactSet) -> float:
 
 @kernel
 def constrain_step(
-    setting: Setting, contacts: ContactSet, twist: Twist, amount: float, hit: Hit, work: StepWorkspace
+    setting: Setting, contacts: ContactSet, twist: Twist, amount: float, work: StepWorkspace
 ) -> float:
-    """Constrain the contacts that stay on their faces in a step, and what is hit; return the way of the step, metres."""
+    """Constrain the contacts that stay on their faces in a step; return the way of the step, metres."""
     constrain_contacts(contacts, setting.tolerances.rounding_m, work.constraints)
     way = amount * (norm(twist.velocity) + setting.body.reach_m * norm(twist.spin))
     work.constraints.scratch[0].may_slip_m = max(setting.tolerances.touch_m, MAY_SLIP * way)
-    if hit.feature >= 0:
-        constrain_features(work.constraints, hit.feature, hit.cage_feature, hit.angle, GAP, 0.0)
     return way
 
 
@@ -162,9 +160,14 @@ def stepped(
     placement is that of the new pose, or of the old one.
     """
     geometry = setting.geometry
-    way = constrain_step(setting, contacts, twist, amount, hit, work)
+    way = constrain_step(setting, contacts, twist, amount, work)
     moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
-    done, new_position, new_quaternion = pushed_out(setting, placement, moved[0], moved[1], work)
+    new_position, new_quaternion = moved
+    if hit.feature >= 0:
+        if work.constraints.scratch[0].used > 0:
+            _, new_position, new_quaternion = put_back(setting, placement, moved[0], moved[1], work.constraints)
+        constrain_features(work.constraints, hit.feature, hit.cage_feature, hit.angle, GAP, 0.0)
+    done, new_position, new_quaternion = pushed_out(setting, placement, new_position, new_quaternion, work)
     strayed = way_between(moved[0], moved[1], new_position, new_quaternion, setting.body.reach_m)
     if done and strayed <= way + setting.tolerances.touch_m:
         total = total_load(setting.load, position, quaternion, setting.size_m)
@@ -189,7 +192,7 @@ def ends_on_faces(
     """Whether contacts that stay on their faces can be put back after an amount of a twist, by a way that is shorter; and
     the pose then.
     """
-    way = constrain_step(setting, contacts, twist, amount, NO_HIT, work)
+    way = constrain_step(setting, contacts, twist, amount, work)
     moved = moved_along_twist(position, quaternion, twist.velocity, twist.spin, amount)
     done, end, turned = put_back(setting, placement, moved[0], moved[1], work.constraints)
     done = done and way_between(moved[0], moved[1], end, turned, setting.body.reach_m) <= way

@@ -138,7 +138,7 @@ def is_convex(rho: float, work: ImplicitStepWorkspace) -> bool:
 
 
 @kernel
-def shared_step(rho: float, work: ImplicitStepWorkspace, solver: ContactWorkspace) -> bool:
+def shared_step(contacts: ContactSet, rho: float, work: ImplicitStepWorkspace, solver: ContactWorkspace) -> bool:
     """Write the step into ``work.delta`` that keeps all contacts closed that carry, for shared forces: Newton's, where S
     is in ``work.curvature``. False: S is not convex.
 
@@ -149,6 +149,8 @@ def shared_step(rho: float, work: ImplicitStepWorkspace, solver: ContactWorkspac
         return False
     for k in range(6):
         work.delta[k] = solver.load[k]
+        for i in range(contacts.used[0]):
+            work.delta[k] += contacts.states[i].forces[0] * contacts.rows[i].columns[0, k]
     remove_span(work.delta, work.held)
     solve_lower(work.factor, work.delta, work.delta)
     solve_upper(work.factor, work.delta)

@@ -153,7 +153,7 @@ def is_shared(
         return False
     write_curvature(contacts, setting.load, position, quaternion, frame, False, stiff.curvature)
     keep_along_faces(contacts, solver.locked, DEPENDENT, stiff)
-    if shared_step(rho, stiff, solver):
+    if shared_step(contacts, rho, stiff, solver):
         return True
     for i in range(contacts.used[0]):
         contacts.states[i].forces[0] = contacts.states[i].kept_forces[0]
