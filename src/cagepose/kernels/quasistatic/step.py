@@ -59,7 +59,7 @@ from cagepose.kernels.quasistatic.implicit_step import (
 )
 from cagepose.kernels.quasistatic.projection import DEPENDENT, FIXED, ON_FACE, constrain_features, keep_stopped
 from cagepose.kernels.quasistatic.pushing_out import allow_depths, constrain_contacts, pushed_out
-from cagepose.kernels.quasistatic.rest_on_the_way import first_rest, is_held_on_the_way
+from cagepose.kernels.quasistatic.rest_on_the_way import ends_before, first_rest, power_left, power_of
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.tipping import may_tip, tips_on_the_way
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
@@ -428,15 +428,21 @@ def next_step(
     turn_step = 0.25 * state.turn_step_rad
     if as_planned and is_whole:
         turn_step = min(2.0 * state.turn_step_rad, setting.turn_step_rad)
-    could_rest = setting.friction.greatest > 0.0 and rule != FREE and amount > 0.0
-    is_held = could_rest and is_held_on_the_way(setting, end, turned, work)
+    begun, power, could_rest = power_of(solver.y, frame, twist), math.inf, rule != FREE and amount > 0.0
+    if could_rest and setting.friction.greatest > 0.0:
+        power = power_left(setting, end, turned, twist, work)
+    is_held = ends_before(power, begun)
     if rule != FREE and amount > 0.0 and not (is_held or is_implicit) and may_tip(setting, twist, amount):
         begins_to_tip, end, turned = tips_on_the_way(setting, position, quaternion, twist, amount, (end, turned), work)
         if begins_to_tip:
             turn_step = setting.turn_step_rad / AS_IT_TIPS
-            is_held = could_rest and is_held_on_the_way(setting, end, turned, work)
+            if could_rest and setting.friction.greatest > 0.0:
+                power = power_left(setting, end, turned, twist, work)
+            is_held = ends_before(power, begun)
     if is_held:
-        end, turned = first_rest(setting, position, quaternion, twist, amount, (end, turned), work)
+        end, turned = first_rest(
+            setting, position, quaternion, twist, amount, (begun, power), (end, turned), work
+        )
 
     # Go there.
     moved = way_between(position, quaternion, end, turned, setting.body.reach_m)
