@@ -66,18 +66,22 @@ def first_rest(
     quaternion: Quaternion,
     twist: Twist,
     amount: float,
-    powers: tuple[float, float],
+    power: float,
     end: tuple[Vector, Quaternion],
     work: QuasistaticWorkspace,
 ) -> tuple[Vector, Quaternion]:
-    """Return the first pose of a step that is held, or after which the power is below zero, as it is at the end: after
-    ``amount``, with the second of two ``powers``, that at the start and that at the end. The placement is that of the
-    pose.
+    """Return the first pose of a step that is held, or after which the power is below zero, as it is at the end, after
+    ``amount``. The placement is that of the pose.
+
+    What forces in their cones leave of a load is not quite the motion that begins, with friction: where it has no power
+    along the step at its start, it says nothing about the end.
     """
-    low, high = 0.0, amount
-    at_low, at_high = powers
+    low, high, at_low, at_high = 0.0, amount, math.inf, power
     best = end
-    for _ in range(TRIALS):
+    if at_high < 0.0:
+        place_object(setting.geometry, position, quaternion, work.placement)
+        at_low = power_left(setting, position, quaternion, twist, work)
+    for _ in range(TRIALS if at_low > 0.0 else 0):
         middle = 0.5 * (low + high)
         if at_high < 0.0 and at_low < math.inf:  # by false position (Illinois)
             middle = low + (high - low) * at_low / (at_low - at_high)

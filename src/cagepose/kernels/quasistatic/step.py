@@ -440,9 +440,7 @@ def next_step(
                 power = power_left(setting, end, turned, twist, work)
             is_held = ends_before(power, begun)
     if is_held:
-        end, turned = first_rest(
-            setting, position, quaternion, twist, amount, (begun, power), (end, turned), work
-        )
+        end, turned = first_rest(setting, position, quaternion, twist, amount, power, (end, turned), work)
 
     # Go there.
     moved = way_between(position, quaternion, end, turned, setting.body.reach_m)
