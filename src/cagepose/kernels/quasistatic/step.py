@@ -190,12 +190,12 @@ def next_twist(
     turn_step_rad: float,
     is_still: bool,
     work: QuasistaticWorkspace,
-) -> tuple[Twist, bool]:
-    """Return the twist to follow from a pose that moves, and whether it is that of an implicit step; forces and sticking
-    are then those of the step. ``is_still``: a step before it led nowhere.
+) -> Twist:
+    """Return the twist to follow from a pose that moves; forces and sticking are then those of the step. ``is_still``: a
+    step before it led nowhere.
     """
     contacts, scratch, friction = work.contacts, work.scratch[0], setting.friction.greatest
-    y, is_implicit = scratch.solver.y, False
+    y = scratch.solver.y
     find_sticking(contacts, frame, friction, setting.tolerances.touch_m, scratch.solver.load_terms, y)
     carries = carried_by(contacts) != FREE
     velocity, spin = twist_of(y, frame)
@@ -215,7 +215,7 @@ def next_twist(
         is_near = is_still and length(y, 6) <= NEAR_BALANCE * scratch.solver.load_terms
         if friction == 0.0 and carries and (is_near or not is_convex(rho, scratch.stiff)):
             if is_shared(setting, position, quaternion, frame, rho, work):
-                return twist_of_step(setting, position, quaternion, frame, turn_step_rad, work), True
+                return twist_of_step(setting, position, quaternion, frame, turn_step_rad, work)
         is_stiff = abs(curvature_along(scratch.stiff.curvature, y)) * end > STIFF
         turns = turn_of_normals(contacts, velocity, spin)
         is_round = turns * end > STIFF * turn_step_rad and turns > ROUND * norm(spin)
@@ -224,7 +224,6 @@ def next_twist(
                 contacts, work.turned, friction, rho, setting.tolerances.rounding_m, scratch.stiff, scratch.solver
             ):
                 break
-            is_implicit = True
             velocity, spin = twist_of(scratch.stiff.delta, frame)
             spin = straightened(velocity, spin, setting.body.reach_m, 0.0)
             longest = min(
@@ -235,7 +234,7 @@ def next_twist(
             if longest < 2.0 or rho <= least_rho:
                 break
             rho = max(rho / longest, least_rho)
-    return Twist(velocity, spin, end), is_implicit
+    return Twist(velocity, spin, end)
 
 
 @kernel
@@ -410,7 +409,7 @@ def next_step(
 
     # Which way, and how far?
     frame, is_still = frame_at(setting.body, quaternion), state.n_still > 0
-    twist, is_implicit = next_twist(setting, position, quaternion, frame, state.turn_step_rad, is_still, work)
+    twist = next_twist(setting, position, quaternion, frame, state.turn_step_rad, is_still, work)
     rule = carried_by(work.contacts)
     motion = TRAVEL if norm(twist.spin) == 0.0 else SCREW
     if rule == FREE:
@@ -432,7 +431,7 @@ def next_step(
     if could_rest and setting.friction.greatest > 0.0:
         power = power_left(setting, end, turned, twist, work)
     is_held = ends_before(power, begun)
-    if rule != FREE and amount > 0.0 and not (is_held or is_implicit) and may_tip(setting, twist, amount):
+    if rule != FREE and amount > 0.0 and not is_held and may_tip(setting, twist, amount):
         begins_to_tip, end, turned = tips_on_the_way(setting, position, quaternion, twist, amount, (end, turned), work)
         if begins_to_tip:
             turn_step = setting.turn_step_rad / AS_IT_TIPS
