@@ -359,14 +359,16 @@ def along_faces(
 ) -> tuple[Twist, bool]:
     """Return the twist that leads, in an amount of one, to where contacts that stay on their faces are on them again at
     the end of a twist, after the way of a size of the scene or a part of it; and whether it is all of it. A travel
-    without end is kept, and so is a motion that nothing guides, and one of a circle that lies flat or fits all around,
-    whose places change as it tilts.
+    without end is kept, and so is the direction of a motion that nothing guides, and of one of a circle that lies flat
+    or fits all around, whose places change as it tilts.
     """
     allow_depths(placement, setting.tolerances, work)
     constrain_contacts(contacts, setting.tolerances.rounding_m, work.constraints)
-    if twist.end == math.inf or work.constraints.scratch[0].used == 0 or has_fixed(contacts):
+    if twist.end == math.inf:
         return twist, True
     amount = min(twist.end, setting.size_m / max(norm(twist.velocity), LEAST_SPEED))
+    if work.constraints.scratch[0].used == 0 or has_fixed(contacts):
+        return Twist(twist.velocity, twist.spin, amount), True
     for halving in range(HALVINGS_TO_FACES):
         done, end, turned = ends_on_faces(setting, placement, contacts, position, quaternion, twist, amount, work)
         if not done:
