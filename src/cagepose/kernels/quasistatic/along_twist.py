@@ -55,7 +55,7 @@ HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
 LEAST_SPEED = 1e-300
 """Metres for each unit of an amount: a slower motion is a turn."""
-SLANTED, NEAR_END = 8.0, 0.25
+SLANTED, NEAR_END = 8.0, 0.01
 """Times what contacts stray, that where one ends may be off along the way; and, in touch tolerances, how near to that
 it is looked for.
 """

@@ -22,7 +22,7 @@ from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.pushing_out import is_fixed
 from cagepose.kernels.quasistatic.straying import STRAYED, strayed
 
-CLEAR = 2.0
+CLEAR = 1.1
 """In touch tolerances: how far beyond the edge a contact is let go, so that it does not touch the next face too."""
 NEAR_GUESS, FALSE_POSITIONS = 1e-13, 12
 """In amounts of the whole motion: an end that is guessed, in so many trials, is looked for so near to it first."""
