@@ -364,10 +364,10 @@ def along_faces(
     """
     allow_depths(placement, setting.tolerances, work)
     constrain_contacts(contacts, setting.tolerances.rounding_m, work.constraints)
-    if twist.end == math.inf:
+    if twist.end == math.inf or work.constraints.scratch[0].used == 0:
         return twist, True
     amount = min(twist.end, setting.size_m / max(norm(twist.velocity), LEAST_SPEED))
-    if work.constraints.scratch[0].used == 0 or has_fixed(contacts):
+    if has_fixed(contacts):
         return Twist(twist.velocity, twist.spin, amount), True
     for halving in range(HALVINGS_TO_FACES):
         done, end, turned = ends_on_faces(setting, placement, contacts, position, quaternion, twist, amount, work)
@@ -397,13 +397,13 @@ def furthest_step(
     Return (amount, whether it went as far as it should, position, quaternion); amount 0: it could not move; inf:
     nothing is ahead.
     """
-    reach_m = 0.0
-    if norm(twist.spin) > 0.0:
+    reach_m, is_guided = 0.0, work.constraints.scratch[0].used > 0
+    if is_guided and twist.end < math.inf:
         reach_m = STRAYED * strayed_at_most(
             setting.geometry, placement, contacts, position, quaternion, twist.velocity, twist.spin, twist.end
         )
     hit = first_contact(setting, placement, contacts, position, twist, reach_m)
-    if hit.feature >= 0 and norm(twist.spin) > 0.0:
+    if hit.feature >= 0 and is_guided:
         amount = hit_on_path(setting, placement, contacts, position, quaternion, twist, hit, work)
         hit = Hit(amount, hit.feature, hit.cage_feature, hit.angle)
     amount = hit.amount
@@ -419,7 +419,7 @@ def furthest_step(
         reach_m,
         setting.tolerances.touch_m,
     )
-    if edge_crossing < amount and norm(twist.spin) > 0.0:
+    if edge_crossing < amount and is_guided and twist.end < math.inf:
         edge_crossing = crossing_on_path(
             setting, placement, contacts, leaving, position, quaternion, twist, edge_crossing, reach_m, work
         )
