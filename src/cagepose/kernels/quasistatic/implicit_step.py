@@ -140,12 +140,12 @@ def is_convex(rho: float, work: ImplicitStepWorkspace) -> bool:
 @kernel
 def shared_step(contacts: ContactSet, rho: float, work: ImplicitStepWorkspace, solver: ContactWorkspace) -> bool:
     """Write the step into ``work.delta`` that keeps all contacts closed that carry, for shared forces: Newton's, where S
-    is in ``work.curvature``. False: S is not convex.
+    is in ``work.curvature``. False: S is not convex, or they leave no way.
 
     Where contacts share forces in many ways and their normals all but depend on each other, as of a cone that touches
     the edges of a square hole, the one that the onset takes may be unstable, and a balance between two is stable.
     """
-    if not is_convex(rho, work):
+    if work.held.used == WRENCH or not is_convex(rho, work):
         return False
     for k in range(6):
         work.delta[k] = solver.load[k]
