@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from cagepose.kernels.algebra.dense import cholesky, solve_lower, solve_upper
-from cagepose.kernels.algebra.least_squares import inner, length
+from cagepose.kernels.algebra.dense import cholesky, remove_span, solve_lower, solve_upper
+from cagepose.kernels.algebra.least_squares import PassiveSet, inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.metric import ScaledVector
@@ -78,9 +78,12 @@ def write_stiffness(contacts: ContactSet, work: SharingWorkspace) -> None:
 
 
 @kernel
-def share_evenly(contacts: ContactSet, y: FloatArray, terms: float, work: SharingWorkspace) -> bool:
+def share_evenly(
+    contacts: ContactSet, carrying: PassiveSet, y: FloatArray, terms: float, work: SharingWorkspace
+) -> bool:
     """Share what the contacts carry of a load, of terms so long, that begins the motion ``y``, among all that do not open
-    with it; False: it was not found, and the forces are as they were.
+    with it and hold nothing that those which carry, with that basis, do not hold; False: it was not found, and the forces
+    are as they were.
     """
     for k in range(6):
         work.wrench[k] = 0.0
@@ -88,7 +91,11 @@ def share_evenly(contacts: ContactSet, y: FloatArray, terms: float, work: Sharin
         state, normal = contacts.states[i], contacts.rows[i].columns[0]
         state.kept_forces[0] = state.forces[0]
         opens = -inner(normal, y, 6) > OPENING * length(normal, 6) * terms
-        state.counts = state.chosen and (state.forces[0] > 0.0 or not opens)
+        for k in range(6):
+            work.step[k] = normal[k]
+        remove_span(work.step, carrying)
+        is_other = length(work.step, 6) > carrying.dependent * length(normal, 6)
+        state.counts = state.chosen and (state.forces[0] > 0.0 or not (opens or is_other))
         for k in range(6):
             work.wrench[k] += state.forces[0] * normal[k]
     for i in range(contacts.used[0]):  # with all of them: one linear system, where all come to carry

@@ -69,16 +69,10 @@ class ImplicitStepWorkspace:
 
 
 @kernel
-def keep_along_faces(
-    contacts: ContactSet, locked: PassiveSet, dependent: float, work: ImplicitStepWorkspace
-) -> float:
-    """Replace what S has across the faces (and, where contacts stick, along them) by the greatest curvature along them.
-
-    Nothing moves there, nor where contacts without play lock it, but it could make the matrix look as if it were not
-    positive, or rounding of the forces as if it moved the object. What a face holds but for a ``dependent`` part of
-    its wrench, others hold. Return the least rho that stands out from the rounding.
+def hold_carrying(contacts: ContactSet, locked: PassiveSet, dependent: float, work: ImplicitStepWorkspace) -> None:
+    """Write the basis of what the contacts that carry hold (and, where they stick, along their faces), and of what those
+    without play lock. What one holds but for a ``dependent`` part of its wrench, others hold.
     """
-    least_rho = LEAST_RHO * frobenius_norm(work.curvature)
     clear(work.held, WRENCH, 1.0)
     work.held.dependent = dependent
     for i in range(contacts.used[0]):
@@ -88,6 +82,19 @@ def keep_along_faces(
                 append_column(work.held, contacts.rows[i].columns[which], which, 0.0)
     for place in range(locked.used):
         append_column(work.held, locked.basis[place], place, 0.0)
+
+
+@kernel
+def keep_along_faces(
+    contacts: ContactSet, locked: PassiveSet, dependent: float, work: ImplicitStepWorkspace
+) -> float:
+    """Replace what S has across the faces, see `hold_carrying`, by the greatest curvature along them.
+
+    Nothing moves there, but it could make the matrix look as if it were not positive, or rounding of the forces as if it
+    moved the object. Return the least rho that stands out from the rounding.
+    """
+    least_rho = LEAST_RHO * frobenius_norm(work.curvature)
+    hold_carrying(contacts, locked, dependent, work)
     add_across(work.curvature, work.held, confine(work.curvature, work.held))
     return least_rho
 
@@ -140,12 +147,12 @@ def is_convex(rho: float, work: ImplicitStepWorkspace) -> bool:
 @kernel
 def shared_step(contacts: ContactSet, rho: float, work: ImplicitStepWorkspace, solver: ContactWorkspace) -> bool:
     """Write the step into ``work.delta`` that keeps all contacts closed that carry, for shared forces: Newton's, where S
-    is in ``work.curvature``. False: S is not convex, or they leave no way.
+    is in ``work.curvature``. False: S is not convex.
 
     Where contacts share forces in many ways and their normals all but depend on each other, as of a cone that touches
     the edges of a square hole, the one that the onset takes may be unstable, and a balance between two is stable.
     """
-    if work.held.used == WRENCH or not is_convex(rho, work):
+    if not is_convex(rho, work):
         return False
     for k in range(6):
         work.delta[k] = solver.load[k]

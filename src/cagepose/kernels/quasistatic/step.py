@@ -51,6 +51,7 @@ from cagepose.kernels.quasistatic.along_twist import along_faces, furthest_step,
 from cagepose.kernels.quasistatic.first_contact import Twist
 from cagepose.kernels.quasistatic.flight import nothing_ahead
 from cagepose.kernels.quasistatic.implicit_step import (
+    hold_carrying,
     implicit_step,
     is_convex,
     keep_along_faces,
@@ -149,7 +150,8 @@ def is_shared(
 ) -> bool:
     """Whether there is a step to a stable balance with forces that are shared evenly; else all is as it was."""
     contacts, stiff, solver = work.contacts, work.scratch[0].stiff, work.scratch[0].solver
-    if not share_evenly(contacts, solver.y, solver.load_terms, stiff.sharing):
+    hold_carrying(contacts, solver.locked, DEPENDENT, stiff)
+    if not share_evenly(contacts, stiff.held, solver.y, solver.load_terms, stiff.sharing):
         return False
     write_curvature(contacts, setting.load, position, quaternion, frame, False, stiff.curvature)
     keep_along_faces(contacts, solver.locked, DEPENDENT, stiff)
@@ -190,12 +192,12 @@ def next_twist(
     turn_step_rad: float,
     is_still: bool,
     work: QuasistaticWorkspace,
-) -> Twist:
-    """Return the twist to follow from a pose that moves; forces and sticking are then those of the step. ``is_still``: a
-    step before it led nowhere.
+) -> tuple[Twist, bool]:
+    """Return the twist to follow from a pose that moves, and whether it is that of an implicit step in a stable valley,
+    whose end is known; forces and sticking are then those of the step. ``is_still``: a step before it led nowhere.
     """
     contacts, scratch, friction = work.contacts, work.scratch[0], setting.friction.greatest
-    y = scratch.solver.y
+    y, is_stable = scratch.solver.y, False
     find_sticking(contacts, frame, friction, setting.tolerances.touch_m, scratch.solver.load_terms, y)
     carries = carried_by(contacts) != FREE
     velocity, spin = twist_of(y, frame)
@@ -213,9 +215,10 @@ def next_twist(
             least_rho = max(least_rho, rho_against_circulation(scratch.stiff))
         rho = max(least_rho, 1.0 / end)
         is_near = is_still and length(y, 6) <= NEAR_BALANCE * scratch.solver.load_terms
-        if friction == 0.0 and carries and (is_near or not is_convex(rho, scratch.stiff)):
+        is_valley = is_convex(least_rho, scratch.stiff)
+        if friction == 0.0 and carries and (is_near or not (is_valley or is_convex(rho, scratch.stiff))):
             if is_shared(setting, position, quaternion, frame, rho, work):
-                return twist_of_step(setting, position, quaternion, frame, turn_step_rad, work)
+                return twist_of_step(setting, position, quaternion, frame, turn_step_rad, work), False
         is_stiff = abs(curvature_along(scratch.stiff.curvature, y)) * end > STIFF
         turns = turn_of_normals(contacts, velocity, spin)
         is_round = turns * end > STIFF * turn_step_rad and turns > ROUND * norm(spin)
@@ -224,6 +227,7 @@ def next_twist(
                 contacts, work.turned, friction, rho, setting.tolerances.rounding_m, scratch.stiff, scratch.solver
             ):
                 break
+            is_stable = is_valley
             velocity, spin = twist_of(scratch.stiff.delta, frame)
             spin = straightened(velocity, spin, setting.body.reach_m, 0.0)
             longest = min(
@@ -234,7 +238,7 @@ def next_twist(
             if longest < 2.0 or rho <= least_rho:
                 break
             rho = max(rho / longest, least_rho)
-    return Twist(velocity, spin, end)
+    return Twist(velocity, spin, end), is_stable
 
 
 @kernel
@@ -409,7 +413,7 @@ def next_step(
 
     # Which way, and how far?
     frame, is_still = frame_at(setting.body, quaternion), state.n_still > 0
-    twist = next_twist(setting, position, quaternion, frame, state.turn_step_rad, is_still, work)
+    twist, is_stable = next_twist(setting, position, quaternion, frame, state.turn_step_rad, is_still, work)
     rule = carried_by(work.contacts)
     motion = TRAVEL if norm(twist.spin) == 0.0 else SCREW
     if rule == FREE:
@@ -431,7 +435,7 @@ def next_step(
     if could_rest and setting.friction.greatest > 0.0:
         power = power_left(setting, end, turned, twist, work)
     is_held = ends_before(power, begun)
-    if rule != FREE and amount > 0.0 and not is_held and may_tip(setting, twist, amount):
+    if rule != FREE and amount > 0.0 and not (is_held or is_stable) and may_tip(setting, twist, amount):
         begins_to_tip, end, turned = tips_on_the_way(setting, position, quaternion, twist, amount, (end, turned), work)
         if begins_to_tip:
             turn_step = setting.turn_step_rad / AS_IT_TIPS
