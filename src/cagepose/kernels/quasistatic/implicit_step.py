@@ -85,9 +85,7 @@ def hold_carrying(contacts: ContactSet, locked: PassiveSet, dependent: float, wo
 
 
 @kernel
-def keep_along_faces(
-    contacts: ContactSet, locked: PassiveSet, dependent: float, work: ImplicitStepWorkspace
-) -> float:
+def keep_along_faces(contacts: ContactSet, locked: PassiveSet, dependent: float, work: ImplicitStepWorkspace) -> float:
     """Replace what S has across the faces, see `hold_carrying`, by the greatest curvature along them.
 
     Nothing moves there, but it could make the matrix look as if it were not positive, or rounding of the forces as if it

@@ -47,9 +47,10 @@ from cagepose.kernels.outcome.trace import (
     TRAVEL,
     StepRecord,
 )
-from cagepose.kernels.quasistatic.along_twist import along_faces, furthest_step, longest_step, straightened, turn_of_normals
+from cagepose.kernels.quasistatic.event_search import begins_to_tip, furthest_step, power_ends
 from cagepose.kernels.quasistatic.first_contact import Twist
 from cagepose.kernels.quasistatic.flight import nothing_ahead
+from cagepose.kernels.quasistatic.guards import power_of
 from cagepose.kernels.quasistatic.implicit_step import (
     hold_carrying,
     implicit_step,
@@ -58,11 +59,12 @@ from cagepose.kernels.quasistatic.implicit_step import (
     rho_against_circulation,
     shared_step,
 )
+from cagepose.kernels.quasistatic.path import Path, along_faces
 from cagepose.kernels.quasistatic.projection import DEPENDENT, FIXED, ON_FACE, constrain_features, keep_stopped
 from cagepose.kernels.quasistatic.pushing_out import allow_depths, constrain_contacts, pushed_out
-from cagepose.kernels.quasistatic.rest_on_the_way import ends_before, first_rest, power_left, power_of
 from cagepose.kernels.quasistatic.setting import Setting
-from cagepose.kernels.quasistatic.tipping import may_tip, tips_on_the_way
+from cagepose.kernels.quasistatic.step_length import longest_step, straightened, turn_of_normals
+from cagepose.kernels.quasistatic.tipping import may_tip
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 from cagepose.kernels.stability.strong import OTHER_FOUND, other_onset_on_circles
 
@@ -421,29 +423,27 @@ def next_step(
         if nothing_ahead(setting, position, quaternion, velocity, spin):
             write_escape(work, step, would_hold, velocity, position, quaternion)
             return ESCAPES, here, fits
-    twist, is_whole = along_faces(setting, work.placement, work.contacts, position, quaternion, twist, work.path)
-    amount, as_planned, end, turned = furthest_step(
-        setting, work.placement, work.contacts, position, quaternion, twist, work.path
-    )
+    path, is_whole = along_faces(setting, Path(position, quaternion, twist), work)
+    amount, as_planned, end, turned = furthest_step(setting, path, work)
     if amount == math.inf:
-        write_escape(work, step, would_hold, twist.velocity, position, quaternion)
+        write_escape(work, step, would_hold, path.twist.velocity, position, quaternion)
         return ESCAPES, here, fits
     turn_step = 0.25 * state.turn_step_rad
     if as_planned and is_whole:
         turn_step = min(2.0 * state.turn_step_rad, setting.turn_step_rad)
-    begun, power, could_rest = power_of(solver.y, frame, twist), math.inf, rule != FREE and amount > 0.0
-    if could_rest and setting.friction.greatest > 0.0:
-        power = power_left(setting, end, turned, twist, work)
-    is_held = ends_before(power, begun)
-    if rule != FREE and amount > 0.0 and not (is_held or is_stable) and may_tip(setting, twist, amount):
-        begins_to_tip, end, turned = tips_on_the_way(setting, position, quaternion, twist, amount, (end, turned), work)
-        if begins_to_tip:
-            turn_step = setting.turn_step_rad / AS_IT_TIPS
-            if could_rest and setting.friction.greatest > 0.0:
-                power = power_left(setting, end, turned, twist, work)
-            is_held = ends_before(power, begun)
-    if is_held:
-        end, turned = first_rest(setting, position, quaternion, twist, amount, power, (end, turned), work)
+
+    # Does it tip on the way, or is it held, or would it turn back?
+    if rule != FREE and amount > 0.0:
+        begun, may_rest, is_held = power_of(solver.y, frame, path.twist), setting.friction.greatest > 0.0, False
+        if may_rest:
+            first, (end, turned) = power_ends(setting, path, amount, (end, turned), begun, work)
+            amount, is_held = first, first < amount
+        if not (is_held or is_stable) and may_tip(setting, path.twist, amount):
+            begins, amount, (end, turned) = begins_to_tip(setting, path, amount, (end, turned), work)
+            if begins:
+                turn_step = setting.turn_step_rad / AS_IT_TIPS
+                if may_rest:
+                    _, (end, turned) = power_ends(setting, path, amount, (end, turned), begun, work)
 
     # Go there.
     moved = way_between(position, quaternion, end, turned, setting.body.reach_m)

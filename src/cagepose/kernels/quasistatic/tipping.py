@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import math
-
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, scaled, vector_from
-from cagepose.kernels.boundary.geometry import place_object
 from cagepose.kernels.contact.contact_set import stays_on_face
 from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, HELD_WITHOUT_FRICTION, MOVES
 from cagepose.kernels.contact.metric import frame_at, twist_of
 from cagepose.kernels.contact.onset import onset
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.first_contact import Twist
-from cagepose.kernels.quasistatic.on_the_way import find_touched_before, place_before, stepped_from
+from cagepose.kernels.quasistatic.touched_before import find_touched_before, place_before
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
@@ -76,43 +73,3 @@ def tips(
         if tilt > known:
             return True
     return False
-
-
-@kernel
-def tips_on_the_way(
-    setting: Setting,
-    position: Vector,
-    quaternion: Quaternion,
-    twist: Twist,
-    amount: float,
-    end: tuple[Vector, Quaternion],
-    work: QuasistaticWorkspace,
-) -> tuple[bool, Vector, Quaternion]:
-    """Return whether the object begins to tip on a travel, or is held there, and where it ends then; else its end. The
-    placement is that of the pose, and the motion from rest at the start is in the solver.
-    """
-    begun = twist_of(work.scratch[0].solver.y, frame_at(setting.body, quaternion))
-    spin_each_m = norm(begun[1]) / norm(begun[0]) if norm(begun[0]) > 0.0 else math.inf
-    before_end = BEFORE_END * setting.tolerances.touch_m / norm(twist.velocity)
-    low, high, best, found = 0.0, 0.0, end, False
-    for _ in range(TIMES):
-        high = amount - before_end
-        if high <= 0.0:
-            break
-        done, there, turned = stepped_from(setting, position, quaternion, twist, high, work)
-        if done and find_all_carried(setting, there, turned, work):
-            found, best = tips(setting, turned, twist, spin_each_m, work), (there, turned)
-            break
-        before_end *= FARTHER
-    for _ in range(HALVINGS if found else 0):
-        middle = 0.5 * (low + high)
-        done, there, turned = stepped_from(setting, position, quaternion, twist, middle, work)
-        can_ask = find_touched_before(setting, there, turned, frame_at(setting.body, turned), work)
-        if done and can_ask and tips(setting, turned, twist, spin_each_m, work):
-            high, best = middle, (there, turned)
-        else:
-            low = middle
-    if not found:
-        best = end
-    place_object(setting.geometry, best[0], best[1], work.placement)
-    return found, best[0], best[1]

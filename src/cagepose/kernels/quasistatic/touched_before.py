@@ -1,4 +1,7 @@
-"""A pose within a step, and the contact problem there: of what touched before it."""
+"""The contact problem at a pose within a step: of what touched before it.
+
+What the step reaches does not count: it touches at the end only, and is asked there.
+"""
 
 from __future__ import annotations
 
@@ -6,31 +9,14 @@ import math
 
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
-from cagepose.kernels.boundary.geometry import place_object
 from cagepose.kernels.circles.places import within_turn
 from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
 from cagepose.kernels.contact.find_contacts import find_contacts
 from cagepose.kernels.contact.loads import write_load
 from cagepose.kernels.contact.metric import Frame
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.along_twist import stepped
-from cagepose.kernels.quasistatic.first_contact import NO_HIT, Twist
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
-
-
-@kernel
-def stepped_from(
-    setting: Setting,
-    position: Vector,
-    quaternion: Quaternion,
-    twist: Twist,
-    amount: float,
-    work: QuasistaticWorkspace,
-) -> tuple[bool, Vector, Quaternion]:
-    """Return whether a step from a pose can end after an amount, and its pose then, which is that of the placement."""
-    place_object(setting.geometry, position, quaternion, work.placement)
-    return stepped(setting, work.placement, work.contacts, position, quaternion, twist, amount, NO_HIT, work.path)
 
 
 @kernel

@@ -1,0 +1,108 @@
+"""What ends a step: numbers that fall through zero along its path.
+
+What is hit closes its gap; a contact runs over the end of a feature; the loads do no more work along the path, as
+friction holds the object or it would turn back; the object begins to tip over its support.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from cagepose.kernels.algebra.motion import motion_of
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.vector import Vector, dot, transposed_times
+from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, MOVES, ON_THE_WAY, equilibrium
+from cagepose.kernels.contact.metric import Frame, frame_at, twist_between
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.quasistatic.edge_crossing import still_meet
+from cagepose.kernels.quasistatic.first_contact import NO_HIT, Hit, Twist
+from cagepose.kernels.quasistatic.path import Path, gap_of, on_faces, step_to
+from cagepose.kernels.quasistatic.setting import Setting
+from cagepose.kernels.quasistatic.tipping import tips
+from cagepose.kernels.quasistatic.touched_before import find_touched_before
+from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
+
+GAP_CLOSES, CONTACT_ENDS, POWER_ENDS, BEGINS_TO_TIP = 0, 1, 2, 3
+"""Which number a guard is: the gap of what is hit, metres; whether a contact still reaches where its features meet; the
+power of what is left of the load; whether the object goes on as it began.
+"""
+
+
+class Guard(NamedTuple):
+    """One number along a path.
+
+    Attributes
+    ----------
+    kind
+        Which.
+    hit
+        What is hit, for GAP_CLOSES.
+    contact
+        Which contact, for CONTACT_ENDS.
+    spin_each_m
+        How fast the object turned at the beginning, radians a metre, for BEGINS_TO_TIP.
+    """
+
+    kind: int
+    hit: Hit
+    contact: int
+    spin_each_m: float
+
+
+@kernel
+def value_of(setting: Setting, path: Path, guard: Guard, amount: float, work: QuasistaticWorkspace) -> float:
+    """Return the number of a guard after an amount of a path: above zero as long as the step goes on. Where only its
+    sign is known it is infinite. For the last two kinds the placement is that of the pose there.
+    """
+    if guard.kind == GAP_CLOSES:
+        done, end, turned = on_faces(setting, path, amount, work)
+        return gap_of(setting, guard.hit, end, turned, work) if done else -math.inf
+    if guard.kind == CONTACT_ENDS:
+        done, end, turned = on_faces(setting, path, amount, work)
+        return math.inf if done and still_meets(setting, path, guard.contact, end, turned, work) else -math.inf
+    done, end, turned = step_to(setting, path, amount, NO_HIT, work)
+    if not done:
+        return math.inf
+    if guard.kind == POWER_ENDS:
+        return power_left(setting, end, turned, path.twist, work)
+    can_ask = find_touched_before(setting, end, turned, frame_at(setting.body, turned), work)
+    return -math.inf if can_ask and tips(setting, turned, path.twist, guard.spin_each_m, work) else math.inf
+
+
+@kernel
+def still_meets(
+    setting: Setting, path: Path, i: int, end: Vector, turned: Quaternion, work: QuasistaticWorkspace
+) -> bool:
+    """Whether a contact still reaches where its features meet, at a pose of a path."""
+    velocity, spin = twist_between(path.position, path.quaternion, end, turned)
+    motion, touch_m = motion_of(path.position, velocity, spin), setting.tolerances.touch_m
+    return still_meet(setting.geometry, work.placement, work.contacts, i, motion, 1.0, touch_m, 0.0)
+
+
+@kernel
+def power_of(wrench: FloatArray, frame: Frame, twist: Twist) -> float:
+    """Return the power of a scaled wrench along a twist, watts for each amount a second."""
+    radii = frame.radii
+    moment = transposed_times(frame.axes, (radii[0] * wrench[3], radii[1] * wrench[4], radii[2] * wrench[5]))
+    return dot((wrench[0], wrench[1], wrench[2]), twist.velocity) + dot(moment, twist.spin)
+
+
+@kernel
+def power_left(
+    setting: Setting, position: Vector, quaternion: Quaternion, twist: Twist, work: QuasistaticWorkspace
+) -> float:
+    """Return the power, where the object is placed, of what is left of the load by what touched before the step; -inf: it
+    is held there; inf: that is not known.
+
+    With friction what is left is not quite the motion that begins, but both vanish together.
+    """
+    frame = frame_at(setting.body, quaternion)
+    if not find_touched_before(setting, position, quaternion, frame, work):
+        return math.inf
+    solver = work.scratch[0].solver
+    code = equilibrium(work.ahead, frame, setting.friction.greatest, ON_THE_WAY, solver)
+    if code != MOVES:
+        return -math.inf if code <= HELD_BY_FRICTION else math.inf
+    return power_of(solver.cone.passive.residual, frame, twist)
