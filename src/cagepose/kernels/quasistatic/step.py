@@ -87,9 +87,6 @@ AS_IT_TIPS = 64.0
 REFINEMENTS = 3
 """How often, in a phase, a rest is put on its faces and looked at again: what balanced before may not quite, then."""
 
-NEAR_BALANCE = 1e-6
-"""In lengths of the load's terms. So slow a motion leads to a balance near by, if there is one."""
-
 GOES_ON = -1
 """Instead of the code of a verdict: the phase goes on."""
 
@@ -216,9 +213,8 @@ def next_twist(
             write_circulation(load, position, quaternion, frame, scratch.stiff.circulation)
             least_rho = max(least_rho, rho_against_circulation(scratch.stiff))
         rho = max(least_rho, 1.0 / end)
-        is_near = is_still and length(y, 6) <= NEAR_BALANCE * scratch.solver.load_terms
         is_valley = is_convex(least_rho, scratch.stiff)
-        if friction == 0.0 and carries and (is_near or not (is_valley or is_convex(rho, scratch.stiff))):
+        if friction == 0.0 and carries and (is_still or not (is_valley or is_convex(rho, scratch.stiff))):
             if is_shared(setting, position, quaternion, frame, rho, work):
                 return twist_of_step(setting, position, quaternion, frame, turn_step_rad, work), False
         is_stiff = abs(curvature_along(scratch.stiff.curvature, y)) * end > STIFF
