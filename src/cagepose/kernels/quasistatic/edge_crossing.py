@@ -79,40 +79,48 @@ def reach_within(
 
 
 @kernel
+def beyond_border(
+    geometry: Geometry, placement: Placement, contacts: ContactSet, i: int, motion: Motion, amount: float, touch_m: float
+) -> float:
+    """Return how far a vertex is beyond where its contact with a face ends, after an amount of a motion, metres; inf:
+    the features are others.
+    """
+    contact, cage, moved = contacts.rows[i], geometry.cage, held_moved(geometry, placement)
+    one, other = contact.feature, contact.cage_feature
+    kind, cage_kind = geometry.held.features[one].kind, cage.own.features[other].kind
+    if not (kind == FACE or cage_kind == FACE) or kind == CIRCLE or cage_kind == CIRCLE:
+        return math.inf
+    place_after(held_at(geometry, placement), one, motion, amount, moved)
+    if kind == FACE:
+        beyond = beyond_face(moved, one, vector_from(cage.features[other].point))
+    else:
+        beyond = beyond_face(cage, other, vector_from(moved.features[one].point))
+    return beyond - 2.0 * CLEAR * touch_m
+
+
+@kernel
 def end_of_face(
     geometry: Geometry, placement: Placement, contacts: ContactSet, i: int, motion: Motion, end: float, touch_m: float
 ) -> float:
     """Return the amount of a motion, up to ``end``, after which a vertex runs over the border of a face, by false
     position (Illinois); inf: it does not, or the features are others.
     """
-    contact, cage, moved = contacts.rows[i], geometry.cage, held_moved(geometry, placement)
-    one, other = contact.feature, contact.cage_feature
-    of_held = geometry.held.features[one].kind == FACE
-    if not (of_held or cage.own.features[other].kind == FACE) or geometry.held.features[one].kind == CIRCLE:
+    low, high = 0.0, end
+    at_low = beyond_border(geometry, placement, contacts, i, motion, low, touch_m)
+    at_high = beyond_border(geometry, placement, contacts, i, motion, high, touch_m)
+    if at_low >= 0.0 or at_high <= 0.0:
         return math.inf
-    if cage.own.features[other].kind == CIRCLE:
-        return math.inf
-    low, high, at_low, at_high, amount = 0.0, end, 0.0, 0.0, 0.0
-    for trial in range(FALSE_POSITIONS):
-        place_after(held_at(geometry, placement), one, motion, amount, moved)
-        if of_held:
-            beyond = beyond_face(moved, one, vector_from(cage.features[other].point))
-        else:
-            beyond = beyond_face(cage, other, vector_from(moved.features[one].point))
-        beyond -= 2.0 * CLEAR * touch_m
-        if trial == 0:
-            at_low, amount = beyond, end
-            continue
-        if trial == 1:
-            at_high = beyond
-        elif beyond < 0.0:
+    amount = end
+    for _ in range(FALSE_POSITIONS):
+        amount = low - at_low * (high - low) / (at_high - at_low)
+        if high - low <= NEAR_GUESS * end:
+            break
+        beyond = beyond_border(geometry, placement, contacts, i, motion, amount, touch_m)
+        if beyond < 0.0:
             low, at_low, at_high = amount, beyond, 0.5 * at_high
         else:
             high, at_high, at_low = amount, beyond, 0.5 * at_low
-        if at_low >= 0.0 or at_high <= 0.0 or high - low <= NEAR_GUESS * end:
-            break
-        amount = low - at_low * (high - low) / (at_high - at_low)
-    return amount if at_low < 0.0 < at_high else math.inf
+    return amount
 
 
 @kernel
@@ -168,12 +176,11 @@ def first_edge_crossing(
     reach_m: float,
     touch_m: float,
 ) -> tuple[float, int]:
-    """Return the amount of a twist, up to ``end``, after which a contact leaves the face that it stays on, and which; inf:
-    none.
+    """Return the amount of a twist, up to ``end``, after which a contact leaves the face that it stays on, and which one;
+    inf: none.
 
-    Where it would only because contacts stray, by the square of the way, within ``reach_m``, it is passed over: they are
-    put back. So it is
-    where one of them has no place there any more: it may have one when it is put back.
+    Where it would only because contacts stray, by the square of the way, within ``reach_m``, it is passed over: they
+    are put back. So it is where one of them has no place there any more: it may have one when it is put back.
     """
     first, which = math.inf, -1
     for i in range(contacts.used[0]):

@@ -155,7 +155,7 @@ def furthest_step(setting: Setting, path: Path, work: QuasistaticWorkspace) -> t
         touch_m,
     )
     if crossing < math.inf and is_curved:
-        guard, enough = Guard(CONTACT_ENDS, NO_HIT, leaving, 0.0), (0.0, NEAR_END * touch_m / speed)
+        guard, enough = Guard(CONTACT_ENDS, NO_HIT, leaving, 0.0), (NEAR_END * touch_m, NEAR_END * touch_m / speed)
         crossing = first_past(setting, path, guard, math.inf, crossing, spread, enough, work)
     if crossing < amount:
         amount, hit = crossing, NO_HIT

@@ -16,7 +16,7 @@ from cagepose.kernels.algebra.vector import Vector, dot, transposed_times
 from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, MOVES, ON_THE_WAY, equilibrium
 from cagepose.kernels.contact.metric import Frame, frame_at, twist_between
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.edge_crossing import still_meet
+from cagepose.kernels.quasistatic.edge_crossing import beyond_border, still_meet
 from cagepose.kernels.quasistatic.first_contact import NO_HIT, Hit, Twist
 from cagepose.kernels.quasistatic.path import Path, gap_of, on_faces, step_to
 from cagepose.kernels.quasistatic.setting import Setting
@@ -25,8 +25,8 @@ from cagepose.kernels.quasistatic.touched_before import find_touched_before
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
 GAP_CLOSES, CONTACT_ENDS, POWER_ENDS, BEGINS_TO_TIP = 0, 1, 2, 3
-"""Which number a guard is: the gap of what is hit, metres; whether a contact still reaches where its features meet; the
-power of what is left of the load; whether the object goes on as it began.
+"""Which number a guard is: the gap of what is hit; how far a contact is from its end; the power of what is left of the
+load; whether the object goes on as it began.
 """
 
 
@@ -61,7 +61,7 @@ def value_of(setting: Setting, path: Path, guard: Guard, amount: float, work: Qu
         return gap_of(setting, guard.hit, end, turned, work) if done else -math.inf
     if guard.kind == CONTACT_ENDS:
         done, end, turned = on_faces(setting, path, amount, work)
-        return math.inf if done and still_meets(setting, path, guard.contact, end, turned, work) else -math.inf
+        return way_left(setting, path, guard.contact, end, turned, work) if done else -math.inf
     done, end, turned = step_to(setting, path, amount, NO_HIT, work)
     if not done:
         return math.inf
@@ -72,13 +72,20 @@ def value_of(setting: Setting, path: Path, guard: Guard, amount: float, work: Qu
 
 
 @kernel
-def still_meets(
+def way_left(
     setting: Setting, path: Path, i: int, end: Vector, turned: Quaternion, work: QuasistaticWorkspace
-) -> bool:
-    """Whether a contact still reaches where its features meet, at a pose of a path."""
+) -> float:
+    """Return how far a contact is, at a pose of a path, from where it ends, metres, where it is one of a vertex and a face;
+    else inf: its features still reach where they meet, or -inf: they do not.
+    """
+    geometry, placement, contacts = setting.geometry, work.placement, work.contacts
     velocity, spin = twist_between(path.position, path.quaternion, end, turned)
     motion, touch_m = motion_of(path.position, velocity, spin), setting.tolerances.touch_m
-    return still_meet(setting.geometry, work.placement, work.contacts, i, motion, 1.0, touch_m, 0.0)
+    meets = still_meet(geometry, placement, contacts, i, motion, 1.0, touch_m, 0.0)
+    left = -beyond_border(geometry, placement, contacts, i, motion, 1.0, touch_m)
+    if left > -math.inf and (left > 0.0) == meets:
+        return left
+    return math.inf if meets else -math.inf
 
 
 @kernel
