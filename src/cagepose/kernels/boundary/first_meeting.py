@@ -468,8 +468,8 @@ def first_of_features(
 
 @kernel
 def tilt_of(search: Search, one: Feature, other: Feature) -> float:
-    """Return the sine by which features may be tilted that count as reached: so much what strays from its face on a screw
-    tilts them.
+    """Return the sine by which features may be tilted that count as reached: so much what strays from its face on a
+    screw tilts them.
     """
     strayed = min(search.near_depth_m / min(one.least, other.least), MOST_SLACK)
     return max(LEAST_SLACK, search.touch_m / search.size_m, strayed)

@@ -387,8 +387,9 @@ def append_touching(
 def is_nearest(
     held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, met: Meeting, touch_m: float, found: Meetings
 ) -> bool:
-    """Whether what is deep in a face is in its body, and no other surface of that is nearer. A face that it cannot lie on,
-    as it has no such normal, does not count: a corner that is in a wall below its upper edge comes out of the wall.
+    """Whether what is deep in a face is in its body, and no other surface of that is nearer. A face that it cannot
+    lie on, as it has no such normal, does not count: a corner that is in a wall below its upper edge comes out of the
+    wall.
     """
     if held.own.features[i].kind == FACE:
         body, deep, at, place = held, cage, j, plus(met.place, scaled(met.normal, met.gap))

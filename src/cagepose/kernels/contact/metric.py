@@ -108,11 +108,9 @@ def moved_along_twist(
 
 
 @kernel
-def twist_between(
-    position: Vector, quaternion: Quaternion, end: Vector, turned: Quaternion
-) -> tuple[Vector, Vector]:
-    """Return (velocity, angular velocity) of the constant twist that leads from one pose to another in an amount of one,
-    with a turn below half a turn.
+def twist_between(position: Vector, quaternion: Quaternion, end: Vector, turned: Quaternion) -> tuple[Vector, Vector]:
+    """Return (velocity, angular velocity) of the constant twist that leads from one pose to another in an amount of
+    one, with a turn below half a turn.
     """
     way, spin = minus(end, position), rotation_vector(quaternion, turned)
     angle = norm(spin)

@@ -81,9 +81,9 @@ def write_stiffness(contacts: ContactSet, work: SharingWorkspace) -> None:
 def share_evenly(
     contacts: ContactSet, carrying: PassiveSet, y: FloatArray, terms: float, work: SharingWorkspace
 ) -> bool:
-    """Share what the contacts carry of a load, of terms so long, that begins the motion ``y``, among all that do not open
-    with it and hold nothing that those which carry, with that basis, do not hold; False: it was not found, and the forces
-    are as they were.
+    """Share what the contacts carry of a load, of terms so long, that begins the motion ``y``, among all that do not
+    open with it and hold nothing that those which carry, with that basis, do not hold; False: it was not found, and
+    the forces are as they were.
     """
     for k in range(6):
         work.wrench[k] = 0.0

@@ -80,7 +80,13 @@ def reach_within(
 
 @kernel
 def beyond_border(
-    geometry: Geometry, placement: Placement, contacts: ContactSet, i: int, motion: Motion, amount: float, touch_m: float
+    geometry: Geometry,
+    placement: Placement,
+    contacts: ContactSet,
+    i: int,
+    motion: Motion,
+    amount: float,
+    touch_m: float,
 ) -> float:
     """Return how far a vertex is beyond where its contact with a face ends, after an amount of a motion, metres; inf:
     the features are others.
@@ -176,8 +182,8 @@ def first_edge_crossing(
     reach_m: float,
     touch_m: float,
 ) -> tuple[float, int]:
-    """Return the amount of a twist, up to ``end``, after which a contact leaves the face that it stays on, and which one;
-    inf: none.
+    """Return the amount of a twist, up to ``end``, after which a contact leaves the face that it stays on, and which
+    one; inf: none.
 
     Where it would only because contacts stray, by the square of the way, within ``reach_m``, it is passed over: they
     are put back. So it is where one of them has no place there any more: it may have one when it is put back.

@@ -30,8 +30,8 @@ from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 TRIALS = 80
 """How many poses a search asks at most."""
 SLANTED, NEAR_END = 8.0, 0.01
-"""Times what contacts stray, that an event may be off along the way; and, in touch tolerances, how near to it the end of
-a contact is looked for.
+"""Times what contacts stray, that an event may be off along the way; and, in touch tolerances, how near to it the end
+of a contact is looked for.
 """
 TWICE = 2.0
 """A straight line through two numbers is followed so many times as far, to come to the other side."""
@@ -60,8 +60,8 @@ def first_past(
     enough: tuple[float, float],
     work: QuasistaticWorkspace,
 ) -> float:
-    """Return the amount of a path after which a guard falls through zero; inf: it does not, up to its end. Of a gap that
-    does not close near the guess, where it is least.
+    """Return the amount of a path after which a guard falls through zero; inf: it does not, up to its end. Of a gap
+    that does not close near the guess, where it is least.
 
     Parameters
     ----------
@@ -180,8 +180,8 @@ def power_ends(
     begun: float,
     work: QuasistaticWorkspace,
 ) -> tuple[float, tuple[Vector, Quaternion]]:
-    """Return the amount of a step, and its pose, after which the object is first held, or would turn back; else those of
-    its end. The placement is that of the pose there. ``begun`` is the power of the motion at the start.
+    """Return the amount of a step, and its pose, after which the object is first held, or would turn back; else those
+    of its end. The placement is that of the pose there. ``begun`` is the power of the motion at the start.
     """
     power = power_left(setting, end[0], end[1], path.twist, work)
     if power >= -TURNED_BACK * begun:

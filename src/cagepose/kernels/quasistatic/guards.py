@@ -75,8 +75,8 @@ def value_of(setting: Setting, path: Path, guard: Guard, amount: float, work: Qu
 def way_left(
     setting: Setting, path: Path, i: int, end: Vector, turned: Quaternion, work: QuasistaticWorkspace
 ) -> float:
-    """Return how far a contact is, at a pose of a path, from where it ends, metres, where it is one of a vertex and a face;
-    else inf: its features still reach where they meet, or -inf: they do not.
+    """Return how far a contact is, at a pose of a path, from where it ends, metres, where it is one of a vertex and a
+    face; else inf: its features still reach where they meet, or -inf: they do not.
     """
     geometry, placement, contacts = setting.geometry, work.placement, work.contacts
     velocity, spin = twist_between(path.position, path.quaternion, end, turned)
@@ -100,8 +100,8 @@ def power_of(wrench: FloatArray, frame: Frame, twist: Twist) -> float:
 def power_left(
     setting: Setting, position: Vector, quaternion: Quaternion, twist: Twist, work: QuasistaticWorkspace
 ) -> float:
-    """Return the power, where the object is placed, of what is left of the load by what touched before the step; -inf: it
-    is held there; inf: that is not known.
+    """Return the power, where the object is placed, of what is left of the load by what touched before the step;
+    -inf: it is held there; inf: that is not known.
 
     With friction what is left is not quite the motion that begins, but both vanish together.
     """

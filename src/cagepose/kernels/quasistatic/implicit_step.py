@@ -70,8 +70,8 @@ class ImplicitStepWorkspace:
 
 @kernel
 def hold_carrying(contacts: ContactSet, locked: PassiveSet, dependent: float, work: ImplicitStepWorkspace) -> None:
-    """Write the basis of what the contacts that carry hold (and, where they stick, along their faces), and of what those
-    without play lock. What one holds but for a ``dependent`` part of its wrench, others hold.
+    """Write the basis of what the contacts that carry hold (and, where they stick, along their faces), and of what
+    those without play lock. What one holds but for a ``dependent`` part of its wrench, others hold.
     """
     clear(work.held, WRENCH, 1.0)
     work.held.dependent = dependent
@@ -88,8 +88,8 @@ def hold_carrying(contacts: ContactSet, locked: PassiveSet, dependent: float, wo
 def keep_along_faces(contacts: ContactSet, locked: PassiveSet, dependent: float, work: ImplicitStepWorkspace) -> float:
     """Replace what S has across the faces, see `hold_carrying`, by the greatest curvature along them.
 
-    Nothing moves there, but it could make the matrix look as if it were not positive, or rounding of the forces as if it
-    moved the object. Return the least rho that stands out from the rounding.
+    Nothing moves there, but it could make the matrix look as if it were not positive, or rounding of the forces as if
+    it moved the object. Return the least rho that stands out from the rounding.
     """
     least_rho = LEAST_RHO * frobenius_norm(work.curvature)
     hold_carrying(contacts, locked, dependent, work)
@@ -144,8 +144,8 @@ def is_convex(rho: float, work: ImplicitStepWorkspace) -> bool:
 
 @kernel
 def shared_step(contacts: ContactSet, rho: float, work: ImplicitStepWorkspace, solver: ContactWorkspace) -> bool:
-    """Write the step into ``work.delta`` that keeps all contacts closed that carry, for shared forces: Newton's, where S
-    is in ``work.curvature``. False: S is not convex.
+    """Write the step into ``work.delta`` that keeps all contacts closed that carry, for shared forces: Newton's,
+    where S is in ``work.curvature``. False: S is not convex.
 
     Where contacts share forces in many ways and their normals all but depend on each other, as of a cone that touches
     the edges of a square hole, the one that the onset takes may be unstable, and a balance between two is stable.

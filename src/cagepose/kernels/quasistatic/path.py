@@ -121,8 +121,8 @@ def on_faces_with_one_open(
 def along_faces(setting: Setting, path: Path, work: QuasistaticWorkspace) -> tuple[Path, bool]:
     """Return the path whose twist leads, in an amount of one, to where contacts that stay on their faces are on them
     again at the end of a twist, after the way of a size of the scene or a part of it; and whether it is all of it. A
-    travel without end is kept, and so is the direction of a motion that nothing guides, and of one of a circle that lies
-    flat or fits all around, whose places change as it tilts.
+    travel without end is kept, and so is the direction of a motion that nothing guides, and of one of a circle that
+    lies flat or fits all around, whose places change as it tilts.
     """
     twist = path.twist
     allow_depths(work.placement, setting.tolerances, work.path)

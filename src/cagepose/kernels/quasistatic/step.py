@@ -13,7 +13,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from cagepose.kernels.algebra.least_squares import length
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.tolerances import DEPENDENT_COLUMN
 from cagepose.kernels.algebra.vector import Vector, norm, scaled, vector_from
@@ -214,9 +213,9 @@ def next_twist(
             least_rho = max(least_rho, rho_against_circulation(scratch.stiff))
         rho = max(least_rho, 1.0 / end)
         is_valley = is_convex(least_rho, scratch.stiff)
-        if friction == 0.0 and carries and (is_still or not (is_valley or is_convex(rho, scratch.stiff))):
-            if is_shared(setting, position, quaternion, frame, rho, work):
-                return twist_of_step(setting, position, quaternion, frame, turn_step_rad, work), False
+        asks_shared = friction == 0.0 and carries and (is_still or not (is_valley or is_convex(rho, scratch.stiff)))
+        if asks_shared and is_shared(setting, position, quaternion, frame, rho, work):
+            return twist_of_step(setting, position, quaternion, frame, turn_step_rad, work), False
         is_stiff = abs(curvature_along(scratch.stiff.curvature, y)) * end > STIFF
         turns = turn_of_normals(contacts, velocity, spin)
         is_round = turns * end > STIFF * turn_step_rad and turns > ROUND * norm(spin)

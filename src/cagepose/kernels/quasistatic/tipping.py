@@ -10,8 +10,8 @@ from cagepose.kernels.contact.metric import frame_at, twist_of
 from cagepose.kernels.contact.onset import onset
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.first_contact import Twist
-from cagepose.kernels.quasistatic.touched_before import find_touched_before, place_before
 from cagepose.kernels.quasistatic.setting import Setting
+from cagepose.kernels.quasistatic.touched_before import find_touched_before, place_before
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
 TIPS = 1e-3
