@@ -1,4 +1,4 @@
-"""What ends a step is searched where contacts are on their faces: drawn mechanisms come to an end, and exactly there."""
+"""What ends a step is searched where contacts are on their faces: drawn mechanisms come to an end, exactly there."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from cagepose import run
 
 @pytest.mark.parametrize(("family", "first"), [("v-rollers", 315), ("tapered-pin", 320), ("square-hole", 0)])
 def test_drawn_mechanisms_come_to_an_end(family, first, cases):
-    """Where events were searched on the screw, 4, 4 and 2 of so many stalled or took all steps."""
-    n_cases = cases({"v-rollers": 40, "tapered-pin": 90, "square-hole": 20}[family], 200)
+    """Where events were searched on the screw, 4, 4 and 1 of so many stalled or took all steps."""
+    n_cases = cases({"v-rollers": 40, "tapered-pin": 90, "square-hole": 30}[family], 200)
     verdicts = {index: run(make_case(family, index).scene).verdict for index in range(first, first + n_cases)}
     assert {index: verdict for index, verdict in verdicts.items() if verdict in ("stalled", "limit")} == {}
 
@@ -30,4 +30,4 @@ def test_a_shaft_that_friction_stops_in_its_bush_ends_in_the_balance():
     """It went to and fro about it, at the limit of friction, up to the limit of steps."""
     ended = run(make_case("ordinary", 814).scene)
     assert ended.verdict == "may rest"
-    assert ended.proof.residual < 1e-9
+    assert ended.phases[-1].proof.residual < 1e-9

@@ -33,8 +33,10 @@ SLANTED, NEAR_END = 8.0, 0.01
 """Times what contacts stray, that an event may be off along the way; and, in touch tolerances, how near to it the end
 of a contact is looked for.
 """
-TWICE = 2.0
-"""A straight line through two numbers is followed so many times as far, to come to the other side."""
+CLOSER = 0.1
+"""Of two numbers one after the other. Where the second one is less than so much of the first, a straight line through
+both is followed.
+"""
 HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
 TURNED_BACK = 0.1
@@ -78,7 +80,8 @@ def first_past(
     """
     end = path.twist.end
     low, high, at_low, at_high = 0.0, math.inf, begun, -math.inf
-    trial, was_low, best, least = min(guess, end), True, math.inf, math.inf
+    before, at_before, trial = 0.0, begun, min(guess, end)
+    was_low, best, least = True, math.inf, math.inf
     for k in range(TRIALS):
         value = value_of(setting, path, guard, trial, work)
         if abs(value) <= enough[0]:
@@ -91,24 +94,33 @@ def first_past(
         else:
             at_low *= 1.0 if was_low else 0.5
             high, at_high, was_low = trial, value, False
-        beside = spread
-        if abs(value) < math.inf and begun < math.inf and begun > value:  # twice as far as a straight line says
-            beside = TWICE * abs(value) * trial / (begun - value)
-        if high == math.inf:  # farther on
+
+        # Where a straight line through the last two numbers leads, if they fall so fast that it says something.
+        ahead, slope = math.inf, (value - at_before) / (trial - before) if trial != before else 0.0
+        if abs(value) < CLOSER * abs(at_before) < math.inf and slope < 0.0:
+            ahead = trial - value / slope
+        before, at_before = trial, value
+
+        if high == math.inf:  # not there yet
             if low == end or end == math.inf:
                 return best
-            trial = min(guess + beside, end) if k == 0 and beside > 0.0 else end
-            continue
-        if k == 0 and 0.0 < beside < guess:  # or a little before
-            trial = guess - beside
-            continue
-        if guard.kind == GAP_CLOSES and low == 0.0:  # what was past before that had another beginning
-            return best
-        trial = 0.5 * (low + high)
-        if at_low < math.inf and at_high > -math.inf:  # by false position (Illinois)
-            trial = low + (high - low) * at_low / (at_low - at_high)
-        if high - low <= enough[1] or not low < trial < high:
-            return high
+            if not low < ahead <= end:
+                ahead = min(guess + spread, end) if k == 0 and spread > 0.0 else end
+        elif low == 0.0 and not 0.0 < ahead < high:
+            if k == 0 and 0.0 < spread < guess:
+                ahead = guess - spread
+            elif guard.kind == GAP_CLOSES and begun <= setting.tolerances.touch_m:  # it touched before, and comes again
+                return best
+        if high < math.inf:
+            if high - low <= enough[1]:
+                return high
+            if not low < ahead < high:
+                ahead = 0.5 * (low + high)
+                if at_low < math.inf and at_high > -math.inf:  # by false position (Illinois)
+                    ahead = low + (high - low) * at_low / (at_low - at_high)
+            if not low < ahead < high:
+                return high
+        trial = ahead
     return high
 
 
