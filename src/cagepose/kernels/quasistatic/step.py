@@ -61,6 +61,7 @@ from cagepose.kernels.quasistatic.implicit_step import (
 from cagepose.kernels.quasistatic.path import Path, along_faces
 from cagepose.kernels.quasistatic.projection import DEPENDENT, FIXED, ON_FACE, constrain_features, keep_stopped
 from cagepose.kernels.quasistatic.pushing_out import allow_depths, constrain_contacts, pushed_out
+from cagepose.kernels.quasistatic.seat import seated
 from cagepose.kernels.quasistatic.setting import Setting
 from cagepose.kernels.quasistatic.step_length import longest_step, straightened, turn_of_normals
 from cagepose.kernels.quasistatic.tipping import may_tip
@@ -403,6 +404,9 @@ def next_step(
         position, quaternion = refined(setting, position, quaternion, is_rest, work)
         fits = find_placed_contacts(setting, position, quaternion, work)
         n_refined += 1
+    if code == HELD_BY_FRICTION:  # in the balance beside it that needs none, if there is one
+        _, position, quaternion = seated(setting, position, quaternion, work)
+        fits = find_placed_contacts(setting, position, quaternion, work)
     here = State(position, quaternion, state.turn_step_rad, state.n_still, n_refined)
     if code != MOVES:
         write_step(work, step, HELD if is_rest else STUCK, NONE, False, position, quaternion)
