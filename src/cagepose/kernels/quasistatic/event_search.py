@@ -23,7 +23,7 @@ from cagepose.kernels.quasistatic.guards import (
 from cagepose.kernels.quasistatic.path import Path, gap_of, is_guided, speed_along, step_to
 from cagepose.kernels.quasistatic.projection import ON_FACE
 from cagepose.kernels.quasistatic.setting import Setting
-from cagepose.kernels.quasistatic.straying import STRAYED, strayed_at_most
+from cagepose.kernels.quasistatic.straying import STRAYED, strayed
 from cagepose.kernels.quasistatic.tipping import find_all_carried
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
@@ -139,6 +139,26 @@ def hit_on_path(setting: Setting, path: Path, hit: Hit, spread: float, work: Qua
 
 
 @kernel
+def strayed_at_most(setting: Setting, path: Path, work: QuasistaticWorkspace) -> float:
+    """Return about how far the contacts that stay on their faces leave them on a path's screw at most, metres."""
+    farthest, twist = 0.0, path.twist
+    for amount in (0.5 * twist.end, twist.end):
+        away = strayed(
+            setting.geometry,
+            work.placement,
+            work.contacts,
+            path.position,
+            path.quaternion,
+            twist.velocity,
+            twist.spin,
+            amount,
+            0.0,
+        )
+        farthest = max(farthest, away)
+    return farthest
+
+
+@kernel
 def furthest_step(setting: Setting, path: Path, work: QuasistaticWorkspace) -> tuple[float, bool, Vector, Quaternion]:
     """Go along a path, from `along_faces`, to its end, the first contact or the end of a contact, or less if need be.
 
@@ -150,7 +170,7 @@ def furthest_step(setting: Setting, path: Path, work: QuasistaticWorkspace) -> t
     if is_curved:
         reach_m = STRAYED * strayed_at_most(setting, path, work)
     spread = SLANTED * reach_m / speed
-    hit = first_contact(setting, placement, contacts, path.position, twist, reach_m)
+    hit = first_contact(setting, placement, contacts, path.position, path.quaternion, twist, reach_m)
     if hit.feature >= 0 and is_guided(work):
         hit = hit_on_path(setting, path, hit, spread, work)
     amount = min(hit.amount, twist.end)

@@ -6,6 +6,7 @@ import math
 from typing import NamedTuple
 
 from cagepose.kernels.algebra.motion import motion_of
+from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, vector_from
 from cagepose.kernels.boundary.features import middle_of_part
 from cagepose.kernels.boundary.first_meeting import Search, first_to_meet
@@ -15,6 +16,10 @@ from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.on_circle import is_kept
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.setting import Setting
+from cagepose.kernels.quasistatic.straying import STRAYED, strayed
+
+LOOKED_AT_AGAIN = 64
+"""Features that are met because contacts stray are passed over so many times at most."""
 
 
 class Twist(NamedTuple):
@@ -93,14 +98,15 @@ def first_contact(
     placement: Placement,
     contacts: ContactSet,
     position: Vector,
+    quaternion: Quaternion,
     twist: Twist,
     reach_m: float,
 ) -> Hit:
     """Return the first contact along a twist, but for what touches already.
 
     Contacts that stay on their faces stray on a screw, by the square of its length, and are put back afterwards. Where
-    something within ``reach_m`` is met because of that, not because it came nearer, it is passed over: whether it is
-    reached shows at the end.
+    something is met because of that, not because it came nearer, it is passed over: what was no farther than they stray
+    where it is met, at most ``reach_m``. Whether it is reached shows at the end.
     """
     geometry, velocity, spin = setting.geometry, twist.velocity, twist.spin
     motion, touch_m = motion_of(position, velocity, spin), setting.tolerances.touch_m
@@ -108,11 +114,10 @@ def first_contact(
     if end == 0.0:
         return NO_HIT
     note_kept(placement.meetings, contacts, position)
-    near = 0.0
     speed = norm(velocity) + motion.rate * setting.body.reach_m
     held, moved = held_at(geometry, placement), held_moved(geometry, placement)
-    hit = NO_HIT
-    for _ in range(2):
+    hit, near = NO_HIT, 0.0
+    for _ in range(LOOKED_AT_AGAIN):
         search = Search(motion, end, near, reach_m, speed, touch_m, setting.size_m)
         found = first_to_meet(held, geometry.cage, search, placement.meetings, placement.queue, moved)
         if found.feature < 0:
@@ -120,7 +125,11 @@ def first_contact(
         if found.is_open:  # nothing is reached before; the next step asks from there
             return Hit(found.amount, -1, -1, 0.0)
         hit = Hit(found.amount, found.feature, found.cage_feature, found.angle)
-        if found.gap > reach_m or near == reach_m:
+        if found.gap > reach_m or found.gap <= near:
             break
-        near = reach_m
+        away = strayed(geometry, placement, contacts, position, quaternion, velocity, spin, found.amount, 0.0)
+        near_here = min(STRAYED * away, reach_m)
+        if found.gap > near_here:
+            break
+        near = near_here
     return hit

@@ -14,33 +14,10 @@ from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.metric import moved_along_twist
 from cagepose.kernels.contact.on_circle import is_along_wall, is_kept
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.path import Path
 from cagepose.kernels.quasistatic.pushing_out import is_fixed
-from cagepose.kernels.quasistatic.setting import Setting
-from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
 STRAYED = 2.0
 """Times the way that contacts stray: a point or an edge that was nearer than this is met because they do."""
-
-
-@kernel
-def strayed_at_most(setting: Setting, path: Path, work: QuasistaticWorkspace) -> float:
-    """Return about how far the contacts that stay on their faces leave them on a path's screw at most, metres."""
-    farthest, twist = 0.0, path.twist
-    for amount in (0.5 * twist.end, twist.end):
-        away = strayed(
-            setting.geometry,
-            work.placement,
-            work.contacts,
-            path.position,
-            path.quaternion,
-            twist.velocity,
-            twist.spin,
-            amount,
-            0.0,
-        )
-        farthest = max(farthest, away)
-    return farthest
 
 
 @kernel
