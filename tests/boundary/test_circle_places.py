@@ -37,6 +37,8 @@ from inner_kernels import as_machine_code
 
 EXACT = 1e-12
 """Of the size."""
+ROUNDING, FLAT_STRETCH_RAD = 2e-15, 1e-2
+"""Of the size, by how much distances differ that are equal to rounding; and the longest stretch of such."""
 AT_ONCE = 500
 """Pairs whose sampled places are halved down together."""
 PAIRS = {"line": circle_pairs.with_line, "round": circle_pairs.with_round, "circle": circle_pairs.with_circle}
@@ -74,6 +76,21 @@ def near_to(told, side: float, is_circle: bool, found) -> list[float]:
         and place["kind"] in (FLAT, kind_of(told.rises, side, is_circle))
         and apart(angle, middle) <= reach
     ]
+
+
+def beside_on_a_flat_stretch(told, exactly, size: float, pair: Asked, is_circle: bool, found) -> list[float]:
+    """Which of the places found are of the kind of a sampled one, and as far from the other part, to rounding, as all
+    between the two: circles of one size that nearly lie on a ball have stretches of 1e-3 radians like that.
+    """
+    distance = Sampled([pair], np.longdouble).distance
+    beside = []
+    for angle, place in found:
+        way = math.remainder(angle - float(exactly), 2.0 * math.pi)
+        is_kind = place["kind"] in (FLAT, kind_of(told.rises, pair.side, is_circle))
+        if is_kind and place["is_near"] == (pair.side > 0.0) and abs(way) <= FLAT_STRETCH_RAD:
+            between = distance(float(exactly) + way * np.linspace(0.0, 1.0, 9))
+            beside += [angle] * bool(np.ptp(between) <= ROUNDING * size)
+    return beside
 
 
 @pytest.mark.parametrize("name", PAIRS)

@@ -73,6 +73,8 @@ class ContactState:
         Whether it is the face that is asked of its group: all are but the other faces on an edge.
     counts
         Whether it takes part in the problem: chosen, and not left out of it because of what others lock.
+    may_share
+        Whether it may carry a part of what others carry, see `sharing`.
     forces
         What the contact carries along its columns.
     is_sticking
@@ -91,6 +93,7 @@ class ContactState:
 
     chosen: bool
     counts: bool
+    may_share: bool
     forces: Annotated[FloatArray, 3]
     is_sticking: bool
     is_locked: bool

@@ -54,7 +54,7 @@ def write_left(contacts: ContactSet, motion: FloatArray, work: SharingWorkspace)
         work.left[k] = work.wrench[k]
     for i in range(contacts.used[0]):
         state, normal = contacts.states[i], contacts.rows[i].columns[0]
-        state.forces[0] = max(inner(normal, motion, 6), 0.0) if state.counts else 0.0
+        state.forces[0] = max(inner(normal, motion, 6), 0.0) if state.may_share else 0.0
         for k in range(6):
             work.left[k] -= state.forces[0] * normal[k]
 
@@ -95,11 +95,11 @@ def share_evenly(
             work.step[k] = normal[k]
         remove_span(work.step, carrying)
         is_other = length(work.step, 6) > carrying.dependent * length(normal, 6)
-        state.counts = state.chosen and (state.forces[0] > 0.0 or not (opens or is_other))
+        state.may_share = state.chosen and (state.forces[0] > 0.0 or not (opens or is_other))
         for k in range(6):
             work.wrench[k] += state.forces[0] * normal[k]
     for i in range(contacts.used[0]):  # with all of them: one linear system, where all come to carry
-        contacts.states[i].forces[0] = 1.0 if contacts.states[i].counts else 0.0
+        contacts.states[i].forces[0] = 1.0 if contacts.states[i].may_share else 0.0
     for k in range(6):
         work.motion[k], work.left[k] = 0.0, work.wrench[k]
     for _ in range(MOST_STEPS):

@@ -119,6 +119,8 @@ def first_past(
                 if at_low < math.inf and at_high > -math.inf:  # by false position (Illinois)
                     ahead = low + (high - low) * at_low / (at_low - at_high)
             if not low < ahead < high:
+                ahead = 0.5 * (low + high)
+            if not low < ahead < high:
                 return high
         trial = ahead
     return high
@@ -216,7 +218,7 @@ def power_ends(
     of its end. The placement is that of the pose there. ``begun`` is the power of the motion at the start.
     """
     power = power_left(setting, end[0], end[1], path.twist, work)
-    if power >= -TURNED_BACK * begun:
+    if power >= -TURNED_BACK * max(begun, 0.0):
         return amount, end
     at_start = math.inf
     if power > -math.inf:  # a sign at the end says something if that at the start is the other one
@@ -225,9 +227,10 @@ def power_ends(
     if at_start > 0.0:
         guard = Guard(POWER_ENDS, NO_HIT, -1, 0.0)
         first = first_past(setting, path, guard, at_start, amount, 0.0, (0.0, 0.0), work)
-        done, position, quaternion = step_to(setting, path, min(first, amount), NO_HIT, work)
-        if done:
-            return min(first, amount), (position, quaternion)
+        if first < amount:
+            done, position, quaternion = step_to(setting, path, first, NO_HIT, work)
+            if done:
+                return first, (position, quaternion)
     place_object(setting.geometry, end[0], end[1], work.placement)
     return amount, end
 

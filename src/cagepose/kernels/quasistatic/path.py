@@ -136,11 +136,12 @@ def along_faces(setting: Setting, path: Path, work: QuasistaticWorkspace) -> tup
         done, end, turned = on_faces(setting, path, amount, work)
         if not done:
             done, end, turned = on_faces_with_one_open(setting, path, amount, work)
-        if done:
+        if done and way_between(path.position, path.quaternion, end, turned, setting.body.reach_m) > 0.0:
             velocity, spin = twist_between(path.position, path.quaternion, end, turned)
             spin = straightened(velocity, spin, setting.body.reach_m, 0.0)
             return Path(path.position, path.quaternion, Twist(velocity, spin, 1.0)), halving == 0
         amount *= 0.5
+    constrain_contacts(work.contacts, setting.tolerances.rounding_m, work.path.constraints)
     return Path(path.position, path.quaternion, Twist(twist.velocity, twist.spin, amount)), False
 
 

@@ -1,9 +1,9 @@
 """One step of the quasistatic method: from a state to the next, along the motion that the mechanics gives.
 
-At a pose: find the contacts and solve the onset of motion. Held: the end. Else move along its twist, an exact screw,
-up to the first contact, to the edge of a face that carries, or as far as the motion keeps its direction; put the
-sliding contacts back on their faces. The loads do work in every step, but for what it takes to bring contacts out that
-are deep within the touch tolerance: no pose comes twice from farther than that.
+At a pose: find the contacts and solve the onset of motion. Held: the end. Else move along its twist, with the contacts
+that carry on their faces, up to the first contact, to the end of one that carries, to where the loads do no more work,
+or as far as the motion keeps its direction. The loads do work in every step, but for what it takes to bring contacts
+out that are deep within the touch tolerance: no pose comes twice from farther than that.
 
 A step depends on its state alone, so that any step of a run can be made again.
 """
@@ -416,13 +416,13 @@ def next_step(
     frame, is_still = frame_at(setting.body, quaternion), state.n_still > 0
     twist, is_stable = next_twist(setting, position, quaternion, frame, state.turn_step_rad, is_still, work)
     rule = carried_by(work.contacts)
-    motion = TRAVEL if norm(twist.spin) == 0.0 else SCREW
     if rule == FREE:
         velocity, spin = twist_of(solver.y, frame_at(setting.body, quaternion))
         if nothing_ahead(setting, position, quaternion, velocity, spin):
             write_escape(work, step, would_hold, velocity, position, quaternion)
             return ESCAPES, here, fits
     path, is_whole = along_faces(setting, Path(position, quaternion, twist), work)
+    motion = TRAVEL if norm(path.twist.spin) == 0.0 else SCREW
     amount, as_planned, end, turned = furthest_step(setting, path, work)
     if amount == math.inf:
         write_escape(work, step, would_hold, path.twist.velocity, position, quaternion)

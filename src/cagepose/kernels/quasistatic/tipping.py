@@ -16,14 +16,6 @@ from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
 TIPS = 1e-3
 """Fraction of the speed. Where the object's ends turn faster across a normal that carried, it travels no more."""
-HALVINGS = 24
-"""A travel is halved so many times to find where the object begins to tip."""
-BEFORE_END = 4.0
-"""In touch tolerances: so far before its end a travel is asked, where what it reaches does not touch yet, and what it
-runs off does.
-"""
-FARTHER, TIMES = 4.0, 8
-"""How many times as far before its end, and how often, where what carries has ended there."""
 LONG, STRAIGHT = 1e-3, 0.25
 """In sizes of the scene, and in turns of a step: a longer way that turns less is asked, too, as its spin may grow."""
 
