@@ -117,7 +117,9 @@ def test_no_place_is_missed_and_each_is_exact(name, cases, say):
         nearest, least, sizes = [], [], []
         for told, exactly in zip(sampled, stationary(asked, sampled), strict=True):
             pair, size, found = answers[told.index]
-            near = near_to(told, asked[told.index].side, name == "circle", found)
+            one, is_circle = asked[told.index], name == "circle"
+            near = near_to(told, one.side, is_circle, found)
+            near = near or beside_on_a_flat_stretch(told, exactly, size, one, is_circle, found)
             if not near:
                 missed.append((pair, told))
             elif told.rises:
