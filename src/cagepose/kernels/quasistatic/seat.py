@@ -34,9 +34,9 @@ MOST_MOVED = 100.0
 @kernel
 def seated(
     setting: Setting, position: Vector, quaternion: Quaternion, work: QuasistaticWorkspace
-) -> tuple[bool, Vector, Quaternion]:
-    """Return whether there is a balance without friction right beside a rest, and its pose, where the object is placed
-    then. Else the contacts are lost.
+) -> tuple[Vector, Quaternion]:
+    """Return the pose of the balance without friction right beside a rest, or of the rest itself if there is none. The
+    placement is that of the pose; the contacts are to be found anew.
     """
     contacts, stiff, solver = work.contacts, work.scratch[0].stiff, work.scratch[0].solver
     end, turned = position, quaternion
@@ -47,7 +47,7 @@ def seated(
         solver.load_terms = write_load(setting.load, end, turned, frame, solver.load)
         code = equilibrium(contacts, frame, 0.0, AT_REST, solver)
         if code == HELD_WITHOUT_FRICTION:
-            return True, end, turned
+            return end, turned
         if solver.residual > HARDLY_NEEDED:
             break
         for i in range(contacts.used[0]):
@@ -66,4 +66,4 @@ def seated(
         if not done or moved > MOST_MOVED * setting.tolerances.touch_m:
             break
     place_object(setting.geometry, position, quaternion, work.placement)
-    return False, position, quaternion
+    return position, quaternion

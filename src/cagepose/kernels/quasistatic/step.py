@@ -405,7 +405,7 @@ def next_step(
         fits = find_placed_contacts(setting, position, quaternion, work)
         n_refined += 1
     if code == HELD_BY_FRICTION:  # in the balance beside it that needs none, if there is one
-        _, position, quaternion = seated(setting, position, quaternion, work)
+        position, quaternion = seated(setting, position, quaternion, work)
         fits = find_placed_contacts(setting, position, quaternion, work)
     here = State(position, quaternion, state.turn_step_rad, state.n_still, n_refined)
     if code != MOVES:
