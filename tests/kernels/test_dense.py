@@ -26,11 +26,11 @@ def test_choleskys_factor_solves_and_a_matrix_that_is_not_positive_has_none():
     rng = np.random.default_rng(1)
     root, b = rng.normal(size=(6, 6)), rng.normal(size=6)
     factor, x = root @ root.T, np.zeros(6)
-    assert cholesky(factor, 0.0)
-    solve_lower(factor, b, x)
-    solve_upper(factor, x)
+    assert cholesky(factor, 0.0, 6)
+    solve_lower(factor, b, x, 6)
+    solve_upper(factor, x, 6)
     assert root @ root.T @ x == pytest.approx(b, rel=1e-9)
-    assert not cholesky(np.diag([1.0, 1, 1, 1, 1, -1e-9]), 0.0)
+    assert not cholesky(np.diag([1.0, 1, 1, 1, 1, -1e-9]), 0.0, 6)
 
 
 def test_a_confined_matrix_solves_along_what_the_columns_leave_free():

@@ -7,7 +7,7 @@ import pytest
 
 from cagepose.kernels.algebra.pose import quaternion_about, quaternion_product, rotated
 from cagepose.kernels.algebra.record import empty_record, empty_rows
-from cagepose.kernels.contact.load_curvature import add_load_curvature, write_circulation
+from cagepose.kernels.contact.load_curvature import add_circulation, add_load_curvature
 from cagepose.kernels.contact.loads import (
     CARDAN_MOMENT,
     DEAD_FORCE,
@@ -97,7 +97,7 @@ def test_stiffness_is_what_the_wrench_loses(kind: int) -> None:
         frame, h = frame_at(body(), at[1]), 1e-5
         symmetric, circulation = np.zeros((6, 6)), np.zeros((6, 6))
         add_load_curvature(acts, *at, frame, symmetric)
-        write_circulation(acts, *at, frame, circulation)
+        add_circulation(acts, *at, frame, circulation)
         assert np.array_equal(symmetric, symmetric.T) or np.allclose(symmetric, symmetric.T, atol=1e-14)
         assert np.allclose(circulation, -circulation.T, atol=1e-14)
         found = np.zeros((6, 6))

@@ -83,7 +83,7 @@ def contacts_of(held: Held) -> ContactSet:
     contacts = empty_contact_set(len(held.columns))
     contacts.used[0] = len(held.columns)
     for i, columns in enumerate(held.columns):
-        contacts.rows[i].columns[:] = columns
+        contacts.rows[i].columns[:, :6] = columns
         contacts.rows[i].group = i
         contacts.states[i].counts = True
     return contacts
@@ -125,7 +125,7 @@ class Search:
             node, above = waiting.pop()
             assert bool(tree.is_closed[node]) == (not children[node])
             if tree.is_closed[node]:
-                yield above._replace(twist=tree.twists[node].copy())
+                yield above._replace(twist=tree.twists[node, :6].copy())
                 continue
             parts = [(int(tree.modes[c]), float(tree.starts[c]), float(tree.widths[c])) for c in children[node]]
             (place,) = {int(tree.places[c]) for c in children[node]}
@@ -325,7 +325,7 @@ def held_blocks(random: np.random.Generator, friction: float) -> Iterator[Held]:
         )
         rows = [at.contacts.rows[i] for i in range(at.contacts.used[0]) if at.contacts.states[i].chosen]
         load = at.scratch[0].solver.load
-        yield Held(np.array([row.columns for row in rows]), friction, load / np.linalg.norm(load))
+        yield Held(np.array([row.columns[:, :6] for row in rows]), friction, load / np.linalg.norm(load))
 
 
 def onset_from_anywhere(held: Held, random: np.random.Generator) -> bool:

@@ -50,7 +50,7 @@ def contacts_with(columns):
     """Contacts with these wrenches; and a view on all their forces."""
     contacts = empty_contact_set(len(columns))
     contacts.used[0] = len(columns)
-    contacts.rows["columns"] = columns
+    contacts.rows["columns"][..., :6] = columns
     contacts.states["counts"] = True
     return contacts, contacts.states["forces"]
 

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cagepose.kernels.algebra.least_squares import WRENCH
 from cagepose.kernels.contact import coulomb_newton, equilibrium
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
 from cagepose.kernels.contact.friction import friction_of
-from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.stability import relaxation, strong
 from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
 from cagepose.kernels.stability.relaxation import ANY_WAY, AWAY, BEFORE, BEHIND, INTO, N_VELOCITIES, QUARTER_TURNS
@@ -105,12 +105,13 @@ class _Search:
         work: Any = self.at.scratch[0]
         self.states, self.tree = contacts.states, work.tree
         contacts.used[0] = work.n_asked
-        self.used = _in_order(contacts.rows[: work.n_asked], self.lengths[..., None] * self.columns)
+        in_kernels = contacts.rows["columns"][..., :WRENCH]
+        self.used = _in_order(in_kernels[: work.n_asked], self.lengths[..., None] * self.columns)
         load = work.solver.load[:WRENCH]
         self.size = float(np.linalg.norm(load)) or 1.0
-        self.is_of_first_order = self._take(contacts.rows, load, run.phases[phase].proof.uniqueness == "strong")
+        self.is_of_first_order = self._take(in_kernels, load, run.phases[phase].proof.uniqueness == "strong")
 
-    def _take(self, rows: Any, load: FloatArray, is_strong: bool) -> bool:
+    def _take(self, in_kernels: FloatArray, load: FloatArray, is_strong: bool) -> bool:
         """Let the search be of the very numbers that are checked; False: it was of others, as contacts without play
         lock some of what the load does (5.21).
 
@@ -119,12 +120,11 @@ class _Search:
         columns, whole = self.lengths[..., None] * self.columns, self.problem.scaled(self.problem.load)
         if len(self.used) != len(columns):
             return False
-        found = rows["columns"][self.used]
-        apart = np.linalg.norm(found - columns, axis=2) / np.linalg.norm(self.columns, axis=2)
+        apart = np.linalg.norm(in_kernels[self.used] - columns, axis=2) / np.linalg.norm(self.columns, axis=2)
         if apart.max() > SAME_LOAD or np.linalg.norm(load / self.size - whole) > SAME_LOAD:
             return False
         if is_strong:
-            rows["columns"][self.used] = columns
+            in_kernels[self.used] = columns
             load[:] = self.size * whole
         return True
 
@@ -169,21 +169,21 @@ class _Search:
         sizes = np.linalg.norm(self.columns[places, 0], axis=1)
         pressures = np.zeros((len(leaves), len(places), 3))
         for number, leaf in enumerate(leaves):
-            for way, share in zip(tree.ways[leaf].tolist(), tree.shares[leaf].tolist(), strict=True):
+            for way, share in zip(tree.ways[leaf, :WRENCH].tolist(), tree.shares[leaf, :WRENCH].tolist(), strict=True):
                 if way >= 0:
                     contact, which = divmod(way, N_VELOCITIES)
                     size = share / sizes[contact] * self.lengths[places[contact]]
                     pressures[number, contact] += size * _not_allowed(found, leaf, contact, which)
-        return replace(found, twists=tree.twists[leaves] @ self.problem.scale, pressures=pressures)
+        return replace(found, twists=tree.twists[leaves, :WRENCH] @ self.problem.scale, pressures=pressures)
 
 
-def _in_order(rows: Any, columns: FloatArray) -> NDArray[np.int64]:
+def _in_order(in_kernels: FloatArray, columns: FloatArray) -> NDArray[np.int64]:
     """Return which row of the kernels each contact of a problem is, by their wrenches, (n,); of another number of them,
     none.
     """
-    if len(rows) != len(columns):
+    if len(in_kernels) != len(columns):
         return np.zeros(0, np.int64)
-    apart = np.linalg.norm(rows["columns"][:, 0] - columns[:, None, 0], axis=2)
+    apart = np.linalg.norm(in_kernels[:, 0] - columns[:, None, 0], axis=2)
     found = np.zeros(len(columns), np.int64)
     for number, ways in enumerate(apart):
         found[number] = ways.argmin()

@@ -20,10 +20,12 @@ from cagepose.kernels.algebra.tolerances import DEPENDENT_COLUMN, LEAST_COEFFICI
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import kernel
 
-MOST_ROWS = 7
-"""All systems that are solved with this have at most so many rows: those of a wrench, and one more."""
-WRENCH_ROWS = 6
-"""Most systems have so many rows."""
+MOST_FREEDOMS = 12
+"""Freedoms that there is memory for: those of two free bodies, or of one and of six that move along a line."""
+MOST_ROWS = MOST_FREEDOMS + 1
+"""All systems that are solved with this have at most so many rows: one for each freedom, and one more."""
+WRENCH = 6
+"""Numbers of the wrench or twist of one body: most systems have so many rows."""
 ROUNDS_PER_COLUMN = 10
 """The method is finite; in exact arithmetic it takes about one round for each passive column."""
 
@@ -85,16 +87,16 @@ class System(NamedTuple):
     is_rejected: NDArray[np.bool_]
 
 
-def empty_system(n_columns: int) -> System:
-    """Return a workspace for ``n_columns`` columns (plain Python)."""
-    columns, lengths = np.zeros((n_columns, MOST_ROWS)), np.zeros(n_columns)
-    return System(columns, np.zeros(MOST_ROWS), lengths, np.zeros(n_columns, np.bool_))
+def empty_system(n_columns: int, n_rows: int = WRENCH + 1) -> System:
+    """Return a workspace for ``n_columns`` columns of so many rows (plain Python)."""
+    columns, lengths = np.zeros((n_columns, n_rows)), np.zeros(n_columns)
+    return System(columns, np.zeros(n_rows), lengths, np.zeros(n_columns, np.bool_))
 
 
 @kernel
 def inner(a: FloatArray, b: FloatArray, n: int) -> float:
     """Return the inner product of the first ``n`` entries."""
-    if n == WRENCH_ROWS:  # in pairs, of which three have to wait for each other, not six
+    if n == WRENCH:  # in pairs, of which three have to wait for each other, not six
         pairs: float = (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]) + (a[4] * b[4] + a[5] * b[5])
         return pairs
     total = 0.0
@@ -118,8 +120,8 @@ def clear(passive: PassiveSet, n_rows: int, terms: float) -> None:
 @kernel
 def orthogonalise(passive: PassiveSet, place: int) -> bool:
     """Make basis vector ``place``, which is a column, orthogonal to those before it; False: it depends on them."""
-    if passive.n_rows == WRENCH_ROWS:  # nearly always: loops of a length that is known are several times as fast
-        return orthogonalise_rows(passive, place, WRENCH_ROWS)
+    if passive.n_rows == WRENCH:  # nearly always: loops of a length that is known are several times as fast
+        return orthogonalise_rows(passive, place, WRENCH)
     return orthogonalise_rows(passive, place, passive.n_rows)
 
 
@@ -188,8 +190,8 @@ def remove_column(passive: PassiveSet, place: int) -> None:
         for later in range(k + 1, n):
             upper, lower = triangle[later, k], triangle[later, k + 1]
             triangle[later, k], triangle[later, k + 1] = cosine * upper + sine * lower, cosine * lower - sine * upper
-        if passive.n_rows == WRENCH_ROWS:
-            rotate_rows(passive, k, cosine, sine, WRENCH_ROWS)
+        if passive.n_rows == WRENCH:
+            rotate_rows(passive, k, cosine, sine, WRENCH)
         else:
             rotate_rows(passive, k, cosine, sine, passive.n_rows)
 
@@ -214,8 +216,8 @@ def aim_at(passive: PassiveSet, b: FloatArray) -> None:
 @kernel
 def aim(passive: PassiveSet) -> None:
     """Write the unconstrained least squares solution over the passive columns into ``target``, for b of `aim_at`."""
-    if passive.n_rows == WRENCH_ROWS:
-        aim_rows(passive, WRENCH_ROWS)
+    if passive.n_rows == WRENCH:
+        aim_rows(passive, WRENCH)
     else:
         aim_rows(passive, passive.n_rows)
 

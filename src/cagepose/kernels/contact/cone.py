@@ -12,6 +12,7 @@ import math
 from typing import Annotated
 
 from cagepose.kernels.algebra.least_squares import (
+    WRENCH,
     PassiveSet,
     aim,
     aim_at,
@@ -26,7 +27,7 @@ from cagepose.kernels.algebra.least_squares import (
 )
 from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.algebra.tolerances import LEAST_PRICE
-from cagepose.kernels.contact.contact_set import ContactRow, ContactSet
+from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.metric import ScaledVector
 from cagepose.kernels.contact.tolerances import (
     LEAST_FORCE,
@@ -39,8 +40,6 @@ from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import kernel
 
 GENERATOR_LIMIT = 400
-N_ROWS = 7
-"""With one more row than a wrench has, the last one adds up the normal forces."""
 
 
 class ConeWorkspace:
@@ -55,7 +54,7 @@ class ConeWorkspace:
     is_corrected
         Whether the slip speeds of the contacts count, as a cost of mu s_i for each newton of their normal force (5.7).
     column
-        One generator.
+        One generator; in a system with one more row than there are freedoms that adds up the normal forces.
     """
 
     passive: PassiveSet
@@ -66,10 +65,10 @@ class ConeWorkspace:
 
 
 @kernel
-def steepest_tangent(contact: ContactRow, vector: FloatArray) -> tuple[float, float, float]:
-    """Return (length of the tangential part of a scaled twist at a contact, its direction)."""
-    one = inner(contact.columns[1], vector, 6)
-    two = inner(contact.columns[2], vector, 6)
+def steepest_tangent(contacts: ContactSet, i: int, vector: FloatArray) -> tuple[float, float, float]:
+    """Return (length of the tangential part of a scaled motion at a contact, its direction)."""
+    columns, n = contacts.rows[i].columns, contacts.n_freedoms
+    one, two = inner(columns[1], vector, n), inner(columns[2], vector, n)
     size = math.sqrt(one * one + two * two)
     if size == 0.0:
         return 0.0, 1.0, 0.0
@@ -78,14 +77,21 @@ def steepest_tangent(contact: ContactRow, vector: FloatArray) -> tuple[float, fl
 
 
 @kernel
-def write_generator(contact: ContactRow, friction: float, one: float, two: float, out: FloatArray) -> None:
-    for k in range(6):
-        out[k] = contact.columns[0, k] + friction * (one * contact.columns[1, k] + two * contact.columns[2, k])
+def write_generator(columns: FloatArray, friction: float, one: float, two: float, n: int, out: FloatArray) -> None:
+    """Write n + mu d, of n numbers, with the tangent d given by its parts along two of them."""
+    if n == WRENCH:  # nearly always: a loop of a length that is known is several times as fast
+        for k in range(WRENCH):
+            out[k] = columns[0, k] + friction * (one * columns[1, k] + two * columns[2, k])
+        return
+    for k in range(n):
+        out[k] = columns[0, k] + friction * (one * columns[1, k] + two * columns[2, k])
 
 
 @kernel
 def clear_cone(cone: ConeWorkspace, b: FloatArray, n_rows: int, terms: float) -> None:
-    """Start from no force: b is (6,), or (7,) where a sum of the normal forces is asked for too, of terms so long."""
+    """Start from no force: b is (n,), or (n + 1,) where a sum of the normal forces is asked for too, of terms so
+    long.
+    """
     cone.is_corrected = False
     clear(cone.passive, n_rows, terms)
     aim_at(cone.passive, b)
@@ -100,7 +106,7 @@ def generator_price(contacts: ContactSet, i: int, friction: float, cone: ConeWor
     their tangents counts: mu |r_t| (1 - cos), which has its digits however small it is.
     """
     passive = cone.passive
-    slip, one, two = steepest_tangent(contacts.rows[i], passive.residual) if friction > 0.0 else (0.0, 1.0, 0.0)
+    slip, one, two = steepest_tangent(contacts, i, passive.residual) if friction > 0.0 else (0.0, 1.0, 0.0)
     nearest = math.inf
     for k in range(passive.used):
         label = passive.labels[k]
@@ -111,9 +117,9 @@ def generator_price(contacts: ContactSet, i: int, friction: float, cone: ConeWor
             nearest = min(nearest, apart)
     if nearest < math.inf:
         return friction * slip * nearest, True
-    price = inner(contacts.rows[i].columns[0], passive.residual, 6) + friction * slip
-    if passive.n_rows == N_ROWS:
-        price += passive.residual[N_ROWS - 1]
+    price = inner(contacts.rows[i].columns[0], passive.residual, contacts.n_freedoms) + friction * slip
+    if passive.n_rows > contacts.n_freedoms:
+        price += passive.residual[contacts.n_freedoms]
     return price - generator_cost(contacts, i, friction, cone), False
 
 
@@ -153,7 +159,7 @@ def add_generator(contacts: ContactSet, friction: float, number: int, cone: Cone
 
     -1: none lies along it. Parameters as for `cone_residual`.
     """
-    passive, states = cone.passive, contacts.states
+    passive, states, n = cone.passive, contacts.states, contacts.n_freedoms
     scale = rounding_scale(passive)
     left = length(passive.residual, passive.n_rows)
     # the contact whose generator lies most along the residual
@@ -164,7 +170,7 @@ def add_generator(contacts: ContactSet, friction: float, number: int, cone: Cone
         price, is_steeper = generator_price(contacts, i, friction, cone)
         if price <= 0.0:
             continue
-        size = length(contacts.rows[i].columns[0], 6) + (1.0 if passive.n_rows == N_ROWS else 0.0)
+        size = length(contacts.rows[i].columns[0], n) + (1.0 if passive.n_rows > n else 0.0)
         if (
             price > best_price * size
             and price > (STEEPER_BY_ROUNDING * left if is_steeper else LEAST_PRICE * scale) * size
@@ -173,11 +179,11 @@ def add_generator(contacts: ContactSet, friction: float, number: int, cone: Cone
     if best < 0:
         return -1
     # its steepest generator comes in, or takes the place of one that it depends on
-    _, one, two = steepest_tangent(contacts.rows[best], passive.residual)
+    _, one, two = steepest_tangent(contacts, best, passive.residual)
     if friction == 0.0:  # so that what follows with friction may go on from here
         one = two = 0.0
-    write_generator(contacts.rows[best], friction, one, two, cone.column)
-    cone.column[N_ROWS - 1] = 1.0
+    write_generator(contacts.rows[best].columns, friction, one, two, n, cone.column)
+    cone.column[n] = 1.0
     cone.contacts[number] = best
     cone.directions[number, 0], cone.directions[number, 1] = one, two
     cost = generator_cost(contacts, best, friction, cone)

@@ -13,6 +13,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from cagepose.kernels.algebra.least_squares import MOST_FREEDOMS, WRENCH
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, scaled
 from cagepose.kernels.boundary.bend import Bend
@@ -46,9 +47,11 @@ class ContactRow:
         Outward unit normal and two tangents, rows, and the place as seen from the centre of gravity, in the world. The
         tangents are as long as the contact's coefficient of friction is of the greatest one, so that one coefficient
         does for all contacts: with tangential forces and slip in this unit Coulomb's law reads the same.
+    wrenches
+        Scaled wrenches of a force along these directions, on all that can move. The contact pushes along their
+        negative.
     columns
-        Scaled wrenches of a force along these directions. The contact pushes along their negative. What contacts
-        without play lock is taken out of them, see `self_stress`.
+        The same, but for what contacts without play lock, see `self_stress`.
     """
 
     part: int
@@ -61,7 +64,8 @@ class ContactRow:
     is_added: bool
     directions: Annotated[FloatArray, 3, 3]
     arm: Annotated[FloatArray, 3]
-    columns: Annotated[FloatArray, 3, 6]
+    wrenches: Annotated[FloatArray, 3, MOST_FREEDOMS]
+    columns: Annotated[FloatArray, 3, MOST_FREEDOMS]
 
 
 class ContactState:
@@ -108,22 +112,25 @@ class ContactState:
 class ContactSet(NamedTuple):
     """The contacts at one pose, 0 to used - 1 (``used`` is (1,)): their geometry, and what they do.
 
-    ``bends`` say of each row how its surfaces bend.
+    ``bends`` say of each row how its surfaces bend. All that can move has ``n_freedoms`` together: of wrenches, motions
+    and loads so many numbers count.
     """
 
     used: IntArray
     rows: Rows[ContactRow]
     states: Rows[ContactState]
     bends: Rows[Bend]
+    n_freedoms: int
 
 
-def empty_contact_set(n_rows: int) -> ContactSet:
+def empty_contact_set(n_rows: int, n_freedoms: int = WRENCH) -> ContactSet:
     """Return a set with memory for ``n_rows`` contacts (plain Python)."""
     return ContactSet(
         np.zeros(1, np.int64),
         empty_rows(ContactRow, n_rows),
         empty_rows(ContactState, n_rows),
         empty_rows(Bend, n_rows),
+        n_freedoms,
     )
 
 
@@ -133,11 +140,11 @@ def contact_set_for(geometry: Geometry) -> ContactSet:
 
 
 @kernel
-def is_smooth(contact: ContactRow) -> bool:
+def is_smooth(contacts: ContactSet, i: int) -> bool:
     """Whether a contact has no friction, though others may have."""
-    greatest = 0.0
-    for k in range(6):
-        greatest = max(greatest, abs(contact.columns[1, k]), abs(contact.columns[2, k]))
+    greatest, columns = 0.0, contacts.rows[i].columns
+    for k in range(contacts.n_freedoms):
+        greatest = max(greatest, abs(columns[1, k]), abs(columns[2, k]))
     return greatest == 0.0
 
 
@@ -188,4 +195,6 @@ def write_directions(contact: ContactRow, normal: Vector, arm: Vector, share: fl
     for j in range(3):
         for k in range(3):
             contact.directions[j, k] = directions[j][k]
-        write_scaled_wrench(directions[j], cross(arm, directions[j]), frame, contact.columns[j])
+        write_scaled_wrench(directions[j], cross(arm, directions[j]), frame, contact.wrenches[j])
+        for k in range(WRENCH):
+            contact.columns[j, k] = contact.wrenches[j, k]

@@ -25,7 +25,6 @@ from cagepose.kernels.contact.coulomb_newton import (
     newton_on_modes,
 )
 from cagepose.kernels.contact.coulomb_pivots import PivotWorkspace, pivot_to_forces
-from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.contact.tolerances import (
     LEAST_SPEED_OF_LAW,
     LONGEST_MOTION,
@@ -48,12 +47,12 @@ TIMES_TURNED = 6
 @kernel
 def motion_left(contacts: ContactSet, b: FloatArray, y: FloatArray) -> None:
     """Write y = b - A f: the scaled twist that the contact forces leave of the load."""
-    for k in range(6):
+    for k in range(contacts.n_freedoms):
         y[k] = b[k]
     for i in range(contacts.used[0]):
         if contacts.states[i].counts:
             for j in range(3):
-                for k in range(6):
+                for k in range(contacts.n_freedoms):
                     y[k] -= contacts.rows[i].columns[j, k] * contacts.states[i].forces[j]
 
 
@@ -74,9 +73,9 @@ def coulomb_error(contacts: ContactSet, friction: float, y: FloatArray) -> float
         if not contacts.states[i].counts:
             continue
         contact, forces = contacts.rows[i], contacts.states[i].forces
-        size = length(contact.columns[0], 6)
-        normal = inner(contact.columns[0], y, 6)
-        slip, one, two = steepest_tangent(contact, y)
+        size = length(contact.columns[0], contacts.n_freedoms)
+        normal = inner(contact.columns[0], y, contacts.n_freedoms)
+        slip, one, two = steepest_tangent(contacts, i, y)
         worst = max(worst, normal / size, min(-normal / size, forces[0] * size), -forces[0] * size)
         tangential = math.sqrt(forces[1] * forces[1] + forces[2] * forces[2])
         worst = max(worst, (tangential - friction * forces[0]) * size)
@@ -86,9 +85,9 @@ def coulomb_error(contacts: ContactSet, friction: float, y: FloatArray) -> float
 
 
 @kernel
-def allowed_error(terms: float, y: FloatArray) -> float:
+def allowed_error(contacts: ContactSet, terms: float, y: FloatArray) -> float:
     """Return which violation of the law, as a velocity, is rounding."""
-    return VIOLATION_OF_COULOMB * max(length(y, 6), LEAST_SPEED_OF_LAW * terms)
+    return VIOLATION_OF_COULOMB * max(length(y, contacts.n_freedoms), LEAST_SPEED_OF_LAW * terms)
 
 
 @kernel
@@ -97,9 +96,9 @@ def obeys(contacts: ContactSet, friction: float, terms: float, y: FloatArray) ->
 
     The law takes power from the load, so that no motion is longer than that: one that is was made by Newton's method.
     """
-    if length(y, WRENCH) > LONGEST_MOTION * terms:
+    if length(y, contacts.n_freedoms) > LONGEST_MOTION * terms:
         return False
-    return coulomb_error(contacts, friction, y) <= allowed_error(terms, y)
+    return coulomb_error(contacts, friction, y) <= allowed_error(contacts, terms, y)
 
 
 @kernel
@@ -125,16 +124,16 @@ def solves_by_pivoting(
     """Whether Newton's method ends in Coulomb's law from what pyramids instead of cones say: first along the tangents,
     then turned to the slip that they said before.
     """
-    for k in range(6):
+    for k in range(contacts.n_freedoms):
         pivots.turned_to[k] = 0.0
     for _ in range(TIMES_TURNED):
         if not pivot_to_forces(contacts, friction, b, pivots):
             return False
         motion_left(contacts, b, y)
-        for k in range(6):
+        for k in range(contacts.n_freedoms):
             pivots.turned_to[k] = y[k]
         for slow in (SLIP_TRIED_STICKING, SLIP_TRIED_LAST):
-            read_modes(contacts, slow * length(y, 6), y, newton)
+            read_modes(contacts, slow * length(y, contacts.n_freedoms), y, newton)
             if solves_with_modes(contacts, friction, b, terms, y, newton):
                 return True
     return False
@@ -146,8 +145,8 @@ def read_modes(contacts: ContactSet, slow_speed: float, y: FloatArray, newton: N
     newton.n_carrying = 0
     for i in range(contacts.used[0]):
         if contacts.states[i].forces[0] > 0.0:
-            contact = contacts.rows[i]
-            slips = steepest_tangent(contact, y)[0] > slow_speed * length(contact.columns[0], 6)
+            size = length(contacts.rows[i].columns[0], contacts.n_freedoms)
+            slips = steepest_tangent(contacts, i, y)[0] > slow_speed * size
             add_carrying(newton, i, SLIPS if slips else STICKS)
 
 
@@ -170,7 +169,7 @@ def coulomb_onset(
     cone
         Its solution without correction: where the iteration starts.
     y
-        Filled: the scaled twist of the motion, (at least 6,).
+        Filled: the scaled motion, (at least n_freedoms,).
     newton, pivots
         Memory.
     """
@@ -183,13 +182,13 @@ def coulomb_onset(
             return True
         if turn <= FIRST_SWEEPS or turn % SWEEPS_BETWEEN == 0:
             slow = SLIP_TRIED_STICKING if turn % (2 * SWEEPS_BETWEEN) != 0 else SLIP_TRIED_LAST
-            read_modes(contacts, slow * length(y, 6), y, newton)
+            read_modes(contacts, slow * length(y, contacts.n_freedoms), y, newton)
             if solves_with_modes(contacts, friction, b, terms, y, newton):
                 return True
             read_cone(contacts, friction, b, cone, y)
         for i in range(contacts.used[0]):
-            states[i].slip_speed = steepest_tangent(contacts.rows[i], y)[0] if states[i].counts else 0.0
-        clear_cone(cone, b, WRENCH, terms)
+            states[i].slip_speed = steepest_tangent(contacts, i, y)[0] if states[i].counts else 0.0
+        clear_cone(cone, b, contacts.n_freedoms, terms)
         cone.is_corrected = True
         cone_residual(contacts, friction, cone)
     if solves_by_pivoting(contacts, friction, b, terms, y, newton, pivots):

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from cagepose.kernels.algebra.elimination import eliminate
-from cagepose.kernels.algebra.least_squares import inner, length
+from cagepose.kernels.algebra.least_squares import MOST_FREEDOMS, inner, length
 from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.contact.cone import steepest_tangent
 from cagepose.kernels.contact.contact_set import ContactSet, is_smooth
@@ -18,8 +18,8 @@ from cagepose.kernels.native.kernel import kernel
 
 STICKING_LIMIT = 12
 """More contacts than this that stick (or half as many again that slip): left to the sweeps."""
-UNKNOWNS = 6 + 3 * STICKING_LIMIT
-CARRYING_LIMIT = UNKNOWNS - 6
+CARRYING_LIMIT = 3 * STICKING_LIMIT
+UNKNOWNS = MOST_FREEDOMS + CARRYING_LIMIT
 MOST_NEWTON_STEPS = 8
 
 OPENS, STICKS, SLIPS, SLIDES = 0, 1, 2, 3
@@ -74,13 +74,13 @@ def n_forces(mode: int) -> int:
 
 @kernel
 def number_unknowns(contacts: ContactSet, y: FloatArray, newton: NewtonWorkspace) -> int:
-    """Number the unknowns: six of the motion, one or three forces of each contact; return how many, -1: too many."""
-    n = 6
+    """Number the unknowns: those of the motion, one to three forces of each contact; return how many, -1: too many."""
+    n = contacts.n_freedoms
     for place in range(newton.n_carrying):
-        contact = contacts.rows[newton.contacts[place]]
-        if is_smooth(contact):
+        i = newton.contacts[place]
+        if is_smooth(contacts, i):
             newton.modes[place] = SLIDES
-        elif newton.modes[place] == SLIPS and steepest_tangent(contact, y)[0] == 0.0:
+        elif newton.modes[place] == SLIPS and steepest_tangent(contacts, i, y)[0] == 0.0:
             newton.modes[place] = STICKS  # a slip without direction
         newton.first_unknowns[place] = n
         n += n_forces(newton.modes[place])
@@ -94,32 +94,31 @@ def write_system(
     contacts: ContactSet, friction: float, b: FloatArray, y: FloatArray, n: int, newton: NewtonWorkspace
 ) -> None:
     """Write the linear system of one step: balance of y, then one row for each velocity that is zero."""
-    m = newton.matrix
+    m, n_freedoms = newton.matrix, contacts.n_freedoms
     for i in range(n):
         for j in range(n + 1):
             m[i, j] = 0.0
     # balance of y
-    for k in range(6):
+    for k in range(n_freedoms):
         m[k, k] = 1.0
         m[k, n] = b[k] - y[k]
     # the unknowns of each contact that carries
     for place in range(newton.n_carrying):
-        contact, first = contacts.rows[newton.contacts[place]], newton.first_unknowns[place]
-        columns, forces = contact.columns, contacts.states[newton.contacts[place]].forces
-        mode = newton.modes[place]
+        i, first, mode = newton.contacts[place], newton.first_unknowns[place], newton.modes[place]
+        columns, forces = contacts.rows[i].columns, contacts.states[i].forces
         if mode != SLIPS:
             for j in range(n_forces(mode)):
-                for k in range(6):
+                for k in range(n_freedoms):
                     m[k, first + j] = m[first + j, k] = columns[j, k]
                     m[k, n] -= columns[j, k] * forces[j]
-                m[first + j, n] = -inner(columns[j], y, 6)
+                m[first + j, n] = -inner(columns[j], y, n_freedoms)
         else:
             # The friction across is that along, times the change of the slip across, over the slip. That as a factor in
             # the balance would be so great where the slip is slow that other equations seem singular beside it.
-            slip, one, two = steepest_tangent(contact, y)
+            slip, one, two = steepest_tangent(contacts, i, y)
             along = friction * forces[0]
             greater = max(abs(along), slip)
-            for k in range(6):
+            for k in range(n_freedoms):
                 generator = columns[0, k] + friction * (one * columns[1, k] + two * columns[2, k])
                 m[first, k] = columns[0, k]
                 m[k, first] = generator
@@ -127,7 +126,7 @@ def write_system(
                 m[k, first + 1] = two * columns[1, k] - one * columns[2, k]
                 m[first + 1, k] = along / greater * m[k, first + 1]
             m[first + 1, first + 1] = -slip / greater
-            m[first, n] = -inner(columns[0], y, 6)
+            m[first, n] = -inner(columns[0], y, n_freedoms)
 
 
 @kernel
@@ -142,19 +141,18 @@ def add_changes(contacts: ContactSet, friction: float, y: FloatArray, n: int, ne
         changes[newton.order[row]] = newton.matrix[row, n]
         greatest = max(greatest, abs(newton.matrix[row, n]))
     for place in range(newton.n_carrying):
-        contact, first = contacts.rows[newton.contacts[place]], newton.first_unknowns[place]
-        forces = contacts.states[newton.contacts[place]].forces
-        mode = newton.modes[place]
+        i, first, mode = newton.contacts[place], newton.first_unknowns[place], newton.modes[place]
+        forces = contacts.states[i].forces
         if mode != SLIPS:
             for j in range(n_forces(mode)):
                 forces[j] += changes[first + j]
         else:
-            _, one, two = steepest_tangent(contact, y)
+            _, one, two = steepest_tangent(contacts, i, y)
             aside = changes[first + 1]
             forces[0] += changes[first]
             forces[1] = friction * forces[0] * one + aside * two
             forces[2] = friction * forces[0] * two - aside * one
-    for k in range(6):
+    for k in range(contacts.n_freedoms):
         y[k] += changes[k]
     return greatest
 
@@ -173,7 +171,7 @@ def newton_on_modes(
     for _ in range(MOST_NEWTON_STEPS):
         write_system(contacts, friction, b, y, n, newton)
         eliminate(newton.matrix, newton.order, newton.greatest_of, n)
-        if add_changes(contacts, friction, y, n, newton) <= LAST_CHANGE * length(b, 6):
+        if add_changes(contacts, friction, y, n, newton) <= LAST_CHANGE * length(b, contacts.n_freedoms):
             break
     let_open(contacts, newton)
 

@@ -63,16 +63,16 @@ def number_pivoted(contacts: ContactSet, work: PivotWorkspace) -> int:
         return -1
     for i in range(contacts.used[0]):
         work.firsts[i] = n if contacts.states[i].counts else -1
-        _, work.sides[i, 0], work.sides[i, 1] = steepest_tangent(contacts.rows[i], work.turned_to)
+        _, work.sides[i, 0], work.sides[i, 1] = steepest_tangent(contacts, i, work.turned_to)
         if contacts.states[i].counts:
-            n += 1 if is_smooth(contacts.rows[i]) else 2 + SIDES
+            n += 1 if is_smooth(contacts, i) else 2 + SIDES
     return n
 
 
 @kernel
 def n_generators(contacts: ContactSet, i: int) -> int:
     """Return how many forces a contact has: along its normal, and along the sides of its pyramid."""
-    return 1 if is_smooth(contacts.rows[i]) else 1 + SIDES
+    return 1 if is_smooth(contacts, i) else 1 + SIDES
 
 
 @kernel
@@ -95,7 +95,7 @@ def generator_at(contacts: ContactSet, i: int, which: int, k: int, work: PivotWo
 @kernel
 def write_dictionary(contacts: ContactSet, friction: float, b: FloatArray, n: int, work: PivotWorkspace) -> None:
     """Write the problem: the left sides as functions of forces and slip speeds, with Lemke's unknown added to all."""
-    m, size = work.dictionary, length(b, 6)
+    m, size = work.dictionary, length(b, contacts.n_freedoms)
     for row in range(n):
         for column in range(n):
             m[row, column] = 0.0
@@ -108,7 +108,7 @@ def write_dictionary(contacts: ContactSet, friction: float, b: FloatArray, n: in
         for which in range(n_generators(contacts, i) if first >= 0 else 0):
             row = first + which
             # a contact does not close, and no side of its pyramid slips faster than its slip speed
-            for k in range(6):
+            for k in range(contacts.n_freedoms):
                 mine = generator_at(contacts, i, which, k, work)
                 m[row, n + 1] -= mine * b[k]
                 for j in range(contacts.used[0]):

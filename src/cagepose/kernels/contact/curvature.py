@@ -8,22 +8,22 @@ one: along the normal with what rolling adds, which moves the place of contact o
 
 from __future__ import annotations
 
-from cagepose.kernels.algebra.least_squares import inner
+from cagepose.kernels.algebra.least_squares import WRENCH, inner
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.second_order import add_coupling, add_turned_arm
 from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, matrix_from, plus, scaled, times, vector_from
 from cagepose.kernels.contact.contact_set import ContactSet
-from cagepose.kernels.contact.load_curvature import add_load_curvature
+from cagepose.kernels.contact.load_curvature import add_circulation, add_load_curvature
 from cagepose.kernels.contact.loads import PhaseLoad
 from cagepose.kernels.contact.metric import Frame
 from cagepose.kernels.native.kernel import kernel
 
 
 @kernel
-def clear_matrix(out: FloatArray) -> None:
-    for j in range(6):
-        for k in range(6):
+def clear_matrix(out: FloatArray, n: int) -> None:
+    for j in range(n):
+        for k in range(n):
             out[j, k] = 0.0
 
 
@@ -67,18 +67,18 @@ def add_sticking_curvature(
 
 
 @kernel
-def curvature_along(curvature: FloatArray, y: FloatArray) -> float:
-    """Return y' S y / y' y."""
+def curvature_along(curvature: FloatArray, y: FloatArray, n: int) -> float:
+    """Return y' S y / y' y, of the first n numbers."""
     total = 0.0
-    for j in range(6):
-        total += y[j] * inner(curvature[j], y, 6)
-    return total / inner(y, y, 6)
+    for j in range(n):
+        total += y[j] * inner(curvature[j], y, n)
+    return total / inner(y, y, n)
 
 
 @kernel
 def add_matrix(matrix: FloatArray, factor: float, out: FloatArray) -> None:
-    for j in range(6):
-        for k in range(6):
+    for j in range(WRENCH):
+        for k in range(WRENCH):
             out[j, k] += factor * matrix[j, k]
 
 
@@ -92,10 +92,10 @@ def write_curvature(
     curved: bool,
     out: FloatArray,
 ) -> None:
-    """Write S, (6, 6), for the forces of the contacts, and which of them stick; where features meet that bend by
+    """Write S, (n, n), for the forces of the contacts, and which of them stick; where features meet that bend by
     different amounts, with those that bend least, or, ``curved``, most.
     """
-    clear_matrix(out)
+    clear_matrix(out, contacts.n_freedoms)
     add_load_curvature(load, position, quaternion, frame, out)
     for i in range(contacts.used[0]):
         contact, state = contacts.rows[i], contacts.states[i]
@@ -106,3 +106,12 @@ def write_curvature(
             for j in range(3):
                 force = plus(force, scaled(vector_from(contact.directions[j]), state.forces[j]))
             add_sticking_curvature(contacts, i, force, frame, curved, out)
+
+
+@kernel
+def write_circulation(
+    contacts: ContactSet, load: PhaseLoad, position: Vector, quaternion: Quaternion, frame: Frame, out: FloatArray
+) -> None:
+    """Write the antisymmetric part of the load's stiffness, (n, n): what no potential has."""
+    clear_matrix(out, contacts.n_freedoms)
+    add_circulation(load, position, quaternion, frame, out)

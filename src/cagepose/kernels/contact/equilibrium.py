@@ -21,7 +21,7 @@ from cagepose.kernels.contact.edges import (
     next_choice,
     return_to_kept,
 )
-from cagepose.kernels.contact.metric import WRENCH, Frame
+from cagepose.kernels.contact.metric import Frame
 from cagepose.kernels.contact.on_circle import MOST_ADDED_POINTS, add_on_circles
 from cagepose.kernels.contact.self_stress import (
     begin_unlocked,
@@ -53,7 +53,7 @@ AT_REST, ON_THE_WAY = 1.0, 0.1
 @kernel
 def least_residual(contacts: ContactSet, friction: float, b: FloatArray, terms: float, work: ContactWorkspace) -> float:
     """Return what contact forces with this friction leave of a load, in lengths of its terms; they are in the cone."""
-    clear_cone(work.cone, b, WRENCH, terms)
+    clear_cone(work.cone, b, contacts.n_freedoms, terms)
     return cone_residual(contacts, friction, work.cone)
 
 
@@ -87,16 +87,16 @@ def is_balance(contacts: ContactSet, left: float, friction: float, strictness: f
         return True
     if friction == 0.0 or left > strictness * RESIDUAL_AT_LIMIT:
         return False
-    span, cone = work.span, work.cone
-    clear(span, WRENCH, cone.passive.terms)
+    span, cone, n = work.span, work.cone, contacts.n_freedoms
+    clear(span, n, cone.passive.terms)
     for k in range(cone.passive.used):
         for j in range(3):
             append_column(span, contacts.rows[cone.contacts[cone.passive.labels[k]]].columns[j], k, 0.0)
-    whole = length(cone.passive.residual, 6)
-    for k in range(6):
+    whole = length(cone.passive.residual, n)
+    for k in range(n):
         span.target[k] = cone.passive.residual[k]
     remove_span(span.target, span)
-    return left * length(span.target, 6) <= strictness * RESIDUAL_OF_LOAD * whole
+    return left * length(span.target, n) <= strictness * RESIDUAL_OF_LOAD * whole
 
 
 @kernel
@@ -134,7 +134,7 @@ def equilibrium_with_faces(
     strictness
         Of the tolerance: AT_REST or ON_THE_WAY.
     b, terms
-        The load's scaled wrench, (at least 6,), and the length of its terms.
+        The load's scaled wrench, (at least n_freedoms,), and the length of its terms.
     work
         Filled.
     """
@@ -157,7 +157,7 @@ def needs_second_order(contacts: ContactSet, code: int, friction: float, work: C
     for i in range(contacts.used[0]):
         pushed += contacts.states[i].forces[0]
         opens = (
-            inner(contacts.rows[i].columns[0], work.cone.passive.residual, WRENCH)
+            inner(contacts.rows[i].columns[0], work.cone.passive.residual, contacts.n_freedoms)
             < -RESIDUAL_OF_SELF_STRESS * work.load_terms
         )
         if contacts.states[i].forces[0] == 0.0 and not opens:
@@ -177,15 +177,15 @@ def equilibrium_of_choice(
         work.has_locked = True
         code = equilibrium_with_faces(contacts, friction, strictness, work.load, work.load_terms, work)
         if code != MOVES:
-            carry_by_locked(contacts, frame, friction, work)
+            carry_by_locked(contacts, friction, work)
             write_residual(work)
     return code
 
 
 @kernel
-def next_choice_unlocked(contacts: ContactSet, frame: Frame, every: bool, work: ContactWorkspace) -> bool:
+def next_choice_unlocked(contacts: ContactSet, every: bool, work: ContactWorkspace) -> bool:
     """As `next_choice`, with nothing locked."""
-    forget_locked(contacts, frame, work)
+    forget_locked(contacts, work)
     return next_choice(contacts, every)
 
 
@@ -194,7 +194,7 @@ def return_to_choice(
     contacts: ContactSet, frame: Frame, friction: float, strictness: float, work: ContactWorkspace
 ) -> None:
     """Choose the faces that were kept, with their forces, and with what is locked there."""
-    forget_locked(contacts, frame, work)
+    forget_locked(contacts, work)
     return_to_kept(contacts)
     if work.has_locked:
         equilibrium_of_choice(contacts, frame, friction, strictness, work)
@@ -207,7 +207,7 @@ def equilibrium(contacts: ContactSet, frame: Frame, friction: float, strictness:
     for _ in range(MOST_ADDED_POINTS):
         if code != MOVES or not add_on_circles(contacts, frame, friction, work.cone.passive.residual, work.load_terms):
             break
-        forget_locked(contacts, frame, work)
+        forget_locked(contacts, work)
         code = equilibrium_of_listed(contacts, frame, friction, strictness, work)
     return code
 
@@ -244,7 +244,7 @@ def equilibrium_of_listed(
         if code > best_code or (code == best_code and work.residual > max(best_left, RESIDUAL_AT_LIMIT)):
             best_code, best_left = code, work.residual
             keep_choice(contacts)
-        if one_choice or not next_choice_unlocked(contacts, frame, ONLY_CARRYING, work):
+        if one_choice or not next_choice_unlocked(contacts, ONLY_CARRYING, work):
             break
     else:
         best_code = UNSOLVED

@@ -4,6 +4,7 @@ the other part of that, its circulation (5.29).
 
 from __future__ import annotations
 
+from cagepose.kernels.algebra.least_squares import WRENCH
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.second_order import add_coupling, add_turned_arm
@@ -51,9 +52,9 @@ def add_spring_curvature(
         across += action.tension_at_zero / length
     add_turned_arm(scaled(way, across), arm, -1.0, frame.axes, frame.radii, out)
     along = scaled(way, 1.0 / length) if length > 0.0 else (0.0, 0.0, 0.0)
-    for j in range(6):
+    for j in range(WRENCH):
         one = way_of_point(j, arm, frame)
-        for k in range(6):
+        for k in range(WRENCH):
             other = way_of_point(k, arm, frame)
             out[j, k] += across * dot(one, other) + (action.stiffness - across) * dot(along, one) * dot(along, other)
 
@@ -62,7 +63,7 @@ def add_spring_curvature(
 def add_load_curvature(
     load: PhaseLoad, position: Vector, quaternion: Quaternion, frame: Frame, out: FloatArray
 ) -> None:
-    """Add what a phase's load adds to S, (6, 6). That of dead and following moments is zero."""
+    """Add what a phase's load adds to S of the part that it acts on, (6, 6): nothing for dead and following moments."""
     for which in range(len(load)):
         action = load[which]
         if is_idle(action):
@@ -95,11 +96,8 @@ def has_circulation(load: PhaseLoad) -> bool:
 
 
 @kernel
-def write_circulation(load: PhaseLoad, position: Vector, quaternion: Quaternion, frame: Frame, out: FloatArray) -> None:
-    """Write the antisymmetric part of the load's stiffness, (6, 6): what no potential has."""
-    for j in range(6):
-        for k in range(6):
-            out[j, k] = 0.0
+def add_circulation(load: PhaseLoad, position: Vector, quaternion: Quaternion, frame: Frame, out: FloatArray) -> None:
+    """Add the antisymmetric part of the load's stiffness, (6, 6): what no potential has."""
     for which in range(len(load)):
         action = load[which]
         if has_potential(action):

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
+from cagepose.kernels.algebra.least_squares import MOST_ROWS, WRENCH
 from cagepose.kernels.algebra.motion import motion_of, moved_point, turned_by_amount
 from cagepose.kernels.algebra.pose import (
     Quaternion,
@@ -35,11 +36,9 @@ from cagepose.kernels.algebra.vector import (
 )
 from cagepose.kernels.native.kernel import kernel
 
-WRENCH = 6
-"""Numbers of a wrench or twist."""
-ScaledVector = Annotated[FloatArray, 7]
-"""A scaled twist or wrench in a record: three numbers for travel, three for turning, and one that only the question
-for self-stress uses (5.16)."""
+ScaledVector = Annotated[FloatArray, MOST_ROWS]
+"""A scaled motion or wrench in a record: of each free body three numbers for travel and three for turning, and one
+more that only the question for self-stress uses (5.16)."""
 
 
 class Body:
@@ -65,6 +64,12 @@ class Frame(NamedTuple):
 
     axes: Matrix
     radii: Vector
+
+
+@kernel
+def is_turn(k: int) -> bool:
+    """Whether one of the numbers of a scaled motion is for turning: the second three of each free body."""
+    return k % WRENCH >= 3
 
 
 @kernel

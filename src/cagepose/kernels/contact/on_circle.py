@@ -19,7 +19,7 @@ from cagepose.kernels.boundary.bend import write_turned
 from cagepose.kernels.contact.cone import ConeWorkspace
 from cagepose.kernels.contact.contact_set import ContactSet, choose, stays_on_face, write_directions
 from cagepose.kernels.contact.edges import has_one_choice
-from cagepose.kernels.contact.metric import WRENCH, Frame, twist_of
+from cagepose.kernels.contact.metric import Frame, twist_of
 from cagepose.kernels.contact.tolerances import LAST_TURN_RAD, ROUNDING_OF_SPEED, SAME_WAY, SPEED_OF_ENTRY
 from cagepose.kernels.native.kernel import kernel
 
@@ -226,7 +226,7 @@ def add_on_circles(contacts: ContactSet, frame: Frame, friction: float, y: Float
     """
     velocity, spin = twist_of(y, frame)
     fastest, at_fastest = -1, 0.0
-    least = max(SPEED_OF_ENTRY * length(y, WRENCH), ROUNDING_OF_SPEED * terms)
+    least = max(SPEED_OF_ENTRY * length(y, contacts.n_freedoms), ROUNDING_OF_SPEED * terms)
     for i in range(contacts.used[0]):
         angle, speed = deepest_on_arc(contacts, i, friction, velocity, spin)
         if speed > least:

@@ -43,7 +43,7 @@ def motion_with_faces(
     contacts: ContactSet, friction: float, b: FloatArray, y: FloatArray, work: ContactWorkspace
 ) -> bool:
     """Write the motion that a load begins which these faces do not balance, and the forces; False: none was found."""
-    for k in range(6):
+    for k in range(contacts.n_freedoms):
         y[k] = work.cone.passive.residual[k]
     return friction == 0.0 or coulomb_onset(contacts, friction, b, work.cone, y, work.newton, work.pivots)
 
@@ -58,13 +58,13 @@ def freest_motion(contacts: ContactSet, frame: Frame, friction: float, work: Con
     for _ in range(CHOICES_LIMIT):
         if code == MOVES:
             solved = motion_with_faces(contacts, friction, work.load, work.trial, work)
-            speed = length(work.trial, 6) if solved else 0.0
+            speed = length(work.trial, contacts.n_freedoms) if solved else 0.0
             if speed > fastest * FASTER_MOTION:
                 fastest, left = speed, work.residual
-                for k in range(6):
+                for k in range(contacts.n_freedoms):
                     work.y[k] = work.trial[k] if solved else 0.0
                 keep_choice(contacts)
-        if one_choice or not next_choice_unlocked(contacts, frame, ONLY_CARRYING, work):
+        if one_choice or not next_choice_unlocked(contacts, ONLY_CARRYING, work):
             break
         code = equilibrium_of_choice(contacts, frame, friction, AT_REST, work)
     else:
@@ -83,7 +83,7 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
 
     Filled: which faces are chosen, their forces, and in ``work`` the motion y (zero if held) and the residual.
     """
-    for k in range(6):
+    for k in range(contacts.n_freedoms):
         work.y[k] = 0.0
     code = equilibrium(contacts, frame, friction, AT_REST, work)
     if code == MOVES:
@@ -91,14 +91,14 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
         for _ in range(MOST_ADDED_POINTS):
             if code != MOVES or friction == 0.0 or not add_on_circles(contacts, frame, 0.0, work.y, work.load_terms):
                 break
-            forget_locked(contacts, frame, work)
+            forget_locked(contacts, work)
             code = equilibrium(contacts, frame, friction, AT_REST, work)
             if code == MOVES:
                 code = freest_motion(contacts, frame, friction, work)
         if code == MOVES_SOMEHOW and friction > 0.0 and tips_on_circle(contacts, frame, friction, work):
             code = MOVES
         if work.locked.used > 0:
-            carry_by_locked(contacts, frame, friction, work)
+            carry_by_locked(contacts, friction, work)
     drop_idle(contacts, work.cone)
     return code
 
@@ -120,9 +120,9 @@ def holds_with_some_faces(contacts: ContactSet, frame: Frame, friction: float, w
     holds = False
     for _ in range(CHOICES_LIMIT):
         holds = equilibrium_of_choice(contacts, frame, friction, AT_REST, work) != MOVES
-        if holds or not next_choice_unlocked(contacts, frame, EVERY, work):
+        if holds or not next_choice_unlocked(contacts, EVERY, work):
             break
-    forget_locked(contacts, frame, work)
+    forget_locked(contacts, work)
     return holds
 
 
@@ -132,11 +132,12 @@ def find_sticking(
 ) -> None:
     """Find which contacts carry and do not slip, and which rims stay flat, to the digits that `coulomb_onset` asks."""
     velocity, spin = twist_of(y, frame)
+    n, allowed = contacts.n_freedoms, allowed_error(contacts, terms, y)
     for i in range(contacts.used[0]):
         columns, state = contacts.rows[i].columns, contacts.states[i]
-        error = allowed_error(terms, y) * length(columns[0], 6)
+        error = allowed * length(columns[0], n)
         state.stays_flat = keeps_on_circle(contacts, i, velocity, spin, touch_m, error)
-        state.is_sticking = state.forces[0] > 0.0 and friction > 0.0 and not is_smooth(contacts.rows[i])
+        state.is_sticking = state.forces[0] > 0.0 and friction > 0.0 and not is_smooth(contacts, i)
         for j in range(1, 3):
-            if abs(inner(columns[j], y, 6)) > allowed_error(terms, y) * length(columns[j], 6):
+            if abs(inner(columns[j], y, n)) > allowed * length(columns[j], n):
                 state.is_sticking = False

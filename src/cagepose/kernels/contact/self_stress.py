@@ -15,11 +15,10 @@ from cagepose.kernels.algebra.eigen import symmetric_eigen
 from cagepose.kernels.algebra.least_squares import clear, inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.span import extend, write_complement, write_outside, write_reduced
-from cagepose.kernels.algebra.vector import cross, vector_from
-from cagepose.kernels.contact.cone import N_ROWS, ConeWorkspace, clear_cone, cone_residual
+from cagepose.kernels.contact.cone import ConeWorkspace, clear_cone, cone_residual
 from cagepose.kernels.contact.contact_set import ContactSet, count_chosen
 from cagepose.kernels.contact.curvature import add_face_curvature, clear_matrix
-from cagepose.kernels.contact.metric import WRENCH, Frame, write_scaled_wrench
+from cagepose.kernels.contact.metric import Frame, is_turn
 from cagepose.kernels.contact.tolerances import (
     CARRIED_ALONG_LOCKED,
     LEAST_CURVATURE,
@@ -40,10 +39,11 @@ def self_stress(contacts: ContactSet, friction: float, stress: SelfStressWorkspa
     """Return what is left of the least imbalance of forces whose normal parts add up to 1, at the contacts that count;
     they are in ``stress.cone``.
     """
-    for k in range(WRENCH):
+    n = contacts.n_freedoms
+    for k in range(n):
         stress.twist[k] = 0.0
-    stress.twist[N_ROWS - 1] = 1.0
-    clear_cone(stress.cone, stress.twist, N_ROWS, 1.0)
+    stress.twist[n] = 1.0
+    clear_cone(stress.cone, stress.twist, n + 1, 1.0)
     return cone_residual(contacts, friction, stress.cone)
 
 
@@ -55,7 +55,7 @@ def clear_self_stress(contacts: ContactSet, stress: SelfStressWorkspace) -> bool
     It does not belong to the self-stress, since its second derivative would count for what no force of it means.
     """
     left = self_stress(contacts, 0.0, stress)
-    for _ in range(N_ROWS):
+    for _ in range(contacts.n_freedoms + 1):
         if left > RESIDUAL_OF_SELF_STRESS:
             return False
         passive, belongs_all = stress.cone.passive, True
@@ -63,7 +63,7 @@ def clear_self_stress(contacts: ContactSet, stress: SelfStressWorkspace) -> bool
             contacts.states[i].counts = False
         for k in range(passive.used):
             i = stress.cone.contacts[passive.labels[k]]
-            size = length(contacts.rows[i].columns[0], WRENCH)
+            size = length(contacts.rows[i].columns[0], contacts.n_freedoms)
             contacts.states[i].counts = size == 0.0 or passive.x[k] * size > SHARE_IN_SELF_STRESS
             belongs_all = belongs_all and contacts.states[i].counts
         if belongs_all:
@@ -73,39 +73,37 @@ def clear_self_stress(contacts: ContactSet, stress: SelfStressWorkspace) -> bool
 
 
 @kernel
-def write_wrench(contacts: ContactSet, i: int, j: int, frame: Frame, out: FloatArray) -> None:
-    """Write the scaled wrench of a unit force of contact i in its direction j, as `find_contacts` does."""
-    direction = vector_from(contacts.rows[i].directions[j])
-    write_scaled_wrench(direction, cross(vector_from(contacts.rows[i].arm), direction), frame, out)
+def weight_of_freedom(k: int) -> float:
+    """Return how much one of the numbers of a wrench counts where locked contacts cannot balance all of them."""
+    return WEIGHT_OF_MOMENTS if is_turn(k) else 1.0
 
 
 @kernel
-def balance_by_locked(contacts: ContactSet, wrench: FloatArray, frame: Frame, work: ContactWorkspace) -> None:
-    """Balance, with the locked contacts, what a wrench does along what is locked, forces before moments: their forces
+def balance_by_locked(contacts: ContactSet, load: FloatArray, work: ContactWorkspace) -> None:
+    """Balance, with the locked contacts, what a load does along what is locked, forces before moments: their forces
     are in ``work.stress.reaction``. The locked contacts count afterwards.
 
     Only the parts of their wrenches count that made them locked: a tilt of 1e-6 between opposite faces carries nothing.
     """
-    stress = work.stress
-    for k in range(WRENCH):
+    stress, n = work.stress, contacts.n_freedoms
+    for k in range(n):
         stress.twist[k] = 0.0
         for place in range(work.locked.used):
-            stress.twist[k] += inner(work.locked.basis[place], wrench, WRENCH) * work.locked.basis[place, k]
-    for k in range(3, WRENCH):
-        stress.twist[k] *= WEIGHT_OF_MOMENTS
+            stress.twist[k] += inner(work.locked.basis[place], load, n) * work.locked.basis[place, k]
+        stress.twist[k] *= weight_of_freedom(k)
     for i in range(contacts.used[0]):
         state, column = contacts.states[i], contacts.rows[i].columns[0]
         state.counts = state.is_locked
         if state.is_locked:
-            write_wrench(contacts, i, 0, frame, work.trial)
-            write_outside(stress.pressed, work.trial, 0.0, column)
-            for k in range(WRENCH):
-                column[k] = (WEIGHT_OF_MOMENTS if k >= 3 else 1.0) * (work.trial[k] - column[k])
-    clear_cone(stress.reaction, stress.twist, WRENCH, length(stress.twist, WRENCH))
+            wrench = contacts.rows[i].wrenches[0]
+            write_outside(stress.pressed, wrench, 0.0, column)
+            for k in range(n):
+                column[k] = weight_of_freedom(k) * (wrench[k] - column[k])
+    clear_cone(stress.reaction, stress.twist, n, length(stress.twist, n))
     cone_residual(contacts, 0.0, stress.reaction)
     for i in range(contacts.used[0]):
         if contacts.states[i].is_locked:
-            for k in range(WRENCH):
+            for k in range(contacts.n_freedoms):
                 contacts.rows[i].columns[0, k] = 0.0
 
 
@@ -123,15 +121,15 @@ def stop(curvature: FloatArray, work: ContactWorkspace) -> None:
     """
     stress = work.stress
     n_free = write_complement(work.locked, stress.free)
-    write_reduced(curvature, stress.free, n_free, stress.reduced)
+    write_reduced(curvature, stress.free, n_free, work.locked.n_rows, stress.reduced)
     symmetric_eigen(stress.reduced, stress.vectors, n_free)
-    least = LEAST_CURVATURE * frobenius_norm(curvature)
+    least = LEAST_CURVATURE * frobenius_norm(curvature, work.locked.n_rows)
     for e in range(n_free):
         if stress.reduced[e, e] < -least:
             return
     for e in range(n_free):
         if stress.reduced[e, e] > least:
-            for k in range(WRENCH):
+            for k in range(work.locked.n_rows):
                 stress.twist[k] = 0.0
                 for i in range(n_free):
                     stress.twist[k] += stress.vectors[i, e] * stress.free[i, k]
@@ -147,15 +145,15 @@ def lock(contacts: ContactSet, frame: Frame, n_stresses: int, work: ContactWorks
     """
     stress = work.stress
     passive, curvature = stress.cone.passive, stress.curvatures[n_stresses]
-    clear_matrix(curvature)
+    clear_matrix(curvature, contacts.n_freedoms)
     add_second_order(contacts, stress.cone, frame, curvature)
-    for k in range(WRENCH):
+    for k in range(contacts.n_freedoms):
         stress.imbalance[k] = 0.0
     for j in range(passive.used):
-        write_wrench(contacts, stress.cone.contacts[passive.labels[j]], 0, frame, work.trial)
-        for k in range(WRENCH):
-            stress.imbalance[k] -= passive.x[j] * work.trial[k]
-    balance_by_locked(contacts, stress.imbalance, frame, work)
+        wrench = contacts.rows[stress.cone.contacts[passive.labels[j]]].wrenches[0]
+        for k in range(contacts.n_freedoms):
+            stress.imbalance[k] -= passive.x[j] * wrench[k]
+    balance_by_locked(contacts, stress.imbalance, work)
     add_second_order(contacts, stress.reaction, frame, curvature)
     for k in range(passive.used):
         i = stress.cone.contacts[passive.labels[k]]
@@ -183,7 +181,7 @@ def take_out_locked(contacts: ContactSet, work: ContactWorkspace) -> None:
     for i in range(contacts.used[0]):
         column = contacts.rows[i].columns[0]
         write_outside(work.locked, column, RESIDUAL_OF_SELF_STRESS, work.stress.twist)
-        for k in range(WRENCH):
+        for k in range(contacts.n_freedoms):
             column[k] = work.stress.twist[k]
 
 
@@ -201,9 +199,9 @@ def find_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> N
     work
         Filled: ``stopped``, ``locked`` and ``is_chained``.
     """
-    clear(work.stress.pressed, WRENCH, 1.0)
-    clear(work.stopped, WRENCH, 1.0)
-    clear(work.locked, WRENCH, 1.0)
+    clear(work.stress.pressed, contacts.n_freedoms, 1.0)
+    clear(work.stopped, contacts.n_freedoms, 1.0)
+    clear(work.locked, contacts.n_freedoms, 1.0)
     n_stresses, n_locked = 0, 0
     while n_stresses < STRESS_LIMIT:
         for i in range(contacts.used[0]):
@@ -223,44 +221,46 @@ def find_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> N
 
 
 @kernel
-def restore_wrenches(contacts: ContactSet, frame: Frame) -> None:
+def restore_wrenches(contacts: ContactSet) -> None:
     """Write the wrenches as `find_contacts` does, and lock nothing."""
     for i in range(contacts.used[0]):
         contacts.states[i].is_locked = False
+        row = contacts.rows[i]
         for j in range(3):
-            write_wrench(contacts, i, j, frame, contacts.rows[i].columns[j])
+            for k in range(contacts.n_freedoms):
+                row.columns[j, k] = row.wrenches[j, k]
 
 
 @kernel
 def write_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> None:
     """Write a basis of what contacts without play lock into ``work.locked``; the contacts stay as they are."""
     find_locked(contacts, frame, work)
-    restore_wrenches(contacts, frame)
+    restore_wrenches(contacts)
 
 
 @kernel
 def begin_unlocked(contacts: ContactSet, work: ContactWorkspace) -> None:
     """Lock nothing yet; the load in ``work`` is the whole one."""
-    clear(work.stopped, WRENCH, 1.0)
-    clear(work.locked, WRENCH, 1.0)
+    clear(work.stopped, contacts.n_freedoms, 1.0)
+    clear(work.locked, contacts.n_freedoms, 1.0)
     work.has_locked = work.is_second_order = work.is_chained = False
     for i in range(contacts.used[0]):
         contacts.states[i].is_locked = False
-    for k in range(WRENCH):
+    for k in range(contacts.n_freedoms):
         work.whole_load[k] = work.load[k]
 
 
 @kernel
-def forget_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> None:
+def forget_locked(contacts: ContactSet, work: ContactWorkspace) -> None:
     """Lock nothing any more: wrenches and load are what they were, and all chosen contacts count."""
     if work.locked.used == 0:
         return
     work.is_chained = False
     count_chosen(contacts)
-    restore_wrenches(contacts, frame)
-    clear(work.stopped, WRENCH, 1.0)
-    clear(work.locked, WRENCH, 1.0)
-    for k in range(WRENCH):
+    restore_wrenches(contacts)
+    clear(work.stopped, contacts.n_freedoms, 1.0)
+    clear(work.locked, contacts.n_freedoms, 1.0)
+    for k in range(contacts.n_freedoms):
         work.load[k] = work.whole_load[k]
 
 
@@ -282,17 +282,17 @@ def take_out_stopped(contacts: ContactSet, frame: Frame, friction: float, work: 
     """
     find_locked(contacts, frame, work)
     if work.stopped.used == 0:
-        clear(work.locked, WRENCH, 1.0)
-        restore_wrenches(contacts, frame)
+        clear(work.locked, contacts.n_freedoms, 1.0)
+        restore_wrenches(contacts)
         return False
     for i in range(contacts.used[0]):
         if contacts.states[i].is_locked:
             contacts.states[contacts.rows[i].group].has_carried = True
     if friction > 0.0:
-        clear(work.locked, WRENCH, 1.0)
+        clear(work.locked, contacts.n_freedoms, 1.0)
         for place in range(work.stopped.used):
             extend(work.locked, work.stopped.basis[place], 0.0)
-        restore_wrenches(contacts, frame)
+        restore_wrenches(contacts)
         for i in range(contacts.used[0]):
             take_out(contacts, i, work)
     remove_span(work.load, work.locked)
@@ -311,25 +311,25 @@ def take_out(contacts: ContactSet, i: int, work: ContactWorkspace) -> None:
     for j in range(3):
         remove_span(row.columns[j], work.stopped)
     write_outside(work.stress.pressed, row.columns[0], 0.0, outside)
-    if length(outside, WRENCH) <= RESIDUAL_OF_SELF_STRESS * length(row.columns[0], WRENCH):
-        for k in range(WRENCH):
+    if length(outside, contacts.n_freedoms) <= RESIDUAL_OF_SELF_STRESS * length(row.columns[0], contacts.n_freedoms):
+        for k in range(contacts.n_freedoms):
             row.columns[0, k] -= outside[k]
 
 
 @kernel
-def carry_by_locked(contacts: ContactSet, frame: Frame, friction: float, work: ContactWorkspace) -> None:
+def carry_by_locked(contacts: ContactSet, friction: float, work: ContactWorkspace) -> None:
     """Write the forces of the locked contacts beside those of the others (with friction they are among them), and what
     all of them leave of the whole load into ``work.stress.imbalance``.
     """
     reaction, left = work.stress.reaction, work.stress.imbalance
-    write_left(contacts, frame, left, work)
+    write_left(contacts, left, work)
     if friction > 0.0:
         return
-    balance_by_locked(contacts, left, frame, work)
+    balance_by_locked(contacts, left, work)
     count_chosen(contacts)
     for k in range(reaction.passive.used):
         contacts.states[reaction.contacts[reaction.passive.labels[k]]].forces[0] = reaction.passive.x[k]
-    write_left(contacts, frame, left, work)
+    write_left(contacts, left, work)
 
 
 @kernel
@@ -338,19 +338,18 @@ def write_residual(work: ContactWorkspace) -> None:
     they stop.
     """
     left = work.stress.imbalance
-    work.residual = length(left, WRENCH) / work.load_terms
+    work.residual = length(left, work.stopped.n_rows) / work.load_terms
     remove_span(left, work.stopped)
-    if work.residual - length(left, WRENCH) / work.load_terms > CARRIED_ALONG_LOCKED:
+    if work.residual - length(left, work.stopped.n_rows) / work.load_terms > CARRIED_ALONG_LOCKED:
         work.is_second_order = True
 
 
 @kernel
-def write_left(contacts: ContactSet, frame: Frame, left: FloatArray, work: ContactWorkspace) -> None:
+def write_left(contacts: ContactSet, left: FloatArray, work: ContactWorkspace) -> None:
     """Write what the forces of the contacts leave of the whole load."""
-    for k in range(WRENCH):
+    for k in range(contacts.n_freedoms):
         left[k] = work.whole_load[k]
     for i in range(contacts.used[0]):
         for j in range(3):
-            write_wrench(contacts, i, j, frame, work.trial)
-            for k in range(WRENCH):
-                left[k] -= contacts.states[i].forces[j] * work.trial[k]
+            for k in range(contacts.n_freedoms):
+                left[k] -= contacts.states[i].forces[j] * contacts.rows[i].wrenches[j, k]

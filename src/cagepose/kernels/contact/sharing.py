@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from cagepose.kernels.algebra.dense import cholesky, remove_span, solve_lower, solve_upper
-from cagepose.kernels.algebra.least_squares import PassiveSet, inner, length
+from cagepose.kernels.algebra.least_squares import MOST_FREEDOMS, PassiveSet, inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.metric import ScaledVector
@@ -39,7 +39,7 @@ class SharingWorkspace:
         The motion m, what Newton's method adds to it, and where a part of that leads.
     """
 
-    stiffness: Annotated[FloatArray, 6, 6]
+    stiffness: Annotated[FloatArray, MOST_FREEDOMS, MOST_FREEDOMS]
     wrench: ScaledVector
     left: ScaledVector
     motion: ScaledVector
@@ -50,30 +50,31 @@ class SharingWorkspace:
 @kernel
 def write_left(contacts: ContactSet, motion: FloatArray, work: SharingWorkspace) -> None:
     """Write the forces of a motion, of the contacts that count, and what they leave of the wrench."""
-    for k in range(6):
+    n = contacts.n_freedoms
+    for k in range(n):
         work.left[k] = work.wrench[k]
     for i in range(contacts.used[0]):
         state, normal = contacts.states[i], contacts.rows[i].columns[0]
-        state.forces[0] = max(inner(normal, motion, 6), 0.0) if state.may_share else 0.0
-        for k in range(6):
+        state.forces[0] = max(inner(normal, motion, n), 0.0) if state.may_share else 0.0
+        for k in range(n):
             work.left[k] -= state.forces[0] * normal[k]
 
 
 @kernel
 def write_stiffness(contacts: ContactSet, work: SharingWorkspace) -> None:
     """Write the stiffness of the contacts that carry, with a little in all directions."""
-    total = 0.0
-    for j in range(6):
-        for k in range(6):
+    total, n = 0.0, contacts.n_freedoms
+    for j in range(n):
+        for k in range(n):
             work.stiffness[j, k] = 0.0
     for i in range(contacts.used[0]):
         if contacts.states[i].forces[0] > 0.0:
             normal = contacts.rows[i].columns[0]
-            total += inner(normal, normal, 6)
-            for j in range(6):
-                for k in range(6):
+            total += inner(normal, normal, n)
+            for j in range(n):
+                for k in range(n):
                     work.stiffness[j, k] += normal[j] * normal[k]
-    for k in range(6):
+    for k in range(n):
         work.stiffness[k, k] += LEAST_STIFFNESS * max(total, 1.0)
 
 
@@ -85,40 +86,41 @@ def share_evenly(
     open with it and hold nothing that those which carry, with that basis, do not hold; False: it was not found, and
     the forces are as they were.
     """
-    for k in range(6):
+    n = contacts.n_freedoms
+    for k in range(n):
         work.wrench[k] = 0.0
     for i in range(contacts.used[0]):
         state, normal = contacts.states[i], contacts.rows[i].columns[0]
         state.kept_forces[0] = state.forces[0]
-        opens = -inner(normal, y, 6) > OPENING * length(normal, 6) * terms
-        for k in range(6):
+        opens = -inner(normal, y, n) > OPENING * length(normal, n) * terms
+        for k in range(n):
             work.step[k] = normal[k]
         remove_span(work.step, carrying)
-        is_other = length(work.step, 6) > carrying.dependent * length(normal, 6)
+        is_other = length(work.step, n) > carrying.dependent * length(normal, n)
         state.may_share = state.chosen and (state.forces[0] > 0.0 or not (opens or is_other))
-        for k in range(6):
+        for k in range(n):
             work.wrench[k] += state.forces[0] * normal[k]
     for i in range(contacts.used[0]):  # with all of them: one linear system, where all come to carry
         contacts.states[i].forces[0] = 1.0 if contacts.states[i].may_share else 0.0
-    for k in range(6):
+    for k in range(n):
         work.motion[k], work.left[k] = 0.0, work.wrench[k]
     for _ in range(MOST_STEPS):
         write_stiffness(contacts, work)
-        if not cholesky(work.stiffness, 0.0):
+        if not cholesky(work.stiffness, 0.0, n):
             break
-        solve_lower(work.stiffness, work.left, work.step)
-        solve_upper(work.stiffness, work.step)
-        slope, part = inner(work.left, work.step, 6), 1.0
+        solve_lower(work.stiffness, work.left, work.step, n)
+        solve_upper(work.stiffness, work.step, n)
+        slope, part = inner(work.left, work.step, n), 1.0
         while True:
-            for k in range(6):
+            for k in range(n):
                 work.ahead[k] = work.motion[k] + part * work.step[k]
             write_left(contacts, work.ahead, work)
-            if part < SHORTEST_PART or inner(work.left, work.step, 6) >= -SHARE_OF_SLOPE * slope:
+            if part < SHORTEST_PART or inner(work.left, work.step, n) >= -SHARE_OF_SLOPE * slope:
                 break
             part *= 0.5
-        for k in range(6):
+        for k in range(n):
             work.motion[k] = work.ahead[k]
-        if length(work.left, 6) <= NOT_SHARED * length(work.wrench, 6):
+        if length(work.left, n) <= NOT_SHARED * length(work.wrench, n):
             return True
     for i in range(contacts.used[0]):
         contacts.states[i].forces[0] = contacts.states[i].kept_forces[0]

@@ -13,7 +13,7 @@ from cagepose.kernels.algebra.vector import cross, dot, vector_from
 from cagepose.kernels.contact.cone import clear_cone, cone_residual
 from cagepose.kernels.contact.contact_set import ContactSet, count_chosen
 from cagepose.kernels.contact.coulomb import coulomb_onset, obeys
-from cagepose.kernels.contact.metric import WRENCH, Frame, ScaledVector, twist_of
+from cagepose.kernels.contact.metric import Frame, ScaledVector, twist_of
 from cagepose.kernels.contact.on_circle import add_on_circles, add_point, angle_of_deepest
 from cagepose.kernels.contact.tolerances import PARALLEL_COSINE, SAME_PLACE_RAD
 from cagepose.kernels.contact.workspace import ContactWorkspace
@@ -72,7 +72,7 @@ def has_one_normal_each(contacts: ContactSet) -> bool:
 @kernel
 def solve_cones(contacts: ContactSet, friction: float, work: ContactWorkspace) -> float:
     """Return what forces in the cones of the contacts that count leave of the load: where `coulomb_onset` starts."""
-    clear_cone(work.cone, work.load, WRENCH, work.load_terms)
+    clear_cone(work.cone, work.load, contacts.n_freedoms, work.load_terms)
     return cone_residual(contacts, friction, work.cone)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from cagepose.kernels.algebra.least_squares import PassiveSet
+from cagepose.kernels.algebra.least_squares import MOST_FREEDOMS, PassiveSet
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.cone import ConeWorkspace
 from cagepose.kernels.contact.coulomb_newton import NewtonWorkspace
@@ -37,10 +37,10 @@ class SelfStressWorkspace:
     cone: ConeWorkspace
     reaction: ConeWorkspace
     pressed: PassiveSet
-    curvatures: Annotated[FloatArray, STRESS_LIMIT, 6, 6]
-    reduced: Annotated[FloatArray, 6, 6]
-    vectors: Annotated[FloatArray, 6, 6]
-    free: Annotated[FloatArray, 6, 6]
+    curvatures: Annotated[FloatArray, STRESS_LIMIT, MOST_FREEDOMS, MOST_FREEDOMS]
+    reduced: Annotated[FloatArray, MOST_FREEDOMS, MOST_FREEDOMS]
+    vectors: Annotated[FloatArray, MOST_FREEDOMS, MOST_FREEDOMS]
+    free: Annotated[FloatArray, MOST_FREEDOMS, MOST_FREEDOMS]
     twist: ScaledVector
     imbalance: ScaledVector
 

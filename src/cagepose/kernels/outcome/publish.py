@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from cagepose.kernels.algebra.least_squares import WRENCH
 from cagepose.kernels.algebra.pose import Quaternion, rotation_vector, write_upright
 from cagepose.kernels.algebra.vector import Vector, plus, vector_from
 from cagepose.kernels.boundary.features import FACE
@@ -204,7 +205,7 @@ def publish_proof(
     phase.is_clamped = scratch.is_clamped
     phase.n_undetermined = n_undetermined
     for i in range(n_undetermined):
-        for k in range(6):
+        for k in range(WRENCH):
             phase.undetermined[i, k] = scratch.rest.ways.basis[i, k]
     phase.motion = NONE
     if code in (PROVEN_MOVES, OTHER_ONSET):

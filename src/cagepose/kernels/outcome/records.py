@@ -7,6 +7,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from cagepose.kernels.algebra.least_squares import WRENCH
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
 from cagepose.kernels.boundary.geometry import Geometry, most_elements, most_rows
 from cagepose.kernels.outcome.trace import StepRecord
@@ -43,7 +44,7 @@ class PhaseRecord:
     is_chained: bool
     is_clamped: bool
     n_undetermined: int
-    undetermined: Annotated[FloatArray, 6, 6]
+    undetermined: Annotated[FloatArray, WRENCH, WRENCH]
     motion: int
     along: Annotated[FloatArray, 3]
     through: Annotated[FloatArray, 3]

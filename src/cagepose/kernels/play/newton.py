@@ -19,7 +19,7 @@ from cagepose.kernels.algebra.dense import (
     solve_upper,
 )
 from cagepose.kernels.algebra.eigen import symmetric_eigen
-from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, inner, label_is_passive
+from cagepose.kernels.algebra.least_squares import WRENCH, PassiveSet, append_column, clear, inner, label_is_passive
 from cagepose.kernels.algebra.linear_program import Program, write_corner
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import norm
@@ -43,12 +43,12 @@ class NewtonStep:
     """
 
     held: PassiveSet
-    curvature: Annotated[FloatArray, 6, 6]
-    factor: Annotated[FloatArray, 6, 6]
-    vectors: Annotated[FloatArray, 6, 6]
-    onto: Annotated[FloatArray, 6]
-    along: Annotated[FloatArray, 6]
-    step: Annotated[FloatArray, 6]
+    curvature: Annotated[FloatArray, WRENCH, WRENCH]
+    factor: Annotated[FloatArray, WRENCH, WRENCH]
+    vectors: Annotated[FloatArray, WRENCH, WRENCH]
+    onto: Annotated[FloatArray, WRENCH]
+    along: Annotated[FloatArray, WRENCH]
+    step: Annotated[FloatArray, WRENCH]
 
 
 @kernel
@@ -66,7 +66,7 @@ def hold_row(rows: FloatArray, pair: int, newton: NewtonStep) -> bool:
 @kernel
 def hold_limits(rows: FloatArray, n_pairs: int, program: Program, newton: NewtonStep) -> None:
     """Take the rows that the program's solution leans on, without those of the trust region."""
-    clear(newton.held, 6, 1.0)
+    clear(newton.held, WRENCH, 1.0)
     passive = program.passive
     for i in range(passive.used):
         if passive.labels[i] < n_pairs and passive.x[i] > 0.0:
@@ -76,13 +76,13 @@ def hold_limits(rows: FloatArray, n_pairs: int, program: Program, newton: Newton
 @kernel
 def write_free_curvature(newton: NewtonStep) -> None:
     """Write minus the curvature along what the rows leave free, with a little of its size everywhere."""
-    for j in range(6):
-        for k in range(6):
+    for j in range(WRENCH):
+        for k in range(WRENCH):
             newton.factor[j, k] = -newton.curvature[j, k]
-    size = frobenius_norm(newton.curvature)
+    size = frobenius_norm(newton.curvature, WRENCH)
     shift = ADDED_CURVATURE * confine(newton.factor, newton.held) + ROUNDING_OF_TERMS * size
     add_across(newton.factor, newton.held, size)
-    for j in range(6):
+    for j in range(WRENCH):
         newton.factor[j, j] += shift
 
 
@@ -90,15 +90,15 @@ def write_free_curvature(newton: NewtonStep) -> None:
 def write_growth(newton: NewtonStep) -> None:
     """Turn the slope ``along`` into the direction of the greatest curvature, the way that the slope points."""
     write_free_curvature(newton)
-    symmetric_eigen(newton.factor, newton.vectors, 6)
+    symmetric_eigen(newton.factor, newton.vectors, WRENCH)
     least = 0
-    for k in range(1, 6):
+    for k in range(1, WRENCH):
         if newton.factor[k, k] < newton.factor[least, least]:
             least = k
     slope = 0.0
-    for k in range(6):
+    for k in range(WRENCH):
         slope += newton.along[k] * newton.vectors[k, least]
-    for k in range(6):
+    for k in range(WRENCH):
         newton.along[k] = math.copysign(1.0, slope) * newton.vectors[k, least]
 
 
@@ -109,16 +109,16 @@ def write_steps(bounds: FloatArray, objective: FloatArray, newton: NewtonStep) -
     False: there is no top, and ``along`` is a direction in which the value grows, if any.
     """
     write_corner(bounds, newton.held, newton.onto)
-    for k in range(6):
-        newton.along[k] = objective[k] + inner(newton.curvature[k], newton.onto, 6)
+    for k in range(WRENCH):
+        newton.along[k] = objective[k] + inner(newton.curvature[k], newton.onto, WRENCH)
     for _ in range(2):  # little may be left of the objective: the second time that is free of rounding, too
         remove_span(newton.along, newton.held)
     write_free_curvature(newton)
-    if not cholesky(newton.factor, 0.0):
+    if not cholesky(newton.factor, 0.0, WRENCH):
         write_growth(newton)
         return False
-    solve_lower(newton.factor, newton.along, newton.along)
-    solve_upper(newton.factor, newton.along)
+    solve_lower(newton.factor, newton.along, newton.along, WRENCH)
+    solve_upper(newton.factor, newton.along, WRENCH)
     remove_span(newton.along, newton.held)
     return True
 
@@ -136,13 +136,13 @@ def join_steps(
     share, blocks = whole, -1
     for pair in range(n_pairs):
         gap, speed = bounds[pair], 0.0
-        for k in range(6):
+        for k in range(WRENCH):
             gap -= rows[pair, k] * newton.onto[k]
             speed += rows[pair, k] * newton.along[k]
         gap = max(gap, 0.0)
         if speed > ROUNDING_OF_TERMS * size and gap < share * speed and not label_is_passive(newton.held, pair):
             share, blocks = gap / speed, pair
-    for k in range(6):
+    for k in range(WRENCH):
         newton.step[k] = newton.onto[k] + share * newton.along[k]
     return blocks if share < 0.5 * whole else -1
 

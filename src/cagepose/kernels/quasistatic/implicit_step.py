@@ -22,11 +22,11 @@ from cagepose.kernels.algebra.dense import (
     solve_upper,
 )
 from cagepose.kernels.algebra.eigen import symmetric_eigen
-from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, inner, length
+from cagepose.kernels.algebra.least_squares import MOST_FREEDOMS, PassiveSet, append_column, clear, inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.equilibrium import AT_REST, MOVES, equilibrium_with_faces
-from cagepose.kernels.contact.metric import WRENCH, ScaledVector
+from cagepose.kernels.contact.metric import ScaledVector
 from cagepose.kernels.contact.onset import motion_with_faces
 from cagepose.kernels.contact.sharing import SharingWorkspace
 from cagepose.kernels.contact.workspace import ContactWorkspace
@@ -59,11 +59,11 @@ class ImplicitStepWorkspace:
     """
 
     sharing: SharingWorkspace
-    curvature: Annotated[FloatArray, 6, 6]
-    circulation: Annotated[FloatArray, 6, 6]
+    curvature: Annotated[FloatArray, MOST_FREEDOMS, MOST_FREEDOMS]
+    circulation: Annotated[FloatArray, MOST_FREEDOMS, MOST_FREEDOMS]
     held: PassiveSet
-    factor: Annotated[FloatArray, 6, 6]
-    vectors: Annotated[FloatArray, 6, 6]
+    factor: Annotated[FloatArray, MOST_FREEDOMS, MOST_FREEDOMS]
+    vectors: Annotated[FloatArray, MOST_FREEDOMS, MOST_FREEDOMS]
     b: ScaledVector
     delta: ScaledVector
 
@@ -73,7 +73,7 @@ def hold_carrying(contacts: ContactSet, locked: PassiveSet, dependent: float, wo
     """Write the basis of what the contacts that carry hold (and, where they stick, along their faces), and of what
     those without play lock. What one holds but for a ``dependent`` part of its wrench, others hold.
     """
-    clear(work.held, WRENCH, 1.0)
+    clear(work.held, contacts.n_freedoms, 1.0)
     work.held.dependent = dependent
     for i in range(contacts.used[0]):
         state = contacts.states[i]
@@ -91,7 +91,7 @@ def keep_along_faces(contacts: ContactSet, locked: PassiveSet, dependent: float,
     Nothing moves there, but it could make the matrix look as if it were not positive, or rounding of the forces as if
     it moved the object. Return the least rho that stands out from the rounding.
     """
-    least_rho = LEAST_RHO * frobenius_norm(work.curvature)
+    least_rho = LEAST_RHO * frobenius_norm(work.curvature, contacts.n_freedoms)
     hold_carrying(contacts, locked, dependent, work)
     add_across(work.curvature, work.held, confine(work.curvature, work.held))
     return least_rho
@@ -102,11 +102,11 @@ def rho_against_circulation(work: ImplicitStepWorkspace) -> float:
     """Return the rho with which steps shrink fastest where the stiffness is S + A and S alone is in the matrix: |A|^2
     over the least curvature, as |rho y - A y| is to be far below |(rho + S) y| (5.30).
     """
-    size = confine(work.circulation, work.held)
+    size, n = confine(work.circulation, work.held), work.held.n_rows
     write_matrix(work, 0.0)
-    symmetric_eigen(work.factor, work.vectors, WRENCH)
+    symmetric_eigen(work.factor, work.vectors, n)
     least = work.factor[0, 0]
-    for k in range(1, WRENCH):
+    for k in range(1, n):
         least = min(least, work.factor[k, k])
     return size * max(1.0, size / least) if least > 0.0 else size
 
@@ -114,8 +114,9 @@ def rho_against_circulation(work: ImplicitStepWorkspace) -> float:
 @kernel
 def write_matrix(work: ImplicitStepWorkspace, rho: float) -> None:
     """Write rho 1 + S."""
-    for j in range(6):
-        for k in range(6):
+    n = work.held.n_rows
+    for j in range(n):
+        for k in range(n):
             work.factor[j, k] = work.curvature[j, k]
         work.factor[j, j] += rho
 
@@ -124,14 +125,15 @@ def write_matrix(work: ImplicitStepWorkspace, rho: float) -> None:
 def write_convex_matrix(work: ImplicitStepWorkspace, rho: float) -> None:
     """Write rho 1 + S, but for what S has below zero: a step down from where it is unstable is an explicit one."""
     write_matrix(work, 0.0)
-    symmetric_eigen(work.factor, work.vectors, WRENCH)
+    n = work.held.n_rows
+    symmetric_eigen(work.factor, work.vectors, n)
     curvatures = work.b
-    for e in range(WRENCH):
+    for e in range(n):
         curvatures[e] = rho + max(work.factor[e, e], 0.0)
-    for j in range(WRENCH):
-        for k in range(WRENCH):
+    for j in range(n):
+        for k in range(n):
             work.factor[j, k] = 0.0
-            for e in range(WRENCH):
+            for e in range(n):
                 work.factor[j, k] += curvatures[e] * work.vectors[j, e] * work.vectors[k, e]
 
 
@@ -139,7 +141,7 @@ def write_convex_matrix(work: ImplicitStepWorkspace, rho: float) -> None:
 def is_convex(rho: float, work: ImplicitStepWorkspace) -> bool:
     """Whether rho 1 + S is positive; it is factored then."""
     write_matrix(work, rho)
-    return cholesky(work.factor, 1e-3 * rho)
+    return cholesky(work.factor, 1e-3 * rho, work.held.n_rows)
 
 
 @kernel
@@ -152,13 +154,14 @@ def shared_step(contacts: ContactSet, rho: float, work: ImplicitStepWorkspace, s
     """
     if not is_convex(rho, work):
         return False
-    for k in range(6):
+    n = contacts.n_freedoms
+    for k in range(n):
         work.delta[k] = solver.load[k]
         for i in range(contacts.used[0]):
             work.delta[k] += contacts.states[i].forces[0] * contacts.rows[i].columns[0, k]
     remove_span(work.delta, work.held)
-    solve_lower(work.factor, work.delta, work.delta)
-    solve_upper(work.factor, work.delta)
+    solve_lower(work.factor, work.delta, work.delta, n)
+    solve_upper(work.factor, work.delta, n)
     return True
 
 
@@ -177,23 +180,24 @@ def implicit_step(
     Given are the explicit motion ``solver.y``, ``work.curvature`` along the faces, and which contacts stick; ``turned``
     is memory for the contacts in the step's coordinates.
     """
+    n = contacts.n_freedoms
     if not is_convex(rho, work):
         write_convex_matrix(work, rho)
-        if not cholesky(work.factor, 1e-3 * rho):
+        if not cholesky(work.factor, 1e-3 * rho, n):
             return False
     turned.used[0] = contacts.used[0]
     for i in range(contacts.used[0]):
         turned.states[i].counts = contacts.states[i].counts
         for j in range(3):
-            solve_lower(work.factor, contacts.rows[i].columns[j], turned.rows[i].columns[j])
-    solve_lower(work.factor, solver.load, work.b)
-    terms = solver.load_terms * length(work.b, 6) / length(solver.load, 6)
+            solve_lower(work.factor, contacts.rows[i].columns[j], turned.rows[i].columns[j], n)
+    solve_lower(work.factor, solver.load, work.b, n)
+    terms = solver.load_terms * length(work.b, n) / length(solver.load, n)
     if equilibrium_with_faces(turned, friction, AT_REST, work.b, terms, solver) != MOVES:
         return False
     if not motion_with_faces(turned, friction, work.b, work.delta, solver):
         return False
-    solve_upper(work.factor, work.delta)
-    if inner(work.delta, solver.y, 6) <= 0.0:
+    solve_upper(work.factor, work.delta, n)
+    if inner(work.delta, solver.y, n) <= 0.0:
         return False
     for i in range(contacts.used[0]):
         state = contacts.states[i]
@@ -203,7 +207,8 @@ def implicit_step(
             state.forces[j] = turned.states[i].forces[j]
         state.is_sticking = state.is_sticking and state.forces[0] > 0.0
     for i in range(contacts.used[0]):
-        state, away = contacts.states[i], abs(inner(contacts.rows[i].columns[0], work.delta, 6))
-        is_level = away <= max(LEVEL * length(contacts.rows[i].columns[0], 6) * length(work.delta, 6), rounding_m)
+        state, normal = contacts.states[i], contacts.rows[i].columns[0]
+        least = max(LEVEL * length(normal, n) * length(work.delta, n), rounding_m)
+        is_level = abs(inner(normal, work.delta, n)) <= least
         state.stays_flat = state.stays_flat and is_level
     return True

@@ -10,7 +10,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from cagepose.kernels.algebra.dense import cholesky, remove_span, solve_lower, solve_upper
-from cagepose.kernels.algebra.least_squares import PassiveSet, append_column, clear, inner
+from cagepose.kernels.algebra.least_squares import WRENCH, PassiveSet, append_column, clear, inner
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import (
@@ -27,7 +27,6 @@ from cagepose.kernels.boundary.kept import crossed, meeting_kept
 from cagepose.kernels.circles.places import within_turn
 from cagepose.kernels.contact.contact_set import tangents_to
 from cagepose.kernels.contact.metric import (
-    WRENCH,
     Body,
     Frame,
     ScaledVector,
@@ -103,7 +102,7 @@ class ProjectionWorkspace:
     column: ScaledVector
     y: ScaledVector
     back: ScaledVector
-    slips: Annotated[FloatArray, 6, 6]
+    slips: Annotated[FloatArray, WRENCH, WRENCH]
     basis: PassiveSet
     values: ScaledVector
 
@@ -225,13 +224,13 @@ def is_slip(constraint: PositionConstraint) -> bool:
 def write_shortest(work: ProjectionWorkspace) -> None:
     """Write the shortest motion that makes up for what the constraints of the basis lack."""
     values = work.values
-    for k in range(6):
+    for k in range(WRENCH):
         work.y[k] = 0.0
     for i in range(work.basis.used):
         for j in range(i):
             values[i] -= work.basis.triangle[i, j] * values[j]
         values[i] *= work.basis.triangle[i, i]
-        for k in range(6):
+        for k in range(WRENCH):
             work.y[k] += values[i] * work.basis.basis[i, k]
 
 
@@ -251,9 +250,9 @@ def add_least_slip(
     must, would take a way many times longer than the gaps.
     """
     work, rows, slipped = constraints.scratch[0], constraints.rows, 0.0
-    for j in range(6):
+    for j in range(WRENCH):
         work.back[j] = 0.0
-        for k in range(6):
+        for k in range(WRENCH):
             work.slips[j, k] = LEAST_SLIP if j == k else 0.0
     for i in range(work.used):
         if not is_slip(rows[i]):
@@ -262,19 +261,19 @@ def add_least_slip(
         if slip.value == math.inf:
             return False
         write_scaled_wrench(slip.direction, cross(slip.arm, slip.direction), frame, work.column)
-        on_the_way = inner(work.column, work.y, 6)
+        on_the_way = inner(work.column, work.y, WRENCH)
         slipped += on_the_way * on_the_way
         remove_span(work.column, work.basis)
-        for j in range(6):
+        for j in range(WRENCH):
             work.back[j] -= on_the_way * work.column[j]
-            for k in range(6):
+            for k in range(WRENCH):
                 work.slips[j, k] += work.column[j] * work.column[k]
-    if not cholesky(work.slips, 0.0):
+    if not cholesky(work.slips, 0.0, WRENCH):
         return False
-    solve_lower(work.slips, work.back, work.back)
-    slipped -= inner(work.back, work.back, 6)
-    solve_upper(work.slips, work.back)
-    for k in range(6):
+    solve_lower(work.slips, work.back, work.back, WRENCH)
+    slipped -= inner(work.back, work.back, WRENCH)
+    solve_upper(work.slips, work.back, WRENCH)
+    for k in range(WRENCH):
         work.y[k] += work.back[k]
     return slipped <= work.may_slip_m * work.may_slip_m
 
@@ -303,7 +302,7 @@ def slip_on_the_way(
         if is_slip(constraints.rows[i]):
             slip = lack(geometry, constraints.rows[i], position, quaternion, placement)
             write_scaled_wrench(slip.direction, cross(slip.arm, slip.direction), frame, work.column)
-            on_the_way = inner(work.column, work.y, 6)
+            on_the_way = inner(work.column, work.y, WRENCH)
             slipped += on_the_way * on_the_way
     return math.sqrt(slipped)
 

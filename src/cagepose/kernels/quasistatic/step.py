@@ -18,7 +18,7 @@ from cagepose.kernels.algebra.tolerances import DEPENDENT_COLUMN
 from cagepose.kernels.algebra.vector import Vector, norm, scaled, vector_from
 from cagepose.kernels.boundary.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
-from cagepose.kernels.contact.curvature import curvature_along, write_curvature
+from cagepose.kernels.contact.curvature import curvature_along, write_circulation, write_curvature
 from cagepose.kernels.contact.equilibrium import (
     HELD_BY_FRICTION,
     HELD_WITHOUT_FRICTION,
@@ -27,7 +27,7 @@ from cagepose.kernels.contact.equilibrium import (
     UNSOLVED,
 )
 from cagepose.kernels.contact.find_contacts import find_contacts
-from cagepose.kernels.contact.load_curvature import has_circulation, write_circulation
+from cagepose.kernels.contact.load_curvature import has_circulation
 from cagepose.kernels.contact.loads import longest_pull, write_load
 from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, way_between
 from cagepose.kernels.contact.on_circle import is_under_circle
@@ -138,7 +138,7 @@ def impending_motion(setting: Setting, frame: Frame, work: QuasistaticWorkspace)
     found = other_onset_on_circles(contacts, frame, friction, load, terms, tree, solver.newton, proof.system)
     if found != OTHER_FOUND:
         return MOVES_SOMEHOW
-    for k in range(6):
+    for k in range(contacts.n_freedoms):
         solver.y[k] = tree.y[k]
     return MOVES
 
@@ -210,14 +210,14 @@ def next_twist(
         write_curvature(contacts, load, position, quaternion, frame, False, scratch.stiff.curvature)
         least_rho = keep_along_faces(contacts, scratch.solver.locked, DEPENDENT_COLUMN, scratch.stiff)
         if has_circulation(load):
-            write_circulation(load, position, quaternion, frame, scratch.stiff.circulation)
+            write_circulation(contacts, load, position, quaternion, frame, scratch.stiff.circulation)
             least_rho = max(least_rho, rho_against_circulation(scratch.stiff))
         rho = max(least_rho, 1.0 / end)
         is_valley = is_convex(least_rho, scratch.stiff)
         asks_shared = friction == 0.0 and carries and (is_still or not (is_valley or is_convex(rho, scratch.stiff)))
         if asks_shared and is_shared(setting, position, quaternion, frame, rho, work):
             return twist_of_step(setting, position, quaternion, frame, turn_step_rad, work), False
-        is_stiff = abs(curvature_along(scratch.stiff.curvature, y)) * end > STIFF
+        is_stiff = abs(curvature_along(scratch.stiff.curvature, y, contacts.n_freedoms)) * end > STIFF
         turns = turn_of_normals(contacts, velocity, spin)
         is_round = turns * end > STIFF * turn_step_rad and turns > ROUND * norm(spin)
         for _ in range(LONGER if is_round else 1):

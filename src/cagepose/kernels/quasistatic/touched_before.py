@@ -68,6 +68,6 @@ def move_contact(contacts: ContactSet, source: int, target: int) -> None:
         new.arm[j] = old.arm[j]
         for k in range(3):
             new.directions[j, k] = old.directions[j, k]
-        for k in range(6):
-            new.columns[j, k] = old.columns[j, k]
+        for k in range(contacts.n_freedoms):
+            new.wrenches[j, k], new.columns[j, k] = old.wrenches[j, k], old.columns[j, k]
     contacts.bends[target] = contacts.bends[source]  # type: ignore[index]

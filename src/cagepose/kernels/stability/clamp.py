@@ -11,7 +11,6 @@ from __future__ import annotations
 from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.equilibrium import least_residual
-from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.contact.onset import motion_with_faces
 from cagepose.kernels.contact.self_stress import self_stress
 from cagepose.kernels.contact.tolerances import RESIDUAL_AT_LIMIT
@@ -76,12 +75,12 @@ def parts_for_good(contacts: ContactSet, friction: float, work: ContactWorkspace
     if contacts.used[0] > MOST_ASKED:
         return parts
     for i in range(contacts.used[0]):
-        state, column, y = contacts.states[i], contacts.rows[i].columns[0], work.trial
+        state, column, y, n = contacts.states[i], contacts.rows[i].columns[0], work.trial, contacts.n_freedoms
         if not state.counts or parts:
             continue
         if not is_balanced_without(contacts, i, friction, work):
             parts = True
             if motion_with_faces(contacts, friction, work.load, y, work):
-                parts = inner(column, y, WRENCH) < -SPEED_OF_OPENING * length(column, WRENCH) * length(y, WRENCH)
+                parts = inner(column, y, n) < -SPEED_OF_OPENING * length(column, n) * length(y, n)
         state.counts = True
     return parts

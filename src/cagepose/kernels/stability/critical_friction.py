@@ -31,8 +31,8 @@ def step_to_balance(contacts: ContactSet, work: ContactWorkspace) -> float:
     residual = work.cone.passive.residual
     gain = 0.0
     for i in range(contacts.used[0]):
-        gain += contacts.states[i].forces[0] * steepest_tangent(contacts.rows[i], residual)[0]
-    left = length(residual, 6)
+        gain += contacts.states[i].forces[0] * steepest_tangent(contacts, i, residual)[0]
+    left = length(residual, contacts.n_freedoms)
     return left * left / gain if gain > 0.0 else math.inf
 
 

@@ -61,7 +61,7 @@ def n_forces(contacts: ContactSet, i: int, friction: float) -> int:
     carries nothing now may stick where it does.
     """
     state = contacts.states[i]
-    sticks = state.is_sticking or (state.forces[0] == 0.0 and friction > 0.0 and not is_smooth(contacts.rows[i]))
+    sticks = state.is_sticking or (state.forces[0] == 0.0 and friction > 0.0 and not is_smooth(contacts, i))
     return 3 if sticks else 1
 
 
@@ -77,13 +77,13 @@ def curvature_of(
     work: OtherBalance,
 ) -> float:
     """Return k of the normal (``which`` 0) or of a tangential force of a contact, times the size."""
-    clear_matrix(work.curvature)
+    clear_matrix(work.curvature, contacts.n_freedoms)
     if n_forces(contacts, i, friction) == 3:
         force = vector_from(contacts.rows[i].directions[which])
         add_sticking_curvature(contacts, i, force, frame, curved, work.curvature)
     else:
         add_face_curvature(contacts, i, 1.0, frame, curved, work.curvature)
-    return curvature_along(work.curvature, work.twist) * size_m
+    return curvature_along(work.curvature, work.twist, contacts.n_freedoms) * size_m
 
 
 @kernel
@@ -139,6 +139,8 @@ def may_be_stopped(
     What friction may be is not asked: with more than there is, more is stopped. The program begins with the forces that
     the contacts have; others come in as its solution violates what they ask.
     """
+    if contacts.n_freedoms != N_UNKNOWNS:
+        return True  # the programs are of one body
     n, now = 0, 0.0
     for axis in range(N_UNKNOWNS):
         work.program.objective[axis] = 0.0

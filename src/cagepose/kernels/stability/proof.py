@@ -29,7 +29,7 @@ from cagepose.kernels.contact.equilibrium import (
 from cagepose.kernels.contact.find_contacts import find_contacts
 from cagepose.kernels.contact.friction import Friction
 from cagepose.kernels.contact.loads import PhaseLoad, write_load
-from cagepose.kernels.contact.metric import WRENCH, Body, Frame, ScaledVector, frame_at
+from cagepose.kernels.contact.metric import Body, Frame, ScaledVector, frame_at
 from cagepose.kernels.contact.on_circle import drop_idle
 from cagepose.kernels.contact.self_stress import forget_locked, write_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
@@ -161,12 +161,12 @@ def prove(
     code = equilibrium(contacts, frame, greatest, AT_REST, scratch.solver)
     if code == MOVES:
         scratch.twist_residual = scratch.solver.residual
-        for k in range(6):
+        for k in range(contacts.n_freedoms):
             scratch.twist[k] = scratch.solver.cone.passive.residual[k]
         return PROVEN_MOVES, STABLE_REST, 0
     drop_idle(contacts, scratch.solver.cone)
     left = scratch.solver.residual
-    clear(scratch.rest.ways, WRENCH, 1.0)
+    clear(scratch.rest.ways, contacts.n_freedoms, 1.0)
     if code == UNSOLVED:
         find_held(contacts, at.statuses, greatest, scratch.solver.locked, scratch.rest, at.system)
         find_shared(contacts, at.statuses, scratch.rest)
@@ -240,7 +240,7 @@ def judge_faces(
     contacts, solver = at.contacts, at.scratch[0].solver
     proof, steady, is_chained = PROVEN_WITHOUT_FRICTION, STABLE_REST, False
     if not one_choice:
-        forget_locked(contacts, frame, solver)
+        forget_locked(contacts, solver)
         first_choice(contacts)
     for _ in range(CHOICES_LIMIT):
         if not one_choice:
@@ -253,7 +253,7 @@ def judge_faces(
                 steady, at.scratch[0].is_clamped = MARGINAL, True
         if one_choice:
             return proof, steady
-        if not next_choice_unlocked(contacts, frame, EVERY, solver):
+        if not next_choice_unlocked(contacts, EVERY, solver):
             break
     else:
         steady = max(steady, MARGINAL)

@@ -70,7 +70,7 @@ def search_with_faces(friction: float, at: ProofWorkspace) -> int:
 def search_faces(friction: float, frame: Frame, at: ProofWorkspace) -> int:
     """Return the code of the proof, that of the first combination of faces with which rest is not the only onset."""
     contacts, work, solver = at.contacts, at.scratch[0], at.scratch[0].solver
-    forget_locked(contacts, frame, solver)
+    forget_locked(contacts, solver)
     first_choice(contacts)
     one_choice = has_one_choice(contacts)
     is_known = one_choice and not solver.has_locked  # by the proof: friction balances the load, and nothing is locked
@@ -91,10 +91,10 @@ def search_faces(friction: float, frame: Frame, at: ProofWorkspace) -> int:
             if answer != UNIQUE:
                 return OTHER_ONSET if answer == OTHER_FOUND else UNIQUENESS_NOT_SHOWN
         if contacts.used[0] > n_asked and not one_choice:  # the choices before are asked with these points, too
-            forget_locked(contacts, frame, solver)
+            forget_locked(contacts, solver)
             first_choice(contacts)
             continue
-        if not next_choice_unlocked(contacts, frame, EVERY, solver):
+        if not next_choice_unlocked(contacts, EVERY, solver):
             return PROVEN_UNIQUE
     return UNIQUENESS_NOT_SHOWN
 
@@ -120,7 +120,7 @@ def search_onsets(friction: float, frame: Frame, at: ProofWorkspace) -> int:
     left, n_listed = work.solver.residual, contacts.used[0]
     keep_choice(contacts)
     proof = search_faces(friction, frame, at)
-    forget_locked(contacts, frame, work.solver)
+    forget_locked(contacts, work.solver)
     work.n_asked, contacts.used[0] = contacts.used[0], n_listed
     return_to_choice(contacts, frame, friction, AT_REST, work.solver)
     work.solver.residual = left
@@ -157,7 +157,7 @@ def first_motion(friction: float, frame: Frame, at: ProofWorkspace) -> None:
     contacts, work, solver = at.contacts, at.scratch[0], at.scratch[0].solver
     if freest_motion(contacts, frame, friction, solver) != MOVES:
         solver.residual = work.twist_residual
-        for k in range(6):
+        for k in range(contacts.n_freedoms):
             solver.y[k] = work.twist[k]
 
 

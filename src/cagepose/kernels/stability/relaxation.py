@@ -13,6 +13,7 @@ import math
 from typing import Annotated
 
 from cagepose.kernels.algebra.least_squares import (
+    MOST_FREEDOMS,
     PassiveSet,
     System,
     append_column,
@@ -26,9 +27,10 @@ from cagepose.kernels.algebra.least_squares import (
     settle,
 )
 from cagepose.kernels.algebra.record import FloatArray, IntArray
+from cagepose.kernels.contact.cone import write_generator
 from cagepose.kernels.contact.contact_set import ContactSet, is_smooth
 from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS
-from cagepose.kernels.contact.metric import WRENCH, ScaledVector
+from cagepose.kernels.contact.metric import ScaledVector
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.tolerances import (
     DEPENDENT_FORCE,
@@ -43,12 +45,14 @@ from cagepose.kernels.stability.tolerances import (
 
 CONTACT_LIMIT = 24
 """More contacts than this: not asked."""
+MOST_WAYS = 6
+"""A contact has at most so many velocities that are not allowed in one set of modes."""
 UNDECIDED, CLOSED = -1, 4
 """Codes beside those of what a contact does. Whether it opens (OPENS, CLOSED) and whether it slips (STICKS, SLIPS) are
 decided each by itself: feet on a floor slip one way, however many of them carry."""
 CUT_LIMIT = 96
 """A node and those above it have at most so many twists that no force drives."""
-VELOCITY_LIMIT = 6 * CONTACT_LIMIT
+VELOCITY_LIMIT = MOST_WAYS * CONTACT_LIMIT
 N_COLUMNS = VELOCITY_LIMIT + CUT_LIMIT
 N_VELOCITIES = 8
 """A contact has so many velocities that may not be allowed, each with a number of its own."""
@@ -66,6 +70,8 @@ class Relaxation:
 
     Attributes
     ----------
+    n_freedoms
+        As in `ContactSet`.
     n_places, contacts
         The contacts in question: a "place" is an index of this.
     wrenches
@@ -95,10 +101,11 @@ class Relaxation:
         Of the load among them.
     """
 
+    n_freedoms: int
     n_places: int
     contacts: Annotated[IntArray, CONTACT_LIMIT]
     is_smooth: Annotated[IntArray, CONTACT_LIMIT]
-    wrenches: Annotated[FloatArray, CONTACT_LIMIT, 3, 6]
+    wrenches: Annotated[FloatArray, CONTACT_LIMIT, 3, MOST_FREEDOMS]
     load: ScaledVector
     openings: Annotated[IntArray, CONTACT_LIMIT]
     slips: Annotated[IntArray, CONTACT_LIMIT]
@@ -114,7 +121,7 @@ class Relaxation:
     n_velocities: int
     ways: Annotated[IntArray, VELOCITY_LIMIT]
     n_cuts: int
-    cuts: Annotated[FloatArray, CUT_LIMIT, 6]
+    cuts: Annotated[FloatArray, CUT_LIMIT, MOST_FREEDOMS]
     twist: ScaledVector
     normal_forces: Annotated[FloatArray, CONTACT_LIMIT]
     tangential_forces: Annotated[FloatArray, CONTACT_LIMIT, 2]
@@ -124,7 +131,7 @@ class Relaxation:
 @kernel
 def take_contacts(contacts: ContactSet, b: FloatArray, work: Relaxation) -> bool:
     """Take the contacts that are chosen, and the load; False: too many."""
-    work.n_places = 0
+    work.n_freedoms, work.n_places, n = contacts.n_freedoms, 0, contacts.n_freedoms
     for i in range(contacts.used[0]):
         if not contacts.states[i].counts:
             continue
@@ -132,14 +139,14 @@ def take_contacts(contacts: ContactSet, b: FloatArray, work: Relaxation) -> bool
         if place == CONTACT_LIMIT:
             return False
         columns = contacts.rows[i].columns
-        size = length(columns[0], WRENCH)
+        size = length(columns[0], n)
         for j in range(3):
-            for k in range(6):
+            for k in range(n):
                 work.wrenches[place, j, k] = columns[j, k] / size
-        work.contacts[place], work.is_smooth[place] = i, is_smooth(contacts.rows[i])
+        work.contacts[place], work.is_smooth[place] = i, is_smooth(contacts, i)
         work.n_places += 1
-    size = length(b, WRENCH)
-    for k in range(6):
+    size = length(b, n)
+    for k in range(n):
         work.load[k] = b[k] / size
     return True
 
@@ -158,7 +165,8 @@ def write_edges(place: int, start: float, width: float, work: Relaxation) -> Non
 @kernel
 def slip_along(place: int, vector: FloatArray, work: Relaxation) -> tuple[float, float]:
     """Return the tangential part of a scaled twist at a contact."""
-    return inner(work.wrenches[place, 1], vector, WRENCH), inner(work.wrenches[place, 2], vector, WRENCH)
+    wrenches, n = work.wrenches[place], work.n_freedoms
+    return inner(wrenches[1], vector, n), inner(wrenches[2], vector, n)
 
 
 @kernel
@@ -181,11 +189,11 @@ def steepest_friction(place: int, vector: FloatArray, work: Relaxation) -> tuple
 @kernel
 def most_driven(friction: float, vector: FloatArray, work: Relaxation) -> float:
     """Return the most that a unit normal force, with its friction, or the load turned round lies along a vector."""
-    most = -inner(work.load, vector, WRENCH)
+    most = -inner(work.load, vector, work.n_freedoms)
     for place in range(work.n_places):
         if work.openings[place] != OPENS:
             along = steepest_friction(place, vector, work)[0]
-            most = max(most, inner(work.wrenches[place, 0], vector, WRENCH) + friction * along)
+            most = max(most, inner(work.wrenches[place, 0], vector, work.n_freedoms) + friction * along)
     return most
 
 
@@ -196,7 +204,7 @@ def add_velocity(
     """Add a velocity at a contact that is not allowed; return the number of columns."""
     wrenches, column = work.wrenches[place], system.columns[n]
     work.ways[n] = N_VELOCITIES * place + which
-    for k in range(6):
+    for k in range(work.n_freedoms):
         column[k] = normal * wrenches[0, k] + one * wrenches[1, k] + two * wrenches[2, k]
     return n + 1
 
@@ -225,7 +233,7 @@ def write_velocities(work: Relaxation, system: System) -> None:
 def write_cuts(work: Relaxation, system: System) -> None:
     """Write the twists known from above behind the velocities."""
     for cut in range(work.n_cuts):
-        for k in range(6):
+        for k in range(work.n_freedoms):
             system.columns[work.n_velocities + cut, k] = work.cuts[cut, k]
 
 
@@ -237,7 +245,7 @@ def add_generator(friction: float, number: int, work: Relaxation) -> int:
     """
     passive = work.forces
     best, most = -2, 0.0
-    along = -inner(work.load, passive.residual, WRENCH)
+    along = -inner(work.load, passive.residual, work.n_freedoms)
     if along > most:
         best, most = -1, along
     for place in range(work.n_places):
@@ -245,21 +253,20 @@ def add_generator(friction: float, number: int, work: Relaxation) -> int:
             continue
         along = steepest_friction(place, passive.residual, work)[0]
         used = (1.0 + WIDER_CONES) * friction if along > 0.0 else friction
-        along = inner(work.wrenches[place, 0], passive.residual, WRENCH) + used * along
+        along = inner(work.wrenches[place, 0], passive.residual, work.n_freedoms) + used * along
         if along > most:
             best, most = place, along
     if best == -2 or number == MOST_GENERATORS:
         return -1
     work.places[number] = best
-    for k in range(6):
+    for k in range(work.n_freedoms):
         work.generator[k] = -work.load[k]
     if best >= 0:
         along, one, two = steepest_friction(best, passive.residual, work)
         used = (1.0 + WIDER_CONES) * friction if along > 0.0 else friction
         work.directions[number, 0], work.directions[number, 1] = used * one, used * two
         wrenches = work.wrenches[best]
-        for k in range(6):
-            work.generator[k] = wrenches[0, k] + used * (one * wrenches[1, k] + two * wrenches[2, k])
+        write_generator(wrenches, used, one, two, work.n_freedoms, work.generator)
     if append_column(passive, work.generator, number, 0.0):
         settle(passive)
     return number + 1 if label_is_passive(passive, number) else -1
@@ -272,8 +279,8 @@ def find_cut(friction: float, work: Relaxation) -> bool:
     Forces go on from those of the last motion.
     """
     passive, motion = work.forces, work.motion.residual
-    size = length(motion, WRENCH)
-    for k in range(6):
+    size = length(motion, work.n_freedoms)
+    for k in range(work.n_freedoms):
         work.aimed[k] = -motion[k] / size
     for k in range(passive.used):
         label = passive.labels[k]
@@ -281,15 +288,17 @@ def find_cut(friction: float, work: Relaxation) -> bool:
         work.directions[k, 0], work.directions[k, 1] = work.directions[label, 0], work.directions[label, 1]
         passive.labels[k] = k
     keep_above(passive, work.aimed, 0.0)
-    number = WRENCH
+    number = work.n_freedoms
     while number >= 0:
-        left = length(passive.residual, WRENCH)
+        left = length(passive.residual, work.n_freedoms)
         if left <= RESIDUAL_WITHOUT_CUT:
             return False
         if most_driven(friction, passive.residual, work) <= POWER_OF_TWIST * left:
             return True
         number = add_generator(friction, number, work)
-    return most_driven(friction, passive.residual, work) <= POWER_WITHOUT_HELP * length(passive.residual, WRENCH)
+    return most_driven(friction, passive.residual, work) <= POWER_WITHOUT_HELP * length(
+        passive.residual, work.n_freedoms
+    )
 
 
 @kernel
@@ -299,11 +308,11 @@ def keep_cut(work: Relaxation, system: System) -> bool:
         return False
     passive, cut = work.forces, work.cuts[work.n_cuts]
     for k in range(passive.used):  # once more: across the forces in use to rounding of its own length
-        part = inner(passive.basis[k], passive.residual, WRENCH)
-        for j in range(6):
+        part = inner(passive.basis[k], passive.residual, work.n_freedoms)
+        for j in range(work.n_freedoms):
             passive.residual[j] -= part * passive.basis[k, j]
-    size = length(passive.residual, WRENCH)
-    for k in range(6):
+    size = length(passive.residual, work.n_freedoms)
+    for k in range(work.n_freedoms):
         cut[k] = -passive.residual[k] / size
         system.columns[work.n_velocities + work.n_cuts, k] = cut[k]
     work.n_cuts += 1
@@ -314,12 +323,12 @@ def keep_cut(work: Relaxation, system: System) -> bool:
 def is_proven(friction: float, work: Relaxation) -> bool:
     """Write z of the proof; return whether no force drives it, rounding included."""
     passive = work.motion
-    for k in range(6):
+    for k in range(work.n_freedoms):
         work.twist[k] = work.aimed[k] = 0.0
     for j in range(passive.used):
         cut = passive.labels[j] - work.n_velocities
         if cut >= 0:
-            for k in range(6):
+            for k in range(work.n_freedoms):
                 work.twist[k] += passive.x[j] * work.cuts[cut, k]
                 work.aimed[k] -= passive.x[j] * work.cuts[cut, k]
     return most_driven(friction, work.aimed, work) <= POWER_OF_PROOF
@@ -328,14 +337,14 @@ def is_proven(friction: float, work: Relaxation) -> bool:
 @kernel
 def write_shares(work: Relaxation, ways: IntArray, shares: FloatArray) -> None:
     """Write of what velocities b - z of the proof, or of what is left of the load, is made: their places, as in
-    `Relaxation.ways`, and shares, (6,) each; -1: no more.
+    `Relaxation.ways`, and shares, (n_freedoms,) each; -1: no more.
     """
     n = 0
     for j in range(work.motion.used):
         if work.motion.labels[j] < work.n_velocities:
             ways[n], shares[n] = work.ways[work.motion.labels[j]], work.motion.x[j]
             n += 1
-    for k in range(n, 6):
+    for k in range(n, work.n_freedoms):
         ways[k] = -1
 
 
@@ -345,7 +354,7 @@ def drop_cuts(n_before: int, work: Relaxation) -> None:
     n_kept = n_before
     for cut in range(n_before, work.n_cuts):
         if label_is_passive(work.motion, work.n_velocities + cut):
-            for k in range(6):
+            for k in range(work.n_freedoms):
                 work.cuts[n_kept, k] = work.cuts[cut, k]
             n_kept += 1
     work.n_cuts = n_kept
@@ -373,15 +382,15 @@ def begin(work: Relaxation, system: System) -> None:
     """Write what the present modes do not allow."""
     write_velocities(work, system)
     write_cuts(work, system)
-    clear(work.motion, WRENCH, 1.0)
+    clear(work.motion, work.n_freedoms, 1.0)
 
 
 @kernel
 def start_from(ways: IntArray, work: Relaxation, system: System) -> None:
     """Let the solution begin with velocities that bounded the motion where less was decided."""
-    for way in ways:
-        for j in range(work.n_velocities if way >= 0 else 0):
-            if work.ways[j] == way:
+    for k in range(work.n_freedoms):
+        for j in range(work.n_velocities if ways[k] >= 0 else 0):
+            if work.ways[j] == ways[k]:
                 append_column(work.motion, system.columns[j], j, 0.0)
 
 
@@ -392,9 +401,9 @@ def is_impossible(friction: float, work: Relaxation, system: System) -> bool:
     Else ``motion.residual`` and the forces are a motion of the convex problem, as far as it was solved.
     """
     n_before = work.n_cuts
-    clear(work.forces, WRENCH, 1.0)
+    clear(work.forces, work.n_freedoms, 1.0)
     work.forces.dependent = DEPENDENT_FORCE
-    for k in range(6):
+    for k in range(work.n_freedoms):
         system.right_side[k] = work.load[k]
     for _ in range(TWISTS_OF_NODE):
         left = nonnegative_least_squares(system, work.n_velocities + work.n_cuts, work.motion)

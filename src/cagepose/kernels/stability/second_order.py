@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from cagepose.kernels.algebra.dense import frobenius_norm
 from cagepose.kernels.algebra.eigen import symmetric_eigen
 from cagepose.kernels.algebra.least_squares import (
+    MOST_FREEDOMS,
     PassiveSet,
     System,
     append_column,
@@ -21,10 +22,10 @@ from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.algebra.span import extend, write_complement, write_outside, write_reduced
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.contact.contact_set import ContactSet, is_smooth
-from cagepose.kernels.contact.curvature import write_curvature
-from cagepose.kernels.contact.load_curvature import has_circulation, write_circulation
+from cagepose.kernels.contact.curvature import write_circulation, write_curvature
+from cagepose.kernels.contact.load_curvature import has_circulation
 from cagepose.kernels.contact.loads import PhaseLoad
-from cagepose.kernels.contact.metric import WRENCH, Frame, ScaledVector
+from cagepose.kernels.contact.metric import Frame, ScaledVector
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.contact_status import ContactStatus
 from cagepose.kernels.stability.other_balance import OtherBalance, may_be_stopped
@@ -75,14 +76,14 @@ class StabilityWorkspace:
     """
 
     held: PassiveSet
-    free: Annotated[FloatArray, 6, 6]
+    free: Annotated[FloatArray, MOST_FREEDOMS, MOST_FREEDOMS]
     one_sided: Annotated[IntArray, ONE_SIDED_LIMIT]
     few: Annotated[IntArray, FEW_CONTACTS]
     n_few: int
     rest: ScaledVector
-    curvature: Annotated[FloatArray, 6, 6]
-    reduced: Annotated[FloatArray, 6, 6]
-    vectors: Annotated[FloatArray, 6, 6]
+    curvature: Annotated[FloatArray, MOST_FREEDOMS, MOST_FREEDOMS]
+    reduced: Annotated[FloatArray, MOST_FREEDOMS, MOST_FREEDOMS]
+    vectors: Annotated[FloatArray, MOST_FREEDOMS, MOST_FREEDOMS]
     ways: PassiveSet
     scratch: PassiveSet
     other: OtherBalance
@@ -103,7 +104,7 @@ def find_held(
     -a_j lies in the cone of the others, seen outside the span of those that carry.
     """
     at_limit = False
-    clear(work.held, WRENCH, 1.0)
+    clear(work.held, contacts.n_freedoms, 1.0)
     for place in range(locked.used):
         extend(work.held, locked.basis[place], PART_OUTSIDE_SPAN)
     n = contacts.used[0]
@@ -115,7 +116,7 @@ def find_held(
         status.is_implied = status.opens = state.is_sticking = False
         if status.is_equality:
             extend(work.held, contacts.rows[i].columns[0], PART_OUTSIDE_SPAN)
-            if friction > 0.0 and not is_smooth(contacts.rows[i]):
+            if friction > 0.0 and not is_smooth(contacts, i):
                 tangential = math.sqrt(one * one + two * two)
                 state.is_sticking = tangential < (1.0 - LIMIT_OF_FRICTION) * friction * carried
                 at_limit = at_limit or not state.is_sticking
@@ -151,14 +152,15 @@ def note_opened(contacts: ContactSet, statuses: Rows[ContactStatus], twist: Floa
     """Mark all contacts that a twist opens, if it closes none: none of them is in any balance, so that n contacts are
     not n problems of n columns.
     """
-    size = length(twist, WRENCH)
+    n = contacts.n_freedoms
+    size = length(twist, n)
     for i in range(contacts.used[0]):
         column = contacts.rows[i].columns[0]
-        if may_open(contacts, statuses, i) and inner(column, twist, 6) > CLOSING_OF_TWIST * size * length(column, 6):
+        if may_open(contacts, statuses, i) and inner(column, twist, n) > CLOSING_OF_TWIST * size * length(column, n):
             return
     for i in range(contacts.used[0]):
         column = contacts.rows[i].columns[0]
-        if inner(column, twist, 6) < -OPENING_OF_TWIST * size * length(column, 6):
+        if inner(column, twist, n) < -OPENING_OF_TWIST * size * length(column, n):
             statuses[i].opens = True
 
 
@@ -183,10 +185,10 @@ def lies_in_cone(
         if k != i and may_open(contacts, statuses, k) and not statuses[k].is_implied:
             write_outside(work.held, contacts.rows[k].columns[0], PART_OUTSIDE_SPAN, system.columns[n_others])
             n_others += 1
-    for k in range(6):
+    for k in range(contacts.n_freedoms):
         system.right_side[k] *= sign
-    size = length(system.right_side, 6)
-    clear(work.scratch, WRENCH, size)
+    size = length(system.right_side, contacts.n_freedoms)
+    clear(work.scratch, contacts.n_freedoms, size)
     return nonnegative_least_squares(system, n_others, work.scratch) <= PART_OUTSIDE_SPAN * size
 
 
@@ -201,7 +203,7 @@ def lies_in_cone_of_few(
     """
     if not write_outside(work.held, contacts.rows[i].columns[0], PART_OUTSIDE_SPAN, system.right_side):
         return True
-    size = length(system.right_side, 6)
+    size = length(system.right_side, contacts.n_freedoms)
     for _ in range(FEW_CONTACTS):
         n_others, vacant = 0, work.n_few
         for place in range(work.n_few):
@@ -211,7 +213,7 @@ def lies_in_cone_of_few(
             elif k != i:
                 write_outside(work.held, contacts.rows[k].columns[0], PART_OUTSIDE_SPAN, system.columns[n_others])
                 n_others += 1
-        clear(work.scratch, WRENCH, size)
+        clear(work.scratch, contacts.n_freedoms, size)
         if nonnegative_least_squares(system, n_others, work.scratch) <= PART_OUTSIDE_SPAN * size:
             return True
         widest = farthest_along(contacts, statuses, i, work.scratch.residual)
@@ -225,13 +227,14 @@ def lies_in_cone_of_few(
 @kernel
 def farthest_along(contacts: ContactSet, statuses: Rows[ContactStatus], i: int, twist: FloatArray) -> int:
     """Return which of the other contacts that may open points most along a twist; -1: none does."""
-    farthest, most = -1, PART_OUTSIDE_SPAN * length(twist, WRENCH)
+    n = contacts.n_freedoms
+    farthest, most = -1, PART_OUTSIDE_SPAN * length(twist, n)
     for k in range(contacts.used[0]):
         if k != i and may_open(contacts, statuses, k) and not statuses[k].is_implied:
             column = contacts.rows[k].columns[0]
-            size = length(column, 6)  # zero: it is locked
-            if inner(column, twist, 6) > most * size:
-                farthest, most = k, inner(column, twist, 6) / size
+            size = length(column, n)  # zero: it is locked
+            if inner(column, twist, n) > most * size:
+                farthest, most = k, inner(column, twist, n) / size
     return farthest
 
 
@@ -273,7 +276,7 @@ def extend_by_equalities(contacts: ContactSet, statuses: Rows[ContactStatus], wi
     of one face (-1: of all); labels say which contact's normal each basis vector is, -1: none.
     """
     rows = contacts.rows
-    clear(span, WRENCH, 1.0)
+    clear(span, contacts.n_freedoms, 1.0)
     for i in range(contacts.used[0]):
         if contacts.states[i].is_sticking:
             extend(span, rows[i].columns[1], PART_OUTSIDE_SPAN)
@@ -316,7 +319,7 @@ def is_feasible(
     """Whether a scaled twist closes none of the contacts that may open."""
     for k in range(n_one_sided):
         column = contacts.rows[work.one_sided[k]].columns[0]
-        if sign * inner(column, twist, 6) > PART_OUTSIDE_SPAN * length(column, 6):
+        if sign * inner(column, twist, contacts.n_freedoms) > PART_OUTSIDE_SPAN * length(column, contacts.n_freedoms):
             return False
     return True
 
@@ -374,7 +377,7 @@ def stability(
         told, work.ways.used = code, n_ways
         code = MARGINAL if at_limit or n_one_sided < 0 else STABLE_REST
         write_curvature(contacts, load, position, quaternion, frame, curved == 1, work.curvature)
-        flat = FLAT_CURVATURE * max(frobenius_norm(work.curvature), terms / size_m)
+        flat = FLAT_CURVATURE * max(frobenius_norm(work.curvature, contacts.n_freedoms), terms / size_m)
         for chosen in range(1 << max(n_one_sided, 0)):
             work.held.used = n_held
             if hold_some(contacts, n_one_sided, chosen, work):
@@ -389,9 +392,9 @@ def stability(
             work.ways.used = n_ways
             return STABILITY_NOT_SHOWN
     if code != STABLE_REST and has_circulation(load):
-        write_circulation(load, position, quaternion, frame, work.curvature)
+        write_circulation(contacts, load, position, quaternion, frame, work.curvature)
         n_free = write_complement(work.held, work.free)
-        write_reduced(work.curvature, work.free, n_free, work.reduced)
+        write_reduced(work.curvature, work.free, n_free, contacts.n_freedoms, work.reduced)
         if greatest_entry(work.reduced, n_free) > flat:
             work.ways.used = n_ways
             return STABILITY_NOT_SHOWN
@@ -412,13 +415,13 @@ def greatest_entry(matrix: FloatArray, n: int) -> float:
 def least_curvature(contacts: ContactSet, n_one_sided: int, flat: float, work: StabilityWorkspace) -> int:
     """Return the code of stability over the twists that what is held leaves free, and the twist that is unstable."""
     n_free = write_complement(work.held, work.free)
-    write_reduced(work.curvature, work.free, n_free, work.reduced)
+    write_reduced(work.curvature, work.free, n_free, contacts.n_freedoms, work.reduced)
     symmetric_eigen(work.reduced, work.vectors, n_free)
     code = STABLE_REST
     for e in range(n_free):
         if work.reduced[e, e] > flat:
             continue
-        for k in range(6):
+        for k in range(contacts.n_freedoms):
             work.rest[k] = 0.0
             for i in range(n_free):
                 work.rest[k] += work.vectors[i, e] * work.free[i, k]
@@ -427,7 +430,7 @@ def least_curvature(contacts: ContactSet, n_one_sided: int, flat: float, work: S
             continue
         if work.reduced[e, e] < -flat:
             work.other.least = work.reduced[e, e]
-            for k in range(6):
+            for k in range(contacts.n_freedoms):
                 work.other.twist[k] = work.rest[k]
             return UNSTABLE
         code = MARGINAL

@@ -12,12 +12,12 @@ from __future__ import annotations
 import math
 from typing import Annotated
 
-from cagepose.kernels.algebra.least_squares import System, inner, length
+from cagepose.kernels.algebra.least_squares import MOST_FREEDOMS, System, inner, length
 from cagepose.kernels.algebra.record import FloatArray, IntArray
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.coulomb import coulomb_error, motion_left
 from cagepose.kernels.contact.coulomb_newton import OPENS, SLIPS, STICKS, NewtonWorkspace, add_carrying, newton_on_modes
-from cagepose.kernels.contact.metric import WRENCH, Frame, ScaledVector
+from cagepose.kernels.contact.metric import Frame, ScaledVector
 from cagepose.kernels.contact.on_circle import MOST_ADDED_POINTS, add_on_circles
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.relaxation import (
@@ -76,9 +76,9 @@ class ModeTree:
     widths: Annotated[FloatArray, NODE_LIMIT]
     n_cuts: Annotated[IntArray, NODE_LIMIT]
     is_closed: Annotated[IntArray, NODE_LIMIT]
-    twists: Annotated[FloatArray, NODE_LIMIT, 6]
-    ways: Annotated[IntArray, NODE_LIMIT, 6]
-    shares: Annotated[FloatArray, NODE_LIMIT, 6]
+    twists: Annotated[FloatArray, NODE_LIMIT, MOST_FREEDOMS]
+    ways: Annotated[IntArray, NODE_LIMIT, MOST_FREEDOMS]
+    shares: Annotated[FloatArray, NODE_LIMIT, MOST_FREEDOMS]
     waiting: Annotated[IntArray, NODE_LIMIT]
     relaxation: Relaxation
     y: ScaledVector
@@ -106,7 +106,7 @@ def stand_at_node(node: int, tree: ModeTree) -> None:
 @kernel
 def opening_power(place: int, work: Relaxation) -> float:
     """Return the power by which a contact violates Coulomb's law: it carries and opens."""
-    closing = inner(work.wrenches[place, 0], work.motion.residual, WRENCH)
+    closing = inner(work.wrenches[place, 0], work.motion.residual, work.n_freedoms)
     power: float = max(0.0, -work.normal_forces[place] * closing)
     return power
 
@@ -175,12 +175,12 @@ def divide(node: int, place: int, is_opening: bool, n_waiting: int, tree: ModeTr
 @kernel
 def is_near(friction: float, work: Relaxation) -> bool:
     """Whether the motion of the convex problem nearly obeys Coulomb's law, and forces nearly make it."""
-    if work.scale <= 0.0 or length(work.forces.residual, WRENCH) > VIOLATION_TRIED:
+    if work.scale <= 0.0 or length(work.forces.residual, work.n_freedoms) > VIOLATION_TRIED:
         return False
     total = 0.0
     for place in range(work.n_places):
         total += opening_power(place, work) + slipping_power(friction, place, work)
-    return total <= VIOLATION_TRIED * work.scale * inner(work.load, work.motion.residual, WRENCH)
+    return total <= VIOLATION_TRIED * work.scale * inner(work.load, work.motion.residual, work.n_freedoms)
 
 
 @kernel
@@ -193,8 +193,8 @@ def is_witnessed(contacts: ContactSet, friction: float, b: FloatArray, tree: Mod
     for i in range(contacts.used[0]):
         for j in range(3):
             contacts.states[i].forces[j] = 0.0
-    y, size = work.motion.residual, length(b, WRENCH)
-    slow = SLIP_AT_REST * length(y, WRENCH)
+    y, size = work.motion.residual, length(b, contacts.n_freedoms)
+    slow = SLIP_AT_REST * length(y, contacts.n_freedoms)
     newton.n_carrying = 0
     for place in range(work.n_places):
         if work.normal_forces[place] <= 0.0:
@@ -202,7 +202,7 @@ def is_witnessed(contacts: ContactSet, friction: float, b: FloatArray, tree: Mod
         i = work.contacts[place]
         one, two = slip_along(place, y, work)
         add_carrying(newton, i, SLIPS if math.sqrt(one * one + two * two) > slow else STICKS)
-        share = size / (work.scale * length(contacts.rows[i].columns[0], WRENCH))
+        share = size / (work.scale * length(contacts.rows[i].columns[0], contacts.n_freedoms))
         contacts.states[i].forces[0] = share * work.normal_forces[place]
         contacts.states[i].forces[1] = share * work.tangential_forces[place, 0]
         contacts.states[i].forces[2] = share * work.tangential_forces[place, 1]
@@ -211,7 +211,7 @@ def is_witnessed(contacts: ContactSet, friction: float, b: FloatArray, tree: Mod
     motion_left(contacts, b, tree.y)
     if coulomb_error(contacts, friction, tree.y) > LEAST_MOTION * LEAST_MOTION * size:
         return False
-    return length(tree.y, WRENCH) > LEAST_MOTION * size
+    return length(tree.y, contacts.n_freedoms) > LEAST_MOTION * size
 
 
 @kernel
@@ -239,7 +239,7 @@ def other_onset(
         write_shares(work, tree.ways[node], tree.shares[node])
         if is_closed:
             tree.is_closed[node] = 1
-            for k in range(6):
+            for k in range(contacts.n_freedoms):
                 tree.twists[node, k] = work.twist[k]
             continue
         if is_near(friction, work) and is_witnessed(contacts, friction, b, tree, newton):
