@@ -14,7 +14,7 @@ from cagepose.kernels.algebra.pose import write_euler_zyx, write_quaternions
 from cagepose.kernels.algebra.program_bound import extents
 from cagepose.kernels.algebra.record import dtype_of, empty_record, empty_rows
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
-from cagepose.kernels.boundary.features import NO_BOUNDARY, empty_placed
+from cagepose.kernels.boundary.features import NO_BOUNDARY, Bodies, empty_placing
 from cagepose.kernels.boundary.geometry import Geometry, empty_cage, empty_placement, overlap_at, place_object
 from cagepose.kernels.boundary.overlap import empty_overlap_work
 from cagepose.kernels.collision.boxes import BoxesAndPoints, empty_placed_boxes, place_boxes_at
@@ -68,7 +68,8 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     """Yield each entry and its arguments; only their types count."""
     vectors, quaternions, numbers = np.zeros((1, 3)), np.zeros((1, 4)), np.zeros(1)
     none = NO_BOUNDARY
-    geometry = Geometry(none, empty_placed(none), 0.0)
+    bodies = Bodies(none, np.array([0, len(none.nodes)]))
+    geometry = Geometry(none, bodies, empty_placing(none), 0.0)
     boxes = BoxesAndPoints(vectors, vectors, np.zeros((1, 3, 3)), 1, vectors)
     tolerances = kernel_tolerances(1.0, 1e-9)
 
@@ -84,7 +85,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
         vectors,
         quaternions,
         points,
-        none,
+        bodies,
         vectors,
         quaternions,
         numbers,

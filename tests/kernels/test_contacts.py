@@ -45,7 +45,7 @@ def rows_of(boxes, points, pose=STILL, touch=TOUCH):
     assert find_contacts(geometry, placement, smooth, pose[0], frame_at(body, pose[1]), contacts)
     rows = contacts.rows[: contacts.used[0]]
     placed = held_at(geometry, placement)
-    waiting = placement.meetings.waiting
+    waiting = placement.memory.waiting
     near_edge = [ends_near(placed, row.feature, vector_from(row.arm + pose[0]), touch, waiting) for row in rows]
     return Rows(rows["cage_part"], rows["part"], rows["directions"][:, 0], rows["gap"], np.array(near_edge, dtype=bool))
 

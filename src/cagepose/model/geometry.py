@@ -8,9 +8,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from cagepose.kernels.boundary.features import Boundary, PlacedBoundary, empty_placed, place_boundary
+from cagepose.kernels.boundary.features import Bodies, Boundary, Placing, body_of, empty_placing, place_boundary
 from cagepose.kernels.boundary.geometry import Geometry
 from cagepose.kernels.collision.boxes import BoxesAndPoints
+from cagepose.model.boundary.bodies import joined
 from cagepose.model.boundary.features import boundary_of
 from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
@@ -50,19 +51,20 @@ def boxes_and_points(held: Object, cage: Cage, bridges: list[PlacedBox]) -> Boxe
 
 def scene_geometry(held: Object, cage: Cage, touch_m: float) -> Geometry:
     """Return the boundaries of the object, in its frame, and of the cage, in the world."""
-    return Geometry(_boundary((*held.parts, *held.holes), touch_m), placed_cage(cage, touch_m), touch_m)
+    bodies = cage_bodies(cage, touch_m)
+    return Geometry(_boundary((*held.parts, *held.holes), touch_m), bodies, placed_bodies(cage, bodies), touch_m)
 
 
-def placed_cage(cage: Cage, touch_m: float) -> PlacedBoundary:
-    """Return the boundary of the cage in the world, with memory of its own."""
-    placed = empty_placed(cage_boundary(cage, touch_m))
-    place_boundary(placed, *cage.pose_world_cage.as_tuples())
-    return placed
+def placed_bodies(cage: Cage, bodies: Bodies) -> Placing:
+    """Return the bodies of a cage in the world, in memory of their own."""
+    memory = empty_placing(bodies.own, len(bodies.first_nodes) - 1)
+    place_boundary(body_of(bodies, memory, 0), *cage.pose_world_cage.as_tuples())
+    return memory
 
 
-def cage_boundary(cage: Cage, touch_m: float) -> Boundary:
-    """Return the boundary of all parts of the cage, its points first, in its frame."""
-    return _boundary((*cage.points_cage, *cage.shapes, *cage.holes), touch_m)
+def cage_bodies(cage: Cage, touch_m: float) -> Bodies:
+    """Return all parts of the cage, its points first, in its frame."""
+    return joined([_boundary((*cage.points_cage, *cage.shapes, *cage.holes), touch_m)])
 
 
 def _boundary(parts: tuple[Shape | FloatArray, ...], touch_m: float) -> Boundary:

@@ -347,7 +347,7 @@ def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: 
         geometry,
         *held.pose_world_object.as_tuples(),
         empty_placement(geometry),
-        empty_overlap_work(geometry.held, geometry.cage.own),
+        empty_overlap_work(geometry.held, geometry.cage.own, len(geometry.cage.first_nodes) - 1),
     )
     if feature < 0:
         return

@@ -18,7 +18,7 @@ from cagepose.kernels.contact.loads import (
     total_load,
 )
 from cagepose.model.checks import FloatArray, as_vector
-from cagepose.model.geometry import cage_boundary
+from cagepose.model.geometry import cage_bodies
 from cagepose.model.load import Load, Spring
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -127,7 +127,8 @@ def cage_middles(
     and their middles are the kernels' own (`cagepose.kernels.outcome.cases.start_of`). Number by number, as below.
     """
     n_points = points_cage_m.shape[1]
-    shapes = np.asarray(cage_boundary(scene.cage, scene.touch_m).parts)["middle"][n_points:]
+    parts = np.asarray(cage_bodies(scene.cage, scene.touch_m).own.parts)
+    shapes = parts["middle"][parts["body"] == 0][n_points:]
     places = np.concatenate([points_cage_m, np.repeat(shapes[None], len(points_cage_m), axis=0)], axis=1)
     middles = places.cumsum(axis=1)[:, -1] / places.shape[1]
     found: FloatArray = positions_m + np.stack(_turned(quaternions, *middles.T), axis=1)

@@ -84,7 +84,7 @@ def varied_cases(scene: Scene, friction: float, columns: dict[str, FloatArray]) 
         _owned(columns.get("cage_position_m", base.cage_positions)),
         _quaternions(columns.get("cage_euler_zyx"), scene.cage.pose_world_cage),
         points,
-        base.boundary_cage,
+        base.bodies_cage,
         _owned(columns.get("object_position_m", base.object_positions)),
         _quaternions(columns.get("object_euler_zyx"), scene.object.pose_world_object),
         sizes_with_points(scene.object, scene.cage, points) if "points_cage_m" in columns else base.sizes_m,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cagepose.kernels.boundary.geometry import Placement, empty_placement, place_object
 from cagepose.kernels.native.slots import Slots
 from cagepose.model.checks import FloatArray
-from cagepose.model.geometry import placed_cage
+from cagepose.model.geometry import placed_bodies
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 
@@ -45,7 +45,7 @@ class TouchFinder:
     """Finds contacts of one scene, at pose after pose, in the same memory."""
 
     def __init__(self, scene: Scene) -> None:
-        geometry = scene.geometry._replace(cage=placed_cage(scene.cage, scene.touch_m))
+        geometry = scene.geometry._replace(placed=placed_bodies(scene.cage, scene.geometry.cage))
         held, cage = np.asarray(geometry.held.features), np.asarray(geometry.cage.own.features)
         self._parts, self._cage_parts = np.array(held["part"]), np.array(cage["part"])
         self._geometry = Slots(geometry)
@@ -55,9 +55,10 @@ class TouchFinder:
     def at(self, pose_world_object: Pose) -> PlacesOfContact:
         """Return what touches, within the scene's touch tolerance, with the object at a pose."""
         place_object(self._geometry, *pose_world_object.as_tuples(), self._written)
-        meetings = self._placement.meetings
-        rows: Any = meetings.rows
-        rows = rows[: max(int(meetings.used[0]), 0)]
+        placement = self._placement
+        every: Any = placement.memory.rows
+        of_bodies = zip(placement.first_rows.tolist(), placement.counts[:, 0].tolist(), strict=False)
+        rows = np.concatenate([every[first : first + max(used, 0)] for first, used in of_bodies])
         # The object's own point; the cage's is within the touch tolerance of it.
         return PlacesOfContact(
             self._cage_parts[rows["cage_feature"]],

@@ -11,7 +11,7 @@ is asked for, which took 40 us for the workspace of a proof; an array takes 0.2 
 from __future__ import annotations
 
 import sys
-from typing import Annotated, Any, Protocol, TypeVar, cast, get_args, get_origin
+from typing import Annotated, Any, Protocol, TypeVar, cast, get_args, get_origin, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,11 @@ _LAYOUTS: dict[type[object], np.dtype[Any]] = {}
 class Rows(Protocol[R_co]):
     """An array of records, (n,): ``rows[i].field`` is one record's, and can be written to."""
 
+    @overload
     def __getitem__(self, index: int, /) -> R_co: ...
+
+    @overload
+    def __getitem__(self, index: slice, /) -> Rows[R_co]: ...
 
     def __len__(self) -> int: ...
 

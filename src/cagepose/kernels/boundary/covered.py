@@ -54,7 +54,8 @@ def is_covered(body: PlacedBoundary, i: int, normal: Vector, core: Vector) -> bo
 @kernel
 def touch_of(own: Boundary, i: int) -> float:
     """Return the touch tolerance of what covers a feature."""
-    return own.covers[own.cover_list[own.features[i].first_cover]].touch_m
+    touch_m: float = own.covers[int(own.cover_list[own.features[i].first_cover])].touch_m
+    return touch_m
 
 
 @kernel

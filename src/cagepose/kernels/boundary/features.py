@@ -28,7 +28,7 @@ from cagepose.kernels.algebra.vector import (
     transposed_times,
     vector_from,
 )
-from cagepose.kernels.boundary.tree import Node, PlacedBox, placed_box
+from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, PlacedBox, placed_box
 from cagepose.kernels.native.kernel import kernel
 
 VERTEX, LINE, FACE, CIRCLE = 0, 1, 2, 3
@@ -120,12 +120,15 @@ class BodyPart:
 
     Attributes
     ----------
+    body
+        Which of several bodies in one memory it is of.
     middle, reach
         A ball around it, in the frame of the body, metres.
     point
         Of a single point, the feature that it is; else -1.
     """
 
+    body: int
     middle: Annotated[FloatArray, 3]
     reach: float
     point: int
@@ -173,7 +176,7 @@ class Cover:
 
 
 class Boundary(NamedTuple):
-    """The features of one body, and the trees that find those that are near.
+    """The features of one body, and the trees that find those that are near; or of several bodies, see `Bodies`.
 
     Attributes
     ----------
@@ -208,20 +211,36 @@ NO_BOUNDARY = Boundary(
     empty_rows(Bound, 0),
     empty_rows(Cover, 0),
     np.zeros(0, np.int64),
-    empty_rows(Node, 0),
+    empty_rows(Node, 3),
     np.zeros((11, 0)),
 )
 """A body without features."""
 
 
+class Bodies(NamedTuple):
+    """Several bodies in one memory, one after the other.
+
+    Attributes
+    ----------
+    own
+        All parts and features of them, each in the frame of its body; indices are those of this memory, but nodes know
+        each other by their places among those of one body.
+    first_nodes
+        Where the trees of each body begin, and where those of the last one end, (n_bodies + 1,).
+    """
+
+    own: Boundary
+    first_nodes: IntArray
+
+
 class Placing(NamedTuple):
-    """Memory for a boundary at a pose; see `PlacedBoundary`."""
+    """Memory for bodies at poses of their own, (n_bodies, 4, 3); see `PlacedBoundary`."""
 
     features: Rows[Feature]
     is_placed: NDArray[np.bool_]
     boxes: FloatArray
     is_boxed: NDArray[np.bool_]
-    pose: FloatArray
+    poses: FloatArray
 
 
 class PlacedBoundary(NamedTuple):
@@ -230,7 +249,7 @@ class PlacedBoundary(NamedTuple):
     Attributes
     ----------
     own
-        In the frame of the body.
+        In the frame of the body: of this one alone.
     features
         In the world, of those that have been asked for: points and directions.
     is_placed
@@ -250,27 +269,55 @@ class PlacedBoundary(NamedTuple):
     pose: FloatArray
 
 
-def empty_placing(own: Boundary) -> Placing:
-    """Return memory for a boundary at a pose (plain Python)."""
+def empty_placing(own: Boundary, n_bodies: int = 1) -> Placing:
+    """Return memory for bodies at poses (plain Python)."""
     n_features, n_nodes = len(own.features), len(own.nodes)
     return Placing(
         empty_rows(Feature, n_features),
         np.zeros(n_features, np.bool_),
         np.zeros((n_nodes, 2, 3)),
         np.zeros(n_nodes, np.bool_),
-        np.zeros((4, 3)),
+        np.zeros((n_bodies, 4, 3)),
     )
 
 
 def empty_placed(own: Boundary) -> PlacedBoundary:
-    """Return a boundary with memory for a pose (plain Python)."""
-    return PlacedBoundary(own, *empty_placing(own))
+    """Return a body with memory for a pose (plain Python)."""
+    memory = empty_placing(own)
+    return PlacedBoundary(own, memory.features, memory.is_placed, memory.boxes, memory.is_boxed, memory.poses[0])
 
 
 @kernel
 def placed_in(own: Boundary, memory: Placing) -> PlacedBoundary:
-    """Return a boundary as it is placed in some memory."""
-    return PlacedBoundary(own, memory.features, memory.is_placed, memory.boxes, memory.is_boxed, memory.pose)
+    """Return a body as it is placed in memory of its own."""
+    return PlacedBoundary(own, memory.features, memory.is_placed, memory.boxes, memory.is_boxed, memory.poses[0])
+
+
+@kernel
+def number_of_bodies(bodies: Bodies) -> int:
+    return len(bodies.first_nodes) - 1
+
+
+@kernel
+def body_of(bodies: Bodies, memory: Placing, which: int) -> PlacedBoundary:
+    """Return one of several bodies as it is placed in some memory."""
+    if len(bodies.first_nodes) == 2:  # of one alone nothing has to be cut, which takes as long as to place a feature
+        return placed_in(bodies.own, memory)
+    own, first, last = bodies.own, bodies.first_nodes[which], bodies.first_nodes[which + 1]
+    return PlacedBoundary(
+        Boundary(own.parts, own.features, own.bounds, own.covers, own.cover_list, own.nodes[first:last], own.planes),
+        memory.features,
+        memory.is_placed,
+        memory.boxes[first:last],
+        memory.is_boxed[first:last],
+        memory.poses[which],
+    )
+
+
+@kernel
+def features_of(own: Boundary) -> tuple[int, int]:
+    """Return the first feature of a body, and the one behind its last: what its trees hold."""
+    return own.nodes[VERTICES].first, own.nodes[FACES].last
 
 
 @kernel
@@ -281,7 +328,8 @@ def place_boundary(body: PlacedBoundary, position: Vector, quaternion: Quaternio
         body.pose[0, k] = position[k]
         for j in range(3):
             body.pose[1 + j, k] = rotation[j][k]
-    body.is_placed[:] = False
+    first, last = features_of(body.own)
+    body.is_placed[first:last] = False
     body.is_boxed[:] = False
 
 

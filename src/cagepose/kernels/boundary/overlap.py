@@ -80,19 +80,26 @@ class OverlapWork(NamedTuple):
     places: Rows[Place]
 
 
-def empty_overlap_work(held: Boundary, cage: Boundary) -> OverlapWork:
-    """Return memory for questions about two bodies (plain Python)."""
+def empty_overlap_work(held: Boundary, cage: Boundary, n_bodies: int = 1) -> OverlapWork:
+    """Return memory for questions about two bodies, of which the other may be one of several (plain Python)."""
     waiting = np.zeros(MOST_WAITING, np.int64)
     pairs, places = np.zeros((MOST_PAIRS, 2), np.int64), empty_rows(Place, MOST_PLACES)
     return OverlapWork(
-        empty_shells(held), empty_shells(cage), waiting, np.array(waiting), pairs, np.zeros(MOST_CUTS), places
+        empty_shells(held), empty_shells(cage, n_bodies), waiting, np.array(waiting), pairs, np.zeros(MOST_CUTS), places
     )
 
 
 @kernel
 def forget_shells(work: OverlapWork) -> None:
     """Let the memory be of other bodies than before."""
-    work.held.is_known[0] = work.cage.is_known[0] = False
+    work.held.is_known[:] = work.cage.is_known[:] = False
+
+
+@kernel
+def with_shells_of(work: OverlapWork, body: int) -> OverlapWork:
+    """Return memory for questions about one of the cage's bodies."""
+    cage = Shells(work.cage.is_known[body : body + 1], work.cage.first)
+    return OverlapWork(work.held, cage, work.own_waiting, work.waiting, work.pairs, work.cuts, work.places)
 
 
 class Sides(NamedTuple):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import IntArray
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, scaled, vector_from
-from cagepose.kernels.boundary.features import LINE, VERTEX, Boundary
+from cagepose.kernels.boundary.features import LINE, VERTEX, Boundary, features_of
 from cagepose.kernels.boundary.tree import VERTICES
 from cagepose.kernels.boundary.within import beyond_box
 from cagepose.kernels.native.kernel import kernel
@@ -24,7 +24,7 @@ class Shells(NamedTuple):
     Attributes
     ----------
     is_known
-        Whether it has been found out, (1,).
+        Whether it has been found out, of each body, (n_bodies,).
     first
         Of each vertex and line the first one that it hangs together with: vertices come first, (n_features,).
     """
@@ -33,9 +33,9 @@ class Shells(NamedTuple):
     first: IntArray
 
 
-def empty_shells(own: Boundary) -> Shells:
-    """Return memory for a body (plain Python)."""
-    return Shells(np.zeros(1, np.bool_), np.zeros(len(own.features), np.int64))
+def empty_shells(own: Boundary, n_bodies: int = 1) -> Shells:
+    """Return memory for bodies (plain Python)."""
+    return Shells(np.zeros(n_bodies, np.bool_), np.zeros(len(own.features), np.int64))
 
 
 @kernel
@@ -45,9 +45,10 @@ def find_shells(own: Boundary, shells: Shells, waiting: IntArray) -> None:
         return
     shells.is_known[0] = True
     first = shells.first
-    for i in range(len(first)):
+    begin, last = features_of(own)
+    for i in range(begin, last):
         first[i] = i
-    for i in range(len(first)):
+    for i in range(begin, last):
         line = own.features[i]
         if line.kind == LINE and line.taper == 0.0:
             start, way = vector_from(line.point), vector_from(line.direction)
@@ -56,7 +57,7 @@ def find_shells(own: Boundary, shells: Shells, waiting: IntArray) -> None:
                 if v >= 0:
                     one, other = first_of(first, i), first_of(first, v)
                     first[max(one, other)] = min(one, other)
-    for i in range(len(first)):
+    for i in range(begin, last):
         first[i] = first_of(first, i)
 
 

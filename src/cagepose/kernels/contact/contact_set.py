@@ -31,8 +31,8 @@ class ContactRow:
 
     Attributes
     ----------
-    part, cage_part
-        Indices of the parts of the object and of the cage.
+    part, cage_part, cage_body
+        Indices of the parts of the object and of the cage, and of the body of the cage.
     feature, cage_feature
         Indices of their features that touch.
     angle
@@ -56,6 +56,7 @@ class ContactRow:
 
     part: int
     cage_part: int
+    cage_body: int
     feature: int
     cage_feature: int
     angle: float

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.vector import Vector, minus, vector_from
 from cagepose.kernels.boundary.bend import curvatures, write_bend, write_twin
-from cagepose.kernels.boundary.geometry import Geometry, Placement, held_at
+from cagepose.kernels.boundary.features import PlacedBoundary, number_of_bodies
+from cagepose.kernels.boundary.geometry import Geometry, Placement, cage_at, held_at, meetings_with
 from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.boundary.on_circle import write_on_circle
-from cagepose.kernels.boundary.touching import Meetings, is_around
+from cagepose.kernels.boundary.touching import Meetings, Touching, is_around
 from cagepose.kernels.contact.contact_set import ContactSet, choose, write_directions
 from cagepose.kernels.contact.friction import Friction, friction_share
 from cagepose.kernels.contact.metric import Frame
@@ -22,17 +23,19 @@ def find_contacts(
     """Fill ``contacts`` where the object is placed, in the order of the scene, those of a group together; False: there
     are more than it has room for.
     """
-    contacts.used[0] = 0
-    meetings = placement.meetings
-    if meetings.used[0] < 0 or meetings.used[0] > len(contacts.rows):
-        return False
-    order_meetings(geometry, meetings)
-    first = 0
-    for k in range(meetings.used[0]):
-        at = meetings.order[k]
-        if meetings.rows[at].group == at:
-            first = contacts.used[0]
-        append_meeting(geometry, placement, friction, at, first, center, frame, contacts)
+    contacts.used[0] = first = 0
+    held = held_at(geometry, placement)
+    for body in range(number_of_bodies(geometry.cage)):
+        cage, meetings = cage_at(geometry, body), meetings_with(placement, body)
+        if meetings.used[0] < 0 or contacts.used[0] + meetings.used[0] > len(contacts.rows):
+            contacts.used[0] = 0
+            return False
+        order_meetings(geometry, meetings)
+        for k in range(meetings.used[0]):
+            row = meetings.rows[meetings.order[k]]
+            if row.group == meetings.order[k]:
+                first = contacts.used[0]
+            append_meeting(held, cage, body, row, friction, first, center, frame, contacts)
     seat_circles(geometry, contacts, frame)
     return True
 
@@ -68,21 +71,21 @@ def order_meetings(geometry: Geometry, meetings: Meetings) -> None:
 
 @kernel
 def append_meeting(
-    geometry: Geometry,
-    placement: Placement,
+    held: PlacedBoundary,
+    cage: PlacedBoundary,
+    body: int,
+    row: Touching,
     friction: Friction,
-    at: int,
     first: int,
     center: Vector,
     frame: Frame,
     contacts: ContactSet,
 ) -> None:
-    """Append one contact to the group that begins with row ``first``."""
-    row, held, cage = placement.meetings.rows[at], held_at(geometry, placement), geometry.cage
+    """Append one contact with a body of the cage to the group that begins with row ``first``."""
     part, cage_part = held.own.features[row.feature].part, cage.own.features[row.cage_feature].part
     place = contacts.used[0]
     contact = contacts.rows[place]
-    contact.part, contact.cage_part = part, cage_part
+    contact.part, contact.cage_part, contact.cage_body = part, cage_part, body
     contact.feature, contact.cage_feature, contact.angle = row.feature, row.cage_feature, row.angle
     contact.gap, contact.group, contact.is_added = row.gap, first, False
     choose(contacts, place, place == first)

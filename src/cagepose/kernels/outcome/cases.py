@@ -8,9 +8,8 @@ from cagepose.kernels.algebra.pose import Quaternion, rotated
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances, scaled_tolerances
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, row, scaled, vector_from
-from cagepose.kernels.boundary.features import Boundary, place_boundary, placed_in
-from cagepose.kernels.boundary.geometry import Geometry, PlacedCage, Placement, held_at
-from cagepose.kernels.boundary.overlap import find_overlap
+from cagepose.kernels.boundary.features import Bodies, Boundary, body_of, place_boundary
+from cagepose.kernels.boundary.geometry import Geometry, PlacedCage, Placement, deepest_overlap, held_at
 from cagepose.kernels.boundary.refit import refit_vertices
 from cagepose.kernels.contact.friction import Friction, friction_of
 from cagepose.kernels.contact.loads import PhaseLoad
@@ -51,8 +50,9 @@ class Cases(NamedTuple):
         The cage's pose in the world, (n, 3) metres and (n, 4).
     points_cage
         (n, n_points, 3), metres.
-    boundary_cage
-        That of all parts of the cage, its points first, in its frame, the same for all but for where single points are.
+    bodies_cage
+        Those of the cage: first what stands still, its points first, in the cage's frame; the same for all but for
+        where single points are.
     object_positions, object_quaternions
         The object's pose in the world at the start.
     sizes_m
@@ -70,7 +70,7 @@ class Cases(NamedTuple):
     cage_positions: FloatArray
     cage_quaternions: FloatArray
     points_cage: FloatArray
-    boundary_cage: Boundary
+    bodies_cage: Bodies
     object_positions: FloatArray
     object_quaternions: FloatArray
     sizes_m: FloatArray
@@ -124,21 +124,22 @@ def start_of(case: int, part: Part, cases: Cases, cage: PlacedCage) -> Start:
     """Return how a case starts; its cage is written into ``cage``."""
     points = cases.points_cage[row_of(len(cases.points_cage), case)]
     turned = quaternion_row(cases.cage_quaternions, row_of(len(cases.cage_quaternions), case))
-    parts, n_points = cases.boundary_cage.parts, len(points)
-    # the origin of what follows is the middle of all elements of the cage
-    middle = (0.0, 0.0, 0.0)
+    parts, n_points = cases.bodies_cage.own.parts, len(points)
+    # the origin of what follows is the middle of all elements of the cage that stand still
+    middle, n_still = (0.0, 0.0, 0.0), n_points
     for point in range(n_points):
         middle = plus(middle, row(points, point))
     for which in range(n_points, len(parts)):
-        middle = plus(middle, vector_from(parts[which].middle))
-    middle = scaled(middle, 1.0 / max(n_points, len(parts)))
+        if parts[which].body == 0:
+            middle, n_still = plus(middle, vector_from(parts[which].middle)), n_still + 1
+    middle = scaled(middle, 1.0 / max(n_still, 1))
     # points, or the boundary, turned about it
     for point in range(len(cage.points_world)):
         placed = rotated(turned, minus(row(points, point), middle))
         for k in range(3):
             cage.points_world[point, k] = placed[k]
-    placed_cage = placed_in(own_boundary(cases.boundary_cage, points, cage), cage.placing)
-    place_boundary(placed_cage, scaled(rotated(turned, middle), -1.0), turned)
+    bodies = Bodies(own_boundary(cases.bodies_cage.own, points, cage), cases.bodies_cage.first_nodes)
+    place_boundary(body_of(bodies, cage.placing, 0), scaled(rotated(turned, middle), -1.0), turned)
     # the object beside it
     cage_position = row(cases.cage_positions, row_of(len(cases.cage_positions), case))
     origin = plus(cage_position, rotated(turned, middle))
@@ -147,7 +148,7 @@ def start_of(case: int, part: Part, cases: Cases, cage: PlacedCage) -> Start:
     size_m = cases.sizes_m[row_of(len(cases.sizes_m), case)]
     tolerances = scaled_tolerances(cases.tolerances, size_m)
     return Start(
-        Geometry(part.boundary, placed_cage, tolerances.touch_m),
+        Geometry(part.boundary, bodies, cage.placing, tolerances.touch_m),
         plus(minus(position, origin), rotated(quaternion, part.center_object)),
         quaternion,
         origin,
@@ -194,9 +195,8 @@ def is_valid(start: Start, farthest: float, points_vary: bool, placement: Placem
     """
     if norm(start.position) > farthest * start.size_m:
         return False
-    held = held_at(start.geometry, placement)
-    place_boundary(held, start.position, start.quaternion)
-    if find_overlap(held, start.geometry.cage, start.tolerances.touch_m, cage.overlap).feature >= 0:
+    place_boundary(held_at(start.geometry, placement), start.position, start.quaternion)
+    if deepest_overlap(start.geometry, placement, cage.overlap).feature >= 0:
         return False
     return not points_vary or are_single(start.geometry, start.tolerances.touch_m)
 

@@ -161,7 +161,7 @@ def is_at_edge(start: Start, position: Vector, at: ProofWorkspace, i: int) -> bo
     if geometry.held.features[found.feature].kind != FACE or geometry.cage.own.parts[found.cage_part].point < 0:
         return False
     held, place = held_at(geometry, at.placement), plus(position, vector_from(found.arm))
-    return ends_near(held, found.feature, place, geometry.touch_m, at.placement.meetings.waiting)
+    return ends_near(held, found.feature, place, geometry.touch_m, at.placement.memory.waiting)
 
 
 @kernel

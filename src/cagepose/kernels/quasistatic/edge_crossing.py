@@ -9,7 +9,7 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, vector_from
 from cagepose.kernels.boundary.features import CIRCLE, FACE, PlacedBoundary
 from cagepose.kernels.boundary.first_touch import place_after
-from cagepose.kernels.boundary.geometry import Geometry, Placement, held_at, held_moved
+from cagepose.kernels.boundary.geometry import Geometry, Placement, cage_at, cage_of, held_at, held_moved
 from cagepose.kernels.boundary.kept import meeting_kept
 from cagepose.kernels.boundary.meeting import both_reach
 from cagepose.kernels.boundary.meetings import slack_of
@@ -47,11 +47,11 @@ def still_meet(
     Those that do with quite another normal have come apart: an edge and the circle that lay across it. A circle that
     lies flat may go from one face to another one that is flush with it.
     """
-    contact, cage, moved = contacts.rows[i], geometry.cage, held_moved(geometry, placement)
-    one, other = contact.feature, contact.cage_feature
+    contact, moved = contacts.rows[i], held_moved(geometry, placement)
+    cage, one, other = cage_at(geometry, contact.cage_body), contact.feature, contact.cage_feature
     place_after(held_at(geometry, placement), one, motion, amount, moved)
     fixed = is_fixed(contacts, i) or amount == 0.0  # where it was found
-    met = meeting_kept(moved, one, cage, other, contact.angle, fixed, touch_m, placement.meetings.places)
+    met = meeting_kept(moved, one, cage, other, contact.angle, fixed, touch_m, placement.memory.places)
     if not met.is_one or dot(met.normal, vector_from(contact.directions[0])) < SAME_WAY:
         return False
     if reach_within(geometry, moved, one, other, met, touch_m, within_m):
@@ -75,7 +75,7 @@ def reach_within(
     """Whether two features reach where they meet, by so much within their ends."""
     one, other = geometry.held.features[i], geometry.cage.own.features[j]
     slack = CLEAR * slack_of(one, other, touch_m) - within_m / min(one.least, other.least)
-    return both_reach(moved, i, geometry.cage, j, met, slack, 2.0 * CLEAR * touch_m - within_m)
+    return both_reach(moved, i, cage_of(geometry, j), j, met, slack, 2.0 * CLEAR * touch_m - within_m)
 
 
 @kernel
@@ -91,8 +91,8 @@ def beyond_border(
     """Return how far a vertex is beyond where its contact with a face ends, after an amount of a motion, metres; inf:
     the features are others.
     """
-    contact, cage, moved = contacts.rows[i], geometry.cage, held_moved(geometry, placement)
-    one, other = contact.feature, contact.cage_feature
+    contact, moved = contacts.rows[i], held_moved(geometry, placement)
+    cage, one, other = cage_at(geometry, contact.cage_body), contact.feature, contact.cage_feature
     kind, cage_kind = geometry.held.features[one].kind, cage.own.features[other].kind
     if not (kind == FACE or cage_kind == FACE) or kind == CIRCLE or cage_kind == CIRCLE:
         return math.inf

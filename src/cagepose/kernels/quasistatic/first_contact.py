@@ -8,9 +8,16 @@ from typing import NamedTuple
 from cagepose.kernels.algebra.motion import motion_of
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, vector_from
-from cagepose.kernels.boundary.features import middle_of_part
+from cagepose.kernels.boundary.features import number_of_bodies
 from cagepose.kernels.boundary.first_meeting import Search, first_to_meet
-from cagepose.kernels.boundary.geometry import Placement, held_at, held_moved
+from cagepose.kernels.boundary.geometry import (
+    Placement,
+    cage_at,
+    held_at,
+    held_moved,
+    meetings_with,
+    middle_of_cage_part,
+)
 from cagepose.kernels.boundary.touching import Meetings
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.on_circle import is_kept
@@ -61,16 +68,18 @@ NO_HIT = Hit(math.inf, -1, -1, 0.0)
 @kernel
 def until_past(setting: Setting, position: Vector, velocity: Vector) -> float:
     """Return the amount of a travel after which the object is past all of the cage; zero: nothing is ahead."""
-    cage, farthest = setting.geometry.cage, 0.0
-    for part in range(len(cage.own.parts)):
-        ahead = dot(velocity, minus(middle_of_part(cage, part), position)) / norm(velocity)
-        farthest = max(farthest, ahead + cage.own.parts[part].reach + setting.body.reach_m)
+    parts, farthest = setting.geometry.cage.own.parts, 0.0
+    for part in range(len(parts)):
+        ahead = dot(velocity, minus(middle_of_cage_part(setting.geometry, part), position)) / norm(velocity)
+        farthest = max(farthest, ahead + parts[part].reach + setting.body.reach_m)
     return farthest / norm(velocity)
 
 
 @kernel
-def note_kept(meetings: Meetings, contacts: ContactSet, center: Vector) -> None:
-    """Note which meetings a motion keeps, also at places of circles that were added to those that are listed."""
+def note_kept(meetings: Meetings, body: int, contacts: ContactSet, center: Vector) -> None:
+    """Note which meetings with a body of the cage a motion keeps, also at places of circles that were added to those
+    that are listed.
+    """
     rows, last = meetings.rows, max(meetings.used[0], 0)
     for at in range(last):
         rows[at].is_kept = False
@@ -82,7 +91,7 @@ def note_kept(meetings: Meetings, contacts: ContactSet, center: Vector) -> None:
             )
     for i in range(contacts.used[0]):
         contact = contacts.rows[i]
-        if contact.is_added and is_kept(contacts, i) and last < len(rows):
+        if contact.is_added and contact.cage_body == body and is_kept(contacts, i) and last < len(rows):
             row, place = rows[last], plus(center, vector_from(contact.arm))
             row.feature, row.cage_feature, row.angle = contact.feature, contact.cage_feature, contact.angle
             row.gap, row.is_kept = contact.gap, True
@@ -108,18 +117,38 @@ def first_contact(
     something is met because of that, not because it came nearer, it is passed over: what was no farther than they stray
     where it is met, at most ``reach_m``. Whether it is reached shows at the end.
     """
+    hit = NO_HIT
+    end = until_past(setting, position, twist.velocity) if twist.end == math.inf else twist.end
+    for body in range(number_of_bodies(setting.geometry.cage) if end > 0.0 else 0):
+        until = Twist(twist.velocity, twist.spin, min(end, hit.amount))
+        found = first_with_body(setting, body, placement, contacts, position, quaternion, until, reach_m)
+        if found.amount < hit.amount:
+            hit = found
+    return hit
+
+
+@kernel
+def first_with_body(
+    setting: Setting,
+    body: int,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    twist: Twist,
+    reach_m: float,
+) -> Hit:
+    """As `first_contact`, with one of the cage's bodies, along a twist that ends."""
     geometry, velocity, spin = setting.geometry, twist.velocity, twist.spin
     motion, touch_m = motion_of(position, velocity, spin), setting.tolerances.touch_m
-    end = until_past(setting, position, velocity) if twist.end == math.inf else twist.end
-    if end == 0.0:
-        return NO_HIT
-    note_kept(placement.meetings, contacts, position)
     speed = norm(velocity) + motion.rate * setting.body.reach_m
     held, moved = held_at(geometry, placement), held_moved(geometry, placement)
+    cage, meetings = cage_at(geometry, body), meetings_with(placement, body)
+    note_kept(meetings, body, contacts, position)
     hit, near = NO_HIT, 0.0
     for _ in range(LOOKED_AT_AGAIN):
-        search = Search(motion, end, near, reach_m, speed, touch_m, setting.size_m)
-        found = first_to_meet(held, geometry.cage, search, placement.meetings, placement.queue, moved)
+        search = Search(motion, twist.end, near, reach_m, speed, touch_m, setting.size_m)
+        found = first_to_meet(held, cage, search, meetings, placement.queue, moved)
         if found.feature < 0:
             return NO_HIT
         if found.is_open:  # nothing is reached before; the next step asks from there

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, scaled
-from cagepose.kernels.boundary.features import middle_of_part
+from cagepose.kernels.boundary.geometry import middle_of_cage_part
 from cagepose.kernels.contact.loads import BENT, BOUND, STRAIGHT, drift_and_sway, flight
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.setting import Setting
@@ -33,11 +33,11 @@ def nothing_ahead(setting: Setting, position: Vector, quaternion: Quaternion, ve
     if size == 0.0:
         return False
     along = scaled(drift, 1.0 / size)
-    cage = setting.geometry.cage
-    for part in range(len(cage.own.parts)):
-        arm = minus(middle_of_part(cage, part), position)
+    parts = setting.geometry.cage.own.parts
+    for part in range(len(parts)):
+        arm = minus(middle_of_cage_part(setting.geometry, part), position)
         away = norm(minus(arm, scaled(along, max(dot(arm, along), 0.0))))
-        if away <= setting.body.reach_m + sway + cage.own.parts[part].reach:
+        if away <= setting.body.reach_m + sway + parts[part].reach:
             return False
     return True
 
@@ -47,9 +47,9 @@ def is_out_of_reach(setting: Setting, position: Vector, velocity: Vector) -> boo
     """Whether the object is sizes of the scene away from all of the cage, and goes away from their middle."""
     if dot(position, velocity) <= 0.0:
         return False
-    cage = setting.geometry.cage
-    for part in range(len(cage.own.parts)):
-        away = norm(minus(middle_of_part(cage, part), position)) - cage.own.parts[part].reach
+    parts = setting.geometry.cage.own.parts
+    for part in range(len(parts)):
+        away = norm(minus(middle_of_cage_part(setting.geometry, part), position)) - parts[part].reach
         if away <= OUT_OF_REACH * setting.size_m + setting.body.reach_m:
             return False
     return True

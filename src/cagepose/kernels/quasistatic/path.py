@@ -125,7 +125,7 @@ def along_faces(setting: Setting, path: Path, work: QuasistaticWorkspace) -> tup
     lies flat or fits all around, whose places change as it tilts.
     """
     twist = path.twist
-    allow_depths(work.placement, setting.tolerances, work.path)
+    allow_depths(setting.geometry, work.placement, setting.tolerances, work.path)
     constrain_contacts(work.contacts, setting.tolerances.rounding_m, work.path.constraints)
     if twist.end == math.inf or not is_guided(work):
         return path, True

@@ -22,7 +22,7 @@ from cagepose.kernels.algebra.vector import (
     transposed_times,
 )
 from cagepose.kernels.boundary.features import place_feature, place_feature_at
-from cagepose.kernels.boundary.geometry import Geometry, Placement, held_moved
+from cagepose.kernels.boundary.geometry import Geometry, Placement, cage_of, held_moved
 from cagepose.kernels.boundary.kept import crossed, meeting_kept
 from cagepose.kernels.circles.places import within_turn
 from cagepose.kernels.contact.contact_set import tangents_to
@@ -166,11 +166,12 @@ def lack(
 ) -> Lack:
     """Return what one of the constraints lacks at a pose; inf: it means nothing there."""
     i, j, is_fixed = constraint.feature, constraint.cage_feature, constraint.which == FIXED
-    moved, places = held_moved(geometry, placement), placement.meetings.places
+    moved, places = held_moved(geometry, placement), placement.memory.places
     place_feature_at(moved, i, position, matrix_from_quaternion(quaternion))
-    place_feature(geometry.cage, j)
+    cage = cage_of(geometry, j)
+    place_feature(cage, j)
     angle, touch_m = constraint.angle, geometry.touch_m
-    met = meeting_kept(moved, i, geometry.cage, j, angle, is_fixed, touch_m, places)
+    met = meeting_kept(moved, i, cage, j, angle, is_fixed, touch_m, places)
     arm = minus(met.place, position)
     if not met.is_one:
         return Lack(math.inf, met.normal, arm)
@@ -182,7 +183,7 @@ def lack(
 @kernel
 def are_apart(geometry: Geometry, constraint: PositionConstraint, placement: Placement) -> bool:
     """Whether a constraint that means nothing is of edges that crossed: what else touches there counts."""
-    held, cage = placement.moved.features[constraint.feature], geometry.cage.features[constraint.cage_feature]
+    held, cage = placement.moved.features[constraint.feature], geometry.placed.features[constraint.cage_feature]
     return crossed(held, cage)
 
 

@@ -11,9 +11,10 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.tolerances import KernelTolerances, allowed_depth
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, vector_from
-from cagepose.kernels.boundary.geometry import Geometry, Placement, most_rows, place_object
+from cagepose.kernels.boundary.features import number_of_bodies
+from cagepose.kernels.boundary.geometry import Geometry, Placement, meetings_with, most_rows, place_object
 from cagepose.kernels.boundary.meetings import EQUALLY_FAR
-from cagepose.kernels.boundary.touching import SAME_PLACE, Touching, is_around
+from cagepose.kernels.boundary.touching import SAME_PLACE, Meetings, Touching, is_around
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.on_circle import is_along_wall, is_kept, is_of_same_circle
 from cagepose.kernels.contact.tolerances import SAME_NORMAL_RAD
@@ -127,33 +128,36 @@ def pushed_out(
         if work.constraints.scratch[0].used > 0:
             holds, position, quaternion = put_back(setting, placement, position, quaternion, work.constraints)
         place_object(geometry, position, quaternion, placement)
-        meeting = deepest_meeting(placement, work)
-        if not holds or meeting < 0:
+        body, at = deepest_meeting(geometry, placement, work)
+        if not holds or at < 0:
             break
-        if not constrain_meeting(geometry, placement, meeting, position, quaternion, work.constraints):
+        row = meetings_with(placement, body).rows[at]
+        if not constrain_meeting(geometry, placement, row, position, quaternion, work.constraints):
             return False, position, quaternion
-    return holds and deepest_meeting(placement, work) < 0, position, quaternion
+    return holds and deepest_meeting(geometry, placement, work)[0] < 0, position, quaternion
 
 
 @kernel
-def deepest_meeting(placement: Placement, work: StepWorkspace) -> int:
-    """Return the meeting that is farthest deeper than it may, of each group the one that is least deep; -1:
-    none is.
+def deepest_meeting(geometry: Geometry, placement: Placement, work: StepWorkspace) -> tuple[int, int]:
+    """Return (body of the cage, meeting) where the object is farthest deeper than it may be, of each group the meeting
+    that is least deep; (-1, -1): it is nowhere.
     """
-    rows, found, worst = placement.meetings.rows, -1, work.allowed_m[0]
-    for at in range(placement.meetings.used[0]):
-        if rows[at].group == at:
-            outermost = outermost_of_group(placement, at)
-            if -rows[outermost].gap > worst:
-                found, worst = outermost, -rows[outermost].gap
-    return found
+    found, at, worst = -1, -1, work.allowed_m[0]
+    for body in range(number_of_bodies(geometry.cage)):
+        meetings = meetings_with(placement, body)
+        for group in range(meetings.used[0]):
+            if meetings.rows[group].group == group:
+                outermost = outermost_of_group(meetings, group)
+                if -meetings.rows[outermost].gap > worst:
+                    found, at, worst = body, outermost, -meetings.rows[outermost].gap
+    return found, at
 
 
 @kernel
-def outermost_of_group(placement: Placement, group: int) -> int:
+def outermost_of_group(meetings: Meetings, group: int) -> int:
     """Return the meeting of a group that is least deep: the object is out of the cage there if this one is."""
-    rows, found = placement.meetings.rows, group
-    for at in range(group + 1, placement.meetings.used[0]):
+    rows, found = meetings.rows, group
+    for at in range(group + 1, meetings.used[0]):
         if rows[at].group == group and rows[at].gap > rows[found].gap:
             found = at
     return found
@@ -182,7 +186,7 @@ def is_at_meeting(
 def constrain_meeting(
     geometry: Geometry,
     placement: Placement,
-    at: int,
+    row: Touching,
     position: Vector,
     quaternion: Quaternion,
     constraints: Constraints,
@@ -190,8 +194,7 @@ def constrain_meeting(
     """Constrain the gap of a meeting that is too deep to zero. The deepest place of a circle takes the place of those
     of it that were to stay where they are, and features that of others that meet there, which are farther out then.
     """
-    row, sticks = placement.meetings.rows[at], False
-    i, j = row.feature, row.cage_feature
+    i, j, sticks = row.feature, row.cage_feature, False
     for k in range(constraints.scratch[0].used - 1, -1, -1):
         other = constraints.rows[k]
         is_same = (other.feature, other.cage_feature) == (i, j)
@@ -206,16 +209,18 @@ def constrain_meeting(
 
 
 @kernel
-def allow_depths(placement: Placement, tolerances: KernelTolerances, work: StepWorkspace) -> None:
+def allow_depths(geometry: Geometry, placement: Placement, tolerances: KernelTolerances, work: StepWorkspace) -> None:
     """Write how deep the bodies may be in each other after the step: no deeper than they are, or than a circle that
     lies all around may be between its places.
     """
     work.allowed_m[0] = allowed_depth(0.0, tolerances)
-    rows = placement.meetings.rows
-    for at in range(placement.meetings.used[0]):
-        if rows[at].group != at:
-            continue
-        depth = allowed_depth(-rows[outermost_of_group(placement, at)].gap, tolerances)
-        if is_around(rows[at]):
-            depth = max(depth, EQUALLY_FAR * tolerances.touch_m)
-        work.allowed_m[0] = max(work.allowed_m[0], depth)
+    for body in range(number_of_bodies(geometry.cage)):
+        meetings = meetings_with(placement, body)
+        for at in range(meetings.used[0]):
+            row = meetings.rows[at]
+            if row.group != at:
+                continue
+            depth = allowed_depth(-meetings.rows[outermost_of_group(meetings, at)].gap, tolerances)
+            if is_around(row):
+                depth = max(depth, EQUALLY_FAR * tolerances.touch_m)
+            work.allowed_m[0] = max(work.allowed_m[0], depth)

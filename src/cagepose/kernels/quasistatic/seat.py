@@ -60,7 +60,7 @@ def seated(
         if not shared_step(contacts, max(least_rho, LEAST_RHO), stiff, solver):
             break
         velocity, spin = twist_of(stiff.delta, frame)
-        allow_depths(work.placement, setting.tolerances, work.path)
+        allow_depths(setting.geometry, work.placement, setting.tolerances, work.path)
         done, end, turned = step_to(setting, Path(end, turned, Twist(velocity, spin, 1.0)), 1.0, NO_HIT, work)
         moved = way_between(position, quaternion, end, turned, setting.body.reach_m)
         if not done or moved > MOST_MOVED * setting.tolerances.touch_m:

@@ -270,7 +270,7 @@ def refined(
     contacts, constraints = work.contacts, work.path.constraints
     for i in range(contacts.used[0]):
         contacts.states[i].is_sticking = contacts.states[i].stays_flat = False
-    allow_depths(work.placement, setting.tolerances, work.path)
+    allow_depths(setting.geometry, work.placement, setting.tolerances, work.path)
     if is_rest:
         constrain_contacts(contacts, math.inf, constraints)
     else:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.boundary.features import place_feature, place_feature_at
-from cagepose.kernels.boundary.geometry import Geometry, Placement, held_moved
+from cagepose.kernels.boundary.geometry import Geometry, Placement, cage_at, held_moved
 from cagepose.kernels.boundary.kept import crossed, meeting_kept
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.metric import moved_along_twist
@@ -38,21 +38,22 @@ def strayed(
     that crossed, for nothing.
     """
     end, turned = moved_along_twist(position, quaternion, velocity, spin, amount)
-    farthest, moved, places = 0.0, held_moved(geometry, placement), placement.meetings.places
+    farthest, moved, places = 0.0, held_moved(geometry, placement), placement.memory.places
     for i in range(contacts.used[0]):
         if not is_kept(contacts, i):
             continue
         contact = contacts.rows[i]
         i_held, i_cage, fixed = contact.feature, contact.cage_feature, is_fixed(contacts, i)
         place_feature_at(moved, i_held, end, matrix_from_quaternion(turned))
-        place_feature(geometry.cage, i_cage)
-        met = meeting_kept(moved, i_held, geometry.cage, i_cage, contact.angle, fixed, geometry.touch_m, places)
+        cage = cage_at(geometry, contact.cage_body)
+        place_feature(cage, i_cage)
+        met = meeting_kept(moved, i_held, cage, i_cage, contact.angle, fixed, geometry.touch_m, places)
         if met.is_one:
             farthest = max(farthest, abs(met.gap - contact.gap))
         elif not (
             contacts.states[i].stays_flat
             or is_along_wall(contacts, i)
-            or crossed(moved.features[i_held], geometry.cage.features[i_cage])
+            or crossed(moved.features[i_held], cage.features[i_cage])
         ):
             farthest = max(farthest, where_over)
     return farthest

@@ -61,7 +61,8 @@ def move_contact(contacts: ContactSet, source: int, target: int) -> None:
         return
     rows = contacts.rows
     old, new = rows[source], rows[target]
-    new.part, new.cage_part, new.feature, new.cage_feature = old.part, old.cage_part, old.feature, old.cage_feature
+    new.part, new.cage_part, new.cage_body = old.part, old.cage_part, old.cage_body
+    new.feature, new.cage_feature = old.feature, old.cage_feature
     new.angle, new.gap, new.is_added = old.angle, old.gap, old.is_added
     new.group = old.group - source + target
     for j in range(3):

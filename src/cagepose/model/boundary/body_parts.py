@@ -18,7 +18,7 @@ from cagepose.model.shapes import Shape, Turned
 def body_parts(parts: Sequence[Shape | FloatArray]) -> Any:
     """Return the rows of parts in the frame of their body; which features single points are is written later."""
     solids = [part for part in parts if isinstance(part, Shape) and not isinstance(part, Hole)]
-    return np.array([(*_ball(part, solids), -1) for part in parts], dtype_of(BodyPart))
+    return np.array([(0, *_ball(part, solids), -1) for part in parts], dtype_of(BodyPart))
 
 
 def _ball(part: Shape | FloatArray, solids: Sequence[Shape]) -> tuple[FloatArray, float]:
