@@ -40,6 +40,7 @@ from cagepose.kernels.quasistatic.run import (
 from cagepose.kernels.quasistatic.workspace import empty_quasistatic_workspace
 from cagepose.kernels.stability.proof import empty_proof_workspace
 from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
+from cagepose.kernels.stability.reach import empty_cone_rays, reach
 from cagepose.kernels.stepwise.run import (
     StepwiseRules,
     empty_stepwise_workspace,
@@ -117,6 +118,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
 
     program, (rows, bounds) = empty_record(Program), program_rows(1)
     yield solve_program, (rows, bounds, program)
+    yield reach, (program, empty_cone_rays(np.zeros((1, 3, 6)), numbers, 1), 0.0)
     yield shortest_inside, (rows, bounds, empty_system(1), empty_record(PassiveSet), np.zeros(6))
     yield extents, (rows, bounds, program, np.zeros(6), np.zeros(6))
     play_work, goals, extremes = empty_play_workspace(boxes), empty_rows(Goal, 1), empty_rows(Extreme, 1)

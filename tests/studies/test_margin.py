@@ -30,9 +30,10 @@ from cagepose import (
     run,
 )
 from cagepose.files.document import run_document
+from cagepose.studies import contact_cones as cones_module
 from cagepose.studies.contact_cones import ConeProgram, ContactCones, contact_cones
 from cagepose.studies.equal_stiffness import equally_stiff_forces
-from cagepose.studies.extra_load import least_extra_load
+from cagepose.studies.extra_load import ExtraLoad, least_extra_load
 
 A, H = 0.04, 0.03
 """The legs stand at x, y = +-A; the centre of gravity is H above them."""
@@ -253,6 +254,21 @@ def test_all_extra_loads_inside_are_balanced_and_one_just_outside_is_not(frictio
         extra[axes] = found.direction
         assert left_of(cones, load - 1.01 * found.found * extra) > 1e-8
     assert n_finite >= 4
+
+
+def test_memory_for_rays_grows_as_they_come_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With room for the first rays alone the answers are the same to the last bit."""
+    found = list[ExtraLoad]()
+    for room in (cones_module.ROOM, 1):
+        monkeypatch.setattr(cones_module, "ROOM", room)
+        cones, load = random_cones(np.random.default_rng(14), 0.4)
+        program = ConeProgram(cones, 1e-6)
+        before = len(program.work.contacts)
+        found.append(least_extra_load(program, load, np.zeros(len(cones.columns)), slice(0, 3), math.inf))
+    assert len(program.work.contacts) > before
+    assert found[0].certain == found[1].certain > 0.0
+    assert found[0].found == found[1].found
+    assert np.array_equal(found[0].direction, found[1].direction)
 
 
 def test_a_part_that_nothing_touches_has_no_margin_and_one_under_a_spring_has_its_pull() -> None:

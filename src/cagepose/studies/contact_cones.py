@@ -1,10 +1,4 @@
-"""Linear programs over all forces in round friction cones: `ContactCones`, by cuts (5.24).
-
-A linear function of forces that balance a load is greatest where its dual, over the six numbers of a motion, is least;
-each ray of a cone is a row there. Rays are made when a motion asks for them, as in `kernels.contact.cone`: the one that
-it violates most is known in closed form (5.5). Before the last one is in, the rays span less than the cones, so that
-what they can balance the cones can too: a bound that comes of it is certain.
-"""
+"""Linear programs over all forces in round friction cones: `ContactCones`, by the kernels' `reach` (5.24)."""
 
 from __future__ import annotations
 
@@ -13,16 +7,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.kernels.algebra.linear_program import N_UNKNOWNS, OPTIMAL, UNBOUNDED, Program, solve_program
+from cagepose.kernels.algebra.linear_program import OPTIMAL, Program
 from cagepose.kernels.algebra.record import empty_record
+from cagepose.kernels.native.slots import Slots
+from cagepose.kernels.stability.reach import NO_ROOM, ConeRays, empty_cone_rays, reach
 from cagepose.model.checks import FloatArray
 
 Contacts = int | NDArray[np.int64]
 FIRST_RAYS = 8
 """Each cone starts with so many rays, evenly spread, and cuts bring the others."""
-MOST_ROUNDS = 40
-"""One program has so many rounds of cuts at most. Two is the median of 98 random blocks. After the last the rays lie in
-the cones, too."""
+ROOM = 4
+"""There is memory for so many times more rays at first."""
 
 
 class ContactCones(NamedTuple):
@@ -76,27 +71,27 @@ def contact_cones(normals: FloatArray, arms_m: FloatArray, friction: FloatArray)
 class ConeProgram:
     """max objective . y over motions y with (ray of contact i) . y >= least_i for all of its rays n + mu d.
 
-    Rays stay from one program to the next. A cone that a motion violates by less than ``cut_from`` of its length is
-    left as it is.
+    Rays that an answer leans on stay for the next one. A cone that a motion violates by less than ``cut_from`` of its
+    length is left as it is.
     """
 
     def __init__(self, cones: ContactCones, cut_from: float) -> None:
-        self.cones, self.cut_from = cones, cut_from
-        self.contacts = np.zeros(0, np.int64)
-        self.rays = np.zeros((0, N_UNKNOWNS))
-        self.program = empty_record(Program)
-        indices = np.arange(len(cones.columns))
-        angles = 2.0 * np.pi * np.arange(FIRST_RAYS if cones.friction.any() else 1) / FIRST_RAYS
-        for angle in angles:
-            self._add(indices, np.tile((np.cos(angle), np.sin(angle)), (len(indices), 1)))
+        self.cut_from, self.program = cut_from, empty_record(Program)
+        n, n_first = len(cones.columns), FIRST_RAYS if cones.friction.any() else 1
+        self._take(empty_cone_rays(cones.columns, cones.friction, ROOM * n * n_first))
+        angles = np.repeat(2.0 * np.pi * np.arange(n_first) / n_first, n)
+        self.work.used[:], self.work.contacts[: len(angles)] = len(angles), np.tile(np.arange(n), n_first)
+        tangents = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        across = np.einsum("ij,ijk->ik", tangents, np.tile(cones.columns[:, 1:], (n_first, 1, 1)))
+        first = np.tile(cones.columns[:, 0], (n_first, 1)) + np.tile(cones.friction, n_first)[:, None] * across
+        self.work.rays[: len(angles)] = first
 
-    def _add(self, contacts: NDArray[np.int64], tangents: FloatArray) -> None:
-        """Add the rays n + mu d of contacts, with unit tangents d, (n, 2)."""
-        columns = self.cones.columns[contacts]
-        rays = columns[:, 0] + self.cones.friction[contacts, None] * np.einsum("ij,ijk->ik", tangents, columns[:, 1:])
-        self.contacts, self.rays = np.append(self.contacts, contacts), np.concatenate([self.rays, rays])
+    def _take(self, work: ConeRays) -> None:
+        self.work, self._slots = work, (Slots(self.program), Slots(work))
 
-    def greatest(self, objective: FloatArray, least: FloatArray, row: FloatArray) -> tuple[int, FloatArray]:
+    def greatest(
+        self, objective: FloatArray, least: FloatArray, row: FloatArray | None = None, offset: FloatArray | None = None
+    ) -> tuple[int, FloatArray]:
         """Return how the program ended, and y.
 
         Parameters
@@ -107,6 +102,8 @@ class ConeProgram:
             Of each contact's rays, (n,); -inf: the contact does not count.
         row
             One more row: row . y <= 1, (6,).
+        offset
+            Of the motion beside what is free of it, see `ConeRays`, (6,).
 
         Returns
         -------
@@ -114,27 +111,31 @@ class ConeProgram:
             OPTIMAL; UNBOUNDED, with a ray for y; INFEASIBLE; FAILED: rounding, or too many rounds.
         """
         self.program.objective[:] = objective
-        self.program.passive.used = 0
-        for _ in range(MOST_ROUNDS):
-            rows, bounds = np.concatenate([row[None], -self.rays]), np.append(1.0, -least[self.contacts])
-            outcome = solve_program(rows, bounds, self.program)
-            if outcome not in (OPTIMAL, UNBOUNDED):
-                return outcome, np.zeros(N_UNKNOWNS)
-            motion = np.array(self.program.ray if outcome == UNBOUNDED else self.program.x)
-            if not self._cut(motion, least if outcome == OPTIMAL else np.where(np.isfinite(least), 0.0, least)):
-                break
-        return outcome, motion
+        self.work.least[:] = least
+        self.work.row[:] = 0.0 if row is None else row
+        self.work.offset[:] = 0.0 if offset is None else offset
+        outcome = reach(*self._slots, self.cut_from)
+        while outcome == NO_ROOM:
+            self._take(_with_room(self.work))
+            outcome = reach(*self._slots, self.cut_from)
+        return outcome, self.work.motion.copy()
 
-    def _cut(self, motion: FloatArray, least: FloatArray) -> bool:
-        """Add the rays that a motion violates most, one of each contact; False: it violates none."""
-        if not self.cones.friction.any():
-            return False
-        along = self.cones.columns @ motion
-        slips = np.linalg.norm(along[:, 1:], axis=1)
-        excess = least + self.cones.friction * slips - along[:, 0]
-        cut = np.flatnonzero((excess > self.cut_from * np.linalg.norm(motion)) & (slips > 0.0))
-        self._add(cut, -along[cut, 1:] / slips[cut, None])
-        return len(cut) > 0
+    def confine(self, projection: FloatArray) -> None:
+        """Let motions be free within a space only, by a projection onto it, (6, 6)."""
+        self.work.projection[:] = projection
+
+    def wrench(self) -> FloatArray:
+        """Return the wrench of the forces that the last answer leans on, (6,)."""
+        return self.work.wrench.copy()
+
+
+def _with_room(work: ConeRays) -> ConeRays:
+    """Return the same question and rays, with memory for twice as many."""
+    wider, n = empty_cone_rays(work.columns, work.friction, 2 * len(work.contacts)), len(work.contacts)
+    for name in ("least", "row", "projection", "offset", "used"):
+        getattr(wider, name)[:] = getattr(work, name)
+    wider.contacts[:n], wider.rays[:n] = work.contacts, work.rays
+    return wider
 
 
 def greatest_normal_force(program: ConeProgram, load: FloatArray, counts: FloatArray, contacts: Contacts) -> float:
@@ -155,5 +156,5 @@ def _end_of_force(program: ConeProgram, load: FloatArray, counts: FloatArray, co
     """max sign sum f_i is, by duality, the least load . y with every ray . y >= 0, and >= sign for those of the sum."""
     least = counts.copy()
     least[contacts] = sign
-    outcome, motion = program.greatest(-load, least, np.zeros(N_UNKNOWNS))
+    outcome, motion = program.greatest(-load, least)
     return float(load @ motion) if outcome == OPTIMAL else np.inf

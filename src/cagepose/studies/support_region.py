@@ -13,34 +13,21 @@ from itertools import islice, product
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cagepose.kernels.algebra.linear_program import (
-    FAILED,
-    INFEASIBLE,
-    N_UNKNOWNS,
-    OPTIMAL,
-    UNBOUNDED,
-    Program,
-    solve_program,
-)
-from cagepose.kernels.algebra.record import empty_record
+from cagepose.kernels.algebra.linear_program import INFEASIBLE, OPTIMAL, UNBOUNDED
 from cagepose.kernels.contact.contact_set import tangents_to
 from cagepose.model.checks import FloatArray, as_vector
 from cagepose.runs.cases import contact_friction
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import Run
 from cagepose.studies.arcs import places_on_arcs
+from cagepose.studies.contact_cones import ConeProgram, ContactCones
 from cagepose.studies.contact_problem import ContactProblem, contact_problem
 from cagepose.studies.support import LoadView, convex_hull, polygon_within, without_doubles
 from cagepose.studies.tolerances import DISTANCE_OF_CORNER, PARALLEL_SINE, ROUNDING_OF_CORNER, VIOLATION_OF_CONE
 
 N_DIRECTIONS = 120
 """3 deg apart; and across each side of the contacts' polygon, so that a polygon comes out exactly."""
-FIRST_RAYS = 8
-"""Each friction cone starts with so many rays, evenly spread."""
-MOST_ROUNDS = 40
-"""Other rays come in so many times."""
 HALVINGS_OF_ANGLE = 30
 """The angle between a direction in which a region ends and one in which it does not is halved so many times."""
 WAY_WITHOUT_END = 1e3
@@ -171,26 +158,35 @@ class _Region:
     """Where some contacts, with wrenches (n, 3, 6) and friction (n,), balance the weight.
 
     With unit forces F_r of rays and their moments, the centre of gravity is M x d off for a weight of 1 along d, if the
-    forces add up to -d and M has no part along d. The dual of what is greatest of it along a has four unknowns, and
-    forces for its multipliers.
+    forces add up to -d and M has no part along d. The dual of what is greatest of it along a has four unknowns, a
+    velocity and a turn about the load, and forces for its multipliers.
     """
 
     def __init__(self, wrenches: FloatArray, friction: FloatArray, view: LoadView) -> None:
         self.down = np.cross(view.up_world, view.right_world)
         self.seen = np.stack([view.right_world, view.up_world], axis=1)
-        self.rays, self.program = _Rays(wrenches, friction, self.down), empty_record(Program)
-        self.is_empty = self.rays.solve(self.program, np.zeros(3)) == UNBOUNDED  # be it that moments have no end
+        moments = np.linalg.norm(wrenches[:, :, 3:], axis=(1, 2))  # of three unit forces across each other
+        self.length_m = float(moments.max(initial=0.0)) / math.sqrt(2.0) or 1.0
+        columns = np.concatenate([-wrenches[:, :, :3], -wrenches[:, :, 3:] / self.length_m], axis=2)
+        self.program = ConeProgram(ContactCones(columns, friction, self.length_m), VIOLATION_OF_CONE)
+        free = np.eye(6)
+        free[3:, 3:] = np.outer(self.down, self.down)
+        self.program.confine(free)
+        self.is_empty = self._solve(np.zeros(3))[0] == UNBOUNDED  # be it that moments have no end
+
+    def _solve(self, across: FloatArray) -> tuple[int, FloatArray]:
+        """Find what M . ``across`` is at most; return how the program ended, and its motion."""
+        objective, offset = np.append(self.down, np.zeros(3)), np.append(np.zeros(3), -across)
+        return self.program.greatest(objective, np.zeros(len(self.program.work.friction)), offset=offset)
 
     def reach(self, normal: FloatArray) -> tuple[float, FloatArray] | None:
         """Return how far it goes along a unit vector, and the point there; None: the program had no sure answer."""
         if self.is_empty:
             return -math.inf, np.zeros(2)
-        program, rays = self.program, self.rays
-        outcome = rays.solve(program, np.cross(self.down, self.seen @ normal))
+        outcome, motion = self._solve(np.cross(self.down, self.seen @ normal))
         if outcome == OPTIMAL:
-            used = program.passive.used
-            moment = program.passive.x[:used] @ rays.moments[program.passive.labels[:used]]
-            return -rays.length_m * float(self.down @ program.x[:3]), np.cross(moment, self.down) @ self.seen
+            moment = self.length_m * self.program.wrench()[3:]
+            return -self.length_m * float(self.down @ motion[:3]), np.cross(moment, self.down) @ self.seen
         return (math.inf, np.zeros(2)) if outcome == INFEASIBLE else None  # the dual of what has no end
 
 
@@ -212,7 +208,7 @@ def _farthest(region: _Region, normals: FloatArray) -> _Bounds | None:
     waiting = list(zip(ended, [*ended[1:], *ended[:1]], strict=True))
     while waiting:
         one, other = waiting.pop()
-        outward = _direction_between(one, other, region.rays.length_m)
+        outward = _direction_between(one, other, region.length_m)
         if outward is not None:
             end = region.reach(outward)
             if end is None:
@@ -252,49 +248,3 @@ def _last_ends(
             found.append((between, end))
             bounded = between
     return found
-
-
-class _Rays:
-    """Rays of round friction cones: those that a solution violates most come in, as in `ConeProgram`."""
-
-    def __init__(self, wrenches: FloatArray, friction: FloatArray, down: FloatArray) -> None:
-        self.wrenches, self.friction, self.down = wrenches, friction, down
-        moments = np.linalg.norm(wrenches[:, :, 3:], axis=(1, 2))  # of three unit forces across each other
-        self.length_m = float(moments.max(initial=0.0)) / math.sqrt(2.0) or 1.0
-        self.forces, self.moments = np.zeros((0, 3)), np.zeros((0, 3))
-        every = np.arange(len(wrenches))
-        for angle in 2.0 * np.pi * np.arange(FIRST_RAYS if friction.any() else 1) / FIRST_RAYS:
-            self._add(every, np.tile((math.cos(angle), math.sin(angle)), (len(wrenches), 1)))
-
-    def _add(self, contacts: NDArray[np.int64], tangents: FloatArray) -> None:
-        across = np.einsum("ij,ijk->ik", tangents, self.wrenches[contacts, 1:])
-        rays = -(self.wrenches[contacts, 0] + self.friction[contacts, None] * across)
-        self.forces = np.concatenate([self.forces, rays[:, :3]])
-        self.moments = np.concatenate([self.moments, rays[:, 3:]])
-
-    def solve(self, program: Program, across: FloatArray) -> int:
-        """Find what M . ``across`` is at most; the dual's unknowns are a velocity and a turn about the load."""
-        program.objective[:3] = self.down
-        program.passive.used = 0
-        for _ in range(MOST_ROUNDS):
-            rows = np.zeros((len(self.forces), N_UNKNOWNS))
-            rows[:, :3], rows[:, 3] = -self.forces, -self.moments @ self.down / self.length_m
-            outcome = solve_program(rows, -self.moments @ across / self.length_m, program)
-            if outcome not in (OPTIMAL, UNBOUNDED):
-                return outcome
-            found = program.x if outcome == OPTIMAL else program.ray
-            turn = found[3] * self.down - (across if outcome == OPTIMAL else 0.0)
-            if not self._cut(np.append(found[:3], turn / self.length_m)):
-                return outcome
-        return outcome if outcome == OPTIMAL else FAILED
-
-    def _cut(self, twist: FloatArray) -> bool:
-        """Add the ray of each contact that a twist violates most; False: it violates none."""
-        if not self.friction.any():
-            return False
-        along = self.wrenches @ twist
-        slips = np.linalg.norm(along[:, 1:], axis=1)
-        size = np.linalg.norm(twist * [1.0, 1.0, 1.0, *3 * [self.length_m]])
-        cut = np.nonzero((along[:, 0] + self.friction * slips > VIOLATION_OF_CONE * size) & (slips > 0.0))[0]
-        self._add(cut, along[cut, 1:] / slips[cut, None])
-        return len(cut) > 0
