@@ -16,7 +16,6 @@ from cagepose.kernels.boundary.meetings import slack_of
 from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.boundary.reach import beyond_face
 from cagepose.kernels.contact.contact_set import ContactSet
-from cagepose.kernels.contact.on_circle import is_kept
 from cagepose.kernels.contact.tolerances import SAME_NORMAL_RAD, SAME_WAY
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.pushing_out import is_fixed
@@ -170,10 +169,11 @@ def end_of_meeting(
 
 
 @kernel
-def first_edge_crossing(
+def edge_crossing(
     geometry: Geometry,
     placement: Placement,
     contacts: ContactSet,
+    i: int,
     center: Vector,
     quaternion: Quaternion,
     velocity: Vector,
@@ -181,22 +181,18 @@ def first_edge_crossing(
     end: float,
     reach_m: float,
     touch_m: float,
-) -> tuple[float, int]:
-    """Return the amount of a twist, up to ``end``, after which a contact leaves the face that it stays on, and which
-    one; inf: none.
+) -> float:
+    """Return the amount of a twist, up to ``end``, after which a contact leaves the face that it stays on; inf: it does
+    not.
 
     Where it would only because contacts stray, by the square of the way, within ``reach_m``, it is passed over: they
     are put back. So it is where one of them has no place there any more: it may have one when it is put back.
     """
-    first, which = math.inf, -1
-    for i in range(contacts.used[0]):
-        if not is_kept(contacts, i):
-            continue
-        motion = motion_of(center, velocity, spin)
-        before, crossing = end_of_meeting(geometry, placement, contacts, i, motion, min(end, first), touch_m)
-        if crossing < first:
-            astray = strayed(geometry, placement, contacts, center, quaternion, velocity, spin, before, math.inf)
-            reach = max(reach_m, STRAYED * astray)
-            if still_meet(geometry, placement, contacts, i, motion, 0.0, touch_m, reach):
-                first, which = crossing, i
-    return (first, which) if first <= end else (math.inf, -1)
+    motion = motion_of(center, velocity, spin)
+    before, crossing = end_of_meeting(geometry, placement, contacts, i, motion, end, touch_m)
+    if crossing < math.inf:
+        astray = strayed(geometry, placement, contacts, center, quaternion, velocity, spin, before, math.inf)
+        reach = max(reach_m, STRAYED * astray)
+        if still_meet(geometry, placement, contacts, i, motion, 0.0, touch_m, reach):
+            return crossing
+    return math.inf

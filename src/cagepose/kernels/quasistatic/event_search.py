@@ -8,8 +8,9 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, norm
 from cagepose.kernels.boundary.geometry import place_object
 from cagepose.kernels.contact.metric import frame_at, twist_of
+from cagepose.kernels.contact.on_circle import is_kept
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.quasistatic.edge_crossing import first_edge_crossing
+from cagepose.kernels.quasistatic.edge_crossing import edge_crossing
 from cagepose.kernels.quasistatic.first_contact import NO_HIT, Hit, first_contact
 from cagepose.kernels.quasistatic.guards import (
     BEGINS_TO_TIP,
@@ -176,23 +177,26 @@ def furthest_step(setting: Setting, path: Path, work: QuasistaticWorkspace) -> t
     if hit.feature >= 0 and is_guided(work):
         hit = hit_on_path(setting, path, hit, spread, work)
     amount = min(hit.amount, twist.end)
-    crossing, leaving = first_edge_crossing(
-        setting.geometry,
-        placement,
-        contacts,
-        path.position,
-        path.quaternion,
-        twist.velocity,
-        twist.spin,
-        amount,
-        reach_m,
-        touch_m,
-    )
-    if crossing < math.inf and is_curved:
-        guard, enough = Guard(CONTACT_ENDS, NO_HIT, leaving, 0.0), (NEAR_END * touch_m, NEAR_END * touch_m / speed)
-        crossing = first_past(setting, path, guard, math.inf, crossing, spread, enough, work)
-    if crossing < amount:
-        amount, hit = crossing, NO_HIT
+    for i in range(contacts.used[0]):
+        if not is_kept(contacts, i):
+            continue
+        crossing = edge_crossing(
+            setting.geometry,
+            placement,
+            contacts,
+            i,
+            path.position,
+            path.quaternion,
+            twist.velocity,
+            twist.spin,
+            amount,
+            reach_m,
+            touch_m,
+        )
+        if crossing < amount and is_curved:
+            guard, enough = Guard(CONTACT_ENDS, NO_HIT, i, 0.0), (NEAR_END * touch_m, NEAR_END * touch_m / speed)
+            crossing = first_past(setting, path, guard, math.inf, crossing, spread, enough, work)
+        amount = min(amount, crossing)
     if amount == math.inf:
         return amount, True, path.position, path.quaternion
     if amount < hit.amount:

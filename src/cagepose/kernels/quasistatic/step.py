@@ -170,16 +170,17 @@ def twist_of_step(
     quaternion: Quaternion,
     frame: Frame,
     turn_step_rad: float,
+    slides: bool,
     work: QuasistaticWorkspace,
-) -> Twist:
-    """Return the twist of an implicit step, as far as it may go."""
+) -> tuple[Twist, float]:
+    """Return the twist of an implicit step, as far as it may go, and how much of it keeps its direction."""
     velocity, spin = twist_of(work.scratch[0].stiff.delta, frame)
     spin = straightened(velocity, spin, setting.body.reach_m, 0.0)
     longest = min(
-        longest_step(work.contacts, velocity, spin, True, turn_step_rad, setting.size_m),
+        longest_step(work.contacts, velocity, spin, slides, turn_step_rad, setting.size_m),
         longest_pull(setting.load, position, quaternion, velocity, spin, turn_step_rad, setting.size_m),
     )
-    return Twist(velocity, spin, min(1.0, longest))
+    return Twist(velocity, spin, min(1.0, longest)), longest
 
 
 @kernel
@@ -206,6 +207,7 @@ def next_twist(
         longest_step(contacts, velocity, spin, carries, turn_step_rad, size_m),
         longest_pull(load, position, quaternion, velocity, spin, turn_step_rad, size_m),
     )
+    twist = Twist(velocity, spin, end)
     if end < math.inf:
         write_curvature(contacts, load, position, quaternion, frame, False, scratch.stiff.curvature)
         least_rho = keep_along_faces(contacts, scratch.solver.locked, DEPENDENT_COLUMN, scratch.stiff)
@@ -216,7 +218,7 @@ def next_twist(
         is_valley = is_convex(least_rho, scratch.stiff)
         asks_shared = friction == 0.0 and carries and (is_still or not (is_valley or is_convex(rho, scratch.stiff)))
         if asks_shared and is_shared(setting, position, quaternion, frame, rho, work):
-            return twist_of_step(setting, position, quaternion, frame, turn_step_rad, work), False
+            return twist_of_step(setting, position, quaternion, frame, turn_step_rad, True, work)[0], False
         is_stiff = abs(curvature_along(scratch.stiff.curvature, y, contacts.n_freedoms)) * end > STIFF
         turns = turn_of_normals(contacts, velocity, spin)
         is_round = turns * end > STIFF * turn_step_rad and turns > ROUND * norm(spin)
@@ -226,17 +228,11 @@ def next_twist(
             ):
                 break
             is_stable = is_valley
-            velocity, spin = twist_of(scratch.stiff.delta, frame)
-            spin = straightened(velocity, spin, setting.body.reach_m, 0.0)
-            longest = min(
-                longest_step(contacts, velocity, spin, carries, turn_step_rad, size_m),
-                longest_pull(load, position, quaternion, velocity, spin, turn_step_rad, size_m),
-            )
-            end = min(1.0, longest)
+            twist, longest = twist_of_step(setting, position, quaternion, frame, turn_step_rad, carries, work)
             if longest < 2.0 or rho <= least_rho:
                 break
             rho = max(rho / longest, least_rho)
-    return Twist(velocity, spin, end), is_stable
+    return twist, is_stable
 
 
 @kernel
