@@ -9,7 +9,7 @@ import pytest
 
 from audit.balance import imbalance
 from audit.geometry import deepest, farthest_move
-from cagepose import Cage, Contact, Load, Pose, Scene, Spring, run
+from cagepose import Box, Cage, Contact, Load, Object, Pose, Scene, Spring, run
 from cagepose.files.scene_file import parse_scene
 from quasistatic.paths import RESTS, path_of, potential
 from quasistatic.test_end_poses import came_back, is_isolated
@@ -141,3 +141,25 @@ loads:
     result = run(scene)
     assert result.verdict == "rests"
     assert result.pose.position_m == pytest.approx([0.0, 0.0, 0.04], abs=1e-12)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_where_the_ends_of_a_spring_have_met_nothing_is_said_to_rest(friction):
+    """A cube falls by 2 mm on a tray, where the ends of its spring meet that still pushes by 4 N then: in no direction.
+    Held 2 um higher, which is no rounding any more, it pushes the cube down.
+    """
+    cube_2_mm_up = [Box((0.01, 0.01, 0.01), name="cube")]
+    held = Object(cube_2_mm_up, pose=Pose((0.0, 0.0, 0.002)), mass_kg=0.02)
+    tray = Box((0.05, 0.05, 0.01), Pose((0.0, 0.0, -0.01)), name="tray")
+    weight = Load("weight", gravity=(0.0, 0.0, -9.81))
+    verdicts = []
+    for higher_m in (0.0, 2e-6):
+        tension_at_start = -4.0 + 100.0 * (0.002 - higher_m)
+        spring = Spring((0.0, 0.0, 0.002), (0.0, 0.0, 0.002 + higher_m), 100.0, tension_at_start)
+        pull = Load("spring", gravity=(0.0, 0.0, -9.81), springs=[spring])
+        result = run(Scene(held, Cage(shapes=[tray]), [weight, pull], friction_coefficient=friction))
+        verdicts.append(result.phases[-1].verdict)
+        assert result.phases[0].verdict == "rests"
+        assert any("have met, where it pulls nowhere" in warning for warning in result.warnings) == (higher_m == 0.0)
+        assert result.failed == (higher_m == 0.0)
+    assert verdicts == ["stalled", "rests"]

@@ -13,7 +13,5 @@ PARALLEL_SINE = 1e-6
 """Sine between normals. Normals at a smaller angle are one direction."""
 LEAST_MOMENT = 1e-3
 """Fraction of force times distance. A smaller moment drives no turn (R3)."""
-LENGTH_OF_NO_SPRING = 1e-6
-"""In sizes of the scene. The ends of a shorter spring count as one point."""
 LEAST_RADIUS_OF_GYRATION = 1e-9
 """In lengths of the object. No radius of gyration is less."""

@@ -7,11 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from cagepose.kernels.contact.tolerances import LENGTH_OF_NO_SPRING
 from cagepose.model.scene import Scene
 from cagepose.runs.actions import tensions_at_zero
 from cagepose.runs.load_scaling import WEIGHT_BESIDE_FORCE, scaled_load
 from cagepose.runs.run import FAILURES, PhaseRun
-from cagepose.runs.tolerances import LENGTH_OF_NO_SPRING
 
 
 def seam_warnings(scene: Scene) -> Iterator[str]:

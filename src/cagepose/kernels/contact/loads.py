@@ -12,7 +12,7 @@ from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.contact.cardan import cardan_at, cardan_moment, cardan_turns
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
-from cagepose.kernels.contact.tolerances import SHORTEST_SPRING
+from cagepose.kernels.contact.tolerances import LENGTH_OF_NO_SPRING, SHORTEST_SPRING
 from cagepose.kernels.native.kernel import kernel
 
 DEAD_FORCE, FOLLOWING_FORCE, DEAD_MOMENT, FOLLOWING_MOMENT, SPRING, CARDAN_MOMENT = 0, 1, 2, 3, 4, 5
@@ -127,6 +127,20 @@ def write_load(load: PhaseLoad, position: Vector, quaternion: Quaternion, frame:
         force, moment = plus(force, scaled(one.force, one.share)), plus(moment, scaled(one.moment, one.share))
     write_scaled_wrench(force, moment, frame, out)
     return terms
+
+
+@kernel
+def pulls_nowhere(load: PhaseLoad, position: Vector, quaternion: Quaternion, size_m: float) -> bool:
+    """Whether the ends of a spring have met, which pulls there all the same: in no direction, so that nothing can be
+    said of the load.
+    """
+    for which in range(len(load)):
+        action = load[which]
+        if action.kind == SPRING and action.tension_at_zero != 0.0:
+            way = spring_vector(action, position, arm_of(action, quaternion))
+            if norm(way) <= LENGTH_OF_NO_SPRING * size_m:
+                return True
+    return False
 
 
 @kernel

@@ -41,6 +41,8 @@ SLIP_TRIED_LAST = 1e-10
 """In lengths of the motion. The same for the second trial."""
 LAST_CHANGE = 1e-14
 """In lengths of the load. After so small a change the next one is rounding, since the digits double."""
+LENGTH_OF_NO_SPRING = 1e-6
+"""In sizes of the scene. The ends of a shorter spring count as one point."""
 SHORTEST_SPRING = 1e-12
 """In sizes of the scene. A spring is taken to be no shorter, where its length limits a step."""
 LAST_TURN_RAD = 1e-9

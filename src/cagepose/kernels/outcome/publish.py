@@ -10,6 +10,7 @@ from cagepose.kernels.algebra.vector import Vector, plus, vector_from
 from cagepose.kernels.boundary.features import FACE
 from cagepose.kernels.boundary.geometry import held_at
 from cagepose.kernels.boundary.surface_end import ends_near
+from cagepose.kernels.contact.loads import pulls_nowhere
 from cagepose.kernels.contact.metric import frame_at, twist_of
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.cases import Part, Start, object_position
@@ -22,7 +23,7 @@ from cagepose.kernels.stability.proof_search import judge
 PHASES, EVENTS, STEPS, CONTACTS = 0, 1, 2, 3
 """Places in `Outcome.counts`."""
 NO_BALANCE = (PROVEN_MOVES, TOO_MANY_CONTACTS)
-"""Proofs of a pose that is not shown as rest, whatever a run says: the last correction has taken it out of balance."""
+"""Proofs of a pose that is not shown as rest, whatever a run says."""
 
 
 @kernel
@@ -50,6 +51,14 @@ def judge_end(
 
 
 @kernel
+def is_no_rest(code: int, phase: int, position: Vector, quaternion: Quaternion, start: Start) -> bool:
+    """Whether a pose at which a run came to rest is not shown as rest: the last correction has taken it out of balance,
+    or a spring pulls nowhere there.
+    """
+    return code in NO_BALANCE or pulls_nowhere(start.actions[phase], position, quaternion, start.size_m)
+
+
+@kernel
 def end_phase(
     verdict: int,
     phase: int,
@@ -64,7 +73,7 @@ def end_phase(
     verdict.
     """
     code, stability, n_undetermined = judge_end(phase, position, quaternion, start, part, at)
-    if verdict == RESTS and code in NO_BALANCE:
+    if verdict == RESTS and is_no_rest(code, phase, position, quaternion, start):
         verdict = STALLED
     record = outcome.phases[phase]
     record.verdict = verdict

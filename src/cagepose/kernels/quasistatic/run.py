@@ -14,7 +14,7 @@ from cagepose.kernels.boundary.overlap import forget_shells
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.outcome.cases import Cases, Part, Start, is_valid, start_of
 from cagepose.kernels.outcome.endings import INVALID, Endings, write_ending
-from cagepose.kernels.outcome.publish import NO_BALANCE, begin, end_phase, judge_end, publish_events
+from cagepose.kernels.outcome.publish import begin, end_phase, is_no_rest, judge_end, publish_events
 from cagepose.kernels.outcome.records import Outcome
 from cagepose.kernels.outcome.trace import LIMIT, RESTS, STALLED, StepRecord
 from cagepose.kernels.quasistatic.setting import Setting
@@ -149,8 +149,9 @@ def run_quasistatic_cases(
         for phase in range(len(start.actions)):
             verdict, n_steps, position, quaternion = run_phase(start, part, rules, phase, position, quaternion, work)
             if verdict == RESTS:
-                endings.proofs[case, phase], _, _ = judge_end(phase, position, quaternion, start, part, work.proof)
-                if endings.proofs[case, phase] in NO_BALANCE:
+                proof, _, _ = judge_end(phase, position, quaternion, start, part, work.proof)
+                endings.proofs[case, phase] = proof
+                if is_no_rest(proof, phase, position, quaternion, start):
                     verdict = STALLED
             write_ending(endings, case, phase, verdict, n_steps, position, quaternion, start, part)
             for i in range(work.contacts.used[0]):
