@@ -66,9 +66,9 @@ class ConeWorkspace:
 
 @kernel
 def steepest_tangent(contacts: ContactSet, i: int, vector: FloatArray) -> tuple[float, float, float]:
-    """Return (length of the tangential part of a scaled motion at a contact, its direction)."""
-    columns, n = contacts.rows[i].columns, contacts.n_freedoms
-    one, two = inner(columns[1], vector, n), inner(columns[2], vector, n)
+    """Return (length of the slip at a contact in a scaled motion, its direction)."""
+    columns, drift, n = contacts.rows[i].columns, contacts.rows[i].drift, contacts.n_freedoms
+    one, two = inner(columns[1], vector, n) + drift[1], inner(columns[2], vector, n) + drift[2]
     size = math.sqrt(one * one + two * two)
     if size == 0.0:
         return 0.0, 1.0, 0.0
@@ -117,14 +117,16 @@ def generator_price(contacts: ContactSet, i: int, friction: float, cone: ConeWor
             nearest = min(nearest, apart)
     if nearest < math.inf:
         return friction * slip * nearest, True
-    price = inner(contacts.rows[i].columns[0], passive.residual, contacts.n_freedoms) + friction * slip
+    row = contacts.rows[i]
+    price = inner(row.columns[0], passive.residual, contacts.n_freedoms) + row.drift[0] + friction * slip
     if passive.n_rows > contacts.n_freedoms:
         price += passive.residual[contacts.n_freedoms]
-    return price - generator_cost(contacts, i, friction, cone), False
+    return price - slip_cost(contacts, i, friction, cone), False
 
 
 @kernel
-def generator_cost(contacts: ContactSet, i: int, friction: float, cone: ConeWorkspace) -> float:
+def slip_cost(contacts: ContactSet, i: int, friction: float, cone: ConeWorkspace) -> float:
+    """Return what a unit of a contact's normal force costs with De Saxce's correction."""
     return friction * contacts.states[i].slip_speed if cone.is_corrected else 0.0
 
 
@@ -186,7 +188,8 @@ def add_generator(contacts: ContactSet, friction: float, number: int, cone: Cone
     cone.column[n] = 1.0
     cone.contacts[number] = best
     cone.directions[number, 0], cone.directions[number, 1] = one, two
-    cost = generator_cost(contacts, best, friction, cone)
+    drift = contacts.rows[best].drift
+    cost = slip_cost(contacts, best, friction, cone) - drift[0] - friction * (one * drift[1] + two * drift[2])
     if append_column(passive, cone.column, number, cost) or (
         cone.is_corrected and exchange_column(passive, cone.column, number, cost)
     ):

@@ -52,6 +52,9 @@ class ContactRow:
         negative.
     columns
         The same, but for what contacts without play lock, see `self_stress`.
+    drift
+        How fast the contact closes, and slips along its tangents, where the object stands still: the cage's body is
+        driven. Zero in all questions about rest.
     """
 
     part: int
@@ -67,6 +70,7 @@ class ContactRow:
     arm: Annotated[FloatArray, 3]
     wrenches: Annotated[FloatArray, 3, MOST_FREEDOMS]
     columns: Annotated[FloatArray, 3, MOST_FREEDOMS]
+    drift: Annotated[FloatArray, 3]
 
 
 class ContactState:
@@ -188,11 +192,11 @@ def tangents_to(normal: Vector) -> tuple[Vector, Vector]:
 
 @kernel
 def write_directions(contact: ContactRow, normal: Vector, arm: Vector, share: float, frame: Frame) -> None:
-    """Write normal and tangents of a contact, and its wrenches; the tangents are ``share`` long."""
+    """Write normal and tangents of a contact that does not drift, and its wrenches; the tangents are ``share`` long."""
     one, other = tangents_to(normal)
     directions = (normal, scaled(one, share), scaled(other, share))
     for k in range(3):
-        contact.arm[k] = arm[k]
+        contact.arm[k], contact.drift[k] = arm[k], 0.0
     for j in range(3):
         for k in range(3):
             contact.directions[j, k] = directions[j][k]

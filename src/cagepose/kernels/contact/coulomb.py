@@ -74,7 +74,7 @@ def coulomb_error(contacts: ContactSet, friction: float, y: FloatArray) -> float
             continue
         contact, forces = contacts.rows[i], contacts.states[i].forces
         size = length(contact.columns[0], contacts.n_freedoms)
-        normal = inner(contact.columns[0], y, contacts.n_freedoms)
+        normal = inner(contact.columns[0], y, contacts.n_freedoms) + contact.drift[0]
         slip, one, two = steepest_tangent(contacts, i, y)
         worst = max(worst, normal / size, min(-normal / size, forces[0] * size), -forces[0] * size)
         tangential = math.sqrt(forces[1] * forces[1] + forces[2] * forces[2])

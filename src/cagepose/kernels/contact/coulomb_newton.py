@@ -105,13 +105,13 @@ def write_system(
     # the unknowns of each contact that carries
     for place in range(newton.n_carrying):
         i, first, mode = newton.contacts[place], newton.first_unknowns[place], newton.modes[place]
-        columns, forces = contacts.rows[i].columns, contacts.states[i].forces
+        columns, drift, forces = contacts.rows[i].columns, contacts.rows[i].drift, contacts.states[i].forces
         if mode != SLIPS:
             for j in range(n_forces(mode)):
                 for k in range(n_freedoms):
                     m[k, first + j] = m[first + j, k] = columns[j, k]
                     m[k, n] -= columns[j, k] * forces[j]
-                m[first + j, n] = -inner(columns[j], y, n_freedoms)
+                m[first + j, n] = -inner(columns[j], y, n_freedoms) - drift[j]
         else:
             # The friction across is that along, times the change of the slip across, over the slip. That as a factor in
             # the balance would be so great where the slip is slow that other equations seem singular beside it.
@@ -126,7 +126,7 @@ def write_system(
                 m[k, first + 1] = two * columns[1, k] - one * columns[2, k]
                 m[first + 1, k] = along / greater * m[k, first + 1]
             m[first + 1, first + 1] = -slip / greater
-            m[first, n] = -inner(columns[0], y, n_freedoms)
+            m[first, n] = -inner(columns[0], y, n_freedoms) - drift[0]
 
 
 @kernel

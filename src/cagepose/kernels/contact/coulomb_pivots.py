@@ -93,6 +93,16 @@ def generator_at(contacts: ContactSet, i: int, which: int, k: int, work: PivotWo
 
 
 @kernel
+def drift_at(contacts: ContactSet, i: int, which: int, work: PivotWorkspace) -> float:
+    """Return the drift of a contact along one of its forces."""
+    drift = contacts.rows[i].drift
+    if which == 0:
+        return float(drift[0])
+    one, two = side_of(i, which, work)
+    return float(one * drift[1] + two * drift[2])
+
+
+@kernel
 def write_dictionary(contacts: ContactSet, friction: float, b: FloatArray, n: int, work: PivotWorkspace) -> None:
     """Write the problem: the left sides as functions of forces and slip speeds, with Lemke's unknown added to all."""
     m, size = work.dictionary, length(b, contacts.n_freedoms)
@@ -107,6 +117,7 @@ def write_dictionary(contacts: ContactSet, friction: float, b: FloatArray, n: in
         first = work.firsts[i]
         for which in range(n_generators(contacts, i) if first >= 0 else 0):
             row = first + which
+            m[row, n + 1] -= drift_at(contacts, i, which, work)
             # a contact does not close, and no side of its pyramid slips faster than its slip speed
             for k in range(contacts.n_freedoms):
                 mine = generator_at(contacts, i, which, k, work)

@@ -139,5 +139,5 @@ def find_sticking(
         state.stays_flat = keeps_on_circle(contacts, i, velocity, spin, touch_m, error)
         state.is_sticking = state.forces[0] > 0.0 and friction > 0.0 and not is_smooth(contacts, i)
         for j in range(1, 3):
-            if abs(inner(columns[j], y, n)) > allowed * length(columns[j], n):
+            if abs(inner(columns[j], y, n) + contacts.rows[i].drift[j]) > allowed * length(columns[j], n):
                 state.is_sticking = False
