@@ -48,3 +48,5 @@ VIOLATION_TRIED = 0.2
 """Fraction of the load's power. A motion that violates Coulomb's law by less power is tried by Newton's method."""
 SLIP_AT_REST = 1e-6
 """In lengths of the motion. A contact that moves more slowly stands still."""
+SPEED_OF_PROOF = 1e-9
+"""In lengths of the motion. A force that does less work than the drive by so little does as much."""
