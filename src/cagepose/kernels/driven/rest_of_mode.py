@@ -1,0 +1,233 @@
+"""The rest of one contact mode: where given contacts carry, slide or stick, and balance the load, to full digits.
+
+Balance and gaps are one system, of the object's motion and of the forces of the contacts (a saddle point),
+
+    (rho 1 + S) delta + A df = b - A f,    a_i . delta = g_i,    and t_i . delta = 0 where a contact sticks,
+
+with the friction of a contact that slides along its slip: along the way that it has slipped since the last rest, as in
+an implicit step. Friction turns with that way, and so it resists what slips aside: a peg that slides down its hole does
+not turn about its axis. Newton's method solves it, with S that of the forces as they are: a step is right but for how
+friction turns with the normals.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+from cagepose.kernels.algebra.dense import frobenius_norm
+from cagepose.kernels.algebra.elimination import eliminate
+from cagepose.kernels.algebra.least_squares import MOST_FREEDOMS, inner, length
+from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
+from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.vector import Vector, minus, norm, vector_from
+from cagepose.kernels.boundary.bend import curvatures, write_bend
+from cagepose.kernels.boundary.features import place_feature, place_feature_at
+from cagepose.kernels.boundary.geometry import Geometry, Placement, cage_at, held_moved
+from cagepose.kernels.boundary.kept import meeting_kept
+from cagepose.kernels.contact.contact_set import ContactSet, is_smooth, write_directions
+from cagepose.kernels.contact.coulomb_newton import (
+    CARRYING_LIMIT,
+    SLIDES,
+    SLIPS,
+    STICKS,
+    NewtonWorkspace,
+    add_carrying,
+)
+from cagepose.kernels.contact.curvature import write_curvature
+from cagepose.kernels.contact.loads import write_load
+from cagepose.kernels.contact.metric import Frame, ScaledVector, frame_at, moved_along_twist, twist_of
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.quasistatic.setting import Setting
+
+MOST_STEPS = 25
+LEAST_STIFFNESS = 1e-9
+"""In lengths of the load over the size: what moves freely goes the shortest way."""
+ON_FACE, BALANCED = 4e-16, 1e-14
+"""In sizes of the scene, and in lengths of the load's terms: rounding."""
+NEARLY_ON_FACE, NEARLY_BALANCED = 4e-13, 1e-11
+"""Likewise: what will do where rounding does not let it come nearer."""
+
+
+class RestWorkspace:
+    """Memory for one rest; a record.
+
+    Attributes
+    ----------
+    newton, curvature, load, delta
+        The system, S, the load, and a step.
+    slips
+        How far each contact that counts, in their order, has slipped since the last rest, along its tangents, metres
+        times their length. Given: up to the pose to start from.
+    """
+
+    newton: NewtonWorkspace
+    curvature: Annotated[FloatArray, MOST_FREEDOMS, MOST_FREEDOMS]
+    load: ScaledVector
+    delta: ScaledVector
+    slips: Annotated[FloatArray, CARRYING_LIMIT, 2]
+
+
+@kernel
+def follow_contact(
+    geometry: Geometry,
+    placement: Placement,
+    contacts: ContactSet,
+    i: int,
+    position: Vector,
+    quaternion: Quaternion,
+    frame: Frame,
+) -> bool:
+    """Write where the features of a contact meet with the object at a pose, and how they bend; False: they do not."""
+    row, moved = contacts.rows[i], held_moved(geometry, placement)
+    cage, share = cage_at(geometry, row.cage_body), norm(vector_from(row.directions[1]))
+    place_feature_at(moved, row.feature, position, matrix_from_quaternion(quaternion))
+    place_feature(cage, row.cage_feature)
+    places = placement.memory.places
+    met = meeting_kept(moved, row.feature, cage, row.cage_feature, row.angle, False, geometry.touch_m, places)
+    if not met.is_one:
+        return False
+    arm = minus(met.place, position)
+    row.gap = met.gap
+    write_directions(row, met.normal, arm, share, frame)
+    found = curvatures(moved, row.feature, cage, row.cage_feature, met, False)
+    write_bend(found, met.normal, arm, frame.axes, frame.radii, contacts.bends[i])
+    return True
+
+
+@kernel
+def list_carrying(contacts: ContactSet, friction: float, work: RestWorkspace) -> int:
+    """List the contacts that carry, and what they do; return the number of unknowns, -1: too many."""
+    newton = work.newton
+    newton.n_carrying, n = 0, contacts.n_freedoms
+    for i in range(contacts.used[0]):
+        if not contacts.states[i].counts:
+            continue
+        slides = friction == 0.0 or is_smooth(contacts, i)
+        mode = SLIDES if slides else STICKS if contacts.states[i].is_sticking else SLIPS
+        add_carrying(newton, i, mode)
+        if newton.n_carrying < 0:
+            return -1
+        newton.first_unknowns[newton.n_carrying - 1] = n
+        n += 3 if mode == STICKS else 1
+    return n
+
+
+@kernel
+def along_slip(place: int, work: RestWorkspace) -> tuple[float, float, float]:
+    """Return (length of a contact's slip, its direction); a contact that has not slipped has no friction."""
+    one, two = work.slips[place, 0], work.slips[place, 1]
+    size = math.sqrt(one * one + two * two)
+    if work.newton.modes[place] != SLIPS or size == 0.0:
+        return 0.0, 0.0, 0.0
+    return size, one / size, two / size
+
+
+@kernel
+def write_system(contacts: ContactSet, friction: float, least: float, n: int, work: RestWorkspace) -> float:
+    """Write the system of one step for the forces and gaps as they are, and the load; return the stiffness that forces
+    are measured in: the numbers of the contacts are as large as S then, and none is taken for rounding beside it.
+    """
+    newton, n_freedoms = work.newton, contacts.n_freedoms
+    m, stiff = newton.matrix, frobenius_norm(work.curvature, contacts.n_freedoms) + least
+    for j in range(n):
+        for k in range(n + 1):
+            m[j, k] = 0.0
+    for j in range(n_freedoms):
+        for k in range(n_freedoms):
+            m[j, k] = work.curvature[j, k]
+        m[j, j] += least
+        m[j, n] = work.load[j]
+    for place in range(newton.n_carrying):
+        i, first = newton.contacts[place], newton.first_unknowns[place]
+        columns, forces, n_own = contacts.rows[i].columns, contacts.states[i].forces, 1
+        if newton.modes[place] == STICKS:
+            n_own = 3
+        size, one, two = along_slip(place, work)
+        for which in range(n_own):
+            for k in range(n_freedoms):
+                along = columns[which, k] + friction * (one * columns[1, k] + two * columns[2, k])
+                m[k, first + which] = stiff * along
+                m[first + which, k] = stiff * columns[which, k]
+                m[k, n] -= along * forces[which]
+        m[first, n] = stiff * contacts.rows[i].gap
+        if size > 0.0:  # friction turns with the slip
+            resists = friction * forces[0] / size
+            for j in range(n_freedoms):
+                aside = one * columns[2, j] - two * columns[1, j]
+                for k in range(n_freedoms):
+                    m[j, k] += resists * aside * (one * columns[2, k] - two * columns[1, k])
+    return stiff
+
+
+@kernel
+def take_step(contacts: ContactSet, friction: float, stiff: float, n: int, work: RestWorkspace) -> None:
+    """Solve the system; change the forces, and write the motion."""
+    newton, n_freedoms = work.newton, contacts.n_freedoms
+    eliminate(newton.matrix, newton.order, newton.greatest_of, n)
+    for k in range(n):
+        newton.changes[newton.order[k]] = newton.matrix[k, n]
+    for k in range(n_freedoms):
+        work.delta[k] = newton.changes[k]
+    for place in range(newton.n_carrying):
+        i, first, mode = newton.contacts[place], newton.first_unknowns[place], newton.modes[place]
+        columns, forces = contacts.rows[i].columns, contacts.states[i].forces
+        for which in range(3 if mode == STICKS else 1):
+            forces[which] += stiff * newton.changes[first + which]
+        if mode == SLIPS:
+            for which in range(2):
+                work.slips[place, which] += inner(columns[1 + which], work.delta, n_freedoms)
+            _, one, two = along_slip(place, work)
+            forces[1], forces[2] = friction * forces[0] * one, friction * forces[0] * two
+
+
+@kernel
+def rest_of_mode(
+    setting: Setting,
+    placement: Placement,
+    contacts: ContactSet,
+    position: Vector,
+    quaternion: Quaternion,
+    work: RestWorkspace,
+) -> tuple[bool, Vector, Quaternion]:
+    """Return whether there is a rest of a mode near a pose, and its pose; forces and wrenches are those there.
+
+    Parameters
+    ----------
+    setting
+        With the load as it is.
+    placement
+        Memory, with the bodies of the cage where they are.
+    contacts
+        Those that count carry, with forces to start from. They stick if their states say so, and slide else.
+    position, quaternion
+        Where to start from.
+    work
+        Given: the slips.
+    """
+    friction, least_worst = setting.friction.greatest, math.inf
+    n = list_carrying(contacts, friction, work)
+    for _ in range(MOST_STEPS if n > 0 else 0):
+        frame = frame_at(setting.body, quaternion)
+        worst_m = 0.0
+        for place in range(work.newton.n_carrying):
+            i = work.newton.contacts[place]
+            if not follow_contact(setting.geometry, placement, contacts, i, position, quaternion, frame):
+                return False, position, quaternion
+            worst_m = max(worst_m, abs(contacts.rows[i].gap))
+        terms = write_load(setting.load, position, quaternion, frame, work.load)
+        write_curvature(contacts, setting.load, position, quaternion, frame, False, work.curvature)
+        stiff = write_system(contacts, friction, LEAST_STIFFNESS * terms / setting.size_m, n, work)
+        for k in range(contacts.n_freedoms):
+            work.delta[k] = work.newton.matrix[k, n]
+        left = length(work.delta, contacts.n_freedoms) / terms
+        worst = max(worst_m / (ON_FACE * setting.size_m), left / BALANCED)
+        if worst <= 1.0 or worst >= least_worst:
+            done = worst_m <= NEARLY_ON_FACE * setting.size_m and left <= NEARLY_BALANCED
+            if worst <= 1.0 or done:
+                return True, position, quaternion
+        least_worst = min(least_worst, worst)
+        take_step(contacts, friction, stiff, n, work)
+        velocity, spin = twist_of(work.delta, frame)
+        position, quaternion = moved_along_twist(position, quaternion, velocity, spin, 1.0)
+    return False, position, quaternion
