@@ -11,6 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from audit.caged_families import pushed_block
+from audit.families import make_case
 from cagepose import Box, Cage, Load, Object, Pose, Scene, load_scene, run
 from cagepose.model.shapes import Capsule, Cylinder
 from cagepose.paper.cases import sample_scene
@@ -18,6 +19,7 @@ from cagepose.runs.judge import judge_pose
 from cagepose.studies.support import convex_hull, load_view
 from cagepose.studies.support_region import support_region
 from cagepose.studies.tolerances import DISTANCE_OF_CORNER
+from mapped_scenes import mapped
 
 
 def test_gravity_along_minus_z_is_seen_from_above():
@@ -171,6 +173,33 @@ def test_a_weight_is_balanced_just_inside_the_region_and_not_just_outside(cases)
                 assert (proof.verdict != "moves") == is_in
                 n_asked += 1
     assert n_asked > 50
+
+
+def test_a_region_does_not_depend_on_where_down_is(cases):
+    """The same blocks between points, with the world turned about them: down is along no axis any more."""
+    random, n_asked = np.random.default_rng(9), 0
+    for _ in range(cases(25, 400)):
+        pushed = pushed_block(random, 0.3)
+        weight = [Load("weight", gravity=(0, 0, -1))]
+        plain = Scene(pushed.object, pushed.cage, weight, friction_coefficient=0.3)
+        a_run = run(plain)
+        if a_run.verdict not in ("rests", "may rest"):
+            continue
+        frame, order = Pose((0.0, 0.0, 0.0), random.normal(size=4)), np.arange(len(plain.cage.names))
+        turned = run(mapped(plain, frame=frame, scale=1.0, flip=np.ones(3), order=order))
+        expected, found = (region_of(one)[1].margin_m for one in (a_run, turned))
+        n_asked += 1
+        assert found == pytest.approx(expected, rel=1e-3, abs=1e-5 * plain.size_m)  # corners are as near as is told
+    assert n_asked > 10
+
+
+def test_a_load_that_leans_against_every_axis_has_its_region_too():
+    """An ordinary part on its edge: 1.43653 mm beyond its region by a linear program with 720 rays a cone."""
+    a_run = run(make_case("ordinary", 4).scene)
+    view = load_view(a_run, 1)
+    found = support_region(a_run, 1, view, 10.0 * a_run.scene.size_m)
+    assert found is not None
+    assert found.margin_m == pytest.approx(-1.43653e-3, rel=2e-4)
 
 
 def test_a_can_is_supported_within_all_of_its_rim():

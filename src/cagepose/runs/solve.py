@@ -7,6 +7,8 @@ import time
 from collections import OrderedDict
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.records import Outcome, empty_outcome
 from cagepose.model.scene import Scene
@@ -86,6 +88,8 @@ def _workspace(scene: Scene, method: Method, step_limit: int) -> _Workspace:
 
 
 def _sizes(scene: Scene) -> tuple[int, ...]:
-    """How many parts, features and nodes the boundaries of a scene have."""
-    bodies = (scene.geometry.held, scene.geometry.cage.own)
-    return tuple(len(rows) for body in bodies for rows in (body.parts, body.features, body.nodes))
+    """How many parts, features and nodes the boundaries of a scene have, and how the cage's are divided into bodies."""
+    held, cage = scene.geometry.held, scene.geometry.cage
+    of_bodies = np.bincount(np.asarray(cage.own.parts)["body"], minlength=len(cage.first_nodes) - 1)
+    sizes = (len(rows) for body in (held, cage.own) for rows in (body.parts, body.features, body.nodes))
+    return (*sizes, *cage.first_nodes.tolist(), *of_bodies.tolist())

@@ -71,8 +71,8 @@ def contact_cones(normals: FloatArray, arms_m: FloatArray, friction: FloatArray)
 class ConeProgram:
     """max objective . y over motions y with (ray of contact i) . y >= least_i for all of its rays n + mu d.
 
-    Rays that an answer leans on stay for the next one. A cone that a motion violates by less than ``cut_from`` of its
-    length is left as it is.
+    Rays stay from one program to the next. A cone that a motion violates by less than ``cut_from`` of its length is
+    left as it is.
     """
 
     def __init__(self, cones: ContactCones, cut_from: float) -> None:
@@ -101,7 +101,7 @@ class ConeProgram:
         least
             Of each contact's rays, (n,); -inf: the contact does not count.
         row
-            One more row: row . y <= 1, (6,).
+            One more row, of motions without an offset: row . y <= 1, (6,).
         offset
             Of the motion beside what is free of it, see `ConeRays`, (6,).
 
@@ -120,9 +120,10 @@ class ConeProgram:
             outcome = reach(*self._slots, self.cut_from)
         return outcome, self.work.motion.copy()
 
-    def confine(self, projection: FloatArray) -> None:
-        """Let motions be free within a space only, by a projection onto it, (6, 6)."""
-        self.work.projection[:] = projection
+    def confine(self, basis: FloatArray) -> None:
+        """Let motions be sums of some only, (n, 6), n up to 6: ``objective`` and ``row`` are of their shares."""
+        self.work.basis[:] = 0.0
+        self.work.basis[: len(basis)] = basis
 
     def wrench(self) -> FloatArray:
         """Return the wrench of the forces that the last answer leans on, (6,)."""
@@ -132,7 +133,7 @@ class ConeProgram:
 def _with_room(work: ConeRays) -> ConeRays:
     """Return the same question and rays, with memory for twice as many."""
     wider, n = empty_cone_rays(work.columns, work.friction, 2 * len(work.contacts)), len(work.contacts)
-    for name in ("least", "row", "projection", "offset", "used"):
+    for name in ("least", "row", "basis", "offset", "used"):
         getattr(wider, name)[:] = getattr(work, name)
     wider.contacts[:n], wider.rays[:n] = work.contacts, work.rays
     return wider

@@ -169,8 +169,8 @@ class _Region:
         self.length_m = float(moments.max(initial=0.0)) / math.sqrt(2.0) or 1.0
         columns = np.concatenate([-wrenches[:, :, :3], -wrenches[:, :, 3:] / self.length_m], axis=2)
         self.program = ConeProgram(ContactCones(columns, friction, self.length_m), VIOLATION_OF_CONE)
-        free = np.eye(6)
-        free[3:, 3:] = np.outer(self.down, self.down)
+        free = np.eye(4, 6)
+        free[3, 3:] = self.down
         self.program.confine(free)
         self.is_empty = self._solve(np.zeros(3))[0] == UNBOUNDED  # be it that moments have no end
 

@@ -84,7 +84,7 @@ def number_unknowns(contacts: ContactSet, y: FloatArray, newton: NewtonWorkspace
             newton.modes[place] = STICKS  # a slip without direction
         newton.first_unknowns[place] = n
         n += n_forces(newton.modes[place])
-        if n > UNKNOWNS:
+        if n > contacts.n_freedoms + CARRYING_LIMIT:
             return -1
     return -1 if newton.n_carrying < 0 else n
 

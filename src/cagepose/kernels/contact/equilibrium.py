@@ -7,7 +7,7 @@ On an edge one face that holds or leaves is enough (2.4): a load is balanced if 
 from __future__ import annotations
 
 from cagepose.kernels.algebra.dense import remove_span
-from cagepose.kernels.algebra.least_squares import append_column, clear, inner, length
+from cagepose.kernels.algebra.least_squares import WRENCH, append_column, clear, inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import norm, vector_from
 from cagepose.kernels.contact.cone import clear_cone, cone_residual, write_forces
@@ -152,7 +152,11 @@ def equilibrium_with_faces(
 def needs_second_order(contacts: ContactSet, code: int, friction: float, work: ContactWorkspace) -> bool:
     """Whether contacts without play may stop what forces do not: where these do not balance the load, or are without
     bound. Without friction contacts that carry do not press against each other, so another one must be closed as well.
+
+    Curvatures are of one free body, so that with more freedoms nothing is asked to second order.
     """
+    if contacts.n_freedoms != WRENCH:
+        return False
     pushed, n_idle = 0.0, 0
     for i in range(contacts.used[0]):
         pushed += contacts.states[i].forces[0]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
-from cagepose.kernels.algebra.least_squares import MOST_ROWS, WRENCH
+from cagepose.kernels.algebra.least_squares import MOST_ROWS
 from cagepose.kernels.algebra.motion import motion_of, moved_point, turned_by_amount
 from cagepose.kernels.algebra.pose import (
     Quaternion,
@@ -64,12 +64,6 @@ class Frame(NamedTuple):
 
     axes: Matrix
     radii: Vector
-
-
-@kernel
-def is_turn(k: int) -> bool:
-    """Whether one of the numbers of a scaled motion is for turning: the second three of each free body."""
-    return k % WRENCH >= 3
 
 
 @kernel

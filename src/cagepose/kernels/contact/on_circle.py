@@ -181,8 +181,8 @@ def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
     row, place = contacts.rows[i], contacts.used[0]
     arm, normal = place_on_circle(contacts, i, angle)
     new, state, around = contacts.rows[place], contacts.states[place], contacts.bends[i].on_circle
-    new.part, new.cage_part, new.gap, new.group = row.part, row.cage_part, row.gap, place
-    new.is_added = True
+    new.part, new.cage_part, new.cage_body = row.part, row.cage_part, row.cage_body
+    new.gap, new.group, new.is_added = row.gap, place, True
     new.feature, new.cage_feature, new.angle = row.feature, row.cage_feature, row.angle + angle
     write_directions(new, normal, arm, norm(vector_from(row.directions[1])), frame)
     choose(contacts, place, True)

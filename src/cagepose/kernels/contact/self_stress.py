@@ -18,7 +18,7 @@ from cagepose.kernels.algebra.span import extend, write_complement, write_outsid
 from cagepose.kernels.contact.cone import ConeWorkspace, clear_cone, cone_residual
 from cagepose.kernels.contact.contact_set import ContactSet, count_chosen
 from cagepose.kernels.contact.curvature import add_face_curvature, clear_matrix
-from cagepose.kernels.contact.metric import Frame, is_turn
+from cagepose.kernels.contact.metric import Frame
 from cagepose.kernels.contact.tolerances import (
     CARRIED_ALONG_LOCKED,
     LEAST_CURVATURE,
@@ -75,7 +75,7 @@ def clear_self_stress(contacts: ContactSet, stress: SelfStressWorkspace) -> bool
 @kernel
 def weight_of_freedom(k: int) -> float:
     """Return how much one of the numbers of a wrench counts where locked contacts cannot balance all of them."""
-    return WEIGHT_OF_MOMENTS if is_turn(k) else 1.0
+    return WEIGHT_OF_MOMENTS if k >= 3 else 1.0
 
 
 @kernel

@@ -121,7 +121,9 @@ def quaternion_row(quaternions: FloatArray, index: int) -> Quaternion:
 
 @kernel
 def start_of(case: int, part: Part, cases: Cases, cage: PlacedCage) -> Start:
-    """Return how a case starts; its cage is written into ``cage``."""
+    """Return how a case starts; its cage is written into ``cage``, what stands still at its place: the other bodies are
+    to be placed by the caller.
+    """
     points = cases.points_cage[row_of(len(cases.points_cage), case)]
     turned = quaternion_row(cases.cage_quaternions, row_of(len(cases.cage_quaternions), case))
     parts, n_points = cases.bodies_cage.own.parts, len(points)
@@ -208,7 +210,7 @@ def are_single(geometry: Geometry, touch_m: float) -> bool:
     for point in range(len(parts)):
         for other in range(point if parts[point].point >= 0 else 0):
             away = norm(minus(vector_from(parts[other].middle), vector_from(parts[point].middle)))
-            if parts[other].point >= 0 and away <= touch_m:
+            if parts[other].point >= 0 and parts[other].body == parts[point].body and away <= touch_m:
                 return False
     return True
 

@@ -176,7 +176,7 @@ def furthest_step(setting: Setting, path: Path, work: QuasistaticWorkspace) -> t
     hit = first_contact(setting, placement, contacts, path.position, path.quaternion, twist, reach_m)
     if hit.feature >= 0 and is_guided(work):
         hit = hit_on_path(setting, path, hit, spread, work)
-    amount = min(hit.amount, twist.end)
+    amount = until = min(hit.amount, twist.end)
     for i in range(contacts.used[0]):
         if not is_kept(contacts, i):
             continue
@@ -189,11 +189,11 @@ def furthest_step(setting: Setting, path: Path, work: QuasistaticWorkspace) -> t
             path.quaternion,
             twist.velocity,
             twist.spin,
-            amount,
+            until,
             reach_m,
             touch_m,
         )
-        if crossing < amount and is_curved:
+        if crossing < math.inf and is_curved:
             guard, enough = Guard(CONTACT_ENDS, NO_HIT, i, 0.0), (NEAR_END * touch_m, NEAR_END * touch_m / speed)
             crossing = first_past(setting, path, guard, math.inf, crossing, spread, enough, work)
         amount = min(amount, crossing)

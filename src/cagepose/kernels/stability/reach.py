@@ -15,10 +15,24 @@ from typing import NamedTuple
 import numpy as np
 
 from cagepose.kernels.algebra.least_squares import WRENCH, inner, label_is_passive, length
-from cagepose.kernels.algebra.linear_program import FAILED, OPTIMAL, UNBOUNDED, Program, solve_program
+from cagepose.kernels.algebra.linear_program import (
+    FAILED,
+    INFEASIBLE,
+    OPTIMAL,
+    UNBOUNDED,
+    Program,
+    solve_program,
+)
 from cagepose.kernels.algebra.record import FloatArray, IntArray
+from cagepose.kernels.contact.cone import write_generator
 from cagepose.kernels.native.kernel import entry, kernel
 
+SAME_RAY = 1e-13
+"""In lengths of a ray: one that is nearer to another says nothing new."""
+MOST_KEPT = 3
+"""Times as many rays as at first are kept."""
+LITTLE = 1e3
+"""In what is left as it is: by more than this no ray is violated that is there."""
 NO_ROOM = 4
 """Beside the codes of `linear_program`: there is memory for no more rays."""
 MOST_ROUNDS = 40
@@ -26,7 +40,7 @@ MOST_ROUNDS = 40
 
 
 class ConeRays(NamedTuple):
-    """Contacts, a question, and memory for rays. Those that an answer leans on stay for the next question.
+    """Contacts, a question, and memory for rays, which stay for the next questions, see `keep_in_use`.
 
     Attributes
     ----------
@@ -37,8 +51,8 @@ class ConeRays(NamedTuple):
         How fast each contact is to open at least, (n,); -inf: it does not count.
     row
         One more row, (6,): row . x <= 1.
-    projection, offset
-        The motion is y = P x + offset, with a projection P, (6, 6), and (6,).
+    basis, offset
+        The motion is y = sum x_j basis_j + offset, (6, 6) and (6,): rows of zeros leave their unknown out.
     used
         How many rays there are, and how many of them there were at first, which stay in any case, (2,).
     contacts, rays
@@ -53,7 +67,7 @@ class ConeRays(NamedTuple):
     friction: FloatArray
     least: FloatArray
     row: FloatArray
-    projection: FloatArray
+    basis: FloatArray
     offset: FloatArray
     used: IntArray
     contacts: IntArray
@@ -94,54 +108,75 @@ def write_rows(work: ConeRays) -> None:
         ray = work.rays[k]
         work.bounds[k + 1] = inner(ray, work.offset, WRENCH) - work.least[work.contacts[k]]
         for j in range(WRENCH):
-            work.rows[k + 1, j] = -inner(work.projection[j], ray, WRENCH)
+            work.rows[k + 1, j] = -inner(work.basis[j], ray, WRENCH)
 
 
 @kernel
-def add_ray(work: ConeRays, contact: int, one: float, two: float) -> bool:
-    """Add the ray n + mu d of a contact, with a unit tangent d; False: there is no room."""
-    at, mu, columns = work.used[0], work.friction[contact], work.columns[contact]
-    if at == len(work.contacts):
-        return False
-    work.contacts[at] = contact
-    for j in range(WRENCH):
-        work.rays[at, j] = columns[0, j] + mu * (one * columns[1, j] + two * columns[2, j])
-    work.used[0] = at + 1
-    return True
+def is_known(work: ConeRays, contact: int, ray: FloatArray) -> bool:
+    """Whether a contact has a ray already."""
+    size = length(ray, WRENCH)
+    for k in range(work.used[0]):
+        if work.contacts[k] == contact:
+            apart = 0.0
+            for j in range(WRENCH):
+                apart = max(apart, abs(work.rays[k, j] - ray[j]))
+            if apart <= SAME_RAY * size:
+                return True
+    return False
 
 
 @kernel
 def add_violated(work: ConeRays, is_ray: bool, cut_from: float) -> tuple[bool, bool]:
-    """Add the rays that the motion violates most, one of each contact; return (whether there are any, whether there was
-    room).
+    """Add the rays n + mu d that the motion violates most, one of each contact; return (whether there are any, whether
+    there was room). What is violated by little may be a ray that is there, up to rounding.
     """
     n_before, size = work.used[0], length(work.motion, WRENCH)
     for contact in range(len(work.columns)):
-        least, columns = work.least[contact], work.columns[contact]
-        if least == -math.inf or work.friction[contact] == 0.0:
+        least, mu, columns = work.least[contact], work.friction[contact], work.columns[contact]
+        if least == -math.inf or mu == 0.0:
             continue
         one, two = inner(columns[1], work.motion, WRENCH), inner(columns[2], work.motion, WRENCH)
         slip = math.sqrt(one * one + two * two)
-        opens = inner(columns[0], work.motion, WRENCH) - work.friction[contact] * slip
-        is_violated = slip > 0.0 and (0.0 if is_ray else least) - opens > cut_from * size
-        if is_violated and not add_ray(work, contact, -one / slip, -two / slip):
+        violated = (0.0 if is_ray else least) - inner(columns[0], work.motion, WRENCH) + mu * slip
+        if slip == 0.0 or violated <= cut_from * size:
+            continue
+        at = work.used[0]
+        if at == len(work.contacts):
             return True, False
+        write_generator(columns, mu, -one / slip, -two / slip, WRENCH, work.rays[at])
+        if violated > LITTLE * cut_from * size or not is_known(work, contact, work.rays[at]):
+            work.contacts[at] = contact
+            work.used[0] = at + 1
     return work.used[0] > n_before, True
 
 
 @kernel
-def keep_in_use(program: Program, work: ConeRays) -> None:
-    """Write the wrench of the forces that a solution leans on, and drop the rays that came in and are not among them:
-    of an arc of contacts each question would leave hundreds.
-    """
-    passive, kept = program.passive, work.used[1]
+def write_answer(program: Program, work: ConeRays, is_ray: bool) -> None:
+    """Write the motion of a solution, or of its ray, and the wrench of the forces that it leans on."""
+    passive = program.passive
     for j in range(WRENCH):
+        work.motion[j] = 0.0 if is_ray else work.offset[j]
         work.wrench[j] = 0.0
-        for k in range(passive.used):
-            if passive.labels[k] > 0:
+    for k in range(WRENCH):
+        found = program.ray[k] if is_ray else program.x[k]
+        for j in range(WRENCH):
+            work.motion[j] += found * work.basis[k, j]
+    for k in range(passive.used):
+        if passive.labels[k] > 0:
+            for j in range(WRENCH):
                 work.wrench[j] += passive.x[k] * work.rays[passive.labels[k] - 1, j]
+
+
+@kernel
+def keep_in_use(program: Program, work: ConeRays) -> None:
+    """Once there are many, drop the rays that came in and that the answer does not lean on: of an arc of contacts each
+    question leaves hundreds. Those of the questions before are near what the next one needs.
+    """
+    kept = work.used[1]
+    if work.used[0] <= MOST_KEPT * kept:
+        return
     for k in range(kept, work.used[0]):
-        if label_is_passive(passive, k + 1):
+        if label_is_passive(program.passive, k + 1):
             work.contacts[kept] = work.contacts[k]
             for j in range(WRENCH):
                 work.rays[kept, j] = work.rays[k, j]
@@ -149,9 +184,36 @@ def keep_in_use(program: Program, work: ConeRays) -> None:
     work.used[0] = kept
 
 
+@kernel
+def solve_with_rays(program: Program, work: ConeRays, cut_from: float) -> int:
+    """As `reach`, from the rays that are known."""
+    outcome, has_answer = FAILED, False
+    program.passive.used = 0
+    work.motion[:] = 0.0
+    work.wrench[:] = 0.0
+    for _ in range(MOST_ROUNDS):
+        write_rows(work)
+        n_rows = work.used[0] + 1
+        outcome = solve_program(work.rows[:n_rows], work.bounds[:n_rows], program)
+        if outcome not in (OPTIMAL, UNBOUNDED):
+            break
+        write_answer(program, work, outcome == UNBOUNDED)
+        has_answer = has_answer or outcome == OPTIMAL
+        is_any, has_room = add_violated(work, outcome == UNBOUNDED, cut_from)
+        if not has_room:
+            return NO_ROOM
+        if not is_any:
+            keep_in_use(program, work)
+            return outcome
+    keep_in_use(program, work)
+    if has_answer and outcome != INFEASIBLE:
+        return OPTIMAL
+    return outcome if outcome == INFEASIBLE else FAILED
+
+
 @entry
 def reach(program: Program, work: ConeRays, cut_from: float) -> int:
-    """Maximise ``program.objective`` . x over x for which each contact that counts opens at y = P x + offset as fast as
+    """Maximise ``program.objective`` . x over x for which each contact that counts opens at the motion of x as fast as
     it is to, along all rays of its cone.
 
     Parameters
@@ -159,32 +221,20 @@ def reach(program: Program, work: ConeRays, cut_from: float) -> int:
     program
         Objective, and solution.
     work
-        The question, and the rays that are known.
+        The question, and the rays that are known. Filled: the motion and the wrench, of the last round that had an
+        answer; zero: none had.
     cut_from
         In lengths of the motion: a cone that it violates by less is left as it is.
 
     Returns
     -------
     int
-        OPTIMAL; UNBOUNDED, with a ray for y; INFEASIBLE; FAILED: rounding, or too many rounds; NO_ROOM.
+        OPTIMAL, be it with the rays that came in before rounding, or the number of rounds, ended it; UNBOUNDED, with a
+        ray for the motion; INFEASIBLE; FAILED; NO_ROOM.
     """
-    outcome = FAILED
-    program.passive.used = 0
-    for _ in range(MOST_ROUNDS):
-        write_rows(work)
-        n_rows = work.used[0] + 1
-        outcome = solve_program(work.rows[:n_rows], work.bounds[:n_rows], program)
-        if outcome not in (OPTIMAL, UNBOUNDED):
-            return outcome
-        found = program.x if outcome == OPTIMAL else program.ray
-        for j in range(WRENCH):
-            work.motion[j] = inner(work.projection[j], found, WRENCH) + (work.offset[j] if outcome == OPTIMAL else 0.0)
-        is_any, has_room = add_violated(work, outcome == UNBOUNDED, cut_from)
-        if not has_room:
-            return NO_ROOM
-        if not is_any:
-            break
-    else:
-        outcome = outcome if outcome == OPTIMAL else FAILED
-    keep_in_use(program, work)
+    n_known = work.used[0]
+    outcome = solve_with_rays(program, work, cut_from)
+    if outcome == FAILED and n_known > work.used[1]:  # rays of other questions may all but depend on each other
+        work.used[0] = work.used[1]
+        outcome = solve_with_rays(program, work, cut_from)
     return outcome

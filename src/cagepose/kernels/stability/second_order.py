@@ -9,6 +9,7 @@ from cagepose.kernels.algebra.dense import frobenius_norm
 from cagepose.kernels.algebra.eigen import symmetric_eigen
 from cagepose.kernels.algebra.least_squares import (
     MOST_FREEDOMS,
+    WRENCH,
     PassiveSet,
     System,
     append_column,
@@ -264,9 +265,8 @@ def is_listed_twice(contacts: ContactSet, i: int, k: int) -> bool:
     """Whether two rows are one, or one contact that is in two groups."""
     one, other = contacts.rows[i], contacts.rows[k]
     is_same = one.group != other.group
-    for axis in range(3):
-        is_same = is_same and one.arm[axis] == other.arm[axis]
-        is_same = is_same and one.directions[0, axis] == other.directions[0, axis]
+    for row in range(contacts.n_freedoms):
+        is_same = is_same and one.wrenches[0, row] == other.wrenches[0, row]
     return i == k or is_same
 
 
@@ -369,6 +369,8 @@ def stability(
     features that bend by different amounts, one way off it may be stable and another not: unless those that bend least
     and those that bend most say the same, nothing is shown. Nor is it where another balance may stop a motion (5.38).
     """
+    if contacts.n_freedoms != WRENCH:
+        return STABILITY_NOT_SHOWN  # curvatures are of one free body
     at_limit = find_held(contacts, statuses, friction, locked, work, system)
     n_held, n_ways = work.held.used, work.ways.used
     n_one_sided = list_one_sided(contacts, statuses, work, system)
