@@ -7,14 +7,13 @@ import pytest
 from scipy.optimize import nnls
 
 from audit.uniqueness import violation
-from cagepose.kernels.algebra.least_squares import PassiveSet, empty_system, nonnegative_least_squares
+from cagepose.kernels.algebra.least_squares import WRENCH, PassiveSet, empty_system, nonnegative_least_squares
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.contact.cone import ConeWorkspace, clear_cone, cone_residual, write_forces
 from cagepose.kernels.contact.contact_set import empty_contact_set
 from cagepose.kernels.contact.coulomb import coulomb_onset
 from cagepose.kernels.contact.coulomb_newton import NewtonWorkspace
 from cagepose.kernels.contact.coulomb_pivots import PivotWorkspace
-from cagepose.kernels.contact.metric import WRENCH
 from cagepose.kernels.contact.tolerances import RESIDUAL_AT_LIMIT
 from inner_kernels import as_machine_code
 

@@ -189,7 +189,7 @@ def test_a_region_does_not_depend_on_where_down_is(cases):
         turned = run(mapped(plain, frame=frame, scale=1.0, flip=np.ones(3), order=order))
         expected, found = (region_of(one)[1].margin_m for one in (a_run, turned))
         n_asked += 1
-        assert found == pytest.approx(expected, rel=1e-3, abs=1e-5 * plain.size_m)  # corners are as near as is told
+        assert found == pytest.approx(expected, abs=DISTANCE_OF_CORNER * plain.size_m)
     assert n_asked > 10
 
 

@@ -164,6 +164,7 @@ def strayed_at_most(setting: Setting, path: Path, work: QuasistaticWorkspace) ->
 @kernel
 def furthest_step(setting: Setting, path: Path, work: QuasistaticWorkspace) -> tuple[float, bool, Vector, Quaternion]:
     """Go along a path, from `along_faces`, to its end, the first contact or the end of a contact, or less if need be.
+    Of each contact it is asked whether it ends before what has been found so far does.
 
     Return (amount, whether it went as far as it should, position, quaternion); amount 0: it could not move; inf:
     nothing is ahead. The placement is that of the pose.
@@ -176,7 +177,7 @@ def furthest_step(setting: Setting, path: Path, work: QuasistaticWorkspace) -> t
     hit = first_contact(setting, placement, contacts, path.position, path.quaternion, twist, reach_m)
     if hit.feature >= 0 and is_guided(work):
         hit = hit_on_path(setting, path, hit, spread, work)
-    amount = until = min(hit.amount, twist.end)
+    amount = min(hit.amount, twist.end)
     for i in range(contacts.used[0]):
         if not is_kept(contacts, i):
             continue
@@ -189,7 +190,7 @@ def furthest_step(setting: Setting, path: Path, work: QuasistaticWorkspace) -> t
             path.quaternion,
             twist.velocity,
             twist.spin,
-            until,
+            amount,
             reach_m,
             touch_m,
         )
