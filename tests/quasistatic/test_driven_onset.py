@@ -14,6 +14,16 @@ from cagepose.kernels.contact.coulomb_pivots import PivotWorkspace
 from inner_kernels import as_machine_code
 
 
+def contacts_of(columns, drift):
+    """Contacts that count, with columns (n, 3, 6) and drifts (n, 3)."""
+    contacts = empty_contact_set(len(columns))
+    contacts.used[0] = len(columns)
+    for i in range(len(columns)):
+        row = contacts.rows[i]
+        row.columns[:, :6], row.drift[:], contacts.states[i].counts = columns[i], drift[i], True
+    return contacts
+
+
 class Onset:
     """Contacts with columns (n, 3, 6) and drifts (n, 3), asked for the motion y that a load begins, and the forces."""
 
@@ -21,11 +31,7 @@ class Onset:
         self.memory = [empty_record(kind) for kind in (ConeWorkspace, NewtonWorkspace, PivotWorkspace)]
 
     def ask(self, columns, drift, load, friction):
-        contacts = empty_contact_set(len(columns))
-        contacts.used[0] = len(columns)
-        for i in range(len(columns)):
-            row = contacts.rows[i]
-            row.columns[:, :6], row.drift[:], contacts.states[i].counts = columns[i], drift[i], True
+        contacts = contacts_of(columns, drift)
         b, y = np.append(load, 0.0), np.zeros(7)
         cone, newton, pivots = self.memory
         terms = np.linalg.norm(load) + np.abs(drift).max() / np.linalg.norm(columns[:, 0], axis=1).min()

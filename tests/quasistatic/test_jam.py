@@ -7,19 +7,9 @@ import pytest
 from scipy.optimize import linprog
 
 from cagepose.kernels.algebra.record import empty_record
-from cagepose.kernels.contact.contact_set import empty_contact_set
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.stability.jam import cannot_jam
-from quasistatic.test_driven_onset import random_problem
-
-
-def contacts_of(columns, drift):
-    contacts = empty_contact_set(len(columns))
-    contacts.used[0] = len(columns)
-    for i in range(len(columns)):
-        row = contacts.rows[i]
-        row.columns[:, :6], row.drift[:], contacts.states[i].counts = columns[i], drift[i], True
-    return contacts
+from quasistatic.test_driven_onset import contacts_of, random_problem
 
 
 def planar(contacts):

@@ -146,10 +146,11 @@ def deepest_meeting(geometry: Geometry, placement: Placement, work: StepWorkspac
     for body in range(number_of_bodies(geometry.cage)):
         meetings = meetings_with(placement, body)
         for group in range(meetings.used[0]):
-            if meetings.rows[group].group == group:
-                outermost = outermost_of_group(meetings, group)
-                if -meetings.rows[outermost].gap > worst:
-                    found, at, worst = body, outermost, -meetings.rows[outermost].gap
+            if meetings.rows[group].group != group:
+                continue
+            outermost = outermost_of_group(meetings, group)
+            if -meetings.rows[outermost].gap > worst:
+                found, at, worst = body, outermost, -meetings.rows[outermost].gap
     return found, at
 
 

@@ -198,7 +198,7 @@ def solve_with_rays(program: Program, work: ConeRays, cut_from: float) -> int:
         if outcome not in (OPTIMAL, UNBOUNDED):
             break
         write_answer(program, work, outcome == UNBOUNDED)
-        has_answer = has_answer or outcome == OPTIMAL
+        has_answer = outcome == OPTIMAL
         is_any, has_room = add_violated(work, outcome == UNBOUNDED, cut_from)
         if not has_room:
             return NO_ROOM
@@ -206,9 +206,9 @@ def solve_with_rays(program: Program, work: ConeRays, cut_from: float) -> int:
             keep_in_use(program, work)
             return outcome
     keep_in_use(program, work)
-    if has_answer and outcome != INFEASIBLE:
-        return OPTIMAL
-    return outcome if outcome == INFEASIBLE else FAILED
+    if outcome == INFEASIBLE:
+        return INFEASIBLE
+    return OPTIMAL if has_answer else FAILED
 
 
 @entry
